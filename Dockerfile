@@ -1,4 +1,4 @@
-# posicast with all that `posicast run` and `posicast verify` need:
+# posicast with all tools that `posicast run` and `posicast verify` need:
 #   docker build -t posicast .
 #   docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/work" posicast run machine.toml
 FROM rust:1-bookworm AS build
@@ -12,7 +12,7 @@ RUN apt-get update \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /opt/posicast/bin/posicast /usr/local/bin/posicast
 RUN posicast doctor
-# Simulations that were built: a folder that every user may write, and that a volume may keep.
+# The cache of built simulations is a folder that every user may write, and that a volume may keep.
 ENV POSICAST_CACHE=/tmp/posicast
 WORKDIR /work
 ENTRYPOINT ["posicast"]

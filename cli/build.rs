@@ -1,5 +1,5 @@
-//! The version that `posicast --version` shows: with the short hash of the commit where this is a checkout of posicast's own
-//! repository, else alone.
+//! Sets the version that `posicast --version` shows: with the short hash of the commit in a checkout of posicast's
+//! own repository, else alone.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,10 +10,10 @@ fn git(arguments: &[&str]) -> Option<String> {
     output.status.success().then(|| text.trim().to_owned())
 }
 
-/// The commit's short hash. A package inside somebody else's repository has none: there this file is not in the index.
+/// Short hash of the commit; `None` for a package inside another repository, whose index does not contain this file.
 fn commit() -> Option<String> {
     git(&["ls-files", "--error-unmatch", "build.rs"])?;
-    // The first changes with the branch, the second with every commit.
+    // HEAD changes with the branch, its log with every commit.
     for name in ["HEAD", "logs/HEAD"] {
         let path = git(&["rev-parse", "--git-path", name])?;
         if Path::new(&path).is_file() {

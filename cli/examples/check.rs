@@ -1,4 +1,4 @@
-//! One block from its lint to its area, for the time in which it is being changed: `scripts/check BLOCK`.
+//! Checks one block, from its lint to its area, while it is being changed: `scripts/check BLOCK`.
 //!
 //! ```text
 //! cargo run -p posicast --example check -- BLOCK [--clocks N]
@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// What a proof may take: the longest, that of the PWM, takes 320 s on a quiet machine.
+/// Time limit of a proof: the longest, that of the PWM, takes 320 s on a quiet machine.
 const PROOF: Duration = Duration::from_secs(900);
 
 #[derive(Debug, thiserror::Error)]
@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The block and the number of clocks that the command line asks for.
+/// The block and the number of clocks from the command line.
 fn options() -> Result<(String, u64), Failure> {
     let usage = || Failure::Usage("usage: scripts/check BLOCK [--clocks N]".to_owned());
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -119,7 +119,7 @@ fn check() -> Result<bool, Failure> {
     Ok(is_good)
 }
 
-/// Prints the row of an instance, and says whether all of it holds.
+/// Prints the row of an instance, and returns whether all of it holds.
 fn row(block: &dyn Block, clocks: u64, yosys: &Yosys) -> Result<bool, Failure> {
     let sources = Sources::write(block)?;
     let warnings = sources.lint(block)?;

@@ -1,11 +1,11 @@
-//! A reader that gives so many bytes and then an error, until it is told that these were well used.
+//! A reader that passes on a limited number of bytes and then an error, unless the caller renews its allowance.
 //!
-//! A CSV reader keeps a whole line in memory, however long it is: with an allowance per line, a file that is no table costs
-//! an error and not the memory.
+//! A CSV reader keeps a whole line in memory, however long it is. With an allowance per line, a file that is not a
+//! table causes an error instead of using up the memory.
 
 use std::io::{self, Read};
 
-/// Gives at most `bytes` of `inner` between two calls of [`Allowance::renew`].
+/// Passes on at most `bytes` of `inner` between two calls of [`Allowance::renew`].
 pub(crate) struct Allowance<R> {
     inner: R,
     bytes: u64,
@@ -13,7 +13,7 @@ pub(crate) struct Allowance<R> {
 }
 
 impl<R: Read> Allowance<R> {
-    /// With a first allowance of so many bytes.
+    /// Starts with this many bytes.
     pub(crate) fn new(inner: R, bytes: u64) -> Self {
         Self {
             inner,
@@ -22,7 +22,7 @@ impl<R: Read> Allowance<R> {
         }
     }
 
-    /// What was read is worth it: as much again.
+    /// Renews the allowance, because what was read was valid.
     pub(crate) fn renew(&mut self) {
         self.left = self.bytes;
     }

@@ -1,4 +1,4 @@
-//! Blocks on the test bench: what runs them, and the lock step of several of them.
+//! Blocks on the test bench: the choice of the simulator, and the lock step of several blocks.
 
 use crate::failure::Failure;
 use crate::{output, progress};
@@ -17,13 +17,13 @@ use std::ops::RangeInclusive;
 use std::sync::Mutex;
 use std::thread;
 
-/// Blocks that are built and simulated at a time: a build takes a gigabyte at its worst.
+/// Largest number of blocks that are built and simulated at a time: a build takes up to a gigabyte.
 const MOST_AT_ONCE: usize = 2;
 
-/// How much longer than usual a row runs, where it has not shown all that a verdict speaks of.
+/// Factor by which a row may run longer than usual, where it has not exercised all that a verdict speaks of.
 const MOST_TIMES_LONGER: u64 = 10;
 
-/// What runs the hardware.
+/// Simulator of the hardware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Simulator {
@@ -35,7 +35,7 @@ pub(crate) enum Simulator {
     Rusthdl,
 }
 
-/// A number of clocks as people write it: `1000000`, `1_000_000` or `1e6`.
+/// Parses a number of clocks as people write it: `1000000`, `1_000_000` or `1e6`.
 pub(crate) fn clocks(text: &str) -> Result<u64, String> {
     const LARGEST: f64 = 1e18;
     let plain = text.replace('_', "");
@@ -50,18 +50,18 @@ pub(crate) fn clocks(text: &str) -> Result<u64, String> {
         .ok_or_else(|| "allowed: a whole number of clocks from 1 on, such as 1000000, 1_000_000 or 1e6".to_owned())
 }
 
-/// Whether this program is linked statically, and can load no library.
+/// Whether this program is linked statically and can therefore load no library.
 const IS_STATIC: bool = cfg!(target_feature = "crt-static");
 
 impl Simulator {
     /// The simulator that was asked for, else the best that is installed.
     ///
-    /// A Verilator that `$VERILATOR` names, or that fails, is no Verilator that is not installed: that is an error.
+    /// A Verilator that `$VERILATOR` names, or that fails to run, is an error, and does not count as not installed.
     pub(crate) fn choose(asked: Option<Self>) -> Result<Self, Failure> {
         if IS_STATIC && asked == Some(Self::Verilator) {
             return Err(Failure::from(miette::miette!(
                 help = "use --simulator icarus, or a posicast that is linked dynamically: cargo install --path cli --locked",
-                "this posicast is linked statically and cannot load what Verilator builds"
+                "this posicast is linked statically and cannot load the library that Verilator builds"
             )));
         }
         if let Some(simulator) = asked {
@@ -69,7 +69,7 @@ impl Simulator {
         }
         if IS_STATIC {
             output::say(
-                "note: this posicast is linked statically and cannot load what Verilator builds: Icarus simulates the Verilog, on \
+                "note: this posicast is linked statically and cannot load the library that Verilator builds: Icarus simulates the Verilog, on \
                  fewer clocks.",
             );
             return Ok(Self::Icarus);
@@ -87,8 +87,8 @@ impl Simulator {
         }
     }
 
-    /// The fewest and the most clocks of a block's lock step where none are asked for: what the simulator does in a few
-    /// seconds, and on from there until the stimuli have reached what a verdict speaks of.
+    /// Fewest and most clocks of a block's lock step by default: as many as the simulator does in a few seconds, and
+    /// more until the stimuli have exercised what a verdict speaks of.
     fn default_cycles(self, block: &dyn Block) -> RangeInclusive<u64> {
         let usual = match self {
             Self::Verilator => 1_000_000,
@@ -111,7 +111,7 @@ impl Simulator {
         }
     }
 
-    /// The block in this simulator. RustHDL's runs its own description instead of the Verilog.
+    /// Opens the block in this simulator. RustHDL's simulator runs its description instead of the Verilog.
     pub(crate) fn device(self, block: &dyn Block, sources: &Sources, seed: u64) -> Result<Box<dyn Device>, Error> {
         match self {
             Self::Verilator => Ok(Box::new(sources.verilated(block, seed)?)),
@@ -131,16 +131,16 @@ impl fmt::Display for Simulator {
     }
 }
 
-/// A block and where its Verilog is.
+/// A block with the number of its clocks.
 pub(crate) struct Bench<'a> {
     pub(crate) block: &'a dyn Block,
     pub(crate) sources: &'a Sources,
-    /// Clocks to compare, where the default is not wanted.
+    /// Number of clocks to compare; `None`: the default.
     pub(crate) cycles: Option<u64>,
 }
 
 impl Bench<'_> {
-    /// The fewest and the most clocks to compare: as many as were asked for.
+    /// Fewest and most clocks to compare: the number that was asked for, or the default range.
     fn clocks(&self, simulator: Simulator) -> RangeInclusive<u64> {
         match self.cycles {
             Some(cycles) => cycles..=cycles,
@@ -164,7 +164,7 @@ pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64
             };
             let result = compare(bench, simulator, seed, &bar);
             if result.is_err() {
-                // What is left is not begun: the error ends the command.
+                // The remaining blocks are not begun: the error ends the command.
                 locked(&next).by_ref().for_each(drop);
             }
             locked(&done).push((row, result));
@@ -208,12 +208,12 @@ fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar
     })
 }
 
-/// What a mutex holds; a thread that died over it does not matter here, the panic goes on by itself.
+/// Locks a mutex. It ignores a thread that panicked while it held the lock, since the panic propagates by itself.
 pub(crate) fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// How an error of the test bench ends a command.
+/// Turns an error of the test bench into the failure of a command.
 pub(crate) fn failure(error: Error) -> Failure {
     if error.is_missing_tool() {
         Failure::missing_tool(error)

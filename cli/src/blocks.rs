@@ -1,4 +1,4 @@
-//! The hardware blocks that stand for a machine: its own, at its settings, and the rest of the library at a default size.
+//! The hardware blocks of a machine: its own, with its settings, and the rest of the library at default sizes.
 
 use crate::bench;
 use crate::command::{self, Words};
@@ -27,7 +27,8 @@ pub(crate) fn shapers(machine: &Machine, shapers: Vec<AxisShaper>, words: &Words
     MachineShapers::new(&machine.name, shapers, command::on_the_ports(machine, words)).map_err(bench::failure)
 }
 
-/// The other blocks: none for a machine of shapers alone, else every block of the library. `path` is the machine file.
+/// The other blocks: none for a machine that has only shapers, else every block of the library. `path` is the machine
+/// file.
 pub(crate) fn others(
     report: &DesignReport<'_>,
     shapers: &[AxisShaper],
@@ -54,7 +55,8 @@ pub(crate) fn others(
     benches(&sizes).map_err(bench::failure)
 }
 
-/// What a folder holds beside the machine's top: each component, through its bus and its pins, and the blocks in it, each alone.
+/// The blocks of a folder in addition to the machine's top: each component, through its bus and its pins, and the
+/// blocks in it, each alone.
 pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<dyn Block>>, Failure> {
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
     for component in components {
@@ -90,7 +92,7 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
     Ok(found)
 }
 
-/// The names of the axes that have something, or `alone` where none has it.
+/// Names of the axes for which `has` is true, or `alone` where there are none.
 fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
     let names: Vec<&str> = machine
         .axes

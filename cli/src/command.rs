@@ -1,4 +1,4 @@
-//! The command that a machine is given: from a CSV file, or a move of each axis.
+//! The command of a machine: from a CSV file, or a move of each axis.
 
 use crate::allowance::Allowance;
 use crate::failure::Failure;
@@ -9,10 +9,10 @@ use posicast_model::rtl::shaper::wrap;
 use std::fs::File;
 use std::path::Path;
 
-/// Longest line: a heading and numbers need far less, and a file that is no table has none.
+/// Largest length of a line in bytes: a heading and numbers need far less.
 const LINE_BYTES: u64 = 1 << 16;
 
-/// Command words per axis, all of one length; of a modulo axis with their whole turns.
+/// Command words per axis, all of the same length; those of a modulo axis include whole turns.
 pub(crate) type Words = Vec<Vec<i64>>;
 
 /// The words of the command in the CSV file `path`, or of the moves of the axes.
@@ -55,7 +55,7 @@ pub(crate) fn words(
     Ok(words)
 }
 
-/// The words as the hardware gets them: without whole turns.
+/// The words as the hardware gets them, without whole turns.
 pub(crate) fn on_the_ports(machine: &Machine, words: &Words) -> Words {
     let bits = machine.fixed_point.command_bits;
     let of_axis = |words: &Vec<i64>| words.iter().map(|word| wrap(*word, bits)).collect();
@@ -66,7 +66,8 @@ fn of_axis(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
     Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
 }
 
-/// The points `(time_s, position)` of every axis, positions in its unit: columns `time_s` and either `position` for all axes or one per axis.
+/// Reads the points `(time_s, position)` of every axis, with positions in its unit. The columns are `time_s` and
+/// either `position` for all axes or one per axis.
 fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure> {
     let refused = |found: String| {
         Failure::from(miette::miette!(
@@ -81,7 +82,7 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
         .from_reader(Allowance::new(file, LINE_BYTES));
     let headings = reader.headers().map_err(|e| refused(e.to_string()))?.clone();
     let column = |name: &str| headings.iter().position(|h| h == name);
-    let time = column("time_s").ok_or_else(|| refused("line 1: there is no column `time_s`".to_owned()))?;
+    let time = column("time_s").ok_or_else(|| refused("line 1: no column `time_s`".to_owned()))?;
     let columns: Vec<usize> = machine
         .axes
         .iter()

@@ -7,7 +7,8 @@ use posicast_model::machine_file::Machine;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Compares the kinds for modes whose frequencies are off by up to `band_percent`, and prints the table or the JSON document.
+/// Compares the kinds for modes whose frequencies are off by up to `band_percent`, and prints the table or the JSON
+/// document.
 pub(crate) fn run(machine: &Machine, band_percent: f64, json: bool) -> Result<(), Failure> {
     let comparisons = compare(machine, band_percent / 100.0);
     if json {
@@ -17,7 +18,7 @@ pub(crate) fn run(machine: &Machine, band_percent: f64, json: bool) -> Result<()
     }
 }
 
-/// Reads the percentage of `--band`.
+/// Parses the percentage of `--band`.
 pub(crate) fn band(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(percent) if (0.0..=90.0).contains(&percent) => Ok(percent),

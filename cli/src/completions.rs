@@ -1,4 +1,4 @@
-//! `posicast completions`: what a shell needs to complete commands and options.
+//! `posicast completions`: scripts with which a shell completes commands and options.
 
 use crate::failure::Failure;
 use crate::output;

@@ -1,4 +1,4 @@
-//! `posicast simulate --contour`: a path of two axes, and how far shapers lead them off it.
+//! `posicast simulate --contour`: a path of two axes, and how far shapers make them leave it.
 
 use crate::failure::Failure;
 use crate::output::{self, Table, UnitDocument};
@@ -17,20 +17,22 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Speed along a path as a part of the slower axis's limit, where nothing says it.
+/// Default speed along a path, as a fraction of the slower axis's limit.
 const PART_OF_VELOCITY: f64 = 0.4;
-/// Size of a circle or square as a part of the smaller travel, and where there is none, in m.
+/// Default size of a circle or square, as a fraction of the smaller travel, and in m where there is no travel.
 const PART_OF_TRAVEL: f64 = 0.25;
 const SIZE_M: f64 = 0.02;
-/// Largest file of points or G-code.
+/// Largest size in bytes of a file of points or G-code.
 const LARGEST_BYTES: u64 = 64 << 20;
-/// Endings of G-code files.
+/// File name extensions of G-code.
 const GCODE_ENDINGS: [&str; 6] = ["gcode", "g", "nc", "ngc", "tap", "cnc"];
 
-/// `--contour` and its sizes.
+/// The options `--contour`, and its sizes.
 #[derive(clap::Args)]
 pub(crate) struct ContourArgs {
-    /// Path of the first two axes: circle, square, a CSV file of points x,y in the axes' units, or a G-code file (.gcode, .nc, .ngc, …). Shows how far each kind of shaper leads the axes off it, instead of a wave
+    /// Path of the first two axes: circle, square, a CSV file of points x,y in the axes' units, or a G-code file
+    /// (.gcode, .nc, .ngc, …). Shows how far each kind of shaper makes the axes leave it, instead of writing a
+    /// waveform
     #[arg(long, value_name = "SHAPE|FILE", conflicts_with = "command")]
     pub(crate) contour: Option<String>,
     /// Radius of the circle, in the unit of the first axis [default: an eighth of the smaller travel, else 10 mm]
@@ -44,7 +46,7 @@ pub(crate) struct ContourArgs {
     pub(crate) plot: Option<PathBuf>,
 }
 
-/// What is driven.
+/// The path to drive.
 enum Path2d<'a> {
     Circle,
     Square,
@@ -53,7 +55,7 @@ enum Path2d<'a> {
 }
 
 impl ContourArgs {
-    /// The file that the path is in.
+    /// The file of the path, if it comes from one.
     pub(crate) fn file(&self) -> Option<&Path> {
         match self.kind()? {
             Path2d::Points(path) | Path2d::Gcode(path) => Some(path),
@@ -73,7 +75,7 @@ impl ContourArgs {
         })
     }
 
-    /// The path of `run`, whose `--radius` is the circle's.
+    /// The path for `run`, where `--radius` is the circle's.
     pub(crate) fn of_run(contour: Option<&str>, radius: Option<f64>) -> Option<Self> {
         Some(Self {
             contour: Some(contour?.to_owned()),
@@ -83,7 +85,7 @@ impl ContourArgs {
         })
     }
 
-    /// The path within the limits and the travel of the machine; from `(0, 0)`, where `from_reset`.
+    /// Plans the path within the limits and the travel of the machine; from `(0, 0)` if `from_reset`.
     pub(crate) fn planned(&self, machine: &Machine, speed: Option<f64>, from_reset: bool) -> Result<Contour, Failure> {
         let two_axes =
             |error: ContourError| refused("--contour", &error.to_string(), "take a machine with two linear axes");
@@ -110,7 +112,7 @@ impl ContourArgs {
         contour(&strokes).map_err(of_path)
     }
 
-    /// The strokes of the path; `speed` in the unit of the first axis per second.
+    /// The strokes of the path; `speed` is in the unit of the first axis per second.
     fn strokes(&self, machine: &Machine, limits: &ContourLimits, speed: Option<f64>) -> Result<Vec<Stroke>, Failure> {
         let kind = self
             .kind()
@@ -173,14 +175,14 @@ fn speed_of(machine: &Machine, limits: &ContourLimits, asked: Option<f64>) -> Re
     }
 }
 
-/// The size of a circle or a square that suits the travel of the plane, in m.
+/// A size of a circle or a square, in m, that fits the travel of the plane.
 fn size(machine: &Machine) -> f64 {
     let travels = machine.axes.iter().take(2).filter_map(|axis| axis.limits?.travel);
     let smallest = travels.map(|[low, high]| high - low).reduce(f64::min);
     smallest.map_or(SIZE_M, |travel| PART_OF_TRAVEL * travel)
 }
 
-/// Strokes about the middle of the travel of each axis that has one.
+/// Moves strokes to the middle of the travel of each axis that has one.
 fn centred(machine: &Machine, strokes: Vec<Stroke>, limits: &ContourLimits) -> Vec<Stroke> {
     let Ok(contour) = Contour::new(&strokes, limits, machine.clock.sample_period_s()) else {
         return strokes;
@@ -228,7 +230,7 @@ fn refused(option: &str, found: &str, remedy: &str) -> Failure {
     Failure::from(miette::miette!(help = remedy.to_owned(), "{option}: {found}"))
 }
 
-/// Drives the path with each kind of shaper, and shows what comes of it.
+/// Drives the path with each kind of shaper, and reports the distances.
 pub(crate) fn run(
     args: &ContourArgs,
     machine: &Machine,
@@ -242,7 +244,7 @@ pub(crate) fn run(
     let rows = contour::compare(machine, &contour).map_err(of_path)?;
     if rows.iter().take(2).all(|row| row.errors.is_err()) {
         let reason = rows[0].errors.as_ref().err().cloned().unwrap_or_default();
-        return Err(refused("--contour", &reason, "`posicast design` says more of it"));
+        return Err(refused("--contour", &reason, "`posicast design` tells more about it"));
     }
     let report = Report {
         machine,
@@ -285,15 +287,15 @@ struct RowDocument {
     kind: String,
     in_file: bool,
     equal_delays: bool,
-    /// Largest distance from the path, by `frequency_factors`.
+    /// Largest distance from the path for each of `frequency_factors`.
     #[serde(skip_serializing_if = "Option::is_none")]
     error_peak: Option<[f64; 5]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error_rms: Option<[f64; 5]>,
-    /// The largest while the path is driven at its full speed, modes where they should be.
+    /// Largest distance while the path is driven at full speed, with the modes as in the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     error_steady: Option<f64>,
-    /// Why there are none.
+    /// Why there are no figures.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
 }
@@ -358,7 +360,7 @@ impl Report<'_> {
                 row.kind.clone()
             };
             let delays = if row.matched { "equal" } else { "own" };
-            // Below this a distance is what numbers round to.
+            // A smaller distance is only a rounding error.
             let show = |error: f64| {
                 if error < 1e-12 {
                     "0".to_owned()
@@ -385,7 +387,7 @@ impl Report<'_> {
         text
     }
 
-    /// The distance over time, without a shaper and with the machine's.
+    /// The distance over time, without a shaper and with the machine's own.
     fn panel(&self) -> Panel {
         let drawn = |row: &&ContourRow| row.in_file || row.kind == "none" && !row.matched;
         let sample_s = self.machine.clock.sample_period_s();

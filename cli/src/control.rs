@@ -1,4 +1,4 @@
-//! The controllers of a machine's axes: the gains that follow from its file, and what is doubtful about them.
+//! The controllers of a machine's axes: the gains computed from its file, and warnings about them.
 
 use crate::output;
 use crate::plot::{Curve, Panel};
@@ -11,14 +11,14 @@ use posicast_model::unit::{AxisUnit, show_seconds};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The controller of one axis, as it is shown.
+/// The controller of one axis, prepared for output.
 pub(crate) struct AxisControl {
     pub(crate) axis: String,
     pub(crate) unit: AxisUnit,
     pub(crate) of_axis: AxisLoop,
 }
 
-/// What is shown of the Nyquist curve, either way: circles are round in a panel.
+/// Half width and half height of the Nyquist plot, chosen so that circles are round in a panel.
 const NYQUIST_REACH: [f64; 2] = [2.8, 1.0];
 
 const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
@@ -27,7 +27,7 @@ const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose dir
 const ONE_CHANNEL: &str = "the shaper component has the position's channel alone: three take command words of 18 to 32 \
                            bits and delays of at most 4094 samples; the host must give velocity and acceleration shaped";
 
-/// The controllers of a machine: `None` for an axis without.
+/// The controllers of a machine; `None` for an axis without one.
 pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Option<AxisControl>> {
     let axes = machine.axes.iter().zip(hardware.axes());
     let controls = axes.map(|(axis, built)| {
@@ -41,7 +41,7 @@ pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Opti
 }
 
 impl AxisControl {
-    /// Says on standard error what is doubtful.
+    /// Prints the warnings on standard error.
     pub(crate) fn warn(&self) {
         for warning in self.warnings() {
             output::say(&format!("warning: controller of axis `{}`: {warning}", self.axis));
@@ -60,7 +60,7 @@ impl AxisControl {
         of_law.chain(hardware).chain(range).collect()
     }
 
-    /// A line for people.
+    /// A line of text for people.
     pub(crate) fn text(&self) -> String {
         format!(
             "  controller {}: loop lag {}, friction leaves {} of error\n  {}\n",
@@ -91,7 +91,7 @@ impl AxisControl {
         )
     }
 
-    /// The Nyquist curve round −1, with the circle that the default gains stay out of.
+    /// The Nyquist curve round −1, with the circle that the default gains avoid.
     pub(crate) fn nyquist(&self) -> Panel {
         let curve = self.of_axis.derived.sampled.nyquist(&self.of_axis.derived.linear);
         let [reach_x, reach_y] = NYQUIST_REACH;
@@ -104,7 +104,7 @@ impl AxisControl {
             });
             places.collect::<Vec<_>>()
         };
-        // Where it leaves the picture the curve is cut: what comes back is a curve of its own.
+        // Where the curve leaves the picture it is cut: the part that comes back is a curve of its own.
         let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
         for (x, y) in points {
             match (near(x, y), parts.last_mut()) {
@@ -135,7 +135,7 @@ impl AxisControl {
         }
     }
 
-    /// For programs.
+    /// The document for programs.
     pub(crate) fn json(&self) -> ControlDocument {
         ControlDocument {
             law: self.law(),
@@ -164,19 +164,19 @@ impl AxisControl {
     }
 }
 
-/// An axis's `control` in `design --json` and `report.json`.
+/// `control` of an axis in `design --json` and `report.json`.
 #[derive(Serialize)]
 pub(crate) struct ControlDocument {
     law: &'static str,
-    /// From the position to what the drive does about it.
+    /// Lag from the position to the drive's response, in s.
     lag_s: f64,
     /// Error in m or rad that Coulomb friction leaves.
     steady_error: f64,
-    /// Of the sampled loop on the machine of the file.
+    /// Margins of the sampled loop on the machine of the file.
     margins: MarginsDocument,
-    /// By address: what the controller's memory holds after reset.
+    /// Contents of the controller's memory after reset, by address.
     settings: Vec<SettingDocument>,
-    /// By name: what the axis's supervisor starts with.
+    /// Initial words of the axis's supervisor, by name.
     supervision: BTreeMap<&'static str, i64>,
     warnings: Vec<String>,
 }
@@ -185,7 +185,7 @@ pub(crate) struct ControlDocument {
 #[derive(Serialize)]
 struct MarginsDocument {
     gain_margin_db: Option<f64>,
-    /// By so much lower gains make the loop unstable.
+    /// Reduction of the gains, in dB, that makes the loop unstable.
     gain_reduction_db: Option<f64>,
     phase_margin_deg: Option<f64>,
     delay_margin_s: Option<f64>,
@@ -210,7 +210,7 @@ impl MarginsDocument {
 #[derive(Serialize)]
 struct SettingDocument {
     row: String,
-    /// In counts, ticks and command units.
+    /// Value in counts, ticks and command units.
     value: f64,
     word: u32,
 }

@@ -88,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         plot::check_name("--plot", path)?;
     }
     output::one_document(&outputs, args.json)?;
-    // What `generate` would refuse is said here too.
+    // A board that `generate` would refuse is reported here too.
     sopc::board(&machine, &args.machine)?;
     let mut report = DesignReport::new(&machine, &args.machine)?;
     report.certify = args.certify;
@@ -115,11 +115,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The design of a machine together with its figures at every mode.
+/// The design of a machine with its figures at every mode.
 pub(crate) struct DesignReport<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) design: MachineDesign,
-    /// What is built of it.
+    /// The hardware that is built for it.
     pub(crate) hardware: Hardware<'a>,
     pub(crate) controllers: Vec<Option<AxisControl>>,
     /// Whether every axis is certified, and not just those of `optimal`.
@@ -141,7 +141,7 @@ impl<'a> DesignReport<'a> {
         })
     }
 
-    /// Says on standard error what is doubtful about tables and controllers, and what does not watch over the axes.
+    /// Prints warnings on standard error about tables and controllers, and about guards that an axis lacks.
     pub(crate) fn warn(&self) {
         let tables = beyond_tolerance(self.machine, &self.design);
         for warning in tables.into_iter().chain(guards::missing(self.machine)) {
@@ -184,7 +184,7 @@ impl<'a> DesignReport<'a> {
         axes.filter_map(|(index, axis)| FamilyReport::new(axis, self.design.family_of(index), self.design.sample_hz))
     }
 
-    /// The residual over what the modes move with, of each axis whose modes move.
+    /// The residual over the variable of the modes, for each axis whose modes move.
     pub(crate) fn family_panels(&self) -> impl Iterator<Item = plot::Panel> {
         self.families().map(|family| family.panel(&self.machine.name))
     }
@@ -228,10 +228,10 @@ struct AxisReport<'a> {
     in_stage: bool,
     modes: Vec<ModeFigures>,
     convolution: ConvolutionFigures,
-    /// Why its shaper cannot be built, or not run at the sample rate.
+    /// Why its shaper cannot be built, or cannot run at the sample rate.
     misfit: Option<&'a HardwareError>,
     control: Option<&'a AxisControl>,
-    /// Its tables, where its modes move.
+    /// Its table family, where its modes move.
     family: Option<FamilyReport<'a>>,
     /// Its error table.
     error_table: Option<ErrorTableReport<'a>>,
@@ -388,7 +388,7 @@ impl AxisReport<'_> {
         text
     }
 
-    /// What the modes' shapers do to each other, where there are several.
+    /// The effect of the modes' shapers on each other, where there are several.
     fn convolution_text(&self) -> String {
         let mut text = String::new();
         if !self.convolution.cross_gains.is_empty() {
@@ -493,7 +493,7 @@ impl AxisReport<'_> {
     }
 }
 
-/// What a kind that treats all modes together found out beside its impulses.
+/// Further results of a kind that treats all modes together.
 fn findings_text(findings: &Findings) -> String {
     let mut text = String::new();
     match findings {

@@ -69,13 +69,14 @@ struct When {
     /// Last time that is compared
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     end: Option<u128>,
-    /// With --raw: a difference that lasts no longer is none
+    /// With --raw: ignore a difference that lasts no longer than this
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     time_tolerance: Option<u128>,
-    /// With --raw: leave out values that last shorter, in both files
+    /// With --raw: ignore values that last shorter than this, in both files
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     glitch: Option<u128>,
-    /// The signal comes so many samples later in the second file, or with --raw so much time; negative: earlier (repeatable)
+    /// The signal comes this many samples later in the second file, or with --raw this much time; negative: earlier
+    /// (repeatable)
     #[arg(long, value_name = "SIGNAL=SAMPLES|TIME", allow_hyphen_values = true)]
     latency: Vec<String>,
 }
@@ -86,7 +87,7 @@ struct Which {
     /// Scope or signal A of the first file is B of the second; with * in both, a pattern (repeatable)
     #[arg(long, value_name = "A=B")]
     map: Vec<String>,
-    /// Read such maps from a file, one a line
+    /// Read such maps from a file, one per line
     #[arg(long, value_name = "FILE")]
     map_file: Option<PathBuf>,
     /// Compare only what is below this scope of the first file
@@ -95,7 +96,7 @@ struct Which {
     /// Compare only what is below this scope of the second file
     #[arg(long, value_name = "SCOPE")]
     root_b: Option<String>,
-    /// Compare nothing else than these signals or scopes (repeatable)
+    /// Compare only these signals or scopes (repeatable)
     #[arg(long, value_name = "SIGNAL")]
     only: Vec<String>,
     /// Leave out these signals or scopes (repeatable)
@@ -115,7 +116,7 @@ struct How {
     /// Read the bits of a signal as a number: signed, unsigned, q15.16, uq16 (repeatable)
     #[arg(long, value_name = "SIGNAL=VIEW")]
     view: Vec<String>,
-    /// What unknown bits (x, z) equal
+    /// What unknown bits (x, z) are equal to
     #[arg(long, value_enum, default_value_t = UnknownName::Strict)]
     unknown: UnknownName,
 }
@@ -128,11 +129,11 @@ enum EdgeName {
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum UnknownName {
-    /// Themselves only
+    /// Only themselves
     Strict,
     /// Anything
     Wildcard,
-    /// 0
+    /// The value 0
     Zero,
 }
 
@@ -164,7 +165,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     verdict(&comparison)
 }
 
-/// The files that are written, each of them asked for.
+/// The output files, each of which was asked for.
 fn outputs(args: &Args) -> Result<OutputFiles, Failure> {
     let mut outputs = OutputFiles::new(args.force);
     outputs.input("the first file", &args.a);
@@ -227,7 +228,7 @@ fn options(args: &Args) -> Result<DiffOptions, Failure> {
     Ok(options)
 }
 
-/// A bar over the bytes of both files that shows itself when the work takes long.
+/// A progress bar over the bytes of both files that appears only when the work takes long.
 struct LateBar {
     start: Instant,
     bar: Option<indicatif::ProgressBar>,

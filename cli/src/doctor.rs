@@ -1,4 +1,4 @@
-//! `posicast doctor`: which of the programs that posicast calls are here.
+//! `posicast doctor`: which of the programs that posicast calls are installed.
 
 mod tools;
 
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Duration;
 use tools::{Need, TOOLS, Tool};
 
-/// How long a program may take to say its version: those of YoWASP compile themselves at their first start.
+/// Time limit for a program to print its version: those of YoWASP compile themselves at their first start.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Longest version that the table shows, in characters.
 const VERSION_LENGTH: usize = 32;
@@ -52,14 +52,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     )))
 }
 
-/// What is known of a tool.
+/// Result for a tool.
 #[derive(Serialize)]
 struct Finding {
     tool: &'static str,
-    /// The executable, without its folder; none where there is none.
+    /// Path of the executable; `None` where there is none.
     executable: Option<String>,
     version: Option<String>,
-    /// It is there, and says its version if it has a way to.
+    /// Whether it is installed and prints its version, if it has an option for that.
     works: bool,
     need: Need,
     purpose: &'static str,
@@ -90,7 +90,7 @@ impl Finding {
         }
     }
 
-    /// What the table says of it.
+    /// The text of the table's cell.
     fn state(&self) -> String {
         let state = match (&self.executable, &self.version) {
             (None, _) => "missing".to_owned(),
@@ -106,7 +106,7 @@ impl Finding {
     }
 }
 
-/// The version that a program says, if it has a way to; an error where it cannot be asked.
+/// Asks a program for its version; `None` if it has no option for that, an error where it cannot be started.
 fn version(program: &Path, arguments: &[&str]) -> Result<Option<String>, ()> {
     if arguments.is_empty() {
         return Ok(None);
@@ -155,7 +155,7 @@ fn text(found: &[Finding]) -> String {
 
 #[derive(Serialize)]
 struct Document<'a> {
-    /// Whether all is there that `run` needs.
+    /// Whether everything that `run` needs is installed.
     ready: bool,
     missing: &'a [&'a str],
     tools: &'a [Finding],

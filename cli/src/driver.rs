@@ -1,4 +1,4 @@
-//! What goes with the Verilog in its folder: the C driver, documents of the registers, the FuseSoC core.
+//! Files that accompany the Verilog in its folder: the C driver, documents of the registers, the FuseSoC core.
 
 use crate::failure::Failure;
 use crate::hardware::Stage;
@@ -13,7 +13,8 @@ use posicast_synth::package::Package;
 use posicast_synth::register_documents;
 use posicast_testbench::blocks::{Block, ComponentBlock};
 
-/// Adds the whole driver where there is a stage, a header and the documents of every component's registers, and the core.
+/// Adds the whole driver where there is a stage, a header and documents for every component's registers, and the
+/// core.
 pub(crate) fn add(
     package: &mut Package,
     machine: &Machine,

@@ -1,4 +1,4 @@
-//! Why a command did not end with exit status 0, and how that is said.
+//! Why a command did not end with exit status 0, and how the reason is printed.
 
 use crate::style;
 use miette::Diagnostic;
@@ -7,9 +7,9 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What stopped a command; its kind is its exit status.
+/// Why a command stopped; the kind determines its exit status.
 pub(crate) enum Failure {
-    /// A check failed: exit status 1. The command has printed which; this is the closing line.
+    /// A check failed: exit status 1. The command has printed which one; this is the closing line.
     Check(String),
     /// Bad usage or input: exit status 2.
     Input(miette::Report),
@@ -23,12 +23,12 @@ impl Failure {
         Self::Input(miette::Report::new(error))
     }
 
-    /// Bad input, described by a library's error that carries no diagnostics of its own.
+    /// Bad input, described by a library's error without diagnostics.
     pub(crate) fn because(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Input(miette::Report::from_err(error))
     }
 
-    /// The same failure, its message led by the file that it is about.
+    /// The failure with its message prefixed by the file that it is about.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         match self {
             Self::Input(report) => {
@@ -48,11 +48,11 @@ impl Failure {
         Self::MissingTool(miette::miette!("{message}"))
     }
 
-    /// Says on standard error what stopped the command: with a picture of the place on a terminal, in plain lines in a
-    /// pipe, so that a log can be searched for them.
+    /// Prints on standard error why the command stopped: with an excerpt of the place on a terminal, in plain lines
+    /// in a pipe, so that a log can be searched for them.
     pub(crate) fn report(self) -> ExitCode {
         let mut err = std::io::stderr().lock();
-        // Nothing sensible is left to do where standard error cannot be written.
+        // If standard error cannot be written, nothing sensible is left to do.
         let _ = match &self {
             Self::Check(line) => writeln!(anstream::stderr(), "posicast: {}", style::bad(line)),
             Self::Input(report) | Self::MissingTool(report) if err.is_terminal() => writeln!(err, "{report:?}"),
@@ -76,7 +76,7 @@ fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result
     Ok(())
 }
 
-/// Each line of a help as one of its own that a log can be searched for.
+/// Writes each line of a help text as a line of its own that a log can be searched for.
 fn write_help(err: &mut impl Write, help: Option<Box<dyn fmt::Display + '_>>) -> std::io::Result<()> {
     let help = help.map_or_else(String::new, |help| help.to_string());
     help.lines().try_for_each(|line| writeln!(err, "help: {line}"))
@@ -87,7 +87,7 @@ fn with_causes(report: &miette::Report) -> String {
     let mut message = report.to_string();
     for cause in report.chain().skip(1) {
         let cause = cause.to_string();
-        // An error that already tells its cause in its own text must not tell it twice.
+        // An error whose text contains its cause already must not repeat it.
         if !message.contains(&cause) {
             message.push_str(": ");
             message.push_str(&cause);

@@ -1,4 +1,4 @@
-//! `posicast generate`: the Verilog of a machine, and what Quartus needs beside it, in a folder of its own.
+//! `posicast generate`: writes the Verilog of a machine, and the files that Quartus needs with it, into a folder.
 
 use crate::design::DesignReport;
 use crate::driver;
@@ -91,7 +91,7 @@ impl Document {
         }
     }
 
-    /// How many files went where, the top modules, and what to do next.
+    /// Number of files by folder, the top modules, and what to do next.
     fn text(&self, folder: &Path) -> String {
         let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
         let top = match self.top.as_slice() {
@@ -109,7 +109,8 @@ impl Document {
     }
 }
 
-/// What the files make the folder hold: folders with a `/` and how many files are in them, then files by their names.
+/// Contents of the folder with these files: subfolders with a `/` and their number of files, then the names of the
+/// files.
 pub(crate) fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
     let (mut folders, mut alone): (Vec<(String, usize)>, Vec<String>) = (Vec::new(), Vec::new());
     for file in files {
@@ -127,7 +128,7 @@ pub(crate) fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
     folders.chain(alone).collect()
 }
 
-/// Says on standard error which files of an earlier run went, and which of its evidence stayed.
+/// Prints on standard error which files of an earlier run were removed, and which of its evidence was kept.
 pub(crate) fn tell(committed: &Committed) {
     let note = |what: &str, files: &[String]| {
         if !files.is_empty() {

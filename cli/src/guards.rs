@@ -1,9 +1,9 @@
-//! What does not watch over an axis, because the machine file does not ask for it, and what can then happen.
+//! Guards that an axis lacks because the machine file does not ask for them, and what can happen without them.
 
 use posicast_model::control::{LostSign, lost_sign};
 use posicast_model::machine_file::{AxisSection, LimitsSection, Machine};
 
-/// A guard, whether a file has it, and what can happen without.
+/// A guard, whether a file has it, and what can happen without it.
 struct Guard {
     key: &'static str,
     is_set: fn(&AxisSection, &LimitsSection) -> bool,
@@ -51,7 +51,7 @@ pub(crate) fn missing(machine: &Machine) -> Vec<String> {
     loops.flat_map(of_axis).collect()
 }
 
-/// A warning where neither the following error nor the watch of the encoder sees a feedback of the wrong sign.
+/// A warning where neither the following error nor the encoder monitor detects a feedback of the wrong sign.
 fn sign(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     let remedy = match lost_sign(axis) {
         _ if limits.following_error.is_some() => return None,

@@ -1,4 +1,4 @@
-//! What is built for a machine, as blocks with Verilog: the shapers of its top module, its components, its stage.
+//! The hardware of a machine as blocks with Verilog: the shapers of its top module, its components, its stage.
 
 use crate::design::DesignReport;
 use crate::failure::Failure;
@@ -13,9 +13,9 @@ use posicast_model::rtl::stage::StageConfig;
 use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::path::Path;
 
-/// What the name of a component's top module ends with.
+/// Suffix of a component's top module.
 pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
-/// What the name of a stage's top module ends with.
+/// Suffix of a stage's top module.
 pub(crate) const STAGE_SUFFIX: &str = "_stage";
 
 /// The hardware of a machine.
@@ -30,9 +30,9 @@ pub(crate) struct Built<'a> {
     pub(crate) stage: Option<Stage>,
 }
 
-/// A stage: from the machine file, and as hardware.
+/// A stage: its settings from the machine file, and its hardware.
 pub(crate) struct Stage {
-    /// Its settings, and what was derived for them.
+    /// Its settings, with the figures derived from them.
     pub(crate) of_machine: MachineStage,
     /// Its top module is `<machine>_stage`.
     pub(crate) block: ComponentBlock,
@@ -50,8 +50,8 @@ pub(crate) fn shapers(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -
 }
 
 impl<'a> Built<'a> {
-    /// The hardware of a report's machine, which the file at `path` describes. Shapers that do not suit a stage are said as a
-    /// warning: then there is none.
+    /// The hardware of a report's machine, which the file at `path` describes. Where the shapers do not suit a stage
+    /// there is none, and a warning says so.
     pub(crate) fn new(report: &DesignReport<'a>, path: &Path) -> Result<Self, Failure> {
         let (machine, hardware) = (report.machine, &report.hardware);
         let refused = |error: HardwareError| of_hardware(&error, path);
@@ -82,8 +82,8 @@ impl<'a> Built<'a> {
         })
     }
 
-    /// The Verilog modules, each once: those of the machine's top, then those of its components, then those of its stage. `path` is the machine
-    /// file.
+    /// The Verilog modules without duplicates: those of the machine's top, then those of its components, then those
+    /// of its stage. `path` is the machine file.
     pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
         for component in &self.components {
@@ -97,7 +97,8 @@ impl<'a> Built<'a> {
 }
 
 impl Stage {
-    /// Its Verilog modules. Names of axes that make two modules of one name are an error of the machine file at `path`.
+    /// Its Verilog modules. Axis names for which two modules would have the same name are an error of the machine
+    /// file at `path`.
     fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         self.block.modules().map_err(|error| {
             let modules = |config: &StageConfig| {

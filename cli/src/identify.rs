@@ -1,4 +1,4 @@
-//! `posicast identify`: modes from a measured log, and on to a machine file.
+//! `posicast identify`: finds modes in a measured log, and writes a machine file with them.
 
 mod document;
 mod excitation;
@@ -108,7 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Largest log: three hours at 3,200 samples per second.
+/// Largest log in bytes: three hours at 3,200 samples per second.
 const LARGEST_LOG_BYTES: u64 = 1 << 31;
 
 fn read(path: &Path) -> Result<Reading, Failure> {
@@ -121,7 +121,7 @@ fn read(path: &Path) -> Result<Reading, Failure> {
     };
     let file = File::open(path).map_err(|error| unreadable(&error))?;
     let mut text = Vec::new();
-    // A device or a pipe may go on for ever.
+    // A device or a pipe may never end.
     let limit = file.take(LARGEST_LOG_BYTES + 1).read_to_end(&mut text);
     if limit.map_err(|error| unreadable(&error))? as u64 > LARGEST_LOG_BYTES {
         return Err(unreadable(&format!("it goes on after {LARGEST_LOG_BYTES} bytes")));
@@ -129,7 +129,7 @@ fn read(path: &Path) -> Result<Reading, Failure> {
     log::read(&text).map_err(|error| Failure::because(error).in_file(path))
 }
 
-/// Writes a machine file with the modes of a log, found with what is known by default.
+/// Writes a machine file with the modes of a log, found with default settings.
 pub(crate) fn new_machine(
     log: &Path,
     file: &Path,

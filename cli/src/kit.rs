@@ -1,4 +1,5 @@
-//! What `generate` adds for designs of one's own: file lists, datasheets, and for machines of shapers alone an integration kit.
+//! Files that `generate` adds for the user's own designs: file lists, datasheets, and for machines that have only
+//! shapers an integration kit.
 
 use crate::failure::Failure;
 use crate::hardware::Built;

@@ -1,4 +1,4 @@
-//! Reading the machine file, and saying which of its keys is to blame.
+//! Reads the machine file, and names the key of it that is to blame for an error.
 
 use crate::failure::Failure;
 use posicast_model::design::{DesignBlame, DesignError, blame};
@@ -11,14 +11,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A machine file is a page of text; anything far beyond is some other file named by mistake.
+/// Largest size in bytes. A machine file is a page of text; anything far beyond is another file named by mistake.
 const LARGEST_FILE_BYTES: u64 = 1 << 20;
 
 /// A machine file, read and validated.
 pub(crate) struct MachineFile {
-    /// The text as it stands in the file.
+    /// The text of the file.
     pub(crate) text: String,
-    /// What it says.
+    /// The machine that it describes.
     pub(crate) machine: Machine,
     /// Names and texts of the files beside it that it names.
     pub(crate) beside: Vec<(String, String)>,
@@ -86,7 +86,7 @@ fn parse_beside(path: &Path, text: &str, read: &RefCell<Vec<(String, String)>>) 
     machine_file::parse_beside(&path.display().to_string(), text, &beside).map_err(Failure::input)
 }
 
-/// The family of the machine file's target.
+/// The device family of the machine file's target.
 pub(crate) fn family(machine: &Machine) -> Result<Family, Failure> {
     match &machine.target {
         Some(target) => target.family.parse().map_err(Failure::because),
@@ -94,21 +94,22 @@ pub(crate) fn family(machine: &Machine) -> Result<Family, Failure> {
     }
 }
 
-/// Bad input at a key of the machine file at `path`, or of that in the folder; `axis` counts the axes from 0.
+/// Bad input at a key of the machine file at `path`, or of the machine file in the folder `path`; `axis` counts from
+/// 0.
 pub(crate) fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Display) -> Failure {
     let file = file_of(path);
     let line = line_of(&file, axis, key);
     Failure::from(miette::miette!("{}{line}: {key}: {reason}", file.display()))
 }
 
-/// `:LINE` of a key, as it follows the file's name.
+/// `:LINE` of a key, to follow the file's name.
 fn line_of(file: &Path, axis: usize, key: &str) -> String {
-    // The file was read before; where it is gone, the key must do.
+    // The file was read before; if it is gone, the key alone must do.
     let text = std::fs::read_to_string(file).unwrap_or_default();
     machine_file::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"))
 }
 
-/// The machine file, where `path` may be the folder that it is in.
+/// The machine file; `path` may also be the folder that contains it.
 fn file_of(path: &Path) -> PathBuf {
     match path.is_dir() {
         true => path.join("machine.toml"),
@@ -116,7 +117,7 @@ fn file_of(path: &Path) -> PathBuf {
     }
 }
 
-/// The failure of a design that the machine file at `path`, or that in the folder, asks for.
+/// The failure of a design of the machine file at `path`, or of that in the folder `path`.
 pub(crate) fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> Failure {
     let file = file_of(path);
     let Some(DesignBlame {
@@ -135,7 +136,7 @@ pub(crate) fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> 
     let mode = mode.map_or_else(String::new, |mode| format!(", mode {}", mode + 1));
     let name = &machine.axes[axis].name;
     let reason = error.to_string();
-    // The place says which axis it is.
+    // The place already names the axis.
     let reason = reason.strip_prefix(&format!("axis {name}: ")).unwrap_or(&reason);
     let line = line_of(&file, axis, &indexed);
     let message = format!("{}{line}: {key} of axis {name}{mode}: {reason}", file.display());
@@ -145,7 +146,7 @@ pub(crate) fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> 
     })
 }
 
-/// The failure of hardware that the machine file at `path`, or that in the folder, asks for.
+/// The failure of hardware of the machine file at `path`, or of that in the folder `path`.
 pub(crate) fn of_hardware(error: &HardwareError, path: &Path) -> Failure {
     at_key(path, error.axis, &error.key, error)
 }

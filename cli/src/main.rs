@@ -1,8 +1,8 @@
 //! The `posicast` command: from a machine's modes to verified input-shaper hardware.
 //!
-//! One file per subcommand. This crate reads arguments, calls the other crates in order and prints; it computes nothing
-//! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing; 130 and
-//! 143 after SIGINT and SIGTERM, with nothing left behind.
+//! There is one file per subcommand. This crate reads arguments, calls the other crates in order and prints; it
+//! computes nothing itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was
+//! asked for is missing; 130 and 143 after SIGINT and SIGTERM, with nothing left behind.
 
 mod allowance;
 mod bench;
@@ -88,7 +88,7 @@ fn main() -> ExitCode {
     let Cli { command, color } = Cli::parse();
     style::set(color);
     if let Err(error) = interrupt::listen() {
-        output::say(&format!("warning: a signal will not clean up: {error}"));
+        output::say(&format!("warning: a signal will not remove temporary files: {error}"));
     }
     let result = match command {
         Command::New(args) => new::run(&args),

@@ -1,4 +1,4 @@
-//! `posicast man`: the help of every command as a manual page.
+//! `posicast man`: writes the help of every command as a manual page.
 
 use crate::failure::Failure;
 use crate::output;

@@ -1,4 +1,4 @@
-//! What the axes do in a simulation: a command file, or a move of each axis that the command line may change.
+//! The motion of the axes in a simulation: a command file, or a move of each axis that the command line may change.
 
 use crate::failure::Failure;
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -6,7 +6,7 @@ use posicast_model::motion::{AxisMove, AxisMoveError};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// `--command`, `--move` and `--speed`.
+/// The options `--command`, `--move` and `--speed`.
 #[derive(clap::Args)]
 pub(crate) struct MotionArgs {
     /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a move of each axis]
@@ -26,7 +26,7 @@ impl MotionArgs {
         let refused =
             |option: &str, found: &str| Failure::from(miette::miette!(help = "leave it out", "{option}: {found}"));
         match (&self.distance, &self.speed) {
-            (Some(_), _) => Err(refused("--move", "the contour says where the axes go")),
+            (Some(_), _) => Err(refused("--move", "the contour defines where the axes go")),
             (None, Some(PerAxis::Named(_))) => Err(refused(
                 "--speed",
                 "a contour has one speed, along its path: give a number",
@@ -36,7 +36,7 @@ impl MotionArgs {
         }
     }
 
-    /// The move of each axis. With a command file they are those of the closed loop alone.
+    /// The move of each axis. With a command file, moves are only for the closed loop.
     pub(crate) fn moves(&self, machine: &Machine, closed_loop: bool) -> Result<Vec<AxisMove>, Failure> {
         for (option, figures) in [("--move", &self.distance), ("--speed", &self.speed)] {
             let Some(figures) = figures else {
@@ -45,7 +45,7 @@ impl MotionArgs {
             if self.command.is_some() && !closed_loop {
                 return Err(Failure::from(miette::miette!(
                     help = format!("leave out {option}, or --command"),
-                    "{option}: the command file says how the axes move"
+                    "{option}: the command file defines how the axes move"
                 )));
             }
             figures.only_for(machine, option)?;
@@ -66,18 +66,18 @@ impl MotionArgs {
     }
 }
 
-/// The move of each axis that is not told another.
+/// The default move of each axis.
 pub(crate) fn by_default(machine: &Machine) -> Vec<AxisMove> {
     let axes = machine.axes.iter();
     axes.map(|axis| AxisMove::of_axis(axis, &machine.fixed_point)).collect()
 }
 
-/// A figure for every axis, or one for each that is named.
+/// A figure for every axis, or one for each axis that is named.
 #[derive(Debug, Clone, PartialEq)]
 enum PerAxis {
-    /// The same for all.
+    /// The same figure for all axes.
     All(f64),
-    /// By the names of the axes.
+    /// Figures by the names of the axes.
     Named(Vec<(String, f64)>),
 }
 
@@ -93,7 +93,7 @@ impl PerAxis {
         }
     }
 
-    /// Refuses the name of an axis that the machine does not have.
+    /// Refuses names of axes that the machine does not have.
     fn only_for(&self, machine: &Machine, option: &str) -> Result<(), Failure> {
         let Self::Named(figures) = self else {
             return Ok(());
@@ -103,7 +103,7 @@ impl PerAxis {
             None => Ok(()),
             Some((name, _)) => Err(Failure::from(miette::miette!(
                 help = format!("the axes are {}", names.join(", ")),
-                "{option}: there is no axis `{name}`"
+                "{option}: no axis `{name}`"
             ))),
         }
     }

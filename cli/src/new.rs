@@ -1,7 +1,7 @@
-//! `posicast new`: a machine file to start from, with a comment on every key.
+//! `posicast new`: writes a machine file to start from, with a comment on every key.
 //!
-//! The templates are whole machine files that pass `posicast run` as they are. Answers replace single values in them, so that
-//! their comments stay.
+//! The templates are whole machine files that pass `posicast run` unchanged. Answers replace single values in them,
+//! so that their comments stay.
 
 mod questions;
 mod template;
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let asks = stdin().is_terminal() && stderr().is_terminal();
     let draft = match args.kind.kind() {
-        // Standard error is not locked: a signal that ends the questions says so there.
+        // Standard error is not locked, so that a signal that ends the questions can be reported there.
         None if asks => Questions::new(stdin().lock(), stderr()).draft(&args.file)?,
         kind => Draft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
     };
@@ -94,7 +94,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::print_beside(&outputs, &said)
 }
 
-/// Asks for the name. A machine file is somebody's work: what is there stays, except one of ours that nobody has changed.
+/// Claims the file name. A machine file is somebody's work: an existing file is kept, unless it is one of ours that
+/// nobody has changed.
 fn claim(path: &Path, force: bool) -> Result<OutputFiles, Failure> {
     let there = |found: &str, help: &str| {
         Failure::from(miette::miette!(

@@ -1,4 +1,4 @@
-//! Standard output and the files that commands write.
+//! Standard output, and the files that commands write.
 
 use crate::failure::Failure;
 use crate::style;
@@ -9,7 +9,7 @@ use posicast_system::output::OutputFiles;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
-/// Prints text on standard output. A reader that has gone (`| head`) is no error.
+/// Prints text on standard output. It is not an error if the reader has ended (`| head`).
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -18,7 +18,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints text whose verdicts have a colour, which is left out where nobody sees it.
+/// Prints text with coloured verdicts; the colours are left out where nobody sees them.
 pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
     let colours = AutoStream::choice(&std::io::stdout()) != ColorChoice::Never;
     match colours {
@@ -27,7 +27,7 @@ pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints the result of a command that writes files: on standard error where one of them is the standard output.
+/// Prints the result of a command that writes files: on standard error where one of the files is the standard output.
 pub(crate) fn print_beside(outputs: &OutputFiles, text: &str) -> Result<(), Failure> {
     if outputs.take_standard_output() {
         say(text.trim_end());
@@ -59,13 +59,13 @@ pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
         .map_err(Failure::because)
 }
 
-/// Says something beside the result on standard error.
+/// Prints a message on standard error.
 pub(crate) fn say(line: &str) {
-    // A message that cannot be shown must not stop the work.
+    // A message that cannot be written must not stop the work.
     let _ = writeln!(anstream::stderr(), "{}", style::message(line));
 }
 
-/// The unit of an axis in a JSON document, whose figures are in `si_unit` whatever the machine file's is.
+/// The unit of an axis in a JSON document, whose figures are in `si_unit` whatever unit the machine file uses.
 #[derive(Clone, Copy, Serialize)]
 pub(crate) struct UnitDocument {
     unit: &'static str,
@@ -83,13 +83,13 @@ impl UnitDocument {
         }
     }
 
-    /// The unit itself, for the figures that people read.
+    /// The unit, for figures that people read.
     pub(crate) fn of_axis(&self) -> AxisUnit {
         self.of_axis
     }
 }
 
-/// A fraction as percent, with as many digits as tell it from zero.
+/// A fraction as percent, with enough digits to tell it from zero.
 pub(crate) fn percent(fraction: f64) -> String {
     let percent = 100.0 * fraction;
     if percent == 0.0 || percent.abs() >= 0.01 {

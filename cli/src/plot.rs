@@ -1,4 +1,4 @@
-//! SVG pictures of curves that the model computed: a stack of panels, each with a legend above its curves.
+//! SVG plots of curves that the model computed: a stack of panels, each with a legend above its curves.
 
 mod legend;
 
@@ -14,16 +14,16 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// How a curve is drawn.
+/// Style of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Look {
-    /// Grey: what the others are compared with.
+    /// Grey, for a curve with which others are compared.
     Reference,
     /// A colour of its own, which no other curve of the panel has.
     Own,
-    /// Dashed, in the colour of the curve before: another form of the same.
+    /// Dashed, in the colour of the curve before: another form of the same quantity.
     Dashed,
-    /// Dashed and dark red: a level that is not to be passed.
+    /// Dashed and dark red, for a level that must not be exceeded.
     Limit,
 }
 
@@ -41,7 +41,7 @@ impl Curve {
         Self { name, points, look }
     }
 
-    /// A curve that matters.
+    /// A curve in a colour of its own.
     pub(crate) fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self::of(Look::Own, name, points)
     }
@@ -51,22 +51,22 @@ impl Curve {
         Self::of(Look::Dashed, name, points)
     }
 
-    /// A curve to compare with.
+    /// A reference curve.
     pub(crate) fn reference(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self::of(Look::Reference, name, points)
     }
 
-    /// A level that is not to be passed.
+    /// A level that must not be exceeded.
     pub(crate) fn limit(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self::of(Look::Limit, name, points)
     }
 }
 
-/// A range of values in which the curves are to stay.
+/// A range of values in which the curves should stay.
 pub(crate) struct Band {
     /// Name in the legend.
     pub(crate) name: String,
-    /// Its least and its largest value.
+    /// Its smallest and its largest value.
     pub(crate) range: (f64, f64),
 }
 
@@ -80,24 +80,24 @@ impl Band {
 pub(crate) struct Range {
     /// Name in the legend.
     pub(crate) name: String,
-    /// Its ends.
+    /// Its two ends.
     pub(crate) ends: (f64, f64),
 }
 
-/// A place on the horizontal axis where something happens.
+/// An event at a position on the horizontal axis.
 pub(crate) struct Mark {
-    /// What happens.
+    /// Name of the event.
     pub(crate) name: String,
-    /// Where.
+    /// Position.
     pub(crate) at: f64,
 }
 
-/// How a picture of so many seconds shows times: in the unit that gives it two at least.
+/// The unit of the time axis for a plot of this duration: the one that gives at least two of it.
 pub(crate) fn time_axis(duration_s: f64) -> ShownUnit {
     time_unit(duration_s / 2.0)
 }
 
-/// What an axis shows, with its unit.
+/// Label of an axis, with its unit.
 pub(crate) fn label(what: &str, unit: ShownUnit) -> String {
     format!("{what}, {}", unit.symbol())
 }
@@ -107,24 +107,24 @@ pub(crate) fn label(what: &str, unit: ShownUnit) -> String {
 pub(crate) struct Panel {
     /// Heading.
     pub(crate) title: String,
-    /// What the horizontal axis shows, with its unit.
+    /// Label of the horizontal axis, with its unit.
     pub(crate) x_label: String,
-    /// What the vertical axis shows, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub(crate) y_label: String,
-    /// Curves.
+    /// Curves of the panel.
     pub(crate) curves: Vec<Curve>,
-    /// What is shown of the vertical axis; all, where there is none. What lies beyond is cut.
+    /// Shown range of the vertical axis; `None`: everything. Curves are cut at its ends.
     pub(crate) y_range: Option<(f64, f64)>,
-    /// Drawn under the curves.
+    /// A band drawn under the curves.
     pub(crate) band: Option<Band>,
-    /// Drawn under the curves from bottom to top.
+    /// Ranges drawn under the curves, from bottom to top.
     pub(crate) x_ranges: Vec<Range>,
-    /// Drawn as vertical lines.
+    /// Marks drawn as vertical lines.
     pub(crate) marks: Vec<Mark>,
 }
 
 const PANEL_SIZE: (u32, u32) = (900, 400);
-/// Room round a chart and its legend, in pixels.
+/// Margin round a chart and its legend, in pixels.
 const MARGIN: i32 = 16;
 const TITLE_SIZE: i32 = 18;
 const TEXT_SIZE: i32 = 13;
@@ -144,15 +144,15 @@ const GREY: RGBColor = RGBColor(140, 140, 140);
 const DARK_RED: RGBColor = RGBColor(170, 0, 0);
 const BAND: RGBColor = RGBColor(222, 240, 222);
 const GRID: RGBColor = RGBColor(225, 225, 225);
-/// A dash and the gap after it, in pixels.
+/// Lengths of a dash and of the gap after it, in pixels.
 const DASH: (i32, i32) = (7, 5);
 
-/// Pictures that are no SVG, by the ends of their names.
+/// File name extensions of picture formats other than SVG.
 const OTHER_FORMATS: [&str; 11] = [
     "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps",
 ];
 
-/// Refuses a file for a picture whose name says that it is a picture of another kind.
+/// Refuses a file name for a plot whose extension is that of another picture format.
 pub(crate) fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
     let extension = path
         .extension()
@@ -170,7 +170,7 @@ pub(crate) fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// The panels below each other as one SVG document.
+/// Draws the panels below each other as one SVG document.
 pub(crate) fn svg(panels: &[Panel]) -> Result<String, Failure> {
     let mut text = String::new();
     draw(panels, &mut text).map_err(|error| Failure::from(miette::miette!("cannot draw the plot: {error}")))?;
@@ -227,7 +227,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         }
     }
     for range in &panel.x_ranges {
-        // However narrow, it is seen.
+        // However narrow it is, it must be visible.
         let thin = 0.001 * (x_high - x_low);
         let (low, high) = (range.ends.0 - thin, range.ends.1 + thin);
         let corners = [(low.max(x_low), y_low), (high.min(x_high), y_high)];
@@ -244,7 +244,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .bold_line_style(GRID)
         .max_light_lines(0)
         .draw()?;
-    // What matters most lies on top: the first of the coloured curves over the others, levels over all.
+    // The first of the coloured curves lies on top of the others, and levels lie on top of all.
     let mut order: Vec<_> = panel.curves.iter().zip(looks).rev().collect();
     order.sort_by_key(|(curve, _)| curve.look);
     for (curve, (style, is_dashed)) in order {
@@ -321,7 +321,7 @@ fn axis_label(value: f64) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-/// Least and largest finite value, never an empty span.
+/// Smallest and largest finite value; the span is never empty.
 fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|v| v.is_finite())

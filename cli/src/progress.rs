@@ -1,19 +1,19 @@
-//! Progress of long work: a bar with the time that is left on a terminal, nothing in a pipe.
+//! Progress of long work: a bar with the remaining time on a terminal, nothing in a pipe.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
-/// How often the times are drawn again.
+/// Interval at which the times are redrawn.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A bar over `length` steps of `what`; it appears on standard error only if that is a terminal.
+/// A bar over `length` steps, labelled `what`; it appears on standard error only if that is a terminal.
 pub(crate) fn bar(what: &str, length: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {human_pos}/{human_len} {elapsed}, {left}");
     let style = style.map(|style| style.with_key("left", left));
     let bar = decorated(ProgressBar::with_draw_target(Some(length), target()), what, style);
-    // The time goes on where a step takes long.
+    // The elapsed time is redrawn also while a step takes long.
     bar.enable_steady_tick(TICK);
     bar
 }
@@ -26,9 +26,9 @@ pub(crate) fn spinner(what: &str) -> ProgressBar {
     spinner
 }
 
-/// The time that is left, by the pace so far; before the first step nobody knows it.
+/// The remaining time, estimated from the pace so far; unknown before the first step.
 fn left(state: &ProgressState, text: &mut dyn Write) {
-    // What cannot be written is not drawn.
+    // An error of writing only leaves the time out.
     let _ = match state.pos() {
         0 => text.write_str("time left unknown yet"),
         _ => write!(text, "about {:#} left", HumanDuration(state.eta())),

@@ -1,4 +1,4 @@
-//! `posicast verify --stimulus FILE`: a recording replayed into the RTL and the model.
+//! `posicast verify --stimulus FILE`: replays a recording into the RTL and the model.
 
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use wavecmp::WaveError;
 use wavecmp::diff::{DiffOptions, Reset};
 
-/// Which file, and how its names are read.
+/// The recording, and how its names are read.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Recorded stimuli")]
 pub(crate) struct Recording {
@@ -36,7 +36,7 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// The recording, if there is one.
+    /// Path of the recording, if there is one.
     pub(crate) fn recording(&self) -> Option<&Path> {
         self.stimulus.as_deref()
     }
@@ -56,21 +56,21 @@ impl Recording {
     }
 }
 
-/// What was replayed, beside the rows of the report.
+/// Result of a replay, beside the rows of the report.
 #[derive(Debug, Serialize)]
 pub(crate) struct Replayed {
     file: PathBuf,
-    /// Clocks of the recording that were replayed, and those of them in which its outputs were compared.
+    /// Number of clocks that were replayed, and number of those in which recorded outputs were compared.
     clocks: u64,
     compared: u64,
-    /// Inputs that are not in the file: 0 all the time.
+    /// Inputs that are not in the file and were held at 0.
     missing_inputs: Vec<String>,
-    /// Outputs that are not in the file: compared between RTL and model only.
+    /// Outputs that are not in the file, which were compared between RTL and model only.
     missing_outputs: Vec<String>,
-    /// Clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
+    /// Number of clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
     unknown_input_clocks: u64,
     unknown_output_clocks: u64,
-    /// Signals of the file that are no port.
+    /// Number of signals of the file that are not ports.
     other_signals: usize,
     notes: Vec<String>,
 }
@@ -81,7 +81,7 @@ impl Replayed {
         &self.missing_inputs
     }
 
-    /// In words, a line each.
+    /// The result in words, in lines.
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "replayed {}: {}, recorded outputs compared in {} of them\n",
@@ -112,13 +112,13 @@ impl Replayed {
             }
         }
         if self.other_signals > 0 {
-            text += &format!("  signals of the file that are no port: {}\n", self.other_signals);
+            text += &format!("  signals of the file that are not ports: {}\n", self.other_signals);
         }
         text
     }
 }
 
-/// Replays the recording into the block that has most in common with it, at most so many clocks.
+/// Replays the recording, for at most this many clocks, into the block that has most in common with it.
 pub(crate) fn run(
     blocks: &[(Box<dyn Block>, Sources)],
     file: &Path,
@@ -133,7 +133,7 @@ pub(crate) fn run(
     if compared == 0 {
         return Err(Failure::from(miette::miette!(
             help = "--clock NAME names another clock, --reset none compares from the first edge",
-            "`{}` has {} and none behind the release of its reset: there is nothing to compare ({})",
+            "`{}` has {} and none after the release of its reset: there is nothing to compare ({})",
             file.display(),
             counted(clocks, "clock edge"),
             replay.notes().join(", ")
@@ -164,10 +164,10 @@ pub(crate) fn run(
     Ok((report, replayed))
 }
 
-/// Inputs that say when, not what: a recording with these alone drives nothing.
+/// Inputs that carry only timing: a recording with these alone drives nothing.
 const TIMING: [&str; 3] = ["rst", "strobe", "tick"];
 
-/// A recording without an input that carries something, or without an output, compares nothing.
+/// Refuses a recording without an input that carries data, or without an output, because it would compare nothing.
 fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Failure> {
     let ports = block.model(0).ports().to_vec();
     let lacks_all = |direction: Direction, missing: &[String]| {
@@ -192,7 +192,7 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
              block with --block; its top is `{}`",
             block.top()
         ),
-        "`{}` has {what} of {} {}: a replay of it would compare nothing. Not found: {some}, …",
+        "`{}` has {what} of {} {}: its replay would compare nothing. Not found: {some}, …",
         file.display(),
         block.name(),
         block.instance()
@@ -201,7 +201,7 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
 
 type Chosen<'a> = (&'a dyn Block, &'a Sources, Replay);
 
-/// The block with most ports in the file.
+/// The block with the most ports in the file.
 fn choose<'a>(
     blocks: &'a [(Box<dyn Block>, Sources)],
     file: &Path,
@@ -222,7 +222,7 @@ fn choose<'a>(
                     best.push((block, sources, replay));
                 }
             }
-            // A map that this block has no port for: another may.
+            // This block has no port for a map, but another one may.
             Err(error @ Error::Wave(WaveError::Option(_))) => refused = refused.or(Some(error)),
             Err(error) => return Err(bench::failure(error)),
         }

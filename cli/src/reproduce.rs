@@ -1,4 +1,4 @@
-//! `posicast reproduce`: the source papers' tables, printed beside ours.
+//! `posicast reproduce`: prints the source papers' tables beside ours.
 
 mod beyond;
 
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let named = args.paper.as_deref().and_then(Paper::from_name);
     let papers = named.map_or_else(|| Paper::ALL.to_vec(), |paper| vec![paper]);
     let mut outputs = OutputFiles::new(args.force);
-    // A folder that is yet to be made holds nothing that could be replaced.
+    // A folder that does not exist yet holds nothing that could be replaced.
     for folder in args.plot.iter().filter(|folder| folder.is_dir()) {
         for paper in &papers {
             outputs
@@ -75,13 +75,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match counts.not_reproduced {
         0 => Ok(()),
         count => Err(Failure::Check(format!(
-            "{count} rows are not what was agreed on; first: {}",
+            "{count} rows are not as expected; first: {}",
             first_not_reproduced(&tables)
         ))),
     }
 }
 
-/// A shaper of a paper that cannot be designed: nothing the user gave is wrong.
+/// Reports a paper's shaper that cannot be designed, which is not the user's fault.
 fn fault(paper: Paper, error: &dyn std::error::Error) -> Failure {
     Failure::Check(format!(
         "{}: a shaper of the paper cannot be designed: {error}",
@@ -293,7 +293,7 @@ fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure
     write_text(&picture(folder, paper), &plot::svg(&panels)?).map_err(Failure::because)
 }
 
-/// The file with the figures of a paper.
+/// Path of the file with the figures of a paper.
 fn picture(folder: &Path, paper: Paper) -> PathBuf {
     folder.join(format!("{}.svg", paper.name()))
 }

@@ -1,8 +1,8 @@
-//! `posicast run`: the whole way, from machine file to verdict.
+//! `posicast run`: goes the whole way from the machine file to the verdict.
 //!
-//! design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. What a step has
-//! decided the later ones use: the tap table is made once. The folder appears when everything is done, also after a failed
-//! check: it holds all that `generate` writes, and the evidence beside it.
+//! design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. Later steps
+//! use what an earlier one has decided: the tap table is made once. The folder appears when everything is done, also
+//! after a failed check: it holds all that `generate` writes, and the evidence with it.
 
 mod advice;
 mod checks;
@@ -53,7 +53,8 @@ pub(crate) struct Args {
     /// Radius of the circle of the closed loop, in the unit of the first axis [default: what the limits of the axes suit]
     #[arg(long, allow_negative_numbers = true)]
     radius: Option<f64>,
-    /// Path of the closed loop in the place of the circle: circle, square, a CSV file of points x,y, or a G-code file, from where the axes stand at reset; --radius and --speed count for it
+    /// Path of the closed loop in place of the circle: circle, square, a CSV file of points x,y, or a G-code file,
+    /// from where the axes stand at reset; --radius and --speed apply to it
     #[arg(long, value_name = "SHAPE|FILE", conflicts_with = "command")]
     contour: Option<String>,
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
@@ -68,7 +69,7 @@ pub(crate) struct Args {
     /// Print all tables and every check
     #[arg(short, long)]
     verbose: bool,
-    /// Print the verdict alone, and what failed
+    /// Print only the verdict, and what failed
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
     /// Print one JSON document on standard output
@@ -214,7 +215,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Yosys, or a word on standard error that there will be no estimate.
+/// Opens Yosys; where it is not installed, warns that there will be no estimate.
 fn installed_yosys() -> Result<Option<Yosys>, Failure> {
     match Yosys::installed() {
         Ok(yosys) => Ok(Some(yosys)),

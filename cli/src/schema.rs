@@ -1,4 +1,4 @@
-//! `posicast schema`: the machine file's JSON Schema, for editors.
+//! `posicast schema`: writes the machine file's JSON Schema for editors.
 
 use crate::failure::Failure;
 use crate::output;
@@ -16,7 +16,7 @@ Machine files that `posicast new` writes name a file posicast-machine.schema.jso
 TOML) then complete keys, show what they mean and mark what is out of range. Of what keys must agree on the schema knows
 little: `posicast design` checks everything.")]
 pub(crate) struct Args {
-    /// Write it here [default: standard output]
+    /// File to write [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace a file that posicast did not write, or that was changed since

@@ -1,4 +1,4 @@
-//! `posicast simulate`: a command through the bit-exact model and the float design, and on to the simulated machine.
+//! `posicast simulate`: passes a command through the bit-exact model and the float design to the simulated machine.
 
 use crate::command::{self, Words};
 use crate::contour::{self, ContourArgs};
@@ -87,7 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// A path of two axes instead of a wave.
+/// Simulates a path of two axes instead of writing a waveform.
 fn along_contour(args: &Args, machine: &Machine) -> Result<(), Failure> {
     let mut outputs = OutputFiles::new(args.force);
     outputs.input("the machine file", &args.machine);
@@ -108,7 +108,7 @@ fn along_contour(args: &Args, machine: &Machine) -> Result<(), Failure> {
     )
 }
 
-/// All axes of a machine under their words.
+/// Simulates all axes of a machine with their command words.
 pub(crate) fn simulate(
     machine: &Machine,
     design: &MachineDesign,

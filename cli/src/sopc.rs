@@ -1,4 +1,5 @@
-//! What `generate` adds for Platform Designer and Quartus: a machine's stage and blocks as components, its system and projects.
+//! Files that `generate` adds for Platform Designer and Quartus: a machine's stage and blocks as components, its
+//! system and projects.
 
 use crate::failure::Failure;
 use crate::hardware::Stage;
@@ -10,13 +11,13 @@ use posicast_synth::sopc::{Board, Design, Unit};
 use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::path::Path;
 
-/// The key of the board.
+/// Key of the board.
 const BOARD_KEY: &str = "target.board";
 
 /// The board that the machine file at `path` names.
 ///
 /// # Errors
-/// [`Failure`] with the line for a board that is not known, or whose device is of another family than the file says.
+/// [`Failure`] with the line, for a board that is not known or whose device is of another family than the file's.
 pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Failure> {
     let Some(name) = machine.target.as_ref().and_then(|target| target.board.as_deref()) else {
         return Ok(None);
@@ -66,7 +67,7 @@ pub(crate) fn add(
     };
     if let Some(board) = board.filter(|board| design.stage.is_some() && !design.runs_on(*board)) {
         output::say(&format!(
-            "warning: no project for {board}: its oscillator and clock.frequency_hz differ; README.md says by how much"
+            "warning: no project for {board}: its oscillator and clock.frequency_hz differ; README.md gives the difference"
         ));
     }
     for file in design.files().map_err(Failure::because)? {
@@ -77,7 +78,7 @@ pub(crate) fn add(
     Ok(())
 }
 
-/// A component, with the names of its modules.
+/// A component with the names of its modules.
 fn unit<'a>(block: &'a ComponentBlock, top: &'a str, axes: Vec<&'a str>) -> Result<Unit<'a>, Failure> {
     let modules = block.modules().map_err(Failure::because)?;
     Ok(Unit {

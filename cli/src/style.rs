@@ -1,4 +1,4 @@
-//! Colour of what people read on a terminal: of verdicts, and of the word that a message begins with.
+//! Colours of text on a terminal: of verdicts, and of the word with which a message begins.
 //!
 //! Text carries its colours as escape sequences; [`print_styled`](crate::output::print_styled) and [`say`](crate::output::say) leave them out
 //! where nobody sees them: in a pipe or a file, with `NO_COLOR`, on a terminal that has none, or by `--color`.
@@ -12,18 +12,18 @@ const BOLD_GREEN: Style = GREEN.bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 const YELLOW: Style = AnsiColor::Yellow.on_default();
 
-/// `--color`.
+/// Value of `--color`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum When {
     /// On a terminal, unless NO_COLOR is set
     Auto,
     /// In a pipe too
     Always,
-    /// Nowhere
+    /// Never
     Never,
 }
 
-/// Says when there are colours.
+/// Sets when colours are used.
 pub(crate) fn set(when: When) {
     let choice = match when {
         When::Auto => ColorChoice::Auto,
@@ -32,33 +32,33 @@ pub(crate) fn set(when: When) {
     };
     choice.write_global();
     if when == When::Never {
-        // Fails where a hook is set already; then that one stays.
+        // This fails where a hook is set already, which then stays.
         let plain = || miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
         let _ = miette::set_hook(Box::new(move |_| Box::new(plain())));
     }
 }
 
-/// What holds.
+/// Style for what holds.
 pub(crate) fn good(text: &str) -> String {
     styled(GREEN, text)
 }
 
-/// That all holds.
+/// Style for a passed verdict.
 pub(crate) fn passed(text: &str) -> String {
     styled(BOLD_GREEN, text)
 }
 
-/// What does not hold.
+/// Style for what does not hold.
 pub(crate) fn bad(text: &str) -> String {
     styled(RED, text)
 }
 
-/// What may not be as it should.
+/// Style for what is doubtful.
 pub(crate) fn doubtful(text: &str) -> String {
     styled(YELLOW, text)
 }
 
-/// How the line of a message or of a verdict begins, and its colour.
+/// Words with which a line of a message or verdict may begin, with their colours.
 const BEGINNINGS: [(&str, Style); 5] = [
     ("warning:", YELLOW),
     ("error:", RED),
@@ -67,7 +67,7 @@ const BEGINNINGS: [(&str, Style); 5] = [
     ("NO VERDICT", YELLOW),
 ];
 
-/// A line whose beginning says how things are, with that in colour.
+/// A line with its first word coloured, if that is one of [`BEGINNINGS`].
 pub(crate) fn message(line: &str) -> String {
     let known = BEGINNINGS.iter().find(|(beginning, _)| line.starts_with(beginning));
     known.map_or_else(

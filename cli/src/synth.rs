@@ -1,4 +1,4 @@
-//! `posicast synth`: what a machine's Verilog takes of a device.
+//! `posicast synth`: estimates the resources that a machine's Verilog takes of a device.
 
 mod clock;
 
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Err(Failure::Check(format!("does not fit the device: {}", lacks.join("; "))))
 }
 
-/// What the device has too little of for this top, and by how much.
+/// Resources of which the device has too little for this top, and by how much.
 fn lacks(estimate: &Estimate) -> Vec<String> {
     let lack = |excess: &Excess<'_>| {
         let Excess {
@@ -96,7 +96,7 @@ fn lacks(estimate: &Estimate) -> Vec<String> {
     estimate.excesses().iter().map(lack).collect()
 }
 
-/// `synth --json`: the estimate of the top, and of each component beside it, which is in no sum.
+/// `synth --json`: the estimate of the top, and of each component, which is not included in a sum.
 #[derive(Serialize)]
 struct Document<'a> {
     #[serde(flatten)]
@@ -135,7 +135,7 @@ fn cells(name: &str, r: &Resources) -> impl Iterator<Item = String> {
     std::iter::once(name.to_owned()).chain(numbers)
 }
 
-/// The machine, its Verilog files, and the folder that keeps them alive where they are temporary.
+/// The machine, its Verilog files, and the guard of their folder if that is temporary.
 fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Failure> {
     if source.is_dir() {
         let contents = package::read(source).map_err(Failure::because)?;
@@ -149,7 +149,7 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Fai
     Ok((machine, files, Some(scratch)))
 }
 
-/// A table of blocks with the device's capacity, and where the figures come from.
+/// A table of blocks with the device's capacity, and the method of the estimate.
 pub(crate) fn text(estimate: &Estimate) -> String {
     let mut table = Table::new(&["block", ">cells", ">registers", ">memory bits", ">multipliers"]);
     let mut row = |name: &str, r: &Resources| table.row(cells(name, r));
@@ -171,7 +171,7 @@ pub(crate) fn text(estimate: &Estimate) -> String {
     text
 }
 
-/// How a failure of Yosys ends a command.
+/// Turns an error of Yosys into the failure of a command.
 fn failure(error: YosysError) -> Failure {
     match error {
         YosysError::Missing(_) => Failure::missing_tool(error),

@@ -1,14 +1,14 @@
-//! Whether the integer tap tables keep the tolerance that the machine file asks for.
+//! Checks whether the integer tap tables keep the tolerance of the machine file.
 
 use posicast_model::certify::{ModeCertificate, certify_axis};
 use posicast_model::design::{Findings, MachineDesign};
 use posicast_model::machine_file::Machine;
 
-/// Part of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps, which moves the
-/// residual of kinds that leave one by design.
+/// Fraction of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps,
+/// which changes the residual of kinds that leave one by design.
 const BETWEEN_SAMPLES: f64 = 0.05;
 
-/// Modes that a shaper is made for: those of axes whose shaper has more than one impulse.
+/// Number of modes for which a shaper is made: those of axes whose shaper has more than one impulse.
 pub(crate) fn shaped_modes(machine: &Machine, design: &MachineDesign) -> usize {
     let axes = machine.axes.iter().zip(&design.axes);
     let shaped = axes.filter(|(_, tables)| tables.design.impulses.impulses().len() > 1);

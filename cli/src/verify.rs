@@ -1,4 +1,4 @@
-//! `posicast verify`: RTL against the bit-exact model, clock by clock, block by block.
+//! `posicast verify`: compares the RTL with the bit-exact model, clock by clock, block by block.
 
 mod document;
 mod folder;
@@ -53,7 +53,7 @@ pub(crate) struct Args {
     replay: replay::Recording,
 }
 
-/// Seed where none is given: the same run every time.
+/// Default seed, so that every run is the same.
 pub(crate) const DEFAULT_SEED: u64 = 1;
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
         None => {
             let report = job.lockstep(simulator, args.cycles, args.seed);
-            // An edited machine file may make ports that do not fit: what was edited is said first.
+            // An edited machine file may make ports that do not fit; the edit is then reported first.
             let report = report.inspect_err(|_| {
                 job.folder
                     .iter()
@@ -117,15 +117,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The blocks that are to be compared with their models.
+/// The blocks to compare with their models.
 struct Job {
     blocks: Vec<(Box<dyn Block>, Sources)>,
-    /// What the files of the folder are beside what posicast generates, where it is a folder.
+    /// The differences between the files of the folder and what posicast generates, where the source is a folder.
     folder: Option<Folder>,
 }
 
 impl Job {
-    /// The blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` as in [`Folder`].
+    /// The blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` is that
+    /// of [`Folder`].
     fn new(source: &Path, names: &[String], edits_accepted: bool) -> Result<Self, Failure> {
         let (machine, path, folder) = if source.is_dir() {
             let contents = package::read(source).map_err(Failure::because)?;
@@ -135,7 +136,7 @@ impl Job {
             (machine::read(source)?.machine, source.to_owned(), None)
         };
         let report = DesignReport::new(&machine, source)?;
-        // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
+        // A move that does not fit the words is an error of `run`; a lock step can do without it.
         let words = command::words(&machine, &report.design, None, &moves::by_default(&machine)).unwrap_or_default();
         let built = Built::new(&report, source)?;
         let compared = match &folder {
@@ -183,7 +184,7 @@ impl Job {
         })
     }
 
-    /// Leaves out what RustHDL's simulator cannot run, and says so; where nothing else is left, that is an error.
+    /// Removes blocks that RustHDL's simulator cannot run, with a note; it is an error if nothing is left.
     fn keep_what_is_rusthdl(&mut self) -> Result<(), Failure> {
         let all = std::mem::take(&mut self.blocks);
         let (kept, left_out): (Vec<_>, Vec<_>) = all.into_iter().partition(|(block, _)| block.in_rusthdl());
@@ -199,14 +200,14 @@ impl Job {
         }
         if !left_out.is_empty() {
             output::say(&format!(
-                "note: left out, because RustHDL's simulator cannot run what is written from register maps: {names}"
+                "note: left out, because RustHDL's simulator cannot run blocks that are generated from register maps: {names}"
             ));
         }
         self.blocks = kept;
         Ok(())
     }
 
-    /// Clocks that exercise what a verdict on any of the rows speaks of.
+    /// Number of clocks that exercise everything that a verdict on any of the rows speaks of.
     fn least_clocks(&self) -> u64 {
         self.blocks
             .iter()
@@ -225,7 +226,7 @@ impl Job {
     }
 }
 
-/// The blocks of these names, all of them where there are no names.
+/// The blocks with these names; all of them without names.
 fn choose(blocks: Vec<Box<dyn Block>>, names: &[String], source: &Path) -> Result<Vec<Box<dyn Block>>, Failure> {
     let mut known: Vec<String> = blocks.iter().map(|block| block.name().to_owned()).collect();
     known.sort_unstable();

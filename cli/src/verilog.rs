@@ -1,4 +1,4 @@
-//! A machine's modules as files: in its folder, or in one that goes.
+//! Writes a machine's modules as files: into its folder, or into a temporary one.
 
 use crate::failure::Failure;
 use crate::machine::MachineFile;
@@ -7,12 +7,13 @@ use posicast_synth::package::Package;
 use posicast_system::scratch;
 use std::path::PathBuf;
 
-/// Where a module stands in the folder.
+/// Path of a module in the folder.
 pub(crate) fn path(module: &Module) -> String {
     format!("rtl/{}.v", module.name)
 }
 
-/// Adds the machine file and its Verilog to the folder, and returns where the Verilog stands until the folder is complete.
+/// Adds the machine file and its Verilog to the folder, and returns where the Verilog is until the folder is
+/// complete.
 pub(crate) fn add_sources(
     package: &mut Package,
     file: &MachineFile,
@@ -32,7 +33,8 @@ pub(crate) fn add_sources(
     modules.iter().map(write).collect()
 }
 
-/// Writes the modules into a temporary folder, for tools that read files. The folder goes when the guard is dropped.
+/// Writes the modules into a temporary folder, for tools that read files. The folder is removed when the guard is
+/// dropped.
 pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, scratch::Folder), Failure> {
     let folder = scratch::Folder::new(scratch::PREFIX).map_err(Failure::because)?;
     let files: Result<Vec<_>, _> = modules

@@ -4,7 +4,7 @@ use crate::cli::support::rust_sources;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Every block has its `Inputs` and `Outputs`, which its ports are made into.
+/// Names that every block has: its `Inputs` and `Outputs`, which are generated from its ports.
 const OF_EVERY_BLOCK: [&str; 2] = ["Inputs", "Outputs"];
 
 #[test]
@@ -16,7 +16,7 @@ fn unit_a_public_type_name_has_one_meaning() {
             let words: Vec<&str> = line.split_whitespace().take(3).collect();
             if let ["pub", "struct" | "enum" | "trait" | "type", name] = words[..] {
                 let name = name.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
-                // A macro's `$name` is no name.
+                // A macro's `$name` is not a name.
                 if !name.is_empty() {
                     places.entry(name.to_owned()).or_default().push(file.clone());
                 }

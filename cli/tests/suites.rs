@@ -1,9 +1,9 @@
-//! A file of tests that no `mod` names would never run, and nobody would see it.
+//! A file of tests that no `mod` declares would never run, and nobody would notice.
 
 use std::fs;
 use std::path::Path;
 
-/// The files under `folder` that the file `head`, which declares its modules, does not name.
+/// Returns the files under `folder` that the file `head`, which declares its modules, does not name.
 fn forgotten(folder: &Path, head: &Path) -> Vec<String> {
     let text = fs::read_to_string(head).unwrap();
     let mut found = Vec::new();

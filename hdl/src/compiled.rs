@@ -1,19 +1,20 @@
-//! Kernels with sizes: compiled at a few of them, emitted at any, simulated at one that holds what is asked for.
+//! Kernels with sizes: compiled at a few sizes, emitted at any, simulated at one that is large enough.
 //!
-//! A size of a kernel is a const generic, and each combination is a type that takes its time to compile. So a kernel is
-//! compiled at three: the largest that a machine can have; a second, from which and the first the emitter tells how each width
-//! follows from the sizes; a third that proves it. Constants of a kernel come from the configuration and never from the sizes
-//! that are compiled, so that a kernel also does what a smaller one would: so the first two serve the simulation of all.
+//! A size of a kernel is a const generic, and each combination is a type that takes time to compile. So a kernel is
+//! compiled at three sizes: the largest that a machine can have; a second, from which and the first the emitter
+//! determines how each width depends on the sizes; and a third that verifies it. Constants of a kernel come from the
+//! configuration and never from the compiled sizes, so that a large kernel also does what a smaller one would: the
+//! first two therefore serve to simulate all sizes.
 
 use crate::emit::{self, EmitError, EmitOptions, Module};
 use crate::simulation::Pins;
 
-/// A kernel at one of the sizes that are compiled; `C` is what it is built from.
+/// A kernel at one of its compiled sizes; `C` is its configuration.
 pub(crate) struct Compiled<C> {
-    /// The sizes, the word's width first.
+    /// The sizes; the word's width comes first.
     pub(crate) sizes: &'static [u32],
-    /// The kernel for a configuration. Sizes of the configuration beyond those of the kernel give a block that can be emitted
-    /// from, and not simulated.
+    /// Makes the kernel for a configuration. If the configuration exceeds the kernel's sizes, the block can be
+    /// emitted but not simulated.
     pub(crate) build: fn(&C) -> Box<dyn Pins>,
 }
 
@@ -32,8 +33,8 @@ pub(crate) fn emit<C>(
     emit::emit_sized(&samples, sizes, options)
 }
 
-/// The kernel that stands for one of `sizes`: of words as wide where there is one, else, unless the word must be `exact`, of
-/// wider ones.
+/// The kernel that can represent one of `sizes`: with words of the same width if there is one, else, unless the word
+/// must be `exact`, with wider words.
 pub(crate) fn holding<'a, C>(compiled: &'a [Compiled<C>], sizes: &[u32], exact: bool) -> Option<&'a Compiled<C>> {
     let holds = |kernel: &&Compiled<C>| kernel.sizes.iter().zip(sizes).all(|(there, wanted)| there >= wanted);
     let same_word = |kernel: &&Compiled<C>| kernel.sizes.first() == sizes.first();

@@ -1,7 +1,7 @@
-//! Blocks behind registers on an Avalon-MM agent: those that stand alone, and the stage.
+//! Verilog of components: blocks behind registers on an Avalon-MM agent, and the stage.
 //!
-//! What is in a component and how it is joined says `posicast_model::rtl::component`; here are the modules and the top
-//! around them.
+//! `posicast_model::rtl::component` defines the parts of a component and their connections; this file adds the
+//! modules and the top around them.
 
 use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
@@ -11,12 +11,12 @@ use crate::{
 };
 use posicast_model::rtl::component::{Component, ComponentPart, JoinedBlocks};
 
-/// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`; modules that hold something of
-/// a machine begin with `prefix`: of a component the machine's and axis's names, of a stage the machine's, behind which it
-/// puts those of its axes.
+/// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`. Modules whose
+/// contents depend on the machine begin with `prefix`: for a component the machine's and axis's names; for a stage
+/// the machine's, followed by those of its axes.
 ///
 /// # Errors
-/// [`EmitError`] where `name` or `prefix` makes no Verilog name.
+/// [`EmitError`] where `name` or `prefix` is not a valid Verilog name.
 pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let map = component.map();
     let header = Header {
@@ -27,7 +27,7 @@ pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Modul
     joined(component.whole(), name, prefix, &header)
 }
 
-/// The modules of blocks joined to the module `top`, each once.
+/// The modules of blocks joined to the module `top`, without duplicates.
 fn joined(whole: &JoinedBlocks, top: &str, prefix: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
     let mut modules: Vec<Module> = Vec::new();
     let mut tops = Vec::new();
@@ -45,7 +45,7 @@ fn joined(whole: &JoinedBlocks, top: &str, prefix: &str, header: &Header) -> Res
     Ok(modules)
 }
 
-/// The modules of one block, its top last.
+/// The modules of one block; its top comes last.
 fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
     match block {
         ComponentPart::Registers(map) => Ok(vec![registers::emit(map, prefix)?]),

@@ -1,4 +1,4 @@
-//! One divider for all pulse counters of a stage: their divisions one after the other, in a fixed order.
+//! Shares one divider among all pulse counters of a stage: their divisions run one after the other, in a fixed order.
 //!
 //! The reference is `posicast_model::rtl::divider_share`.
 
@@ -9,7 +9,7 @@ use posicast_model::rtl::divider_share::{MOST_CHANNELS, PORTS, SHARE_CLOCKS, por
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
-    /// C channels.
+    /// Sizes: C channels.
     struct DividerShare<const C: usize>;
     ports posicast_model::divider_share_ports;
 
@@ -35,7 +35,7 @@ impl<const C: usize> Logic for DividerShare<C> {
             self.valid_q[i].d.next = self.done.val() & (self.turn.q.val() == self.channel[i].val());
         }
 
-        comment!("A tick's first division, or the next one");
+        comment!("Starts a tick's first division, or the next one");
         self.is_idle.next = self.turn.q.val() == self.idle.val();
         self.next_turn.next = self.turn.q.val() + self.one.val();
         self.begins.next = self.done.val() & (self.turn.q.val() != self.last_channel.val());
@@ -50,7 +50,7 @@ impl<const C: usize> Logic for DividerShare<C> {
             self.turn.d.next = self.next_turn.val();
         }
 
-        comment!("Its operands");
+        comment!("Operands of the channel");
         self.start_q.d.next = self.begins.val();
         for i in 0..C {
             if self.begins.val() & (self.next_turn.val() == self.channel[i].val()) {
@@ -81,10 +81,10 @@ fn block(channels: usize) -> Box<dyn Pins> {
     }
 }
 
-/// The share of so many channels, 1 to [`MOST_CHANNELS`], in RustHDL's own simulator.
+/// The share for this many channels, 1 to [`MOST_CHANNELS`], in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     Ok(Box::new(Simulated::new(
         "divider_share",
@@ -93,7 +93,7 @@ pub fn simulate(channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationErro
     )?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(channels: usize, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(channels))
 }
@@ -102,10 +102,10 @@ fn base_name(channels: usize) -> String {
     format!("divider_share_{channels}")
 }
 
-/// The Verilog of the share of so many channels, called as [`name`] says.
+/// Verilog of the share for this many channels; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: String, meaning: &str| Parameter {
         name: name.to_owned(),

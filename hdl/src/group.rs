@@ -10,7 +10,7 @@ use posicast_model::rtl::group::{PORTS, ports};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
-    /// N axes.
+    /// Sizes: N axes.
     struct Group<const N: usize>;
     ports posicast_model::group_ports;
 
@@ -28,7 +28,7 @@ impl<const N: usize> Logic for Group<N> {
     fn update(&mut self) {
         comment!("@module group");
 
-        comment!("All start, or none");
+        comment!("All requested axes start, or none");
         self.blocked.next = (self.start_axes.val() == self.nobody.val())
             | ((self.start_axes.val() & self.strangers.val()) != self.nobody.val());
         for i in 0..N {
@@ -43,7 +43,7 @@ impl<const N: usize> Logic for Group<N> {
                 & ((self.start_axes.val() & self.axis[i].val()) != self.nobody.val());
         }
 
-        comment!("One that stops stops the others");
+        comment!("An axis that stops also stops the others");
         self.emergency_q.d.next = false;
         for i in 0..N {
             self.stop_q[i].d.next = false;
@@ -57,7 +57,7 @@ impl<const N: usize> Logic for Group<N> {
             }
         }
 
-        comment!("All that are to hold rest, or none holds");
+        comment!("Feed hold: once all its axes rest");
         self.moving.next = false;
         for i in 0..N {
             if self.feed_hold[i].val() & !self.rests[i].val() {
@@ -87,15 +87,15 @@ fn block(axes: usize) -> Box<dyn Pins> {
     }
 }
 
-/// The group of so many axes, 1 to 4, in RustHDL's own simulator.
+/// The group of this many axes, 1 to 4, in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(axes: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     Ok(Box::new(Simulated::new("group", block(axes), ports(axes))?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(axes: usize, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(axes))
 }
@@ -104,10 +104,10 @@ fn base_name(axes: usize) -> String {
     format!("group_{axes}")
 }
 
-/// The Verilog of the group of so many axes, called as [`name`] says.
+/// Verilog of the group of this many axes; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(axes: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: base_name(axes),

@@ -1,4 +1,4 @@
-//! `kernel!` makes of a block's ports, registers, wires, parts and constants all but its logic.
+//! `kernel!` makes everything of a kernel except its logic from its ports, registers, wires, parts and constants.
 //!
 //! ```text
 //! kernel! {
@@ -25,19 +25,20 @@
 //!
 //! | section | field | starts as |
 //! |---|---|---|
-//! | `inputs`, `outputs`, `wires` | `Signal<In, T>`, `Signal<Out, T>`, `Signal<Local, T>` | |
+//! | section | field | initial value |
 //! | `registers` | [`Dff<T>`](crate::prim::Dff), clocked by `clk` and reset by `rst`; it keeps its value unless the logic sets `d` | `= reset value`, else 0 |
-//! | `parts` | `T`, another kernel or a leaf; the logic wires its inputs, `clk` and `rst` among them | `= T::new(..)`, else `T::default()` |
+//! | `registers` | [`Dff<T>`](crate::prim::Dff), clocked by `clk` and reset by `rst`; it keeps its value unless the logic sets `d` | `= reset value`, else 0 |
 //! | `constants` | `Constant<T>` | `= value` |
 //!
-//! `name[N]: T` makes an array of N; constants of an array are a function of the index, `= |index| ..`. Sections stand in the
-//! order of the Verilog's declarations, and each may stand several times. A register that the logic wires itself is a part, `Dff<T>`.
-//! The macro also makes the constructor: `new` with the arguments behind the name, or `default` where there are none.
+//! `name[N]: T` makes an array of N; constants of an array are a function of the index, `= |index| ..`. Sections are
+//! in the order of the Verilog's declarations, and each may occur several times. A register that the logic wires
+//! itself is a part, `Dff<T>`. The macro also makes the constructor: `new` with the arguments after the name, or
+//! `default` where there are none.
 //!
-//! Sizes that must fit each other say so behind the name: `struct Product<const W: usize, const P: usize> where P == W + 18;`.
+//! Conditions on sizes follow the name: `struct Product<const W: usize, const P: usize> where P == W + 18;`.
 //!
-//! A block's top kernel takes inputs and outputs from the block's list of ports in the model, which `ports!` makes there, and raw
-//! ports with them. The sizes of such a list are those of the same names here:
+//! The top kernel of a block takes its inputs, outputs and raw ports from the block's list of ports, which `ports!`
+//! makes in the model. The sizes of such a list are those with the same names here:
 //!
 //! ```text
 //! kernel! {
@@ -50,7 +51,7 @@
 
 /// See the [module](self).
 macro_rules! kernel {
-    // With the ports of a list in the model: the list's macro comes back with them.
+    // With the ports of a list in the model, the list's macro calls back with them.
     (
         $(#[$about:meta])*
         $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
@@ -159,7 +160,7 @@ macro_rules! field_type {
     (constants $type:ty) => { Constant<$type> };
 }
 
-/// What a field starts as.
+/// Initial value of a field.
 macro_rules! initial {
     (constants [$count:expr] $type:ty = $of_index:expr) => {{
         let of_index: fn(usize) -> $type = $of_index;
@@ -175,7 +176,7 @@ macro_rules! initial {
     ($section:ident $type:ty) => { Default::default() };
 }
 
-/// Wires a register, and nothing else.
+/// Wires a register; does nothing for other sections.
 macro_rules! keep {
     (registers $kernel:ident $field:ident) => {
         $crate::prim::Keep::keep(&mut $kernel.$field, $kernel.clk.val(), $kernel.rst.val())
@@ -183,7 +184,7 @@ macro_rules! keep {
     ($section:ident $kernel:ident $field:ident) => {};
 }
 
-/// `new`, or `default` where there are no arguments.
+/// Makes `new`, or `default` where there are no arguments.
 macro_rules! constructor {
     ([$($sizes:tt)*] $kernel:ty, $seen:vis, () $body:block) => {
         impl $($sizes)* Default for $kernel {

@@ -8,20 +8,20 @@ use crate::emit::{EmitError, Header, Module, ModuleInstance, Parameter, add, com
 use crate::shaper;
 use posicast_model::rtl::shaper::ShaperConfig;
 
-/// Inputs of the top that all axes share, beside `clk`.
+/// Inputs of the top that all axes share, in addition to `clk`.
 pub const SHARED_INPUTS: [&str; 2] = ["rst", "strobe"];
 
 /// The shaper of one axis.
 #[derive(Debug, Clone)]
 pub struct AxisShaper {
-    /// The axis's name.
+    /// Name of the axis.
     pub axis: String,
-    /// What its shaper is built with.
+    /// Build parameters of its shaper.
     pub config: ShaperConfig,
 }
 
 impl AxisShaper {
-    /// Name of the top's port that shows the shaped position.
+    /// Name of the top's port for the shaped position.
     pub fn output(&self) -> String {
         let port = if self.config.motion().is_some() { "y_0" } else { "y" };
         format!("{}_{port}", self.axis)
@@ -31,7 +31,7 @@ impl AxisShaper {
 /// All Verilog modules of a machine, sub-modules first, the top last.
 ///
 /// # Errors
-/// [`EmitError`] for what cannot be expressed exactly, and for names of machine and axes that collide.
+/// [`EmitError`] for what cannot be expressed exactly, and where names of machine and axes collide.
 pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, EmitError> {
     let mut modules = Vec::new();
     let mut tops = Vec::new();

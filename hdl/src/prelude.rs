@@ -1,30 +1,32 @@
-//! What a kernel sees: RustHDL, with the parts replaced that do not do what they say, and our leaves.
+//! The imports of every kernel: RustHDL, with replacements for the parts that do not behave as documented, and our
+//! leaves.
 //!
-//! An explicit re-export shadows the one of the glob, so every kernel that says `use crate::prelude::*` gets ours:
+//! An explicit re-export shadows the one of the glob, so every kernel with `use crate::prelude::*` gets ours:
 //!
-//! | ours | instead of |
+//! | ours | replaces |
 //! |---|---|
 //! | [`signed_bit_cast`] | RustHDL's, which overflows the stack on the most negative value |
-//! | `kernel!` | the struct, the constructor and the wiring of registers that a kernel would repeat |
+//! | `kernel!` | the struct, the constructor and the wiring of registers that every kernel would repeat |
 //! | [`Dff`] | RustHDL's `DFF` without reset |
 //! | [`Ram`], [`Rom`] | RustHDL's `RAM` and `ROM` with two clocks, and without arbitrary contents |
-//! | `comment!` | nothing: `#[hdl_gen]` knows the macro, RustHDL has none |
+//! | `comment!` | nothing: `#[hdl_gen]` knows the macro, but RustHDL does not define it |
 
 pub(crate) use crate::kernel::kernel;
 pub(crate) use crate::prim::{Dff, FaultLatch, PinRegister, Ram, Rom, RomWord, SMul, Synchroniser};
 pub(crate) use rust_hdl_core::prelude::*;
 pub(crate) use rust_hdl_macros::hdl_gen;
 
-/// A comment in the Verilog, nothing in the simulation. Below 50 characters: RustHDL wraps longer text.
+/// A comment in the Verilog; it does nothing in the simulation. Its text should stay below 50 characters: RustHDL
+/// wraps longer text.
 macro_rules! comment {
     ($($text:tt)*) => {};
 }
 
 pub(crate) use comment;
 
-/// Sign-extends or truncates.
+/// Sign-extends or truncates a value.
 ///
-/// `#[hdl_gen]` knows a callee by its name alone, so that shadowing RustHDL's function is enough.
+/// `#[hdl_gen]` identifies a function by its name alone, so shadowing RustHDL's function is enough.
 pub(crate) fn signed_bit_cast<const TO: usize, const FROM: usize>(value: Signed<FROM>) -> Signed<TO> {
     let pattern = unsigned_cast(value);
     if value.sign_bit() {
@@ -34,7 +36,7 @@ pub(crate) fn signed_bit_cast<const TO: usize, const FROM: usize>(value: Signed<
     }
 }
 
-/// The number that at most 64 bits stand for.
+/// The number that at most 64 bits represent.
 pub(crate) fn to_i64<const N: usize>(value: Signed<N>) -> i64 {
     let pattern: u64 = unsigned_cast(value).into();
     let unused = 64 - N;
@@ -46,7 +48,7 @@ pub(crate) fn from_i64<const N: usize>(value: i64) -> Signed<N> {
     signed_cast(from_u64(value as u64))
 }
 
-/// The low `N` ≤ 64 bits.
+/// The low `N` ≤ 64 bits of a number.
 pub(crate) fn from_u64<const N: usize>(value: u64) -> Bits<N> {
     Bits::from(value & (u64::MAX >> (64 - N)))
 }

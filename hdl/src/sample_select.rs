@@ -1,4 +1,5 @@
-//! Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock late.
+//! Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs come a clock
+//! late.
 //!
 //! The reference is `posicast_model::rtl::sample_select`.
 
@@ -9,7 +10,7 @@ use posicast_model::rtl::sample_select::{PORTS, ports};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
-    /// W word, C channels.
+    /// Sizes: W word bits, C channels.
     struct SampleSelect<const W: usize, const C: usize>;
     ports posicast_model::sample_select_ports;
 
@@ -41,7 +42,8 @@ impl<const W: usize, const C: usize> Logic for SampleSelect<W, C> {
     }
 }
 
-/// The sizes that components have: those of shapers, a duty, and five words of 32 bits for a controller.
+/// The block at the sizes that components have: those of shapers, of a duty, and five words of 32 bits for a
+/// controller.
 fn block(word_bits: u32, channels: usize) -> Box<dyn Pins> {
     match (word_bits, channels) {
         (17, _) => Box::new(SampleSelect::<17, 1>::default()),
@@ -56,10 +58,10 @@ fn block(word_bits: u32, channels: usize) -> Box<dyn Pins> {
     }
 }
 
-/// The selection in RustHDL's own simulator, for words of so many bits and so many channels.
+/// The selection in RustHDL's own simulator, for words of this many bits and this many channels.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let ports = ports(word_bits as usize, channels);
     Ok(Box::new(Simulated::new(
@@ -69,7 +71,7 @@ pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>
     )?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(word_bits: u32, channels: usize, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(word_bits, channels))
 }
@@ -78,10 +80,10 @@ fn base_name(word_bits: u32, channels: usize) -> String {
     format!("sample_select_{word_bits}x{channels}")
 }
 
-/// The selection's Verilog, called as [`name`] says.
+/// Verilog of the selection; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(word_bits: u32, channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: base_name(word_bits, channels),

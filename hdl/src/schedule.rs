@@ -1,9 +1,9 @@
-//! When the controllers of a stage start: a fixed number of clocks after each tick.
+//! The schedule starts the controllers of a stage a fixed number of clocks after each tick.
 //!
 //! The reference is `posicast_model::rtl::schedule`.
 //!
-//! A counter that runs freely, from 0 in the clock after a tick, and wraps behind the bits that the time takes: those above
-//! go at synthesis. `waits` tells whether its end counts.
+//! A counter runs freely from 0 in the clock after a tick, and wraps after as many bits as the time needs; synthesis
+//! removes the bits above. `waits` tells whether the end of the count matters.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
@@ -48,13 +48,13 @@ impl Logic for Schedule {
 /// The schedule in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &ScheduleConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(Schedule::new(config));
     Ok(Box::new(Simulated::new("schedule", block, ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(config: &ScheduleConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }
@@ -63,10 +63,10 @@ fn base_name(config: &ScheduleConfig) -> String {
     format!("schedule_{}", config.control_clocks())
 }
 
-/// The schedule's Verilog, called as [`name`] says.
+/// Verilog of the schedule; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &ScheduleConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: base_name(config),

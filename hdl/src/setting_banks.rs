@@ -1,4 +1,5 @@
-//! The settings of a controller that stands alone: bank 0 a ROM with the machine's, banks 1 and 2 to be loaded.
+//! The settings of a controller that stands alone: bank 0 is a ROM with the machine's settings, banks 1 and 2 can be
+//! loaded.
 //!
 //! The reference is `posicast_model::rtl::setting_banks`. Which rows were written since the reset is kept in flip-flops,
 //! since a memory has no reset: others read as 0. A
@@ -48,7 +49,7 @@ impl Logic for SettingBanks {
     fn update(&mut self) {
         comment!("@module setting_banks");
 
-        comment!("Writes: only to a bank that is not in use");
+        comment!("Writes go only to a bank that is not in use");
         self.loadable.next = ((self.setting_bank.val() == self.bank_1.val())
             | (self.setting_bank.val() == self.bank_2.val()))
             & (self.setting_bank.val() != self.bank.val());
@@ -75,7 +76,7 @@ impl Logic for SettingBanks {
             self.read_row.next = self.setting_row.val();
         }
 
-        comment!("Reads: what was not written is 0");
+        comment!("A row that was not written reads as 0");
         self.read_half.next = self.lower_half.val();
         if self.read_bank.val() == self.bank_2.val() {
             self.read_half.next = self.upper_half.val();
@@ -112,14 +113,14 @@ impl Logic for SettingBanks {
 /// The banks in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(machine: &Settings) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(SettingBanks::new(machine, "machine_settings"));
     Ok(Box::new(Simulated::new("setting_banks", block, ports())?))
 }
 
-/// The name of the banks' module: `posicast_setting_banks_DIGEST`, or `setting_banks` where `prefix` is empty. The digest stands for
-/// the machine's settings, so that axes with the same ones share their banks.
+/// Name of the banks' module: `posicast_setting_banks_DIGEST`, or `setting_banks` where `prefix` is empty. The digest
+/// identifies the machine's settings, so that axes with the same settings share their banks.
 pub fn name(machine: &Settings, prefix: &str) -> String {
     match prefix {
         "" => "setting_banks".to_owned(),
@@ -135,10 +136,10 @@ fn of_content(base: &str, machine: &Settings) -> String {
     format!("{base}_{:08x}", digest(&words.join(" ")))
 }
 
-/// The banks' Verilog, with the machine's settings in bank 0, last; it is called [`name`].
+/// Verilog of the banks with the machine's settings in bank 0; the last module is called [`name`].
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let named = |base: &str| match prefix {
         "" => base.to_owned(),
@@ -146,7 +147,7 @@ pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> 
     };
     let options = EmitOptions {
         top: named("setting_banks"),
-        // What holds a machine's contents begins with the prefix: here the names say which contents.
+        // Modules with a machine's contents begin with the prefix; here the names already identify the contents.
         prefix: if prefix.is_empty() { "" } else { LIBRARY }.to_owned(),
         header: Header {
             about: String::new(),

@@ -1,38 +1,38 @@
-//! RustHDL's simulator behind the interface that every block has.
+//! RustHDL's simulator behind the interface that all blocks share.
 //!
-//! What RustHDL's `simulate` does, done here for any block behind one type; its threaded `Simulation` is a hundred times
-//! slower.
+//! It does the work of RustHDL's `simulate` for any block behind one type; RustHDL's threaded `Simulation` is a
+//! hundred times slower.
 
 use crate::prelude::*;
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 
-/// Updates of a design within one edge before it counts as an oscillator.
+/// Number of updates of a design within one edge above which it counts as an oscillation.
 const MOST_UPDATES: usize = 100;
 
 /// Why a block cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SimulationError {
-    /// RustHDL's checks found an open or looping signal: an error of the block, not of its user.
+    /// RustHDL's checks found an open or looping signal. This is an error of the block, not of its user.
     #[error("RustHDL refuses the block `{block}`: {reason}")]
     Refused {
-        /// The block.
+        /// Name of the block.
         block: &'static str,
-        /// What RustHDL says.
+        /// RustHDL's message.
         reason: String,
     },
-    /// No size of the kernel that is compiled can stand for the one that is asked for.
+    /// No compiled size of the kernel can represent the requested one.
     #[error("RustHDL's simulator has no `{block}` for words of {word_bits} bits: simulate its Verilog instead")]
     Size {
-        /// The block.
+        /// Name of the block.
         block: &'static str,
         /// Width of its words in bits.
         word_bits: u32,
     },
 }
 
-/// A block whose ports take and give raw bit patterns, in port order, without `clk`.
+/// A block whose ports are raw bit patterns, in port order, without `clk`.
 pub(crate) trait Pins: Block {
-    /// The level of `clk`.
+    /// Sets the level of `clk`.
     fn set_clk(&mut self, level: bool);
     /// Sets the inputs.
     fn drive(&mut self, inputs: &[u64]);
@@ -40,19 +40,19 @@ pub(crate) trait Pins: Block {
     fn read(&self, outputs: &mut [u64]);
 }
 
-/// An input, or an array of them.
+/// An input port, or an array of them.
 pub(crate) trait InputPins {
     /// Takes the next raw bit patterns; bits above a port's width are ignored.
     fn drive(&mut self, patterns: &mut dyn Iterator<Item = u64>);
 }
 
-/// An output, or an array of them.
+/// An output port, or an array of them.
 pub(crate) trait OutputPins {
-    /// Writes its raw bit patterns to the next places.
+    /// Writes its raw bit patterns to the next elements.
     fn read(&self, patterns: &mut dyn Iterator<Item = &mut u64>);
 }
 
-/// A value of a port beside its bit pattern.
+/// Conversion between a port's value and its bit pattern.
 pub(crate) trait Pattern: Synth {
     fn from_pattern(pattern: u64) -> Self;
     fn pattern(self) -> u64;
@@ -119,13 +119,13 @@ pub(crate) struct Simulated {
     block: Box<dyn Pins>,
     ports: Vec<Port>,
     inputs: usize,
-    /// The inputs of a clock, at 64 bits.
+    /// The inputs of a clock, extended to 64 bits.
     driven: Vec<u64>,
 }
 
 impl Simulated {
-    /// Connects and checks `block`. `ports` may be narrower than the block's: inputs are extended by zeros, or their sign, and
-    /// of outputs the low bits count.
+    /// Connects and checks `block`. `ports` may be narrower than the block's: inputs are extended with zeros or their
+    /// sign, and only the low bits of outputs are used.
     pub(crate) fn new(name: &'static str, mut block: Box<dyn Pins>, ports: Vec<Port>) -> Result<Self, SimulationError> {
         block.connect_all();
         check_all(block.as_ref()).map_err(|error| SimulationError::Refused {
@@ -188,7 +188,7 @@ impl ClockedBlock for Simulated {
     }
 }
 
-/// The pattern of a port at 64 bits.
+/// The pattern of a port extended to 64 bits.
 fn extended(pattern: u64, port: &Port) -> u64 {
     let above = 64 - port.width;
     if port.signed {

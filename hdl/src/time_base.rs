@@ -29,7 +29,7 @@ impl Logic for TimeBase {
     fn update(&mut self) {
         comment!("@module time_base");
 
-        comment!("The bits that a tick has not go at synthesis");
+        comment!("Synthesis removes bits that a tick does not need");
         self.phase.d.next = (self.phase.q.val() + self.one_phase.val()) & self.used_phase.val();
         self.tick_q.d.next = false;
         if self.phase.q.val() == self.last_phase.val() {
@@ -51,13 +51,13 @@ impl Logic for TimeBase {
 /// The time base in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(divider: &DividerConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(TimeBase::new(divider));
     Ok(Box::new(Simulated::new("time_base", block, ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(divider: &DividerConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(divider))
 }
@@ -66,10 +66,10 @@ fn base_name(divider: &DividerConfig) -> String {
     format!("time_base_{}", divider.tick_clocks())
 }
 
-/// The time base's Verilog, with the ticks of `divider`, called as [`name`] says.
+/// Verilog of the time base with the clocks per tick of `divider`; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(divider: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: base_name(divider),

@@ -1,4 +1,4 @@
-//! The supervisor in RustHDL's simulator against its model.
+//! The supervisor in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -1,4 +1,4 @@
-//! The cascade in RustHDL's simulator against its model, and its Verilog as text.
+//! The cascade in RustHDL's simulator compared with its model, and its Verilog as text.
 
 use crate::random;
 
@@ -8,7 +8,7 @@ use posicast_model::rtl::cascade::{
 };
 use random::Random;
 
-/// Every size of ring and index, narrow and wide words, with delays at both ends of what its ring holds.
+/// Returns every size of ring and index, narrow and wide words, with delays at both ends of what the ring holds.
 fn sizes() -> impl Iterator<Item = CascadeConfig> {
     let size = |word, ring: u32, index: u32| {
         let delays = (0..1 << index).map(|stage| if stage == 1 { (1 << ring) - 2 } else { 1 + stage });
@@ -19,7 +19,8 @@ fn sizes() -> impl Iterator<Item = CascadeConfig> {
     })
 }
 
-/// Random inputs, every output compared in every clock; strobes at the pace of a pass, around it, and at random.
+/// Plays random inputs and compares every output in every clock; strobes come at the pace of a pass, around it, and
+/// at random.
 fn lockstep(config: &CascadeConfig, seed: u64, clocks: u32) {
     let mut model = Cascade::new(config, seed);
     let mut rusthdl = simulate(config).unwrap();

@@ -1,4 +1,5 @@
-//! The small blocks of components in RustHDL's simulator against their models, and compositions that are refused.
+//! The small blocks of components in RustHDL's simulator compared with their models, and compositions that are
+//! refused.
 
 use crate::random;
 
@@ -16,7 +17,7 @@ use posicast_model::rtl::time_base::TimeBase;
 use posicast_model::rtl::{ClockedBlock, Direction};
 use random::Random;
 
-/// Same random inputs to both; resets now and then.
+/// Gives the same random inputs to both, with a reset now and then.
 fn lockstep(model: &mut dyn ClockedBlock, rusthdl: &mut dyn ClockedBlock, clocks: u32) {
     let widths = |direction| -> Vec<u32> {
         let ports = model.ports().iter().filter(|port| port.direction == direction);

@@ -1,4 +1,4 @@
-//! The divider in RustHDL's simulator against its model.
+//! The divider in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -1,4 +1,4 @@
-//! The drive command in RustHDL's simulator against its model.
+//! The drive command in RustHDL's simulator compared with its model.
 
 use crate::random;
 

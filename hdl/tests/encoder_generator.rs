@@ -1,4 +1,4 @@
-//! The internal encoder in RustHDL's simulator against its model.
+//! The internal encoder in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -1,4 +1,4 @@
-//! The excitation in RustHDL's simulator against its model.
+//! The excitation in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -1,12 +1,13 @@
-//! The rules of the kernels, read from their source: what RustHDL lets pass and simulates differently from its Verilog.
+//! The rules of the kernels, checked in their source: constructs that RustHDL accepts and simulates differently from
+//! its Verilog.
 //!
-//! The emitter refuses most of it too, but only in what is emitted, and says it later.
+//! The emitter refuses most of them too, but only in what is emitted, and later.
 
 use posicast_hdl::emit::{Header, compose};
 use std::fs;
 use std::path::Path;
 
-/// Parts of RustHDL that do something else than their Verilog, and their replacements.
+/// Parts of RustHDL that behave differently from their Verilog, and their replacements.
 const REPLACED: [(&str, &str); 7] = [
     ("DFF", "Dff, which has a reset"),
     ("DFFWithInit", "Dff::new"),
@@ -20,7 +21,7 @@ const REPLACED: [(&str, &str); 7] = [
     ),
 ];
 
-/// Every rule that the source of a file breaks, in words.
+/// Returns a description of every rule that a source file breaks.
 fn broken_rules(source: &str) -> Vec<String> {
     let code = without_comments(source);
     let mut broken = Vec::new();
@@ -85,7 +86,7 @@ fn check_kernel(code: &str, body: &str, broken: &mut Vec<String>) {
     }
 }
 
-/// The sections of `kernel!`, and what their fields are.
+/// The sections of `kernel!`, and the kind of their fields.
 const SECTIONS: [(&str, &str); 6] = [
     ("inputs", "In"),
     ("outputs", "Out"),
@@ -95,7 +96,8 @@ const SECTIONS: [(&str, &str); 6] = [
     ("constants", "Constant"),
 ];
 
-/// Name and kind of the fields of a `kernel!`, those of its block's list of ports among them; arrays are left out.
+/// Returns name and kind of the fields of a `kernel!`, including those of its block's list of ports; arrays are left
+/// out.
 fn kernel_fields(declaration: &str) -> Vec<(String, String)> {
     let declaration = declaration.split("\n}").next().unwrap_or_default();
     let mut fields = Vec::new();
@@ -118,13 +120,13 @@ fn kernel_fields(declaration: &str) -> Vec<(String, String)> {
     fields
 }
 
-/// Name and kind of the ports that a list in the model has.
+/// Returns name and kind of the ports of a list in the model.
 fn listed(list: &str) -> Vec<(String, String)> {
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/src/rtl");
     let texts = sources(&model)
         .into_iter()
         .filter_map(|file| fs::read_to_string(file).ok());
-    // The name stands alone, or its sizes behind it.
+    // The name stands alone, or is followed by its sizes.
     let lists = texts.into_iter().find_map(|text| {
         [";", "("]
             .iter()
@@ -142,7 +144,7 @@ fn listed(list: &str) -> Vec<(String, String)> {
     [names(inputs, "In"), names(outputs, "Out")].concat()
 }
 
-/// Name and kind (`In`, `Out`, `Local`, or the type's name) of every field that is hardware.
+/// Returns name and kind (`In`, `Out`, `Local`, or the type's name) of every field that is hardware.
 fn fields(code: &str) -> Vec<(String, String)> {
     if let Some((_, declaration)) = code.split_once("kernel! {") {
         return kernel_fields(declaration);
@@ -168,7 +170,7 @@ fn fields(code: &str) -> Vec<(String, String)> {
     fields
 }
 
-/// How many branches deep `name` is assigned first.
+/// Returns how many branches deep the first assignment of `name` is.
 fn first_assignment(flat: &str, name: &str) -> Option<usize> {
     let place = flat.find(&format!("self.{name}.next="))?;
     let opened = flat[..place].matches('{').count();
@@ -180,7 +182,7 @@ fn registers(flat: &str) -> Vec<&str> {
     list.split(')').next().unwrap_or_default().split(',').collect()
 }
 
-/// The statements of the function that `kernel` begins with.
+/// Returns the statements of the function that `kernel` begins with.
 fn body(kernel: &str) -> &str {
     let begin = kernel.find('{').map_or(0, |place| place + 1);
     let mut depth = 1;
@@ -202,7 +204,7 @@ fn without_comments(source: &str) -> String {
     source.lines().map(code).collect()
 }
 
-/// Whether the item `word` is used: as a type with parameters, in a path, or as a macro.
+/// Returns whether the item `word` is used: as a type with parameters, in a path, or as a macro.
 fn uses(code: &str, word: &str) -> bool {
     let in_name = |c: char| c.is_alphanumeric() || c == '_';
     code.match_indices(word).any(|(place, _)| {
@@ -216,7 +218,7 @@ fn before(flat: &str, place: usize) -> &str {
     &flat[from..place]
 }
 
-/// Every Rust file below `folder`.
+/// Returns every Rust file below `folder`.
 fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
     let entries = fs::read_dir(folder)
         .into_iter()
@@ -275,7 +277,7 @@ fn unit_a_good_kernel_is_let_through() {
     assert_eq!(broken_rules(GOOD), [""; 0]);
 }
 
-/// The same kernel, of `kernel!`.
+/// Returns the same kernel, written with `kernel!`.
 fn with_the_macro() -> String {
     let (before, from) = GOOD.split_once("#[derive").unwrap();
     let (_, after) = from.split_once("\n}\n").unwrap();

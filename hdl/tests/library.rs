@@ -1,4 +1,5 @@
-//! A module's name stands for its content: in every package, of every machine, the module of a name is the same file.
+//! A module's name identifies its content: in the packages of all machines, modules of the same name are the same
+//! file.
 
 #![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 
@@ -19,7 +20,7 @@ use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 use std::collections::BTreeMap;
 
-/// Configurations that are tried.
+/// Number of configurations that are tried.
 const MACHINES: u64 = 12;
 
 /// A number for each `salt`, the same in every run (SplitMix64).
@@ -89,7 +90,7 @@ fn pwm_config(chance: &mut Chance) -> PwmConfig {
     if chance.is() { config.on_time_base() } else { config }
 }
 
-/// The Verilog of every block, built as chance has it for the machine `prefix`.
+/// Returns the Verilog of every block, built with random settings for the machine `prefix`.
 fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
     let tick = DividerConfig::new(chance.one_of(&[1000, 2500, 5000, 5001])).unwrap();
     let (shaper, pwm) = (shaper_config(chance), pwm_config(chance));
@@ -163,7 +164,7 @@ fn unit_a_name_stands_for_one_content_in_all_machines() {
             assert_eq!(library[&module.name], module.text, "{}", module.name);
         }
     }
-    // What has sizes was met at several of them, so that the comparison above had something to find.
+    // Each block with sizes occurred at several of them, so that the comparison above is meaningful.
     for sized in [
         "history_",
         "weighted_sum_",

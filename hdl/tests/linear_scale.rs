@@ -1,4 +1,4 @@
-//! The linear scale in RustHDL's simulator against its model.
+//! The linear scale in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -1,4 +1,4 @@
-//! The pulse counter in RustHDL's simulator against its model.
+//! The pulse counter in RustHDL's simulator compared with its model.
 
 use crate::random;
 

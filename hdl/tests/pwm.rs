@@ -1,4 +1,4 @@
-//! The PWM in RustHDL's simulator against its model.
+//! The PWM in RustHDL's simulator compared with its model.
 
 use crate::random;
 

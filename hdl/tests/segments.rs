@@ -1,4 +1,4 @@
-//! The command FIFO in RustHDL's simulator against its model.
+//! The command FIFO in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -1,4 +1,4 @@
-//! The shaper's Verilog as text: its names, its ports, its order; what it does is tested in lock step.
+//! The shaper's Verilog as text: its names, its ports, its order. Its function is tested in lockstep.
 
 use posicast_hdl::shaper::emit;
 use posicast_model::rtl::shaper::{RING_ADDRESS_BITS, ShaperConfig, TAP_INDEX_BITS, ports};

@@ -1,4 +1,4 @@
-//! The controller in RustHDL's simulator against its model.
+//! The controller in RustHDL's simulator compared with its model.
 
 use crate::random;
 
@@ -19,7 +19,7 @@ fn lockstep_everything_at_random() {
         if clock % 40 == 0 {
             inputs[4..9].fill_with(|| u64::from(word()));
         }
-        // The limit holds still while its step works with it.
+        // The limit does not change while its step uses it.
         if expected[0] != SettingRow::Limit as u64 {
             inputs[9] = u64::from(word()) | random.below(32) << 18;
         }

@@ -1,4 +1,4 @@
-//! The trace memory in RustHDL's simulator against its model.
+//! The trace memory in RustHDL's simulator compared with its model.
 
 use crate::random;
 
@@ -6,7 +6,7 @@ use posicast_hdl::trace::{emit, simulate};
 use posicast_model::rtl::trace::{Inputs, SAMPLES, Trace, TraceConfig, ports};
 use random::Random;
 
-/// Everything at random, slow enough that traces become complete; how many clocks there were in each state.
+/// Plays random inputs, slow enough that traces become complete; returns the number of clocks in each state.
 fn lockstep(samples: u32, seed: u64, clocks: u32) -> [u64; 4] {
     let config = TraceConfig::new(u64::from(samples)).unwrap();
     let mut model = Trace::new(&config);

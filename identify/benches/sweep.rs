@@ -1,4 +1,4 @@
-//! A printer's log of 420,000 rows: reading it, and finding one mode and four.
+//! Time to read a printer's log of 420,000 rows, and to find one mode and four modes in it.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use posicast_identify::log;

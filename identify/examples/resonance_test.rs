@@ -1,5 +1,5 @@
-//! Writes the accelerometer's log of a resonance test on a machine with two known modes: `cargo run -p posicast-identify
-//! --example resonance_test > log.csv`, then `posicast identify log.csv`.
+//! Writes a simulated accelerometer log of a resonance test on a machine with two known modes:
+//! `cargo run -p posicast-identify --example resonance_test > log.csv`, then `posicast identify log.csv`.
 
 use posicast_identify::sweep::Sweep;
 use posicast_identify::synthetic::{Sensor, known, resonance_test};

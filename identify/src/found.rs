@@ -1,4 +1,4 @@
-//! A mode that was found, and how surely.
+//! A mode that was found in a log, with its uncertainty.
 
 use posicast_model::mode::Mode;
 
@@ -24,18 +24,19 @@ impl Interval {
         }
     }
 
-    /// Whether the value is within.
+    /// Whether the value is within the interval.
     pub fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 }
 
-/// A mode as a log tells it.
+/// A mode as found in a log, with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoundMode {
-    /// Frequency and damping.
+    /// Frequency and damping ratio.
     pub mode: Mode,
-    /// Share of the mode in the static displacement of the response, by absolute value: the shares of all modes found sum to one.
+    /// Absolute value of the mode's share in the static displacement of the response: the shares of all modes found
+    /// sum to one.
     pub participation: f64,
     /// Standard deviation of the undamped frequency in Hz.
     pub frequency_sd_hz: f64,

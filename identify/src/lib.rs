@@ -1,4 +1,4 @@
-//! Vibration modes from what a machine did.
+//! Finds vibration modes in logs of a machine's motion.
 //!
 //! ```text
 //! log (CSV) ─► log ─┬─► sweep      accelerometer, driven by a known sweep ─┐
@@ -6,7 +6,8 @@
 //!                   └─► position::motor   drive and its own motor          ─┘
 //! ```
 //!
-//! Every method says how surely it knows a mode ([`FoundMode::frequency_sd_hz`]), and what it cannot tell and why.
+//! Every method states the uncertainty of each mode ([`FoundMode::frequency_sd_hz`]), and what the log does not
+//! determine, with the reason.
 
 pub mod found;
 pub mod log;

@@ -1,30 +1,31 @@
-//! Modes from an accelerometer log whose excitation is not known.
+//! Finds modes in an accelerometer log whose excitation is not known.
 //!
-//! Under an excitation that is even over the frequencies, and goes on for long, the autocorrelation of a response decays as the machine
-//! does when it is let go (James, Carne and Lauffer 1995): the modes are those of this decay. What the excitation has of its own, such
-//! as a fan, looks like a mode, and shares are rough: where the sweep is known, [`crate::sweep`] tells more.
+//! Under an excitation with an even spectrum that lasts long, the autocorrelation of a response decays as the machine
+//! does after a release (James, Carne and Lauffer 1995): the modes are those of this decay. Tones in the excitation,
+//! such as a fan's, look like modes, and the shares are rough. Where the sweep is known, [`crate::sweep`] determines
+//! more.
 
 use crate::found::FoundMode;
 use crate::position::{self, FoundInPosition, PositionError};
 use crate::signal::{AccelerationLog, Between, PositionLog};
 use crate::spectrum::{Transform, fast_length};
 
-/// What the correlation of an accelerometer log tells.
+/// Modes found from the correlation of an accelerometer log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundInOutput {
-    /// The modes, by frequency.
+    /// The modes, sorted by frequency.
     pub modes: Vec<FoundMode>,
-    /// Name of the direction of the sensor that was used.
+    /// Name of the sensor direction that was used.
     pub direction: String,
-    /// The decay of the correlation, and what the modes make of it.
+    /// The decay of the correlation, with the modes fitted to it.
     pub decay: FoundInPosition,
 }
 
-/// Longest lag in seconds, and as a part of the log.
+/// Longest lag in seconds, and as a fraction of the log.
 const LONGEST_LAG_S: f64 = 2.0;
 const LONGEST_PART: usize = 10;
 
-/// Finds the modes of the direction that moves most.
+/// Finds the modes in the direction with the largest motion.
 ///
 /// # Errors
 /// [`PositionError`] where the log is too short.
@@ -44,10 +45,11 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
         sample_s: log.sample_s,
         command: Vec::new(),
         between: Between::Held,
-        // Noise of the sensor is in the first value alone.
+        // The noise of the sensor is only in the first value.
         response: correlation.get(1..).unwrap_or_default().to_vec(),
     })?;
-    // Of a mode that even acceleration drives, the square of the share is to the power as ζ/ω.
+    // For a mode that an acceleration with an even spectrum drives, the square of the share relates to the power as
+    // ζ/ω.
     let share = |found: &FoundMode| (found.participation * found.mode.damping / found.mode.omega()).sqrt();
     let whole: f64 = decay.modes.iter().map(share).sum();
     let modes = decay.modes.iter().map(|found| FoundMode {
@@ -61,11 +63,11 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
     })
 }
 
-/// Mean products of a record, without its mean, with itself 0 to `lags` samples later.
+/// Mean products of a record, with its mean removed, with itself 0 to `lags` samples later.
 fn correlation(record: &[f64], lags: usize) -> Vec<f64> {
     let mean = record.iter().sum::<f64>() / record.len().max(1) as f64;
     let centred: Vec<f64> = record.iter().map(|x| x - mean).collect();
-    // Zeros behind the record keep its end from meeting its begin.
+    // Zeros after the record keep its end from meeting its beginning.
     let length = fast_length(record.len() + lags + 1);
     let mut transform = Transform::new(length);
     let mut lines = transform.forward(&centred);
@@ -86,7 +88,7 @@ mod tests {
     use posicast_model::mode::Mode;
     use posicast_model::plant::free_motion;
 
-    /// The acceleration of modes that white noise pushes.
+    /// Acceleration of modes that are driven by white noise.
     fn shaken(modes: &[Mode], samples: usize, sample_s: f64) -> Vec<f64> {
         let mut noise = Noise::new(3);
         let mut states = vec![Vector2::zeros(); modes.len()];

@@ -1,5 +1,5 @@
-//! Which shaper for the modes that were found: what each leaves of the vibration as surely as the modes are known, and what it
-//! costs.
+//! Recommends shapers for the modes that were found: their residual within the uncertainty of the modes, and their
+//! cost.
 
 use crate::found::FoundMode;
 use posicast_model::analysis::worst_residual;
@@ -9,16 +9,16 @@ use posicast_model::impulse::ImpulseSequence;
 use posicast_model::mode::Mode;
 use posicast_model::plant::free_motion;
 
-/// What a shaper is judged by.
+/// Criteria by which a shaper is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judgement {
-    /// Acceleration in m/s² (rad/s²) that a move jumps to: what excites the modes.
+    /// Jump of the acceleration at the start of a move, which excites the modes, in m/s² (rad/s²).
     pub acceleration: f64,
-    /// Relative change of the frequencies beside what the log leaves open: load, position, wear.
+    /// Relative change of the frequencies by load, position or wear, in addition to the uncertainty of the log.
     pub margin: f64,
-    /// Residual that the kinds with a tolerance are designed to.
+    /// Residual for which the kinds with a tolerance are designed.
     pub tolerance: f64,
-    /// Share of the unshaped displacement that is good enough.
+    /// Fraction of the unshaped displacement that is considered small enough.
     pub enough: f64,
 }
 
@@ -33,30 +33,30 @@ impl Default for Judgement {
     }
 }
 
-/// A shaper for all modes that were found, and what it does.
+/// A shaper for all modes that were found, with its figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recommendation {
-    /// Its kind, the same for every mode.
+    /// Kind, which is the same for every mode.
     pub kind: ShaperKind,
-    /// Its impulses: the convolution of those for each mode.
+    /// Impulses, which are the convolution of those for each mode.
     pub impulses: ImpulseSequence,
-    /// Largest displacement in m (rad) that still vibrates after a jump of the acceleration, the modes anywhere in their
-    /// intervals and the margin beside.
+    /// Largest displacement in m (rad) that still vibrates after a jump of the acceleration, with the modes anywhere
+    /// in their intervals plus the margin.
     pub residual_displacement: f64,
-    /// The same without a shaper.
+    /// Largest displacement that vibrates without a shaper, in m (rad).
     pub unshaped_displacement: f64,
-    /// By how much it rounds a path: half the acceleration times the variance of the impulses' times, in m (rad).
+    /// Rounding of a path: half the acceleration times the variance of the impulses' times, in m (rad).
     pub smoothing: f64,
 }
 
 impl Recommendation {
-    /// Residual over unshaped displacement.
+    /// Ratio of the residual to the unshaped displacement.
     pub fn ratio(&self) -> f64 {
         self.residual_displacement / self.unshaped_displacement
     }
 }
 
-/// Kinds that are tried: those with positive impulses, which no drive has to be stronger for.
+/// Kinds that are tried: those with positive impulses, which do not need a stronger drive.
 const TRIED: [ShaperKind; 8] = [
     ShaperKind::Zv,
     ShaperKind::Mzv,
@@ -68,8 +68,8 @@ const TRIED: [ShaperKind; 8] = [
     ShaperKind::Zvddd,
 ];
 
-/// Shapers for the modes, the best first: the shortest of those that leave little enough, then the others by what they leave.
-/// Kinds that do not exist for a mode are left out; without modes there are none.
+/// Shapers for the modes, the best first: the shortest of those whose residual is small enough, then the others by
+/// their residual. Kinds that do not exist for a mode are left out; without modes the list is empty.
 pub fn recommend(modes: &[FoundMode], judgement: &Judgement) -> Vec<Recommendation> {
     if modes.is_empty() {
         return Vec::new();
@@ -78,7 +78,7 @@ pub fn recommend(modes: &[FoundMode], judgement: &Judgement) -> Vec<Recommendati
         .iter()
         .filter_map(|&kind| judged(modes, kind, judgement))
         .collect();
-    // A kind with a tolerance leaves all of it: the ends of an interval may not turn the scale.
+    // A kind with a tolerance uses all of it; a little more at the ends of an interval must not decide.
     let enough = |r: &Recommendation| r.ratio() <= 1.02 * judgement.enough;
     tried.sort_by(|a, b| {
         let order = enough(b).cmp(&enough(a));
@@ -104,7 +104,8 @@ fn judged(modes: &[FoundMode], kind: ShaperKind, judgement: &Judgement) -> Optio
         let of_mode = design_mode(kind, &found.mode, &settings).ok()?;
         impulses = impulses.convolve(&of_mode).ok()?;
     }
-    // A jump of the acceleration by a moves the rest of a mode by share·a/ω²: with that amplitude it rings.
+    // A jump of the acceleration by a moves the rest position of a mode by share·a/ω², which is the amplitude of its
+    // ringing.
     let amplitude = |found: &FoundMode| found.participation * judgement.acceleration / found.mode.omega().powi(2);
     let residual = |found: &FoundMode| {
         let half = found.frequency_interval_hz().high - found.mode.frequency_hz;
@@ -131,8 +132,8 @@ fn judged(modes: &[FoundMode], kind: ShaperKind, judgement: &Judgement) -> Optio
     })
 }
 
-/// How far the modes are deflected after a jump of the acceleration by `acceleration` through a shaper: time in s and deflection
-/// in m (rad) at `samples` instants over `duration_s`.
+/// Deflection of the modes after a jump of the acceleration by `acceleration` through a shaper: time in s and
+/// deflection in m (rad) at `samples` instants over `duration_s`.
 pub fn deflection(
     modes: &[FoundMode],
     impulses: &ImpulseSequence,
@@ -199,7 +200,7 @@ mod tests {
         let zv = recommend(&[mode], &judgement);
         let zv = zv.iter().find(|r| r.kind == ShaperKind::Zv).unwrap();
         assert!(zv.ratio() < 1e-9);
-        // Half the acceleration times the variance of two impulses half a period apart.
+        // This is half the acceleration times the variance of two impulses half a period apart.
         let (a, t) = (zv.impulses.impulses()[1].amplitude, zv.impulses.duration_s());
         assert!((zv.smoothing - 2.5 * a * (1.0 - a) * t * t).abs() < 1e-12);
         let curve = deflection(&[mode], &zv.impulses, 5.0, 0.1, 1001);

@@ -1,57 +1,58 @@
-//! Least squares in which some unknowns are linear: for given values of the others they follow by themselves (Golub and Pereyra
-//! 1973, in the form of Kaufman 1975). The others are found by Levenberg and Marquardt's method.
+//! Least squares in which some unknowns are linear, so that they follow from the values of the others (Golub and
+//! Pereyra 1973, in the form of Kaufman 1975). The others are found by the Levenberg–Marquardt method.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// What is fitted: `measured ≈ basis(unknowns) · coefficients`, each row over its standard deviation.
+/// A problem `measured ≈ basis(unknowns) · coefficients`, with each row divided by its standard deviation.
 pub(crate) trait Separable {
     /// The measured values.
     fn measured(&self) -> &DVector<f64>;
 
-    /// A column for each coefficient.
+    /// The basis, with a column for each coefficient.
     fn basis(&self, unknowns: &[f64]) -> DMatrix<f64>;
 
-    /// Derivatives of `basis · coefficients` by each unknown, the coefficients fixed.
+    /// Derivatives of `basis · coefficients` with respect to each unknown, with the coefficients fixed.
     fn slopes(&self, unknowns: &[f64], basis: &DMatrix<f64>, coefficients: &DVector<f64>) -> DMatrix<f64>;
 
-    /// The unknowns after a step, within their ranges.
+    /// The unknowns after a step, limited to their ranges.
     fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64>;
 }
 
-/// Unknowns that fit best, and how well.
+/// The unknowns with the best fit, and the quality of the fit.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
     pub(crate) unknowns: Vec<f64>,
     pub(crate) coefficients: DVector<f64>,
     /// The fitted values.
     pub(crate) fitted: DVector<f64>,
-    /// Sum of squares of what is left.
+    /// Sum of squares of the residuals.
     pub(crate) square: f64,
-    /// Values less unknowns and coefficients.
+    /// Degrees of freedom: number of values minus unknowns and coefficients.
     pub(crate) freedoms: f64,
-    /// Covariance of the unknowns and of the coefficients at fixed unknowns, for rows of variance 1; `None` where the rows do not fix
-    /// them.
+    /// Covariance of the unknowns, and of the coefficients at fixed unknowns, for rows of variance 1; `None` where
+    /// the rows do not determine them.
     covariance: Option<DMatrix<f64>>,
     linear_covariance: DMatrix<f64>,
-    /// Slopes by the unknowns, without what the coefficients take over, and what is left, row by row.
+    /// Slopes with respect to the unknowns, without the part that the coefficients absorb, and residuals, row by row.
     slopes: DMatrix<f64>,
     residual: DVector<f64>,
 }
 
 impl Solution {
-    /// Square per degree of freedom.
+    /// Sum of squares per degree of freedom.
     pub(crate) fn reduced_square(&self) -> f64 {
         self.square / self.freedoms
     }
 
-    /// Standard deviation of an unknown where each row has that of `row`.
+    /// Standard deviation of an unknown where each row has the standard deviation `row`.
     pub(crate) fn deviation(&self, unknown: usize, row: f64) -> f64 {
         let variance = self.covariance.as_ref().map(|c| c[(unknown, unknown)].max(0.0));
         variance.map_or(f64::INFINITY, |variance| row * variance.sqrt())
     }
 
-    /// Standard deviation of an unknown where what is left of neighbouring rows is alike: from the sums of slopes times residuals
-    /// over `blocks` stretches of rows, which are independent where a stretch is longer than the memory of the noise.
+    /// Standard deviation of an unknown where residuals of neighbouring rows are correlated: from the sums of slopes
+    /// times residuals over `blocks` intervals of rows, which are independent if an interval is longer than the
+    /// memory of the noise.
     pub(crate) fn deviation_with_memory(&self, unknown: usize, blocks: usize) -> f64 {
         let Some(covariance) = &self.covariance else {
             return f64::INFINITY;
@@ -64,7 +65,7 @@ impl Solution {
         )
     }
 
-    /// Standard deviation of a coefficient at fixed unknowns, likewise.
+    /// Standard deviation of a coefficient at fixed unknowns, where each row has the standard deviation `row`.
     pub(crate) fn linear_deviation(&self, coefficient: usize, row: f64) -> f64 {
         row * self.linear_covariance[(coefficient, coefficient)].max(0.0).sqrt()
     }
@@ -98,12 +99,12 @@ pub(crate) fn deviation_over_stretches(
 pub(crate) enum Effort {
     /// Until it is clear how much it explains.
     Rough,
-    /// Until it does not move.
+    /// Until it converges.
     Full,
 }
 
 impl Effort {
-    /// Most steps, and the relative gain below which a step is the last.
+    /// Largest number of steps, and the relative gain below which a step is the last.
     fn limits(self) -> (usize, f64) {
         match self {
             Self::Rough => (25, 1e-3),
@@ -112,14 +113,14 @@ impl Effort {
     }
 }
 
-/// A symmetric matrix of products, its columns scaled to one before it is factored.
+/// A symmetric matrix of products, whose columns are scaled to one before it is factored.
 pub(crate) struct Gram {
     factor: Cholesky<f64, Dyn>,
     scale: DVector<f64>,
 }
 
 impl Gram {
-    /// Of columns; `None` where they are not independent, or no numbers.
+    /// The matrix of columns; `None` where they are dependent or contain NaN.
     pub(crate) fn of(columns: &DMatrix<f64>) -> Option<Self> {
         Self::new(&columns.tr_mul(columns))
     }
@@ -154,7 +155,7 @@ impl Gram {
     }
 }
 
-/// The linear part at given unknowns.
+/// The linear part of the problem at given unknowns.
 struct Linear {
     basis: DMatrix<f64>,
     gram: Gram,
@@ -175,19 +176,19 @@ fn linear(problem: &impl Separable, unknowns: &[f64]) -> Option<Linear> {
     })
 }
 
-/// Slopes without what the coefficients take over.
+/// Slopes without the part that the coefficients absorb.
 fn slopes(problem: &impl Separable, unknowns: &[f64], now: &Linear) -> DMatrix<f64> {
     let slopes = problem.slopes(unknowns, &now.basis, &now.coefficients);
     let shared = now.gram.solve(&now.basis.tr_mul(&slopes));
     slopes - &now.basis * shared
 }
 
-/// What is left with exactly these unknowns: the sum of squares.
+/// Sum of squares of the residuals at exactly these unknowns.
 pub(crate) fn square(problem: &impl Separable, unknowns: &[f64]) -> Option<f64> {
     linear(problem, unknowns).map(|linear| linear.residual.norm_squared())
 }
 
-/// The best fit near the given unknowns; `None` where the rows do not fix the coefficients.
+/// The best fit near the given unknowns; `None` where the rows do not determine the coefficients.
 pub(crate) fn refine(problem: &impl Separable, start: &[f64], effort: Effort) -> Option<Solution> {
     let (steps, settled) = effort.limits();
     let mut unknowns = start.to_vec();

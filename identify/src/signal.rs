@@ -1,25 +1,26 @@
-//! Logs on a uniform grid of time, free of files and of units.
+//! Logs on a uniform time grid, independent of files and units.
 
-/// What a command does between two samples.
+/// Course of a command between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Between {
-    /// It is held (zero-order hold), as a digital controller's.
+    /// It is held (zero-order hold), as a digital controller's command.
     #[default]
     Held,
-    /// It goes straight to the next: a motion that was measured.
+    /// It goes straight to the next value, as a motion that was measured.
     Straight,
 }
 
-/// What an axis was told and what it did, sampled together.
+/// Command and response of an axis, sampled together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionLog {
     /// Time between samples in seconds.
     pub sample_s: f64,
     /// Command in any unit; empty where the log has none.
     pub command: Vec<f64>,
-    /// What the command does between samples.
+    /// Course of the command between samples.
     pub between: Between,
-    /// Response at each sample, before the command of that sample acts; as many as there are commands, where there are any.
+    /// Response at each sample, before the command of that sample acts; as many values as commands, where there are
+    /// commands.
     pub response: Vec<f64>,
 }
 
@@ -39,15 +40,16 @@ pub struct DriveLog {
 pub struct AccelerationLog {
     /// Time between samples in seconds.
     pub sample_s: f64,
-    /// The directions of the sensor, each with its name and its acceleration in m/s²; all have equally many samples.
+    /// The directions of the sensor, each with its name and its acceleration in m/s²; all have the same number of
+    /// samples.
     pub directions: Vec<(String, Vec<f64>)>,
 }
 
 impl AccelerationLog {
-    /// Writes the log as printer firmware does: `#time,NAME,…` in s and mm/s².
+    /// Writes the log in the format of printer firmware: `#time,NAME,…` in s and mm/s².
     ///
     /// # Errors
-    /// What the writer says.
+    /// The errors of the writer.
     pub fn write_csv(&self, out: &mut impl std::io::Write) -> std::io::Result<()> {
         let names: Vec<&str> = self.directions.iter().map(|(name, _)| name.as_str()).collect();
         writeln!(out, "#time,{}", names.join(","))?;

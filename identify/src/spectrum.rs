@@ -4,7 +4,7 @@ use nalgebra::Complex;
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
-/// A number of samples not below `samples` whose transform is fast: a product of 2, 3 and 5, even.
+/// An even number of samples not below `samples` whose transform is fast: a product of 2, 3 and 5.
 pub fn fast_length(samples: usize) -> usize {
     let smooth = |mut n: usize| {
         for factor in [2, 3, 5] {
@@ -21,7 +21,7 @@ pub fn fast_length(samples: usize) -> usize {
     length
 }
 
-/// Transforms of one length, planned once.
+/// Transforms of one length, with a reusable plan.
 pub struct Transform {
     planner: RealFftPlanner<f64>,
     length: usize,
@@ -36,23 +36,23 @@ impl Transform {
         }
     }
 
-    /// The lines 0 to `length/2` of a signal, zeros behind its end: `X_k = Σ x_n e^{−j2πkn/length}`.
+    /// The lines 0 to `length/2` of a signal that is padded with zeros: `X_k = Σ x_n e^{−j2πkn/length}`.
     pub fn forward(&mut self, signal: &[f64]) -> Vec<Complex<f64>> {
         let plan = self.planner.plan_fft_forward(self.length);
         let mut padded = signal.to_vec();
         padded.resize(self.length, 0.0);
         let mut lines = plan.make_output_vec();
-        // Both lengths are the plan's own: it cannot fail.
+        // Both lengths are those of the plan, so this cannot fail.
         let _ = plan.process(&mut padded, &mut lines);
         lines
     }
 
-    /// The signal of such lines, not divided by the length.
+    /// The signal with these lines, not divided by the length.
     pub fn inverse(&mut self, lines: &[Complex<f64>]) -> Vec<f64> {
         let plan = self.planner.plan_fft_inverse(self.length);
         let mut padded = lines.to_vec();
         padded.resize(self.length / 2 + 1, Complex::new(0.0, 0.0));
-        // A real signal has real first and last lines.
+        // The first and the last line of a real signal are real.
         padded[0].im = 0.0;
         padded[self.length / 2].im = 0.0;
         let mut signal = plan.make_output_vec();
@@ -66,9 +66,9 @@ impl Transform {
 pub struct PowerSpectrum {
     /// Distance of the lines in Hz.
     pub resolution_hz: f64,
-    /// One-sided density per line from 0 Hz, in unit² per Hz.
+    /// One-sided density of each line from 0 Hz on, in unit² per Hz.
     pub density: Vec<f64>,
-    /// How many segments were averaged.
+    /// Number of segments that were averaged.
     pub segments: usize,
 }
 
@@ -79,8 +79,8 @@ impl PowerSpectrum {
     }
 }
 
-/// Welch's average of segments that overlap by half under a Hann window, each without its mean (Welch 1967). A signal shorter
-/// than a segment is one segment.
+/// Welch's average of segments that overlap by half, with a Hann window and with the mean of each removed (Welch
+/// 1967). A signal shorter than a segment is one segment.
 pub fn welch(signal: &[f64], sample_s: f64, segment: usize) -> PowerSpectrum {
     let segment = segment.min(signal.len()).max(2) & !1;
     let window: Vec<f64> = (0..segment)

@@ -1,7 +1,7 @@
-//! Logs of machines whose modes are known: what methods are tried on.
+//! Simulated logs of machines with known modes, to test the methods.
 //!
-//! A machine with modes under a resonance test is simulated exactly from event to event, by closed forms that no method here
-//! uses.
+//! A machine with modes under a resonance test is simulated exactly from event to event, by closed forms that none of
+//! the methods uses.
 
 use crate::signal::AccelerationLog;
 use crate::sweep::{QuarterOrder, Rise, Sweep, SweptAcceleration};
@@ -12,16 +12,16 @@ use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
-/// A mode of the machine and its share in the displacement.
+/// A mode of the machine with its share in the displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownMode {
-    /// Frequency and damping.
+    /// Frequency and damping ratio.
     pub mode: Mode,
-    /// Share in the static displacement; what the shares lack of one is rigid.
+    /// Share in the static displacement; the rest of the sum to one is rigid.
     pub share: f64,
 }
 
-/// A mode by frequency in Hz, damping ratio and share.
+/// Makes a mode from frequency in Hz, damping ratio and share.
 pub fn known(frequency_hz: f64, damping: f64, share: f64) -> KnownMode {
     KnownMode {
         mode: Mode { frequency_hz, damping },
@@ -29,20 +29,20 @@ pub fn known(frequency_hz: f64, damping: f64, share: f64) -> KnownMode {
     }
 }
 
-/// How a log was taken.
+/// Conditions under which a log is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensor {
     /// Time between samples in seconds.
     pub sample_s: f64,
-    /// Time from the first sample to the begin of the sweep.
+    /// Time from the first sample to the start of the sweep, in seconds.
     pub start_s: f64,
-    /// Time from the end of the sweep to the last sample.
+    /// Time from the end of the sweep to the last sample, in seconds.
     pub rest_s: f64,
-    /// Standard deviation of its noise in m/s².
+    /// Standard deviation of the sensor's noise in m/s².
     pub noise: f64,
     /// Quantisation step in m/s²; 0 for none.
     pub step: f64,
-    /// Whether the machine is pushed only from the next sample on, as simulations on a grid do it.
+    /// Whether the excitation acts only from the next sample on, as in simulations on a grid.
     pub held: bool,
 }
 
@@ -59,16 +59,16 @@ impl Default for Sensor {
     }
 }
 
-/// Normally distributed numbers by Box and Muller.
+/// Normally distributed random numbers, by the Box–Muller method.
 pub struct Noise(Xoshiro256PlusPlus);
 
 impl Noise {
-    /// The same for the same seed.
+    /// A generator that gives the same numbers for the same seed.
     pub fn new(seed: u64) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(seed))
     }
 
-    /// The next one, of variance 1.
+    /// The next number, with variance 1.
     pub fn draw(&mut self) -> f64 {
         let (a, b): (f64, f64) = (self.0.random(), self.0.random());
         (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
@@ -88,14 +88,14 @@ impl Moving {
         self.state = motion * (self.state - rest) + rest;
     }
 
-    /// The acceleration relative to the base.
+    /// Acceleration relative to the base.
     fn acceleration(&self, base: f64) -> f64 {
         let mode = &self.truth.mode;
         -base - 2.0 * mode.decay() * self.state.y - mode.omega() * mode.omega() * self.state.x
     }
 }
 
-/// The log of one direction, beside one that is at rest.
+/// The log of one moving direction, with another direction at rest.
 pub fn resonance_test(truths: &[KnownMode], sweep: &Sweep, sensor: &Sensor, seed: u64) -> AccelerationLog {
     let excitation = SweptAcceleration::new(sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
     let seconds = sensor.start_s + excitation.duration_s() + sensor.rest_s;

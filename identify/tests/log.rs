@@ -1,4 +1,4 @@
-//! Reading logs, the good and the bad.
+//! Reading of valid and invalid logs.
 
 use posicast_identify::Between;
 use posicast_identify::log::{self, Log, LogError, Remark};
@@ -174,7 +174,7 @@ fn unit_what_is_wrong_is_said_with_its_line_and_column() {
     };
     for (text, expected) in [
         (String::new(), "the log is empty"),
-        ("0,1,2\n0.1,2,3\n".into(), "line 1 is the first and has no names"),
+        ("0,1,2\n0.1,2,3\n".into(), "line 1 is the first and has no column names"),
         (
             rows("clock,response", good),
             "no column `time`: the columns are clock, response",
@@ -224,7 +224,8 @@ fn unit_gaps_irregular_times_dead_and_saturated_columns_are_mended_and_said() {
     let reading = log::read(irregular.as_bytes()).unwrap();
     assert!(matches!(reading.remarks[..], [Remark::Irregular { .. }]));
     let Log::Position(log) = reading.log else { panic!() };
-    // A ramp over the row is, interpolated, one over the time but for 0.3 rows that it swings, and 0.3 by which the end is off.
+    // A ramp over the row becomes, interpolated, a ramp over the time, except for a swing of 0.3 rows and an error of
+    // 0.3 rows at the end.
     assert!(
         log.response
             .iter()

@@ -1,4 +1,4 @@
-//! Modes from position logs, against plants whose modes are known.
+//! Modes from position logs, compared with plants whose modes are known.
 
 use posicast_identify::position::arx::{self, ArxError};
 use posicast_identify::position::recursive::RecursiveArx;
@@ -14,7 +14,7 @@ fn mode(frequency_hz: f64, damping: f64) -> Mode {
     Mode { frequency_hz, damping }
 }
 
-/// Gx and Gy of the XY stage (golden/xy_stage.json, `plants`).
+/// Returns Gx and Gy of the XY stage (golden/xy_stage.json, `plants`).
 fn stage() -> [Mode; 2] {
     [
         (823.832_507_248_894_6, 0.157_799_065_776_27),
@@ -23,7 +23,7 @@ fn stage() -> [Mode; 2] {
     .map(|(omega, damping)| mode(omega / TAU, damping))
 }
 
-/// Bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for `held` samples.
+/// Returns bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for `held` samples.
 pub(crate) fn pseudo_random(samples: usize, held: usize) -> Vec<f64> {
     let mut register = 1u32;
     let mut bits = Vec::new();
@@ -49,7 +49,7 @@ fn chirp(samples: usize, sample_s: f64, low_hz: f64, high_hz: f64) -> Vec<f64> {
     (0..samples).map(|n| phase(n).sin()).collect()
 }
 
-/// A log of modes and their shares, with noise of the sensor.
+/// Returns a log of modes and their shares, with noise of the sensor.
 fn log(modes: &[(Mode, f64)], command: &[f64], sample_s: f64, noise: f64, seed: u64) -> PositionLog {
     let plant = Plant::new(modes).unwrap();
     let mut sampled = SampledPlant::new(&plant, sample_s, 0.0);
@@ -115,7 +115,7 @@ fn unit_units_change_nothing() {
 #[test]
 fn unit_with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() {
     for truth in stage() {
-        // Ever more samples per period: what destroys plain least squares.
+        // The samples per period increase, which makes plain least squares fail.
         for sample_s in [2e-3, 1e-3, 0.5e-3, 0.2e-3, 0.1e-3f64] {
             let samples = (0.5 / sample_s) as usize;
             let command = pseudo_random(samples, (0.5e-3 / sample_s).round().max(1.0) as usize);
@@ -124,7 +124,7 @@ fn unit_with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() 
             let rows = 1.0 / (truth.frequency_hz * found.row_s);
             assert!((3.5..=15.0).contains(&rows), "{rows} rows per period at {sample_s}");
         }
-        // A single step, with which least squares are useless.
+        // With a single step, least squares are useless.
         let found = position::identify(&log(&[(truth, 1.0)], &step(400), 0.5e-3, 0.01, 2)).unwrap();
         check(&found, &[(truth, 1.0)], 0.01, 0.15);
     }
@@ -188,7 +188,7 @@ fn unit_stated_intervals_hold_the_truth() {
 
 #[test]
 fn unit_intervals_hold_the_truth_where_noise_has_a_memory() {
-    // Nine tenths of it stay from sample to sample: ten samples, over a period of fifteen.
+    // Nine tenths of the noise stay from sample to sample: it lasts ten samples, in a period of fifteen.
     const STAYS: f64 = 0.9;
     let truth = stage()[0];
     let command = pseudo_random(1000, 2);
@@ -253,7 +253,7 @@ fn unit_no_mode_is_invented() {
 
 #[test]
 fn unit_a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sample() {
-    // A motor that moves smoothly, and the scale behind a mode: 20 times finer than the log, so that nothing is held.
+    // The motor moves smoothly, and the scale is behind a mode, 20 times finer than the log, so that nothing is held.
     let truth = stage()[0];
     let fine_s = 1e-5;
     let motor: Vec<f64> = chirp(20_000, fine_s, 20.0, 250.0);
@@ -270,7 +270,7 @@ fn unit_a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sampl
 
 #[test]
 fn golden_least_squares_are_the_models_of_the_stage() {
-    // golden/xy_stage.json, `arx_zoh`, at 0.5 ms.
+    // From golden/xy_stage.json, `arx_zoh`, at 0.5 ms.
     let expected = [
         [
             -1.721_222_944_760_167,
@@ -295,7 +295,7 @@ fn golden_least_squares_are_the_models_of_the_stage() {
             for (model, tolerance) in [
                 (arx::least_squares(&log, 2).unwrap(), 1e-9),
                 (arx::with_instruments(&log, 2).unwrap(), 1e-9),
-                // It begins with a guess of variance 1e5, of which a trace is left.
+                // It begins with a guess of variance 1e5, of which a trace remains.
                 (recursive.model(), 1e-4),
             ] {
                 for (found, expected) in model.a.iter().chain(&model.b).zip(expected) {
@@ -308,7 +308,8 @@ fn golden_least_squares_are_the_models_of_the_stage() {
 
 #[test]
 fn unit_instruments_take_the_bias_away() {
-    // Notes, section 9: 1 % noise of the sensor moves the damping by about 1 % (X) and 5 % (Y); instruments leave 0.2 %.
+    // Notes, section 9: 1 % noise of the sensor moves the damping by about 1 % (X) and 5 % (Y); instrumental
+    // variables leave 0.2 %.
     for truth in stage() {
         let mut sums = [0.0; 2];
         const LOGS: u32 = 40;

@@ -1,4 +1,4 @@
-//! Position logs from which little or nothing can be told: what is said of them.
+//! Remarks and errors for position logs that determine little or nothing.
 
 use posicast_identify::position::{self, FoundInPosition, PositionError, PositionRemark};
 use posicast_identify::synthetic::Noise;
@@ -25,7 +25,7 @@ fn noisy(clean: impl Iterator<Item = f64>, noise: f64, seed: u64) -> Vec<f64> {
     clean.map(|y| y + noise * source.draw()).collect()
 }
 
-/// Bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for 5 samples.
+/// Returns bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for 5 samples.
 fn pseudo_random(samples: usize) -> Vec<f64> {
     let mut register = 1u32;
     let mut bits = Vec::new();
@@ -59,7 +59,7 @@ fn unit_an_axis_that_follows_late_has_no_mode() {
         assert_eq!(found.modes, [], "{delay}");
         let said = match found.remarks[..] {
             [PositionRemark::Late { samples }] => samples == delay,
-            // The fit has a few samples of delay in itself.
+            // The fit itself has a few samples of delay.
             [PositionRemark::NoRinging { .. }] => delay < 10,
             _ => false,
         };
@@ -90,7 +90,7 @@ fn unit_a_tone_that_does_not_decay_is_no_mode() {
 
 #[test]
 fn unit_a_log_shorter_than_a_period_says_how_long_it_should_be() {
-    // 30 ms of a mode of 50 ms.
+    // The log is 30 ms of a mode with a period of 50 ms.
     let short = PositionLog {
         sample_s: 1e-4,
         ..log(Vec::new(), noisy((0..300).map(|n| ring_at(n as f64 * 1e-4)), 0.002, 3))

@@ -1,4 +1,5 @@
-//! Position logs whose noise has a memory: no mode is made of it, and the modes that are there are as sure as stated.
+//! Position logs whose noise is correlated: it is not identified as a mode, and the existing modes are as certain as
+//! stated.
 
 use crate::position::pseudo_random;
 use posicast_identify::position::{self, FoundInPosition, PositionRemark};
@@ -27,7 +28,7 @@ fn log(command: Vec<f64>, response: Vec<f64>, sample_s: f64) -> PositionLog {
     }
 }
 
-/// Noise that rings at 63 Hz, if samples are 1 ms apart: a fan, or another machine on the same floor.
+/// Returns noise that rings at 63 Hz, if samples are 1 ms apart: a fan, or another machine on the same floor.
 fn narrow(samples: usize, seed: u64) -> Vec<f64> {
     let mut source = Noise::new(seed);
     let (mut last, mut before) = (0.0, 0.0);
@@ -51,7 +52,7 @@ fn unit_noise_that_rings_is_no_mode() {
         assert_eq!(found.modes, [], "free, {seed}");
         assert_eq!(found.remarks, [PositionRemark::NoExcitation]);
         for command in [pseudo_random(1000, 5), step.clone()] {
-            // A rigid axis beside it.
+            // The log also has a rigid axis.
             let response = command.iter().zip(&noise).map(|(u, n)| u + 0.01 * n).collect();
             let found = identify(&log(command, response, 1e-3));
             assert_eq!(found.modes, [], "forced, {seed}");
@@ -62,8 +63,8 @@ fn unit_noise_that_rings_is_no_mode() {
 
 #[test]
 fn unit_noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_intervals() {
-    // Notes, section 9, "equation noise 1 %": what disturbs the machine rings as its mode does. Least squares on the equation are
-    // the best there is for it: over 200 such logs they are off by 0.8 % and 5.6 % at most.
+    // Notes, section 9, "equation noise 1 %": the disturbance rings as the mode does. Least squares on the equation
+    // are the best method for it: over 200 such logs they are off by at most 0.8 % and 5.6 %.
     const LOGS: u64 = 24;
     let command = pseudo_random(1023, 1);
     let (mut frequencies, mut dampings) = (0, 0);

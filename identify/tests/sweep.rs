@@ -1,14 +1,14 @@
-//! Modes from accelerometer logs, against machines whose modes are known.
+//! Modes from accelerometer logs, compared with machines whose modes are known.
 
 use posicast_identify::sweep::{self, Sweep, SweepError};
 use posicast_identify::synthetic::{KnownMode, Noise, Sensor, known, resonance_test};
 use posicast_identify::{AccelerationLog, FoundMode};
 
-/// Relative errors that are allowed.
+/// Allowed relative errors.
 const FREQUENCY: f64 = 0.01;
 const DAMPING: f64 = 0.15;
 
-/// A sweep of 13 s: what is checked on many logs.
+/// Returns a sweep of 13 s, used where many logs are checked.
 fn quick() -> Sweep {
     Sweep {
         rate_hz_per_s: 10.0,
@@ -35,7 +35,7 @@ fn check(truths: &[KnownMode], found: &[FoundMode]) {
 
 #[test]
 fn unit_the_modes_of_a_printers_log_are_found() {
-    // One; two; a pair 8 % apart; a weak one beside a strong one; four; behind a rigid part of 30 %.
+    // One mode; two; a pair 8 % apart; a weak one beside a strong one; four; one behind a rigid part of 30 %.
     let machines = [
         vec![known(44.3, 0.053, 1.0)],
         vec![known(35.0, 0.03, 0.7), known(72.0, 0.05, 0.3)],
@@ -51,7 +51,7 @@ fn unit_the_modes_of_a_printers_log_are_found() {
     ];
     for (n, truths) in machines.iter().enumerate() {
         let sensor = Sensor {
-            // As a simulation on a grid does it, too.
+            // Every other case holds the command, as a simulation on a grid does.
             held: n % 2 == 1,
             ..Sensor::default()
         };
@@ -92,7 +92,7 @@ fn unit_stated_intervals_hold_the_truth() {
 
 #[test]
 fn unit_no_mode_is_invented() {
-    // A rigid axis; and one whose only mode carries next to nothing.
+    // A rigid axis, and one whose only mode is negligible.
     for truths in [vec![], vec![known(60.0, 0.03, 0.0005)]] {
         let log = resonance_test(&truths, &quick(), &Sensor::default(), 3);
         let found = sweep::identify(&log, &quick()).unwrap();

@@ -1,5 +1,5 @@
-//! Time to design a shaper: one of each family, all single-mode kinds over a thousand random modes and tolerances, and the
-//! cost of saying where a family ends: `cargo bench -p posicast-model --bench design`.
+//! Time to design shapers: one of each family; all single-mode kinds over a thousand random modes and tolerances; and
+//! a refusal beyond a family's limits: `cargo bench -p posicast-model --bench design`.
 
 #![allow(missing_docs, reason = "a benchmark")]
 
@@ -52,7 +52,7 @@ fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequen
     }
 }
 
-/// A thousand (damping, tolerance): where all kinds exist, from a generator that needs no seed.
+/// Returns a thousand pairs (damping, tolerance) for which all kinds exist, from a generator without a seed.
 fn random_points() -> Vec<(f64, f64)> {
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     let mut uniform = move || {

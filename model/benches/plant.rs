@@ -1,4 +1,4 @@
-//! Time of the simulated axis: clock by clock, as RTL steps it, and cell by cell, as a fast model does.
+//! Time to simulate the axis: clock by clock, as the RTL is simulated, and cell by cell, as a fast model does.
 
 use std::hint::black_box;
 
@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use posicast_model::machine_file;
 use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
 
-/// Clocks of a tick of the examples.
+/// Number of clocks per tick in the examples.
 const TICK_CLOCKS: u64 = 5_000;
 
 fn tick(criterion: &mut Criterion) {

@@ -7,7 +7,8 @@ use posicast_model::rtl::shaper::{Inputs, SampleShaper, Shaper, ShaperConfig};
 use posicast_model::taps::{Tap, TapTable, TapTableError};
 use std::hint::black_box;
 
-/// Six taps: ZVD digitised with two taps per impulse. A sample lasts 5000 clocks, as at 10 kHz from 50 MHz.
+/// Returns a machine with six taps: ZVD digitised with two taps per impulse. A sample takes 5000 clocks, as at 10 kHz
+/// from 50 MHz.
 fn machine() -> Result<ShaperConfig, TapTableError> {
     let taps = [(0, 25431), (38, 12000), (39, 18787), (77, 4000), (78, 5317), (79, 1)];
     let tap = |(delay_samples, coefficient)| Tap {

@@ -1,8 +1,8 @@
-//! One axis, every kind of shaper: what each costs and what it holds.
+//! Compares every kind of shaper on one axis: its costs and its residual vibration.
 //!
-//! Each kind that this version builds is designed for the axis's modes and tolerances, digitised and rounded as the machine
-//! file says, and judged by its integer taps: that is what the hardware computes with. A kind is *Pareto-optimal* if no other
-//! is at least as good in duration, worst residual and taps, and better in one of them.
+//! Each kind that this version builds is designed for the axis's modes and tolerances, digitised and rounded as the
+//! machine file says, and judged by its integer taps, with which the hardware computes. A kind is *Pareto-optimal* if
+//! no other is at least as good in duration, worst residual and taps, and better in one of them.
 
 use thiserror::Error;
 
@@ -13,13 +13,14 @@ use crate::digitise::{DigitiseError, digitise};
 use crate::impulse::PartialSums;
 use crate::machine_file::{AxisMode, AxisSection, Machine, ShaperChoice};
 
-/// Relative difference below which two costs are equal: kinds that are one shaper for one mode differ by rounding.
+/// Relative difference below which two costs are equal: kinds that give the same shaper for one mode differ by
+/// rounding.
 const EQUAL: f64 = 1e-6;
 
-/// Frequency error of the modes that is compared where none is asked for: ±10 %.
+/// Default of the relative frequency error of the modes: ±10 %.
 pub const DEFAULT_BAND: f64 = 0.1;
 
-/// A kind of shaper on one axis.
+/// Figures of a kind of shaper on one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// The kind, or several joined by `+` where the file has one per mode.
@@ -30,20 +31,20 @@ pub struct Candidate {
     pub duration_s: f64,
     /// Delay of a ramp in seconds.
     pub delay_s: f64,
-    /// Largest residual vibration of any mode whose frequency is off by no more than the band, by the integer taps.
+    /// Largest residual vibration, by the integer taps, of any mode whose frequency is off by no more than the band.
     pub worst_residual: f64,
-    /// Taps of the integer table.
+    /// Number of taps of the integer table.
     pub taps: usize,
-    /// Between which factors of a step the shaped step moves.
+    /// Range of the shaped unit step.
     pub partial_sums: PartialSums,
-    /// Whether no other kind is as good in everything and better in something.
+    /// Whether no other kind is at least as good in everything and better in something.
     pub pareto: bool,
 }
 
-/// A kind that this axis cannot have.
+/// A kind that is not possible on this axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Missing {
-    /// The kind.
+    /// The kind, as in [`Candidate::kind`].
     pub kind: String,
     /// The reason, in words.
     pub reason: String,
@@ -52,11 +53,11 @@ pub struct Missing {
 /// The kinds on one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KindComparison {
-    /// The axis's name.
+    /// Name of the axis.
     pub axis: String,
-    /// The kinds that exist, shortest first.
+    /// The possible kinds, shortest first.
     pub candidates: Vec<Candidate>,
-    /// Those that do not.
+    /// The kinds that are not possible.
     pub missing: Vec<Missing>,
 }
 
@@ -105,7 +106,8 @@ fn compare_axis(machine: &Machine, axis: &AxisSection, band: f64) -> KindCompari
     }
 }
 
-/// The kinds that can be tried without further data: without modes there is nothing but the command as it is.
+/// The kinds that can be tried without further data; on an axis without modes only `none`, which passes the command
+/// through.
 fn kinds_for(axis: &AxisSection) -> impl Iterator<Item = ShaperKind> {
     let modes = !axis.modes.is_empty();
     ShaperKind::ALL
@@ -114,7 +116,7 @@ fn kinds_for(axis: &AxisSection) -> impl Iterator<Item = ShaperKind> {
         .filter(move |kind| kind.is_built() && *kind != ShaperKind::Custom && (modes || *kind == ShaperKind::None))
 }
 
-/// The same axis with another kind: its tolerances stay, what belongs to the kind of the file does not.
+/// The axis with another kind: its tolerances stay, and the parameters of the file's own kind are dropped.
 pub(crate) fn with_kind(axis: &AxisSection, kind: ShaperKind) -> AxisSection {
     let modes = axis.modes.iter().map(|mode| AxisMode {
         shaper: None,
@@ -203,7 +205,8 @@ mod tests {
     fn unit_pareto_means_beaten_by_none() {
         let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
-        // Nothing is shorter than none, and nothing without negative impulses holds less taps than zv and more than none.
+        // No kind is shorter than `none`; among those without negative impulses, none has fewer taps than zv and more
+        // than `none`.
         assert!(find(&found, "none").pareto && find(&found, "zv").pareto && find(&found, "zvd").pareto);
         for candidate in found.candidates.iter().filter(|c| !c.pareto) {
             let better = found.candidates.iter().any(|c| {
@@ -230,7 +233,7 @@ mod tests {
             partial_sums: PartialSums { min: 0.0, max: 1.0 },
             pareto: false,
         };
-        // Beaten in duration; beaten in taps; equal to rounding; worse in duration, better in residual.
+        // Worse in duration; worse in taps; equal to rounding; worse in duration, but better in residual.
         let mut candidates = [
             with(1.0, 0.1, 3),
             with(1.1, 0.1, 3),
@@ -251,7 +254,7 @@ mod tests {
 
     #[test]
     fn unit_a_kind_that_does_not_exist_has_its_reason() {
-        // No tolerance of 5 % at this damping.
+        // No shaper has a tolerance of 5 % at this damping.
         let machine = machine(
             "[axis.shaper]\nkind = \"zv\"",
             "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.9\n",

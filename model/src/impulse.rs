@@ -1,10 +1,10 @@
-//! Impulse sequences: what a shaper is before it is digitised.
+//! Impulse sequences: shapers in continuous time, before they are digitised.
 //!
 //! ```text
 //! u(t) = Σ A_i · r(t − t_i)        t_1 = 0,   t_i strictly increasing,   Σ A_i = 1
 //! ```
 //!
-//! Times are in seconds. The sum of one makes a shaper neutral at rest: constant in, the same constant out.
+//! Times are in seconds. Because the amplitudes sum to one, a constant command passes a shaper unchanged.
 //!
 //! ```
 //! use posicast_model::impulse::{Impulse, ImpulseSequence};
@@ -16,11 +16,11 @@
 
 use thiserror::Error;
 
-/// Largest deviation of `Σ A_i` from one: what a machine file with decimals of ten digits reaches.
+/// Largest deviation of `Σ A_i` from one, which allows for a machine file with decimals of ten digits.
 pub const SUM_TOLERANCE: f64 = 1e-9;
 
-/// Impulses of a convolution this close, relative to its duration, are one impulse. Sums of a few times that are equal in
-/// exact arithmetic differ by some units of the last place; no design places two impulses that close on purpose.
+/// Impulses of a convolution this close, relative to its duration, are merged. Sums of a few times that are equal in
+/// exact arithmetic differ by some units of the last place, and no design places two impulses that close on purpose.
 const COINCIDENT: f64 = 64.0 * f64::EPSILON;
 
 /// One impulse of a shaper.
@@ -28,43 +28,43 @@ const COINCIDENT: f64 = 64.0 * f64::EPSILON;
 pub struct Impulse {
     /// Time after the first impulse, in seconds.
     pub time_s: f64,
-    /// Amplitude; those of one sequence sum to one.
+    /// Amplitude; the amplitudes of a sequence sum to one.
     pub amplitude: f64,
 }
 
-/// A shaper in continuous time: impulses in order of time, the first at 0, amplitudes that sum to one.
+/// A shaper in continuous time: impulses in order of time, the first at 0, whose amplitudes sum to one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpulseSequence {
     impulses: Vec<Impulse>,
 }
 
-/// Why a list of impulses is no shaper. Impulses are counted from 1, as an engineer does.
+/// Why a list of impulses is not a shaper. Positions in the list count from 1.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ImpulseError {
-    /// No impulse at all.
+    /// The list is empty.
     #[error("no impulses: a shaper has at least one, [[0.0, 1.0]] changes nothing")]
     Empty,
-    /// A time or an amplitude that is NaN or infinite.
+    /// A time or an amplitude is NaN or infinite.
     #[error("impulse {position}: time {time_s} s, amplitude {amplitude}; both must be finite numbers")]
     NotFinite {
         /// Position in the list, from 1.
         position: usize,
-        /// The time found.
+        /// Its time in s.
         time_s: f64,
-        /// The amplitude found.
+        /// Its amplitude.
         amplitude: f64,
     },
-    /// The first impulse is late (or early).
+    /// The first impulse is not at time 0.
     #[error("the first impulse is at {0} s: it must be at 0; subtract {0} s from every time")]
     FirstTime(f64),
-    /// Times do not strictly increase.
+    /// The times do not strictly increase.
     #[error("impulse {position} is at {time_s} s, not after the one before it at {before_s} s: times must increase")]
     Order {
         /// Position in the list, from 1.
         position: usize,
-        /// Its time.
+        /// Its time in s.
         time_s: f64,
-        /// The time before it.
+        /// Time of the impulse before it, in s.
         before_s: f64,
     },
     /// The amplitudes do not sum to one.
@@ -73,10 +73,10 @@ pub enum ImpulseError {
 }
 
 impl ImpulseSequence {
-    /// Takes impulses that already are a shaper.
+    /// Takes impulses that already form a shaper.
     ///
     /// # Errors
-    /// [`ImpulseError`] names the rule that the list breaks, and where.
+    /// [`ImpulseError`] names the rule that the list breaks, and the impulse.
     pub fn new(impulses: Vec<Impulse>) -> Result<Self, ImpulseError> {
         let first = impulses.first().ok_or(ImpulseError::Empty)?;
         for (index, impulse) in impulses.iter().enumerate() {
@@ -123,9 +123,10 @@ impl ImpulseSequence {
         &self.impulses
     }
 
-    /// One shaper after the other: every product of two amplitudes at the sum of their times.
+    /// Convolves two shapers: every product of two amplitudes, at the sum of their times.
     ///
-    /// The pole sums multiply, so a zero of either stays a zero. Products whose times coincide to rounding are merged.
+    /// The pole sums multiply, so a zero of either stays a zero. Products whose times are equal to rounding are
+    /// merged.
     ///
     /// # Errors
     /// [`ImpulseError`] where times or amplitudes leave the range of `f64`.
@@ -157,12 +158,12 @@ impl ImpulseSequence {
         self.impulses.last().map_or(0.0, |i| i.time_s)
     }
 
-    /// Delay `Σ A_i t_i` in seconds: how far the shaped command trails a ramp.
+    /// Delay `Σ A_i t_i` in seconds, by which the shaped command lags a ramp.
     pub fn delay_s(&self) -> f64 {
         self.impulses.iter().map(|i| i.amplitude * i.time_s).sum()
     }
 
-    /// Smallest and largest of the partial sums `A_1 + … + A_k`: between which factors of a step the shaped step moves.
+    /// Smallest and largest of the partial sums `A_1 + … + A_k`: the range of the shaped unit step.
     pub fn partial_sums(&self) -> PartialSums {
         let mut sum = 0.0;
         let mut range = PartialSums {
@@ -229,7 +230,7 @@ mod tests {
         let a = sequence(&[(0.0, 0.5), (third, 0.5)]).unwrap();
         let b = sequence(&[(0.0, 0.5), (2.0 * third, 0.25), (1.0, 0.25)]).unwrap();
         let both = a.convolve(&b).unwrap();
-        // 1/3 + 2/3 and 1 are one time, though not to the last bit in every order of addition.
+        // 1/3 + 2/3 and 1 are the same time, though not to the last bit in every order of addition.
         let amplitudes: Vec<f64> = both.impulses().iter().map(|i| i.amplitude).collect();
         assert_eq!(amplitudes, [0.25, 0.25, 0.125, 0.25, 0.125]);
         assert!(both.impulses().windows(2).all(|p| p[0].time_s < p[1].time_s));

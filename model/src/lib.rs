@@ -1,7 +1,7 @@
-//! Everything posicast computes, free of RTL and of input and output: the machine file, shaper design, analysis,
+//! All computations of posicast, without RTL and without input and output: the machine file, shaper design, analysis,
 //! digitising, the simulated plant, and one bit-exact, cycle-accurate model per hardware block.
 //!
-//! A number flows left to right once:
+//! A number flows from left to right once:
 //!
 //! ```text
 //! machine_file ─► design ─► impulses ─► digitise ─► taps ─► rtl::shaper

@@ -17,7 +17,7 @@ impl Mode {
         TAU * self.frequency_hz
     }
 
-    /// Damped frequency `ω_d = ω√(1−ζ²)` in rad/s: the frequency of the ringing that one sees.
+    /// Damped frequency `ω_d = ω√(1−ζ²)` in rad/s, at which the mode visibly rings.
     pub fn omega_damped(&self) -> f64 {
         self.omega() * (1.0 - self.damping * self.damping).sqrt()
     }
@@ -37,20 +37,20 @@ impl Mode {
         TAU / self.omega_damped()
     }
 
-    /// What damping leaves of a swing after half a period: `K = e^{−ζπ/√(1−ζ²)}`, 1 without damping.
+    /// Fraction of a swing that damping leaves after half a period: `K = e^{−ζπ/√(1−ζ²)}`, 1 without damping.
     pub fn half_swing_ratio(&self) -> f64 {
         (-PI * self.damping / (1.0 - self.damping * self.damping).sqrt()).exp()
     }
 
-    /// What a mode of two masses with a spring between them becomes where the first, the motor, is held instead of free: frequency and
-    /// damping are both multiplied by `√(m_motor / (m_motor + m_load))`.
+    /// Converts a mode of two masses joined by a spring, both free, to the mode with the first mass, the motor, held:
+    /// frequency and damping ratio are both multiplied by `√(m_motor / (m_motor + m_load))`.
     ///
     /// ```text
     /// held  ω² = k/m_load,  2ζω = c/m_load      free  ω² = k/μ,  2ζω = c/μ,  μ = m_motor·m_load/(m_motor + m_load)
     /// ω_held/ω_free = √(μ/m_load) = r,   ζ_held/ζ_free = (μ/m_load)/r = r
     /// ```
     ///
-    /// The damper is beside the spring; friction to the ground is not in it.
+    /// The damper acts in parallel with the spring; friction to the ground is not included.
     pub fn with_motor_held(&self, motor_mass: f64, load_mass: f64) -> Self {
         let ratio = (motor_mass / (motor_mass + load_mass)).sqrt();
         Self {
@@ -59,7 +59,8 @@ impl Mode {
         }
     }
 
-    /// A mass on a spring with a damper beside it: `ω² = k/m`, `2ζω = c/m`. Mass in kg, above 0; stiffness in N/m, above 0; damping in N·s/m.
+    /// The mode of a mass on a spring with a damper in parallel: `ω² = k/m`, `2ζω = c/m`. Mass in kg, above 0;
+    /// stiffness in N/m, above 0; damping in N·s/m.
     pub fn of_spring(stiffness: f64, damping: f64, mass: f64) -> Self {
         let omega = (stiffness / mass).sqrt();
         Self {
@@ -68,7 +69,8 @@ impl Mode {
         }
     }
 
-    /// The same mode with its frequency multiplied by `ratio`, damping as it is: a machine that is off from its model.
+    /// The mode with its frequency multiplied by `ratio` and its damping ratio unchanged, as of a machine that
+    /// differs from its model.
     pub fn scaled(&self, ratio: f64) -> Self {
         Self {
             frequency_hz: self.frequency_hz * ratio,

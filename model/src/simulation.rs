@@ -1,4 +1,4 @@
-//! A command on its way through the shaper to the simulated machine, sample by sample.
+//! Simulates a command on its way through the shaper to the machine, sample by sample.
 //!
 //! ```text
 //! words x ─┬─► shaper (bit exact) ─► y ───────► plant ─► position
@@ -6,19 +6,21 @@
 //!          └─────────────────────────────────► plant ─► position without shaping
 //! ```
 //!
-//! All words and positions are in LSB of the command word. The command starts at rest at its first value. Those of a modulo
-//! axis have their whole turns here; the hardware has the lowest bits of each ([`AxisSimulation::float_words`]).
+//! All words and positions are in LSB of the command word. The command starts at rest at its first value. Those of a
+//! modulo axis include its whole turns here; the hardware has only the lowest bits of each
+//! ([`AxisSimulation::float_words`]).
 
 use crate::design::AxisTables;
 use crate::plant::{Plant, SampledPlant};
 use crate::rtl::shaper::{CHANNELS_MAX, MotionShaper, SampleShaper, ShaperConfig, wrap};
 
-/// What became of a command on one axis.
+/// Result of a command on one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisSimulation {
-    /// Shaped words, as the hardware computes them; of a modulo axis with the whole turns that its word leaves out.
+    /// Shaped words as the hardware computes them; for a modulo axis with the whole turns that its word leaves out.
     pub shaped: Vec<i64>,
-    /// Shaped words of the float design, clamped to the word as the hardware's are; of a modulo axis with whole turns.
+    /// Shaped words of the float design, clamped to the word as the hardware's are; for a modulo axis with whole
+    /// turns.
     pub float: Vec<f64>,
     /// Position of the machine that follows the shaped words, at the end of each sample.
     pub position: Vec<f64>,
@@ -26,27 +28,27 @@ pub struct AxisSimulation {
     pub position_unshaped: Vec<f64>,
     /// Amplitude with which the machine rings once the shaped words stand still.
     pub vibration: f64,
-    /// The same without shaping.
+    /// Amplitude with which the machine rings after the unshaped command.
     pub vibration_unshaped: f64,
-    /// How far the hardware may differ from the float design.
+    /// Largest difference allowed between the hardware and the float design, in LSB.
     pub bound_lsb: f64,
 }
 
 impl AxisSimulation {
-    /// Largest difference of hardware and float design.
+    /// Largest difference between the hardware and the float design, in LSB.
     pub fn largest_difference_lsb(&self) -> f64 {
         largest_difference(&self.shaped, &self.float)
     }
 
-    /// The float design beside the words of `word_bits` bits that the hardware shows: without the whole turns that those
-    /// leave out. It may then lie a fraction beyond the word.
+    /// The float design without the whole turns that words of `word_bits` bits leave out, to show it beside the
+    /// hardware's words. It may then lie a fraction beyond the word.
     pub fn float_words(&self, word_bits: u32) -> Vec<f64> {
         let shown = |(float, shaped): (&f64, &i64)| float - (shaped - wrap(*shaped, word_bits)) as f64;
         self.float.iter().zip(&self.shaped).map(shown).collect()
     }
 }
 
-/// Largest difference of integer and float words of the same samples.
+/// Largest difference between integer and float words of the same samples.
 pub fn largest_difference(words: &[i64], float: &[f64]) -> f64 {
     let differences = words.iter().zip(float).map(|(y, f)| (*y as f64 - f).abs());
     differences.fold(0.0, f64::max)
@@ -85,7 +87,7 @@ pub fn simulate_axis(
     }
 }
 
-/// The words of a modulo axis's shaper, each with the whole turns that bring it nearest to the float design's.
+/// The words of a modulo axis's shaper, each with as many whole turns as bring it nearest to the float design's.
 fn turned(config: &ShaperConfig, words: &[i64], float: &[f64]) -> Vec<i64> {
     let channels = |x: i64| {
         let mut channels = [0; CHANNELS_MAX];
@@ -101,7 +103,7 @@ fn turned(config: &ShaperConfig, words: &[i64], float: &[f64]) -> Vec<i64> {
     words.iter().zip(float).map(word).collect()
 }
 
-/// Positions of the machine that follows `words`, and the amplitude with which it rings after the last change of them.
+/// Positions of the machine that follows `words`, and the amplitude with which it rings after their last change.
 fn follow(plant: &Plant, sample_period_s: f64, start: i64, words: &[i64]) -> (Vec<f64>, f64) {
     let mut machine = SampledPlant::new(plant, sample_period_s, start as f64);
     let mut vibration = 0.0;
@@ -170,7 +172,7 @@ mod tests {
         };
         let config = plain.for_motion(modulo).unwrap();
         let plant = Plant::of_axis(&machine.axes[0]).unwrap();
-        // Two and a half turns of the word there and a bit back, at 0.002 turns per sample at most.
+        // Two and a half turns of the word in one direction and a bit back, at 0.002 turns per sample at most.
         let turn = f64::from(24).exp2();
         let words: Vec<i64> = (0..5000)
             .map(|n| (turn * (2.5 - 2.5 * (f64::from(n.min(4000)) * 0.0008).cos())) as i64)

@@ -1,4 +1,4 @@
-//! The word that a user most likely meant: for messages about a word that nobody knows.
+//! Finds the word that a user most likely meant, for messages about an unknown word.
 //!
 //! ```text
 //! zdv ─► zvd          two letters exchanged are one change, as are a letter too many, too few and another
@@ -14,14 +14,14 @@
 //! assert!(nearest("wibble", &["zv", "zvd"]).is_empty());
 //! ```
 
-/// Longest word that is compared, in letters: nobody misspells a longer one.
+/// Longest word that is compared, in letters.
 const MAX_LETTERS: usize = 64;
-/// Most words that a message proposes: more of them are no help.
+/// Largest number of words that a message proposes; more would not help.
 const MAX_PROPOSALS: usize = 3;
-/// Fewest letters of a word that is looked for inside another.
+/// Shortest word, in letters, that is looked for inside another.
 const MIN_PART: usize = 4;
 
-/// What people write for what the machine file calls otherwise: small letters, without separators.
+/// Words that people use, each with the machine file's word: in small letters, without separators.
 const SYNONYMS: &[(&str, &str)] = &[
     ("clock", "frequency_hz"),
     ("clockhz", "frequency_hz"),
@@ -67,8 +67,8 @@ const SYNONYMS: &[(&str, &str)] = &[
     ("μm", "um"),
 ];
 
-/// The allowed words that `found` is most likely a misspelling of: none, one, or a few that are equally near. At most one
-/// letter in three may differ; of words with one or two letters none.
+/// The allowed words that `found` is most likely a misspelling of: none, one, or a few that are equally near. At most
+/// one letter in three may differ, and none in words of one or two letters.
 pub fn nearest<'w>(found: &str, allowed: &[&'w str]) -> Vec<&'w str> {
     if found.chars().count() > MAX_LETTERS {
         return Vec::new();
@@ -105,7 +105,8 @@ pub fn nearest<'w>(found: &str, allowed: &[&'w str]) -> Vec<&'w str> {
     }
 }
 
-/// The question that a message asks: "did you mean `a` or `b`?", each word between `quote`s; nothing where no word is near.
+/// The question that a message asks: "did you mean `a` or `b`?", each word between `quote`s; `None` where no word is
+/// near.
 pub fn did_you_mean(found: &str, allowed: &[&str], quote: char) -> Option<String> {
     let words: Vec<String> = nearest(found, allowed)
         .iter()
@@ -117,7 +118,7 @@ pub fn did_you_mean(found: &str, allowed: &[&str], quote: char) -> Option<String
     }
 }
 
-/// Whether two words differ in case and separators alone.
+/// Whether two words differ only in case and separators.
 pub fn same_letters(one: &str, other: &str) -> bool {
     letters(one) == letters(other)
 }
@@ -127,7 +128,7 @@ fn letters(word: &str) -> Vec<char> {
     plain.flat_map(char::to_lowercase).collect()
 }
 
-/// Changes, then the difference in length, where they are few enough for the word.
+/// Number of edits and difference in length, where the edits are few enough for the word.
 fn distance(found: &[char], word: &[char]) -> Option<(usize, usize)> {
     let most = if word.len() <= 2 { 0 } else { word.len().div_ceil(3) };
     let changes = edits(found, word);
@@ -141,7 +142,7 @@ fn holds(found: &[char], word: &[char]) -> bool {
     inside(word, found) || inside(found, word)
 }
 
-/// Letters to insert, delete, replace, or exchange with their neighbour (optimal string alignment).
+/// Number of edits: inserted, deleted or replaced letters, or exchanges of neighbours (optimal string alignment).
 fn edits(from: &[char], to: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=to.len()).collect();

@@ -1,57 +1,58 @@
-//! The tap table: the integers that the hardware computes with.
+//! The tap table: the integers with which the hardware computes.
 //!
-//! The table that the model uses is the one in the Verilog's ROM, in the report and in every document: it is made once,
-//! by [`crate::digitise`], and nothing downstream recomputes it.
+//! The table that the model uses is also the one in the Verilog's ROM, in the report and in every document:
+//! [`crate::digitise`] makes it once, and nothing downstream recomputes it.
 
-/// Width of a coefficient in bits, two's complement: what one 18×18 multiplier takes.
+/// Width of a coefficient in bits, two's complement: the width of an 18×18 multiplier.
 pub const COEFFICIENT_BITS: u32 = 18;
 /// Smallest coefficient.
 pub const COEFFICIENT_MIN: i32 = -(1 << (COEFFICIENT_BITS - 1));
 /// Largest coefficient.
 pub const COEFFICIENT_MAX: i32 = (1 << (COEFFICIENT_BITS - 1)) - 1;
-/// Largest number of fraction bits of a coefficient: at 17 a coefficient of one would not fit.
+/// Largest number of fraction bits of a coefficient; with 17 a coefficient of one would not fit.
 pub const COEFFICIENT_FRACTION_MAX: u32 = 16;
 
-/// One tap: `coefficient · x[n − delay_samples]`.
+/// One tap, which contributes `coefficient · x[n − delay_samples]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Tap {
     /// Delay in samples.
     pub delay_samples: u32,
-    /// Coefficient, `coefficient / 2^F`, within [`COEFFICIENT_MIN`]..=[`COEFFICIENT_MAX`]; never zero.
+    /// Coefficient, which stands for `coefficient / 2^F`, within [`COEFFICIENT_MIN`]..=[`COEFFICIENT_MAX`]; never
+    /// zero.
     pub coefficient: i32,
 }
 
-/// Taps in order of delay, no delay twice, no coefficient zero, sum of the coefficients exactly `2^F`.
+/// Taps in order of delay. Delays are distinct, coefficients are not zero, and their sum is exactly `2^F`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct TapTable {
     coefficient_fraction: u32,
     taps: Vec<Tap>,
 }
 
-/// Why a list of taps is no tap table.
+/// Why a list of taps is not a tap table.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TapTableError {
-    /// `F` outside 1..=16.
+    /// `F` lies outside 1..=16.
     #[error("{0} fraction bits: a coefficient has 1 to {COEFFICIENT_FRACTION_MAX}")]
     Fraction(u32),
-    /// A coefficient that 18 bits cannot hold, or zero.
+    /// A coefficient is zero, or 18 bits cannot hold it.
     #[error("coefficient {0} is not in {COEFFICIENT_MIN}..={COEFFICIENT_MAX} without 0")]
     Coefficient(i32),
-    /// Delays not strictly increasing.
+    /// Delays do not strictly increase.
     #[error("delay {0} does not lie above the delay before it")]
     Order(u32),
-    /// The sum is not one.
+    /// The coefficients do not sum to `2^F`.
     #[error("the coefficients sum to {sum}, not to 2^{fraction} = {}", 1i64 << fraction)]
     Sum {
-        /// The sum found.
+        /// Sum of the coefficients.
         sum: i64,
-        /// `F`.
+        /// Fraction bits `F`.
         fraction: u32,
     },
 }
 
 impl TapTable {
-    /// Takes taps that already are a valid table.
+    /// Takes taps that already form a valid table.
     ///
     /// # Errors
     /// [`TapTableError`] names the rule that a list breaks.
@@ -79,7 +80,7 @@ impl TapTable {
         })
     }
 
-    /// The one-tap table that hands the command through unchanged.
+    /// The one-tap table that passes the command through unchanged.
     pub fn bypass(coefficient_fraction: u32) -> Result<Self, TapTableError> {
         let unity = Tap {
             delay_samples: 0,
@@ -88,7 +89,7 @@ impl TapTable {
         Self::new(coefficient_fraction, vec![unity])
     }
 
-    /// `F`: a coefficient `c` stands for `c / 2^F`.
+    /// Fraction bits `F`: a coefficient `c` stands for `c / 2^F`.
     pub fn coefficient_fraction(&self) -> u32 {
         self.coefficient_fraction
     }
@@ -98,7 +99,7 @@ impl TapTable {
         &self.taps
     }
 
-    /// Mean delay `Σ c_i d_i / 2^F` in samples: how far a shaped ramp trails.
+    /// Mean delay `Σ c_i d_i / 2^F` in samples, by which a shaped ramp lags.
     pub fn mean_delay_samples(&self) -> f64 {
         let product = |tap: &Tap| i64::from(tap.coefficient) * i64::from(tap.delay_samples);
         let sum: i128 = self.taps.iter().map(|tap| i128::from(product(tap))).sum();

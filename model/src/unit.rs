@@ -1,12 +1,12 @@
-//! The unit of an axis: what the figures of its `[[axis]]` are in, and how a figure is written for people.
+//! The unit of an axis's figures in its `[[axis]]`, and the way in which figures are written for people.
 //!
 //! ```text
 //! file's figure · unit = SI figure (m or rad, what everything in this crate computes with) ─► "1.38 µm"
 //! ```
 //!
-//! A figure is shown in the finest of the unit's family that leaves a number before the point: a linear axis has nm, µm, mm
-//! and m, a rotary one µrad, mrad and rad, or m° and °; revolutions have no smaller unit. A figure that the file gave keeps the
-//! file's unit, so that the reader finds it there.
+//! A figure is shown in the largest unit of its family that leaves a number before the point: a linear axis has nm,
+//! µm, mm and m, a rotary one µrad, mrad and rad, or m° and °; revolutions have no smaller unit. A figure that the
+//! file gave keeps the file's unit, so that the reader finds it there.
 //!
 //! ```
 //! use posicast_model::unit::AxisUnit;
@@ -18,32 +18,32 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// Digits of a figure of the file: what conversion to SI and back rounds is below them.
+/// Digits of a figure of the file; the rounding of a conversion to SI and back lies below them.
 const FILE_DIGITS: usize = 7;
-/// Figures smaller than this part of the smallest unit are written as powers of ten.
+/// Figures smaller than this fraction of the smallest unit are written as powers of ten.
 const LEAST: f64 = 1e-3;
 
 /// The unit of an axis, `unit` of `[[axis]]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AxisUnit {
-    /// m.
+    /// Metre, `m`.
     #[default]
     Metre,
-    /// mm.
+    /// Millimetre, `mm`.
     Millimetre,
-    /// µm.
+    /// Micrometre, `um`.
     Micrometre,
-    /// rad.
+    /// Radian, `rad`.
     Radian,
-    /// mrad.
+    /// Milliradian, `mrad`.
     Milliradian,
-    /// Degrees.
+    /// Degree, `deg`.
     Degree,
-    /// Whole turns.
+    /// Whole turn, `rev`.
     Revolution,
 }
 
-/// A unit that figures are shown in: its sign, and how many of it are one SI unit.
+/// A unit in which figures are shown: its symbol, and how many of it make one SI unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShownUnit {
     symbol: &'static str,
@@ -82,7 +82,7 @@ impl AxisUnit {
         (Self::Revolution, "rev"),
     ];
 
-    /// Its name in the machine file and in JSON.
+    /// Name of the unit in the machine file and in JSON.
     pub fn name(self) -> &'static str {
         Self::ALL
             .into_iter()
@@ -90,7 +90,7 @@ impl AxisUnit {
             .map_or("", |(_, name)| name)
     }
 
-    /// How it is written for people.
+    /// Symbol of the unit for people.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Micrometre => "µm",
@@ -99,7 +99,7 @@ impl AxisUnit {
         }
     }
 
-    /// The unit that figures are computed in: `m` or `rad`.
+    /// The unit in which figures are computed: `m` or `rad`.
     pub fn si_name(self) -> &'static str {
         match self {
             Self::Metre | Self::Millimetre | Self::Micrometre => "m",
@@ -107,7 +107,7 @@ impl AxisUnit {
         }
     }
 
-    /// How many of it are one m or rad.
+    /// How many of the unit make one m or rad.
     pub fn per_si(self) -> f64 {
         match self {
             Self::Metre | Self::Radian => 1.0,
@@ -118,23 +118,25 @@ impl AxisUnit {
         }
     }
 
-    /// A length or angle of the file in m or rad; also a velocity, acceleration or jerk.
+    /// Converts a length or angle of the file to m or rad; also a velocity, acceleration or jerk.
     pub fn to_si(self, figure: f64) -> f64 {
-        // A quotient of what the file says is rounded once: 0.1 mm is the 0.0001 m that a file in m would say.
+        // A quotient of the file's figure is rounded once: 0.1 mm is exactly the 0.0001 m that a file in m would
+        // give.
         figure / self.per_si()
     }
 
-    /// A length or angle in m or rad in this unit.
+    /// Converts a length or angle in m or rad to this unit.
     pub fn from_si(self, figure: f64) -> f64 {
         figure * self.per_si()
     }
 
-    /// The same without what the conversion rounds: the figure that stands in the file.
+    /// Converts to this unit and removes the rounding of the conversion: the result is the figure that stands in the
+    /// file.
     pub fn in_file(self, figure: f64) -> f64 {
         self.without_rounding(self.from_si(figure))
     }
 
-    /// Counts per m or rad as counts per unit of the file.
+    /// Converts counts per m or rad to counts per unit of the file.
     pub fn counts_in_file(self, counts: f64) -> f64 {
         self.without_rounding(self.to_si(counts))
     }
@@ -147,18 +149,19 @@ impl AxisUnit {
         }
     }
 
-    /// A figure of the file, with its unit: as it stands there. `per` is what follows the unit: `/s²` of an acceleration.
+    /// Writes a figure of the file with its unit, as it stands there. `per` follows the unit, such as `/s²` for an
+    /// acceleration.
     pub fn as_in_file(self, figure: f64, per: &str) -> String {
         let number = trimmed(self.from_si(figure), FILE_DIGITS);
         format!("{number}{}{}{per}", self.space(), self.symbol())
     }
 
-    /// A figure in m or rad with `digits` significant digits, in the unit of its size.
+    /// Writes a figure in m or rad with `digits` significant digits, in the unit of its size.
     pub fn show(self, figure: f64, digits: usize) -> String {
         self.for_size(figure).show(figure, digits)
     }
 
-    /// The same for a round figure, such as a speed that was chosen: zeros at its end are left out. `per` follows the unit.
+    /// Writes a round figure, such as a speed that was chosen, without zeros at its end. `per` follows the unit.
     pub fn show_round(self, figure: f64, per: &str) -> String {
         let unit = self.for_size(figure);
         format!("{}{}{}{per}", trimmed(unit.of(figure), 3), unit.space(), unit.symbol)
@@ -174,7 +177,7 @@ impl AxisUnit {
         };
         let fits = |unit: &&ShownUnit| (figure * unit.per_si).abs() >= 1.0;
         let largest_that_fits = family.iter().rev().find(fits);
-        // Nothing, and what is no number, is not finer than a machine moves.
+        // Zero, NaN and infinity get the second unit of a family of four.
         let otherwise = match (figure == 0.0 || !figure.is_finite(), family) {
             (true, [_, middle, _, _]) => *middle,
             _ => family[0],
@@ -185,13 +188,13 @@ impl AxisUnit {
             .unwrap_or(otherwise)
     }
 
-    /// One unit for figures that stand side by side: that of the largest.
+    /// One unit for figures that are shown side by side: that of the largest.
     pub fn for_largest(self, figures: impl IntoIterator<Item = f64>) -> ShownUnit {
         self.for_size(figures.into_iter().map(f64::abs).fold(0.0, f64::max))
     }
 
-    /// Figures in m or rad that stand side by side, with three significant digits: all in one unit, except those that would be
-    /// less than a thousandth of it.
+    /// Writes figures in m or rad that are shown side by side, with three significant digits: all in one unit, except
+    /// those that would be less than a thousandth of it.
     pub fn show_all<const N: usize>(self, figures: [f64; N]) -> [String; N] {
         let unit = self.for_largest(figures);
         figures.map(|figure| match unit.of(figure).abs() < LEAST && figure != 0.0 {
@@ -216,17 +219,17 @@ impl ShownUnit {
         Self { symbol, per_si }
     }
 
-    /// How it is written.
+    /// Symbol of the unit.
     pub fn symbol(self) -> &'static str {
         self.symbol
     }
 
-    /// The number of a figure in m or rad.
+    /// Converts a figure in m or rad to this unit.
     pub fn of(self, figure: f64) -> f64 {
         figure * self.per_si
     }
 
-    /// A figure in m or rad with `digits` significant digits and the unit.
+    /// Writes a figure in m or rad with `digits` significant digits and the unit.
     pub fn show(self, figure: f64, digits: usize) -> String {
         format!(
             "{}{}{}",
@@ -241,19 +244,19 @@ impl ShownUnit {
     }
 }
 
-/// The unit that shows a time of this size with a number before the point; of no time, seconds.
+/// The unit that shows a time of this size with a number before the point; seconds for a time of 0.
 pub fn time_unit(time_s: f64) -> ShownUnit {
     let fits = |unit: &&ShownUnit| (time_s * unit.per_si).abs() >= 1.0;
     let largest_that_fits = TIMES.iter().rev().find(fits);
     *largest_that_fits.unwrap_or(&TIMES[if time_s == 0.0 { 3 } else { 0 }])
 }
 
-/// A time with `digits` significant digits, as people write it: `152 µs`, `1.35 ms`, `30.0 s`.
+/// Writes a time with `digits` significant digits, for example `152 µs`, `1.35 ms`, `30.0 s`.
 pub fn show_seconds(time_s: f64, digits: usize) -> String {
     time_unit(time_s).show(time_s, digits)
 }
 
-/// A number for a message: a whole one as it is, another with six significant digits at most.
+/// Writes a number for a message: a whole one as it is, any other with at most six significant digits.
 pub fn short(value: f64) -> String {
     match value.fract() == 0.0 && value.abs() < 1e15 {
         true => value.to_string(),
@@ -261,7 +264,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// The degree's ring stands at its number.
+/// Space between number and symbol: none before the degree sign.
 fn space(symbol: &str) -> &'static str {
     match symbol {
         "°" => "",
@@ -269,7 +272,7 @@ fn space(symbol: &str) -> &'static str {
     }
 }
 
-/// A number with so many significant digits: no fewer before the point than it has.
+/// Writes a number with this many significant digits, but with all of those before the point.
 fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.abs().to_string();
@@ -277,7 +280,7 @@ fn significant(value: f64, digits: usize) -> String {
     if value.abs() < LEAST {
         return format!("{value:.*e}", digits.saturating_sub(1));
     }
-    // Rounded first: 9.996 has one digit more before the point.
+    // The value is rounded first, because 9.996 gains a digit before the point.
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
         .parse()
         .unwrap_or(value);
@@ -286,7 +289,7 @@ fn significant(value: f64, digits: usize) -> String {
     format!("{value:.after$}")
 }
 
-/// A number with so many significant digits at most: zeros at its end are left out.
+/// Writes a number with at most this many significant digits, without zeros at its end.
 pub fn trimmed(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
         .parse()

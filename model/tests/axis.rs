@@ -1,4 +1,4 @@
-//! The supervisor of an axis: what a motion engineer expects of it, and `hold` against `step`.
+//! The supervisor of an axis: what a motion engineer expects of it, and `hold` compared with `step`.
 
 use posicast_model::rtl::axis::{
     Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, SupervisorState, WATCH_CLOCKS,
@@ -6,10 +6,10 @@ use posicast_model::rtl::axis::{
 use posicast_model::rtl::segments::{self, Entry, EntryMotion, STAND_COUNTS, Segments};
 use proptest::prelude::*;
 
-/// Clocks per tick of these tests.
+/// Number of clocks per tick in these tests.
 const TICK_CLOCKS: u64 = 160;
 
-/// Everything in order, nothing wanted.
+/// Inputs of an axis that is healthy and idle.
 const GOOD: Inputs = {
     let mut inputs = ZERO;
     inputs.emergency_stop_n = true;
@@ -120,7 +120,7 @@ impl Bench {
         self.inputs.segments_overflow = played.overflow;
         self.inputs.segments_out_of_range = played.out_of_range;
         self.inputs.command_velocity = played.velocity;
-        // Without a shaper.
+        // There is no shaper.
         self.inputs.reference_position = played.position;
         self.inputs.reference_velocity = played.velocity;
         let shown = self.axis.step(&self.inputs);
@@ -152,7 +152,7 @@ impl Bench {
         self.clocks(ticks * TICK_CLOCKS)
     }
 
-    /// Clocks until the state is reached; at most so many.
+    /// Clocks until the state is reached, for at most this many clocks; returns their number.
     fn until(&mut self, state: SupervisorState, at_most: u64) -> u64 {
         for clocks in 0..=at_most {
             if self.axis.outputs().state == state {
@@ -163,7 +163,7 @@ impl Bench {
         panic!("no {state:?} after {at_most} clocks: {:?}", self.axis.outputs());
     }
 
-    /// Commits a segment of jerk, in 2^-32 counts per tick³.
+    /// Commits a segment with a jerk in 2^-32 counts per tick³.
     fn segment(&mut self, ticks: u32, jerk: i64) {
         let entry = Entry {
             ticks,
@@ -181,7 +181,7 @@ impl Bench {
         }
     }
 
-    /// To HOLD, with the brake open.
+    /// Brings the axis to HOLD, with the brake released.
     fn hold() -> Self {
         let mut bench = Self::new();
         bench.until(SupervisorState::Ready, 20);
@@ -192,7 +192,7 @@ impl Bench {
         bench
     }
 
-    /// To RUN, in a move of 80 ticks whose velocity is positive.
+    /// Brings the axis to RUN, in a move of 80 ticks whose velocity is positive.
     fn run(jerk: i64) -> Self {
         let mut bench = Self::hold();
         for (ticks, jerk) in [(20, jerk), (40, -jerk), (20, jerk)] {
@@ -272,7 +272,7 @@ fn a_move_plays_and_ends_in_hold() {
     let shown = bench.clock();
     assert!(shown.drive_enable && shown.brake_release && shown.causes == 0);
     assert_eq!(bench.segments.outputs(0).position >> 8, 20 * 20 * 20 / 64 * 2);
-    // The next one does not wait for the shaped command to settle.
+    // The next segment does not wait for the shaped command to settle.
     bench.segment(2, 0);
     bench.inputs.start = true;
     bench.until(SupervisorState::Run, TICK_CLOCKS);
@@ -317,7 +317,7 @@ fn every_line_reaches_the_pins_in_its_stated_clocks() {
             assert_eq!(shown.pwm_trip_n, line != 0);
             assert!(shown.wants_group_stop && shown.faulted);
             assert_eq!(shown.emergency_stop, line == 0);
-            // An emergency stop that lasts keeps FAULT, a drive that is not ready keeps OFF.
+            // A lasting emergency stop keeps FAULT; a drive that is not ready keeps OFF.
             assert_eq!(
                 bench.clear().state,
                 [SupervisorState::Fault, SupervisorState::Off][line]
@@ -349,7 +349,7 @@ fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
     assert_eq!(on_ticks, 5);
     let stands = bench.segments.outputs(0).position;
     bench.inputs.position = stands >> 8;
-    // The tick that switched off was one with outputs on, and its error too large.
+    // In the tick that switched off, the outputs were on and the following error was too large.
     bench.clocks(TICK_CLOCKS / 2);
     bench.inputs.error = 0;
     assert_eq!(bench.clear().state, SupervisorState::Off);
@@ -474,7 +474,7 @@ fn soft_limits_wait_for_homing_where_they_shall() {
     }
     let mut bench = moves(true, false);
     assert_eq!((bench.axis.outputs().causes, bench.axis.outputs().homed), (0, false));
-    // Beyond it when it begins to act.
+    // The position is beyond the limit when homing takes effect.
     (bench.inputs.write_homed, bench.inputs.homed_value) = (true, true);
     bench.clocks(1);
     bench.inputs.write_homed = false;
@@ -501,7 +501,7 @@ fn an_axis_is_homed_until_its_position_is_in_doubt() {
     bench.inputs.encoder_illegal = true;
     bench.clocks(3);
     assert!(!bench.axis.outputs().homed);
-    // Not before the cause is forgotten, and not by itself then.
+    // It leaves FAULT only when the cause has been cleared, and not by itself then.
     bench.inputs.encoder_illegal = false;
     assert!(!write(&mut bench, true));
     bench.inputs.enable = false;
@@ -518,18 +518,18 @@ fn an_axis_is_homed_until_its_position_is_in_doubt() {
 
 #[test]
 fn what_lasts_too_long_trips_after_its_ticks() {
-    // A command that moves nothing, from between two ticks on.
+    // This command moves nothing; it begins between two ticks.
     let mut bench = Bench::hold();
     bench.clocks(TICK_CLOCKS / 2);
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
     bench.inputs.command = -502;
     bench.clocks(TICK_CLOCKS / 2);
-    // One tick to see the new direction.
+    // One more tick is needed to see the new direction.
     bench.ticks(7);
     assert_eq!(bench.axis.outputs().causes, 0);
     bench.clocks(u64::from(WATCH_CLOCKS) - 1);
     assert_eq!(bench.axis.outputs().causes, Cause::EncoderLost.bit());
-    // A command that moves five counts now and then.
+    // This command moves five counts now and then.
     let mut bench = Bench::hold();
     bench.clocks(TICK_CLOCKS / 2);
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
@@ -540,7 +540,7 @@ fn what_lasts_too_long_trips_after_its_ticks() {
         bench.ticks(5);
     }
     assert_eq!(bench.axis.outputs().causes, 0);
-    // A host that stops kicking, and one that kicks with another word.
+    // One host stops kicking, another kicks with a different word.
     let mut bench = Bench::hold();
     bench.inputs.watchdog_ticks = 10;
     bench.inputs.kick_word = KICK;
@@ -571,7 +571,7 @@ fn thresholds_of_zero_watch_nothing() {
     assert_eq!(bench.ticks(1).causes, Cause::FollowingError.bit());
 }
 
-/// Any value for every port, with the lines good more often than not.
+/// Any value for every port, with the lines mostly healthy.
 fn any_inputs() -> impl Strategy<Value = Inputs> {
     (
         proptest::array::uniform32(any::<u64>()),
@@ -630,7 +630,8 @@ proptest! {
 
 #[test]
 fn a_count_that_dithers_is_no_motion() {
-    // One line of the encoder is stuck: the other lets the count go to and fro. At other times it goes on slowly.
+    // One line of the encoder is stuck: the other lets the count go back and forth. In the other cases it goes on
+    // slowly.
     for (counts, trips) in [
         ([0, 1], true),
         ([0, -1], true),
@@ -648,7 +649,7 @@ fn a_count_that_dithers_is_no_motion() {
         let causes = bench.axis.outputs().causes;
         assert_eq!(causes, if trips { Cause::EncoderLost.bit() } else { 0 }, "{counts:?}");
     }
-    // A command that changes sides moves to and fro, and so may the position.
+    // A command that changes sign moves back and forth, and so may the position.
     let mut bench = Bench::hold();
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
     for tick in 0..100 {
@@ -661,7 +662,7 @@ fn a_count_that_dithers_is_no_motion() {
 
 #[test]
 fn out_of_range_the_outputs_are_refused_and_switched_off() {
-    // Not by a quick stop, whatever is chosen: what position, command or e mean is unknown.
+    // A quick stop is not possible, whatever is configured: the meaning of position, command or error is unknown.
     type Change = fn(&mut Inputs);
     let out: [(&str, Change); 5] = [
         ("count +", |inputs| inputs.position = STAND_COUNTS),
@@ -682,7 +683,8 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
             "{what}"
         );
         assert!(!shown.drive_enable && !shown.pwm_enable, "{what}");
-        // READY goes nowhere with it, and says why once outputs are asked for; without them there is nothing to say.
+        // READY does not leave with such a cause, and reports it once the outputs are requested; otherwise there is
+        // nothing to report.
         let mut bench = Bench::new();
         leave(&mut bench.inputs);
         bench.ticks(3);
@@ -698,7 +700,7 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
         }
         assert_eq!(bench.axis.outputs().causes, Cause::Range.bit(), "{what}");
     }
-    // Within, and for a rotary axis, nothing.
+    // Within the limits nothing stops, nor does a rotary axis.
     for (position, modulo) in [
         (STAND_COUNTS - 1, false),
         (-STAND_COUNTS, false),
@@ -716,7 +718,7 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
 
 #[test]
 fn a_motion_against_the_command_is_none_where_the_direction_is_watched() {
-    // The sign of the encoder is wrong: the position runs away from where the command wants it.
+    // The sign of the encoder is wrong: the position moves away from the command.
     for (command, step, watches_direction, trips) in [
         (502, -7, true, true),
         (-502, 7, true, true),
@@ -724,7 +726,7 @@ fn a_motion_against_the_command_is_none_where_the_direction_is_watched() {
         (-502, -7, true, false),
         (502, -7, false, false),
         (-502, 7, false, false),
-        // Few counts a tick: a motion every other one.
+        // The counts per tick are few: there is motion in every other tick.
         (502, -3, true, true),
         (502, 3, true, false),
     ] {
@@ -746,7 +748,7 @@ fn a_motion_against_the_command_is_none_where_the_direction_is_watched() {
 
 #[test]
 fn an_axis_that_is_slowed_down_and_turned_round_is_not_lost() {
-    // One torque: 16 ticks against it, and back as far as it came.
+    // A constant torque: 16 ticks against it, and back as far as it came.
     for side in [1, -1] {
         let mut bench = Bench::hold();
         (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);

@@ -1,11 +1,11 @@
-//! The cascade against its table, and its two models against each other.
+//! The cascade compared with its table, and its two models with each other.
 
 use posicast_model::rtl::cascade::{Cascade, CascadeConfig, Inputs, SampleCascade, WORD_BITS, pass_clocks};
 use posicast_model::rtl::shaper::{SampleShaper, ShaperConfig};
 use proptest::prelude::*;
 
 fn cascade() -> impl Strategy<Value = CascadeConfig> {
-    // Few or equal delays: so that the table of 2^n impulses has no more taps than a shaper holds.
+    // Delays are few or equal, so that the table of 2^n impulses has no more taps than a shaper holds.
     let any_delays = proptest::collection::vec(1u32..100, 1..=8);
     let equal_delays = (1u32..100, 1usize..=16).prop_map(|(delay, stages)| vec![delay; stages]);
     let multiples = proptest::collection::vec(prop_oneof![Just(3u32), Just(6), Just(9)], 1..=16);
@@ -31,7 +31,7 @@ proptest! {
                 prop_assert_eq!(cascade.start(start), shaper.start(start));
             }
             for &x in &commands {
-                // Full scale for long stretches, and noise.
+                // The input is full scale for long times, or noise.
                 let x = if steady { x >> 63 ^ (1 << (config.word_bits() - 1)) } else { x };
                 prop_assert_eq!(cascade.push(x), shaper.push(x));
             }
@@ -112,7 +112,7 @@ fn unit_a_strobe_in_a_pass_is_lost_and_flagged() {
     cascade.step(&strobe(-8000));
     idle(&mut cascade, 8);
     assert_eq!((cascade.outputs().y, cascade.outputs().overrun), (100, true));
-    // The flag is set over a clear in the same clock, and the history has no trace of the lost sample.
+    // The flag is set although it is cleared in the same clock, and the history has no trace of the lost sample.
     cascade.step(&Inputs {
         clear_flags: true,
         ..strobe(400)

@@ -1,4 +1,4 @@
-//! Compositions, clocked only where something happens, against every block clocked in every clock.
+//! Compositions that are clocked only where something happens, compared with all blocks clocked in every clock.
 
 use crate::support::plain;
 use crate::support::random_inputs;
@@ -40,7 +40,7 @@ const BUS: Hints = &[
 
 type Whole = (Composition, Vec<Box<dyn Moore>>);
 
-/// Name, inputs, the fast one, and the same block by block.
+/// Name, input values, the fast composition, and the same composition block by block.
 fn wholes() -> Vec<(String, Hints, Composed, Plain)> {
     let pwm = pwm_config();
     let counter = DividerConfig::new(300).unwrap();
@@ -78,7 +78,8 @@ fn inputs_of(block: &dyn ClockedBlock, hints: Hints) -> (RandomInputs, usize) {
     (RandomInputs::new(block.ports(), hints), outputs.count())
 }
 
-/// Random inputs, held; the fast one now by `step`, now by `hold`. Returns clocks per call, or where it differs.
+/// Compares them under random inputs that are held; the fast one uses `step` or `hold`. Returns the number of clocks
+/// per call, or the first difference.
 fn compare(fast: &mut Composed, plain: &mut Plain, hints: Hints, seed: u64) -> Result<f64, String> {
     let mut random = Random(seed);
     let (mut inputs, outputs) = inputs_of(fast, hints);
@@ -168,7 +169,7 @@ fn unit_a_part_that_says_something_wrong_is_found() {
 
 #[test]
 fn unit_a_wait_is_one_call() {
-    // Nothing on the bus, and no pin moves: from tick to tick.
+    // With no bus access and no pin that moves, the block advances from tick to tick.
     let counter = Component::pulse_counter(DividerConfig::new(5000).unwrap(), 3, false).unwrap();
     let mut fast = counter.model(1);
     let (inputs, outputs) = inputs_of(&fast, &[]);
@@ -192,7 +193,7 @@ fn unit_random_inputs_move_the_axes() {
     for round in 0..9000 {
         let mut left = inputs.change(&mut random);
         if round % 4 == 0 {
-            // Entries for both, word by word: random words hardly ever follow each other as they must.
+            // The entries of both axes are written word by word: random words hardly ever come in a valid order.
             for (word, data) in [(0, 0), (1, 0), (2, 0), (3, 2)] {
                 inputs.set("word", word);
                 inputs.set("data", data);

@@ -30,7 +30,7 @@ fn near(found: PlanePoint, expected: PlanePoint) -> bool {
     (found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12
 }
 
-/// A machine of the XY stage, shaped so, with equal delays or with each axis's own.
+/// Returns a machine of the XY stage with this kind of shaper, with equal delays or with each axis's own.
 fn stage(kind: &str, matched: bool) -> Machine {
     let machine = parse(
         "xy-stage.toml",
@@ -72,7 +72,7 @@ fn golden_a_circle_of_the_xy_stage_has_the_errors_of_the_notes() {
     }
 }
 
-/// The formula of the notes: about v |d_x - d_y| / 2.
+/// The formula of the notes: the error is about v |d_x - d_y| / 2.
 #[test]
 fn golden_the_error_of_a_circle_is_half_of_what_the_delays_differ_by() {
     let circle = contour(&shapes::circle(0.01, 0.1).unwrap());
@@ -88,7 +88,8 @@ fn golden_the_error_of_a_circle_is_half_of_what_the_delays_differ_by() {
     );
 }
 
-/// Equal delays are worth more than any kind; a machine that is off by 20 % on the worse side leaves more than one that is not.
+/// Equal delays gain more than any kind; a machine that deviates by 20 % in the worse direction leaves more error
+/// than the nominal one.
 #[test]
 fn unit_kinds_are_compared_with_own_and_with_equal_delays() {
     let circle = contour(&shapes::circle(0.01, 0.1).unwrap());
@@ -124,7 +125,7 @@ fn unit_lengths_places_and_directions_of_a_square_and_a_circle() {
     assert_eq!(circle.stops(), 0);
     let [[left, right], [below, above]] = circle.extent();
     assert!((left + 0.02).abs() + right.abs() + (below + 0.01).abs() + (above - 0.01).abs() < 1e-15);
-    // 1 mm outside of the circle is to the right of a path that goes counter-clockwise.
+    // A point 1 mm outside the circle is to the right of a counter-clockwise path.
     assert!((circle.distance([0.001, 0.0], 0.0, 0.01) + 0.001).abs() < 1e-15);
     assert!((circle.distance([-0.01, 0.009], 0.0, 0.07) - 0.001).abs() < 1e-15);
 }
@@ -165,7 +166,7 @@ fn unit_a_program_is_read_as_its_lines_and_arcs() {
     let Shape::Line { to, .. } = shapes[5] else {
         panic!("{shapes:?}")
     };
-    // All digits of the text count.
+    // All digits of the text are read.
     assert!(near(to, [-1.23456789e-3, 0.01]), "{to:?}");
     assert!(strokes[6].after_stop && !strokes[5].after_stop);
     assert!((shapes[6].length() - 2.54e-3).abs() < 1e-15);
@@ -242,7 +243,7 @@ fn unit_a_path_beyond_the_travel_is_refused() {
     );
 }
 
-/// Paths of lines and arcs with gentle and sharp bends.
+/// Returns paths of lines and arcs with gentle and sharp bends.
 fn paths() -> impl Strategy<Value = Vec<Stroke>> {
     let turn = prop_oneof![-0.1..0.1f64, -3.0..3.0f64];
     let leg = (1e-3..0.05f64, turn, prop::option::of((2e-3..0.05f64, -5.0..5.0f64)));
@@ -297,7 +298,8 @@ proptest! {
             prop_assert!(distance.abs() < 1e-9, "{distance}");
             prop_assert!(sample.speed <= 0.15 * (1.0 + 1e-6) + 1e-9, "{}", sample.speed);
         }
-        // Beside joints, where a line meets an arc or a bend, and what differences over a sample round to.
+        // Samples beside joints are left out, where a line meets an arc or a bend; the tolerance covers rounding in
+        // the differences.
         let joints: Vec<f64> = strokes.iter().scan(0.0, |along, stroke| { *along += stroke.shape.length(); Some(*along) }).collect();
         for window in samples.windows(4) {
             let reach = [window[0].along - 1e-9, window[3].along + 1e-9];

@@ -12,7 +12,8 @@ const SLIDING: &str = "kind = \"sliding-mode\"\nc = 150.0\nk = 50.0\nepsilon = 4
 const T: f64 = 1e-4;
 const COUNT: f64 = 1e-6;
 
-/// The XY stage's axis X with another drive and controller. A torque drive has the mode of motor against table in its loop.
+/// The XY stage's axis X with another drive and controller. With a torque drive, the loop contains the mode of motor
+/// against table.
 fn machine(drive: &str, controller: &str) -> Machine {
     let (frequency_hz, damping) = match drive.contains("torque") {
         true => (283.665, 0.329),
@@ -57,7 +58,7 @@ fn golden_the_gains_of_the_notes() {
         assert!((of(row) / value - 1.0).abs() < 1e-4, "{row:?}: {} {value}", of(row));
     }
     assert_eq!(derived.law, Law::SlidingMode);
-    // d/(c (k + epsilon/phi)) of the notes, with the table's Coulomb friction.
+    // This is d/(c (k + epsilon/phi)) of the notes, with the table's Coulomb friction.
     assert!((derived.steady_error - 40.0 / 64.274 / (150.0 * 130.0)).abs() < 1e-12);
     assert_eq!(derived.warnings, []);
 }
@@ -79,7 +80,7 @@ fn unit_each_condition_of_the_notes_warns() {
         w,
         ControlWarning::SwitchingSaturates { .. }
     )));
-    // A boundary layer that is crossed within a tick.
+    // This boundary layer is crossed within a tick.
     let narrow = SLIDING.replace("0.05", "4e-4");
     let error = derive(TORQUE, &narrow).unwrap_err();
     assert!(matches!(error, ControlError::Unstable { .. }), "{error}");
@@ -135,7 +136,7 @@ fn unit_what_is_missing_is_named() {
     axis.drive = None;
     let error = gains(&axis, machine.clock, 1e-4).unwrap_err();
     assert!(error.to_string().contains("[axis.drive]"), "{error}");
-    // Gains beyond any word: an error, no panic.
+    // Gains beyond any word must give an error, not a panic.
     let mut axis = machine.axes[0].clone();
     axis.counts_per_unit = 1e-12;
     assert!(matches!(
@@ -206,12 +207,12 @@ struct Mass {
     torque: bool,
     position: f64,
     velocity: f64,
-    /// Of the drive: current in A, or velocity in m/s.
+    /// State of the drive: current in A, or velocity in m/s.
     state: f64,
 }
 
 impl Mass {
-    /// A tick with a command in A or m/s.
+    /// Advances by a tick with a command in A or m/s.
     fn tick(&mut self, command: f64) {
         const STEPS: u32 = 50;
         let step = T / f64::from(STEPS);
@@ -229,7 +230,8 @@ impl Mass {
     }
 }
 
-/// A run: largest |e| in m of the last half, and the largest change of the command from tick to tick in that half.
+/// Runs the loop. Returns the largest |e| in m in the second half, and the largest change of the command from tick to
+/// tick there.
 fn follow(
     drive: &str,
     controller: &str,
@@ -269,14 +271,14 @@ fn follow(
     (worst, jump)
 }
 
-/// The notes' 10 mm at 2 Hz.
+/// Returns the sine of the notes: 10 mm at 2 Hz.
 fn sine(time_s: f64) -> [f64; 3] {
     let (sin, cos) = (TAU * 2.0 * time_s).sin_cos();
     let rate = TAU * 2.0;
     [0.01 * sin, 0.01 * rate * cos, -0.01 * rate * rate * sin]
 }
 
-/// A jump of 2 mm: the command is at its limit.
+/// Returns a step of 2 mm, for which the command is at its limit.
 fn jump(time_s: f64) -> [f64; 3] {
     [if time_s > 0.0 { 2e-3 } else { 0.0 }, 0.0, 0.0]
 }

@@ -7,7 +7,7 @@ use posicast_model::rtl::sliding_mode::{
 };
 use posicast_model::rtl::{ClockedBlock, Direction};
 
-/// Gains of their own, so that each pair of law and bank gives a command of its own: PD by `per_count` for each count.
+/// Settings whose commands differ for each pair of law and bank: PD with `per_count` for each count.
 fn settings(per_count: f64) -> Settings {
     let mut settings = Settings::default();
     let mut set = |row, value| settings.set_gain(row, Gain::nearest(value, row).unwrap());
@@ -19,7 +19,7 @@ fn settings(per_count: f64) -> Settings {
     settings
 }
 
-/// A component whose passes follow each other without a clock between: its pin `start` is always high.
+/// A component whose passes follow each other without a clock between them: its pin `start` is always high.
 struct Bench {
     model: Composed,
     component: Component,
@@ -56,7 +56,7 @@ impl Bench {
         self.inputs[place] = value;
     }
 
-    /// A clock; the command, if a pass is over.
+    /// Advances by a clock; returns the command at the end of a pass.
     fn clock(&mut self) -> Option<i32> {
         self.model.step(&self.inputs, &mut self.outputs).unwrap();
         let shown = |name| self.outputs[self.place(name, Direction::Output)];
@@ -75,7 +75,8 @@ impl Bench {
     }
 }
 
-/// The commit at every distance from the boundary of two passes; and each pass is of one law and the bank that goes with it.
+/// The commit comes at every distance from the boundary of two passes; each pass must use one law and the bank that
+/// belongs to it.
 #[test]
 fn unit_no_pass_mixes_a_law_with_the_settings_of_another() {
     let tick = |law: Law, settings: &Settings| {
@@ -115,12 +116,13 @@ fn unit_no_pass_mixes_a_law_with_the_settings_of_another() {
     }
 }
 
-/// A clear in any clock of a pass: from the first clock of step 14 on, in which the sum of Σe and e begins, this e is dropped.
+/// The clear comes in any clock of a pass: from the first clock of step 14 on, in which the sum of Σe and e begins,
+/// this e is dropped.
 #[test]
 fn unit_a_clear_of_the_integral_drops_the_sum_under_way_and_no_other() {
     let mut settings = settings(0.0);
     settings.set_gain(SettingRow::Integral, Gain::nearest(1.0, SettingRow::Integral).unwrap());
-    // Clock of a pass in which step 14 begins, from 1 in the clock after `start`.
+    // Number of the clock in which step 14 of a pass begins; the clock after `start` is 1.
     let sum_begins = 454;
     for clear in 0..=CONTROL_CLOCKS {
         let mut controller = SlidingMode::new();
@@ -138,7 +140,7 @@ fn unit_a_clear_of_the_integral_drops_the_sum_under_way_and_no_other() {
             address = usize::from(shown.setting_address);
             commands.extend(shown.valid.then_some(shown.command));
         }
-        // What the third pass finds in the integral: the e of the second, or nothing.
+        // The third pass finds the e of the second in the integral, or nothing.
         let found = i32::from(clear < sum_begins);
         assert_eq!(commands[2], found * 3 * 4096, "cleared in clock {clear}: {commands:?}");
     }

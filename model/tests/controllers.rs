@@ -1,4 +1,4 @@
-//! Controllers under friction, against independently computed runs.
+//! Controllers under friction, compared with independently computed runs.
 
 use posicast_model::control::{COMMAND_FRACTION, Gains};
 use posicast_model::papers::controllers::{ControllerCase, ControllerFigures};
@@ -61,7 +61,8 @@ fn golden_the_laws_in_floating_point_follow_as_computed_elsewhere() {
     let golden: Value = serde_json::from_str(include_str!("golden/drive.json")).unwrap();
     let mut faults = vec![];
     for (case, name) in ControllerCase::ALL.iter().zip(NAMES) {
-        // What switches amplifies rounding: its commands are the same, its errors to a part in a thousand. A hundredth in permanent bang-bang.
+        // A switching law amplifies rounding: its commands are equal, its errors agree to a part in a thousand, or in
+        // a hundred in permanent bang-bang.
         let part = match name {
             _ if name.contains("150 in SI") => 2e-2,
             _ if name.contains("sgn") || name.contains("scale") || name.contains("VOLTAGE") => 1e-3,
@@ -82,7 +83,8 @@ fn golden_the_bit_exact_controller_follows_as_the_float_law_does() {
     let mut compared = 0;
     for case in ControllerCase::ALL {
         let Some(exact) = case.bit_exact() else { continue };
-        // A sign becomes a steep layer, and what switches amplifies rounding. The hardware's PID does not wind up in the start.
+        // The sign function becomes a steep layer, and a switching law amplifies rounding. The hardware's PID does
+        // not wind up at the start.
         let part = match case.name {
             name if name.contains("sgn") => 0.06,
             name if name.starts_with("PID") => 0.03,
@@ -156,7 +158,8 @@ fn golden_the_bit_exact_reaching_law_in_samples() {
 
 const TITLE: &str = "| controller | max \\|e\\| | rms e | max \\|e′\\| | rms command | chatter |";
 
-/// The table of `docs/controllers.md`: each figure in floating point, and bit-exact where the hardware has the law.
+/// Returns the table of `docs/controllers.md`: each figure in floating point, and bit-exact if the hardware has the
+/// law.
 fn table() -> String {
     let mut table = format!("{TITLE}\n|---|---|---|---|---|---|\n");
     for case in ControllerCase::ALL {

@@ -1,4 +1,4 @@
-//! What the convolution of several modes' shapers does to partial sums and tolerances.
+//! Partial sums and tolerances of the convolution of several modes' shapers.
 
 use crate::support;
 
@@ -7,7 +7,7 @@ use posicast_model::design::{ConvolutionFigures, ConvolutionWarning, convolution
 use posicast_model::machine_file::AxisSection;
 use support::{machine, shaper};
 
-/// The two modes of the robot of the negative-impulse paper, with a kind and further lines for each.
+/// Returns the two modes of the robot of the negative-impulse paper, with a kind and further lines for each.
 fn robot(first: &str, second: &str) -> (AxisSection, ConvolutionFigures) {
     let modes = [(76.6, 0.057, first), (231.2, 0.017, second)];
     let mut machine = machine(10_000, "modal", &shaper("zv", 0.05), &modes);
@@ -22,7 +22,7 @@ fn unit_negative_hybrids_are_warned_of_with_their_gain() {
     assert!((figures.peak_command - 5.0).abs() < 1e-12);
     let gains: Vec<_> = figures.cross_gains.iter().map(|g| (g.shaper, g.at)).collect();
     assert_eq!(gains, [(1, 0), (0, 1)]);
-    // The notes on the paper: the mode-1 negative shaper has 3.37 to 3.42 at mode 2.
+    // The notes on the paper give 3.37 to 3.42 for the mode-1 negative shaper at mode 2.
     assert!((figures.cross_gains[1].gain - 3.4245).abs() < 1e-4, "{figures:?}");
     let [
         ConvolutionWarning::PartialSums { sums, .. },
@@ -48,7 +48,7 @@ fn unit_the_remedy_of_the_warning_works() {
         &axis.modes[1].mode,
     );
     assert!((0.0499..=0.05).contains(&residual), "{residual}");
-    // The residual is still held against the mode's own tolerance, now the smaller one: nothing is hidden.
+    // The residual is still compared with the mode's own tolerance, now the smaller one: nothing is hidden.
     assert_eq!(figures.warnings.len(), 2);
 }
 

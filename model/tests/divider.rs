@@ -1,4 +1,4 @@
-//! The divider clock by clock against one call per division.
+//! The divider clock by clock, compared with one call per division.
 
 use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig, Inputs};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! What may never happen behind the drive command, for any inputs; and its order of events, by hand.
+//! What must never happen after the drive command, for any inputs; and its order of events, by hand.
 
 use posicast_model::rtl::axis::SupervisorState;
 use posicast_model::rtl::drive_command::{DUTY_MAX, DUTY_MIN, DriveCommand, Inputs, Outputs, limited, saturated};
@@ -32,7 +32,7 @@ const KICK: Inputs = Inputs {
 };
 const TICK: Inputs = Inputs { tick: true, ..READY };
 
-/// The outputs after each of the clocks.
+/// Returns the outputs after each of the clocks.
 fn play(clocks: &[Inputs]) -> Vec<Outputs> {
     let mut command = DriveCommand::new();
     let after = clocks.iter().map(|inputs| {
@@ -92,7 +92,7 @@ fn unit_it_takes_a_kick_in_ready_with_enable() {
             "{wrong:?}"
         );
     }
-    // What was interrupted does not go on by itself.
+    // An interrupted self-test does not continue by itself.
     for wrong in [off, not_wanted] {
         let wrong = Inputs {
             direct_kick: false,
@@ -155,7 +155,7 @@ fn unit_the_supervisor_takes_over_without_a_gap_and_without_the_manual_duty() {
     assert!(!shown[6].pwm_enable && shown[4].feed && !shown[5].feed);
 }
 
-/// READY with the self-test, and these gates.
+/// Inputs in READY with the self-test and these gates.
 const TEST: Inputs = Inputs {
     self_test: true,
     ..READY
@@ -183,21 +183,21 @@ fn unit_a_self_test_runs_the_pwm_alone_and_behind_its_mask() {
     let tests = [true, true, false, false];
     let ends = [true, false, false, false];
     let off = [false; 4];
-    // Expires.
+    // Direct mode expires.
     assert_eq!(
         outputs(&[kick, tick, TEST, tick, tick, TEST]),
         [tests, tests, tests, tests, ends, off]
     );
-    // The flag goes: the mask stays until the PWM has been off, and direct mode is not there with the pins on.
+    // The flag falls: the mask stays until the PWM has been off, and direct mode is not active with the pins on.
     assert_eq!(
         outputs(&[kick, tick, READY, READY, READY]),
         [tests, tests, ends, off, off]
     );
     let direct = [false, true, true, true];
     assert_eq!(outputs(&[kick, READY, KICK, READY]), [tests, ends, direct, direct]);
-    // The flag comes.
+    // The flag rises.
     assert_eq!(outputs(&[KICK, TEST, kick]), [direct, off, tests]);
-    // The supervisor takes over: a clock with the PWM off lies between.
+    // The supervisor takes over, with one clock of the PWM off in between.
     assert_eq!(outputs(&[kick, hold, hold]), [tests, [true, false, true, true], direct]);
     assert_eq!(duties(&[kick, tick, tick]), [0, 500, 500]);
 }
@@ -232,10 +232,10 @@ fn unit_gates_are_counted_from_valley_to_valley() {
     assert_eq!(results(&period), (1, 0));
     let ended = [&period[..], &[valley(1)]].concat();
     assert_eq!(results(&ended), (2, 3));
-    // What is counted without a mask is nothing.
+    // Without the mask nothing is counted.
     let after = [&ended[..], &[READY, READY, valley(3), valley(3)]].concat();
     assert_eq!(results(&after), (2, 3));
-    // Longer than the longest period.
+    // The test lasts longer than the longest period.
     let long = [vec![kick], vec![gates(1); 70_000], vec![valley(0)]].concat();
     assert_eq!(results(&long), (u16::MAX, 0));
 }
@@ -329,7 +329,8 @@ proptest! {
                 let wanted = !inputs.rst && wanted && !(is_pwm && ends);
                 prop_assert_eq!(shown, (wanted || after.direct_active) && (is_pwm || !tests));
             }
-            // Direct mode is the self-test as a whole or not at all; its mask outlives the PWM, and not for long.
+            // Direct mode is part of the self-test as a whole or not at all; its mask outlives the PWM, but not for
+            // long.
             prop_assert!(!after.direct_active || after.mask_pins == inputs.self_test);
             prop_assert!(after.direct_active || !after.mask_pins || (ends && !after.pwm_enable));
             prop_assert!(inputs.rst || !before.mask_pins || after.mask_pins || !before.pwm_enable);

@@ -1,4 +1,5 @@
-//! The drive with its screw: the XY stage's by independently computed numbers, and what friction and limits do by formulas.
+//! The drive with its screw: that of the XY stage compared with independently computed numbers, and the effects of
+//! friction and limits with formulas.
 
 use posicast_model::plant::drive_train::{
     Amplifier, Contact, DriveTrain, DriveTrainPlant, Friction, Stribeck, TrainState, Winding,
@@ -9,7 +10,7 @@ fn golden() -> Value {
     serde_json::from_str(include_str!("golden/drive.json")).unwrap()
 }
 
-/// The X axis without friction.
+/// Returns the X axis without friction.
 fn stage(amplifier: Amplifier) -> DriveTrain {
     let params = &golden()["drive"]["params"];
     let value = |key: &str| params[key].as_f64().unwrap();
@@ -46,7 +47,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
 }
 
-/// Each entry within a part of itself; where that is nothing, of the largest of its row.
+/// Checks each entry to a relative tolerance; an entry that is zero, to that part of the largest of its row.
 #[track_caller]
 fn close(found: &[f64], expected: &[f64], part: f64) {
     assert_eq!(found.len(), expected.len());
@@ -84,7 +85,7 @@ fn golden_poles_of_the_loops() {
         ("open velocity loop (torque/current mode), two-mass", CURRENT),
     ] {
         let modes = stage(amplifier).modes();
-        // The first of the list is the pole at 0.
+        // The first pole of the list is at 0.
         let expected = &drive[name]["f_zeta"].as_array().unwrap()[1..];
         assert_eq!(modes.len(), expected.len(), "{name}");
         for (mode, expected) in modes.iter().zip(expected) {
@@ -119,7 +120,8 @@ fn golden_zero_order_holds() {
         for (row, expected) in matrix.row_iter().zip(golden["Ad"].as_array().unwrap()) {
             close(row.transpose().as_slice(), &numbers(expected), 1e-10);
         }
-        // Its smallest entries are good to 1e-8 only, beside the largest: the same series in rational arithmetic has ours.
+        // Its smallest entries are good to 1e-8 only, relative to the largest: the same series in rational arithmetic
+        // gives our values.
         close(input.as_slice(), &numbers(&golden["Bd"]), 2e-8);
     }
     let (_, input) = stage(CURRENT).held_matrices(100e-6);
@@ -156,7 +158,7 @@ fn unit_masses_that_nothing_holds_have_no_mode_of_that() {
 
 #[test]
 fn unit_steps_come_to_the_exact_motion() {
-    // Friction too small to matter, so that the steps are Runge and Kutta's.
+    // This friction is too small to matter, so that the steps are those of Runge and Kutta.
     let almost_none = Friction {
         stribeck: Stribeck {
             coulomb: 1e-30,
@@ -183,7 +185,7 @@ fn unit_steps_come_to_the_exact_motion() {
 
 #[test]
 fn unit_limits_cut_current_and_voltage() {
-    // 3 A are cut to 1 A: the masses gain what that gives them.
+    // 3 A are limited to 1 A: the masses gain what that gives them.
     let limited = DriveTrain {
         current_limit_a: 1.0,
         ..stage(TUNED)
@@ -194,7 +196,7 @@ fn unit_limits_cut_current_and_voltage() {
         plant.state()
     });
     assert!((cut.velocity / whole.velocity - 1.0).abs() < 1e-7, "{cut:?} {whole:?}");
-    // A motor that is held by a heavy load has the current that the voltage drives through its resistance.
+    // A motor held by a heavy load has the current that the voltage drives through its resistance.
     let heavy = DriveTrain {
         voltage_limit_v: 10.0,
         motor_inertia: 1e6,
@@ -232,7 +234,7 @@ fn unit_stick_slip_holds_below_the_breakaway_force_and_smooth_friction_creeps() 
     let hold = |contact, force: f64| {
         let train = guided(contact, 1e-4);
         let mut plant = DriveTrainPlant::new(train, 1e-4);
-        // Slowly: a jump would swing the motor beyond.
+        // The force rises slowly: a jump would make the motor overshoot.
         (0..20_000).for_each(|tick| plant.hold(force / train.force_constant() * (f64::from(tick) / 10_000.0).min(1.0)));
         plant.state()
     };
@@ -242,14 +244,14 @@ fn unit_stick_slip_holds_below_the_breakaway_force_and_smooth_friction_creeps() 
     assert!((held.angle * stage(TUNED).lead_per_radian - 59.0 / 33_935_700.0).abs() < 1e-12);
     let away = hold(Contact::StickSlip, 61.0);
     assert!(away.velocity > 0.03, "{away:?}");
-    // tanh(v/1e-4) = 1/2, where dry friction is still 60 N.
+    // tanh(v/1e-4) = 1/2 at this speed, for which dry friction is still 60 N.
     let creeping = hold(Contact::Smooth, 30.0);
     assert!((creeping.velocity - 0.549e-4).abs() < 0.01e-4, "{creeping:?}");
 }
 
 #[test]
 fn unit_a_slow_motor_pulls_the_table_in_jerks() {
-    // A soft screw, at 1 mm/s: it sticks until the spring has 60 N, slides, and sticks again.
+    // With a soft screw, at 1 mm/s, the table sticks until the spring has 60 N, slides, and sticks again.
     let slow = DriveTrain {
         stiffness: 1e5,
         damping: 0.0,
@@ -272,7 +274,7 @@ fn unit_a_slow_motor_pulls_the_table_in_jerks() {
         }
         was_at_rest = at_rest;
     }
-    // 60 N at 1e5 N/m and 1 mm/s: 0.6 s.
+    // 60 N at 1e5 N/m and 1 mm/s take 0.6 s.
     assert!((leaves[0].0 - 0.6).abs() < 1e-3, "{leaves:?}");
     assert!(leaves.len() > 3, "{leaves:?}");
     assert!(leaves.iter().all(|(_, force)| (force - 60.0).abs() < 0.1), "{leaves:?}");
@@ -280,7 +282,7 @@ fn unit_a_slow_motor_pulls_the_table_in_jerks() {
 
 #[test]
 fn unit_friction_takes_out_what_it_should() {
-    // Coasting from 0.1 m/s under Coulomb friction alone: v²/2a of the whole mass.
+    // Coasting from 0.1 m/s under Coulomb friction alone ends after v²/2a of the whole mass.
     for contact in [Contact::Smooth, Contact::StickSlip] {
         let coulomb = Stribeck {
             coulomb: 40.0,
@@ -313,7 +315,7 @@ fn unit_friction_takes_out_what_it_should() {
 #[test]
 fn unit_the_step_is_short_beside_friction_and_poles() {
     assert_eq!(DriveTrainPlant::new(stage(TUNED), 1e-4).step_s(), 1e-4 / 5.0);
-    // 2 · 1e-6 · 50 / 60 s
+    // The expected value is 2 · 1e-6 · 50 / 60 s.
     let steep = guided(Contact::Smooth, 1e-6);
     assert!((steep.longest_step_s() - 2e-6 * 50.0 / 60.0).abs() < 1e-18);
 }

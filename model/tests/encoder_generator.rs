@@ -1,4 +1,4 @@
-//! The internal encoder against what it promises, and through the pulse counter that it tests.
+//! The internal encoder compared with its datasheet, and connected to the pulse counter that it tests.
 
 use posicast_model::rtl::encoder_generator::{EncoderGenerator, Inputs, LINES};
 use posicast_model::rtl::pulse_counter::{self, PulseCounter};
@@ -13,12 +13,12 @@ fn looped(rate: i32, index_every: u16) -> Inputs {
     }
 }
 
-/// Generator and counter side by side, each seeing what the other showed before the edge.
+/// Generator and counter side by side; each sees what the other showed before the edge.
 struct Bench {
     generator: EncoderGenerator,
     counter: PulseCounter,
     settings: pulse_counter::Inputs,
-    /// Indices that were latched.
+    /// Number of latched indices.
     indices: u32,
 }
 
@@ -102,7 +102,7 @@ proptest! {
         let mut bench = Bench::new();
         bench.run(&Inputs { rst: true, ..looped(0, 0) }, 3);
         bench.run(&looped(0, 4 * index_every), 10);
-        // A counter after reset takes pairs that it has not seen yet as equal.
+        // After a reset, a counter takes pairs of lines that it has not seen yet as equal.
         bench.settings.clear_flags = true;
         bench.run(&looped(0, 4 * index_every), 1);
         bench.settings.clear_flags = false;
@@ -136,12 +136,12 @@ fn unit_pins_come_through_a_clock_later() {
 
 #[test]
 fn unit_an_index_once_in_so_many_counts_both_ways() {
-    // 1000 counts up, then 1000 down, an index each 40 (43 is taken down to it): at 0, 40, …, 1000.
+    // It makes 1000 counts up, then 1000 down, with an index every 40 (43 is reduced to 40): at 0, 40, …, 1000.
     for (rate, index_every, expected) in [(1 << 29, 40, 26), (1 << 29, 43, 26), (1 << 29, 3, 0), (1 << 29, 4, 251)] {
         let mut generator = EncoderGenerator::new();
         for direction in [rate, -rate] {
             let (mut indices, mut before) = (0, false);
-            // Half a count more than 1000 there, and back to 0.
+            // It runs half a count more than 1000 up, and back to 0.
             for _ in 0..8 * 1000 + 4 {
                 generator.step(&looped(direction, index_every));
                 let z = generator.outputs().z;
@@ -180,6 +180,6 @@ fn unit_a_shorter_turn_takes_the_index_back_into_it() {
         seen
     };
     run(4000, 4 * 2000);
-    // 400 counts, 10 turns of 40; an index lasts a count of 4 clocks, and shows two clocks late.
+    // 400 counts are 10 turns of 40; an index lasts for one count of 4 clocks, and is visible two clocks late.
     assert_eq!(run(40, 4 * 400), 4 * 10 - 2);
 }

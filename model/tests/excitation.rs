@@ -1,4 +1,4 @@
-//! The excitation against what it promises.
+//! The excitation compared with its datasheet.
 
 use posicast_model::rtl::excitation::{Excitation, ExcitationKind, Inputs, Outputs, TICK_CLOCKS};
 use proptest::prelude::*;
@@ -16,7 +16,7 @@ fn settings(kind: ExcitationKind, amplitude: u16, period_ticks: u16, duration_ti
     }
 }
 
-/// What the first so many ticks show, long after their `valid`.
+/// Returns the outputs of the first `ticks` ticks, long after their `valid`.
 fn ticks(excitation: &mut Excitation, inputs: &Inputs, ticks: usize) -> Vec<Outputs> {
     let tick = |_| {
         excitation.step(&Inputs { valid: true, ..*inputs });
@@ -81,7 +81,8 @@ proptest! {
     fn prop_a_period_is_exactly_so_many_ticks(period_ticks in 1..400u16, amplitude in 1..u16::MAX) {
         let inputs = settings(ExcitationKind::Square, amplitude, period_ticks, 10_000);
         for (tick, value) in values(&inputs, 3 * usize::from(period_ticks) + 1)[1..].iter().enumerate() {
-            // In the first half of a turn of 256 steps, of which the last begun one does not count.
+            // The tick is in the first half of a turn of 256 steps; the last step, which has only begun, does not
+            // count.
             let place = tick as u64 * 256 / u64::from(period_ticks) % 256;
             let sign = if place < 128 { 1 } else { -1 };
             prop_assert_eq!(*value, sign * i32::from(amplitude), "tick {}", tick);
@@ -114,7 +115,8 @@ fn unit_prbs_bits_last_a_period_and_start_anew() {
 
 #[test]
 fn unit_a_chirp_rises_by_its_sweep() {
-    // From one turn in 100 ticks by 1/64 of that per tick: n + n(n − 1)/128 hundredths of a turn after n ticks.
+    // The frequency rises from one turn in 100 ticks by 1/64 of that per tick: n + n(n − 1)/128 hundredths of a turn
+    // after n ticks.
     let chirp = Inputs {
         sweep: 1024,
         ..settings(ExcitationKind::Chirp, 64 << 8, 100, 1000)
@@ -123,7 +125,7 @@ fn unit_a_chirp_rises_by_its_sweep() {
         let n = n as f64;
         let turn = (n + n * (n - 1.0) / 128.0) / 100.0;
         let triangle = 1.0 - 4.0 * ((turn + 0.25).rem_euclid(1.0) - 0.5).abs();
-        // Half a step of the triangle either way, and the step that the angle is behind.
+        // The tolerance is half a step of the triangle either way, and the step by which the angle is late.
         assert!(
             (f64::from(*value) / 256.0 - 64.0 * triangle).abs() < 2.0,
             "tick {n}: {value}, {triangle}"
@@ -144,7 +146,7 @@ fn unit_what_turns_too_fast_ends() {
         ..fast
     };
     let shown = ticks(&mut armed(), &slow, 70);
-    // The frequency's word holds 63 times the first.
+    // The frequency's word holds 63 times the first frequency.
     let active = shown.iter().filter(|outputs| outputs.excitation_active).count();
     assert!((60..66).contains(&active), "{active}");
     let none = settings(ExcitationKind::Prbs, 1 << 8, 0, 1 << 20);
@@ -183,7 +185,7 @@ fn unit_it_starts_once_per_enable_and_never_without_duration() {
             .all(|outputs| !outputs.excitation_active)
     );
     assert!(ticks(&mut excitation, &inputs, 2)[1].excitation_active);
-    // Not allowed: gone with the next tick, and not back with the permission.
+    // When not allowed, the signal ends with the next tick, and does not return with the permission.
     let forbidden = Inputs {
         allowed: false,
         ..inputs

@@ -1,4 +1,4 @@
-//! Families of tap tables for modes that move: every value is covered, and a hand-over adds no more than its bound.
+//! Families of tap tables for modes that move: every value is covered, and a handover adds no more than its bound.
 
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -11,7 +11,7 @@ use posicast_model::plant::{Plant, SampledPlant};
 use posicast_model::rtl::shaper::{MotionShaper, ShaperConfig, ShaperMotion, swap_how};
 
 const SAMPLE_HZ: f64 = 10_000.0;
-/// Speed of the command at which tables are handed over: rounding to words is nothing beside it.
+/// Speed of the command at which tables are handed over, at which rounding to words is negligible.
 const WORDS_PER_SAMPLE: i64 = 100_000;
 
 fn text(shaper: &str, family: &str, modes: &[String]) -> String {
@@ -33,7 +33,8 @@ fn family(machine: &Machine) -> TableFamily {
     design_machine(machine).unwrap().families.remove(0)
 }
 
-/// The largest residual of the integer table of index `chosen`, as a part of the tolerance and what rounding may add.
+/// Returns the largest residual of the integer table of index `chosen`, relative to the tolerance plus the allowance
+/// for rounding.
 fn excess(machine: &Machine, family: &TableFamily, chosen: usize, value: f64) -> f64 {
     let axis = &machine.axes[0];
     let tables = &family.members[chosen].tables;
@@ -41,7 +42,7 @@ fn excess(machine: &Machine, family: &TableFamily, chosen: usize, value: f64) ->
     let designed = family.members[chosen].value;
     let modes = axis.modes.iter().map(|mode| {
         let tolerance = axis.tolerance_of(mode) * (1.0 + 1e-6) + tables.quantising_error();
-        // An EI kind leaves its tolerance at its own value already.
+        // An EI kind reaches its tolerance at its own value already.
         let allowed = tolerance.max(1.1 * residual_vibration(&taps, &mode.at(designed)));
         assert!(allowed <= 1.1 * tolerance);
         residual_vibration(&taps, &mode.at(value)) / allowed
@@ -59,11 +60,11 @@ fn golden_tables_of_zv_cover_what_its_closed_form_says() {
         let designed_hz = 50.0 - 10.0 * member.value;
         let hz = member.covers.map(|value| 50.0 - 10.0 * value);
         let ends = [(1.0 + half_width) * designed_hz, (1.0 - half_width) * designed_hz];
-        // Two taps for an impulse between samples, and rounding, widen the band: by little.
+        // Two taps for an impulse between samples, and rounding, widen the band slightly.
         assert!((hz[0] - ends[0].min(50.0)).abs() < 0.02, "{hz:?} instead of {ends:?}");
         assert!((hz[1] - ends[1].max(40.0)).abs() < 0.02, "{hz:?} instead of {ends:?}");
     }
-    // From 50 Hz down, each next table begins 0.15 of half a band before the end of the last.
+    // Downwards from 50 Hz, each next table begins 0.15 of half a band before the end of the previous one.
     let reached = |tables: f64| 50.0 * ((1.0 - half_width) / (1.0 + half_width)).powf(tables);
     let count = family.members.len() as f64;
     assert!(reached(count) < 40.0 && reached(count - 2.0) > 40.0, "{count} tables");
@@ -105,7 +106,8 @@ proptest! {
         }
     }
 
-    /// The mode does not move here, so that the bound is exact; both ends of the ramp and the change ring within it.
+    /// The mode does not move here, so that the bound is exact; both ends of the ramp and the handover contribute to
+    /// the ringing.
     #[test]
     fn prop_a_handover_adds_no_more_than_its_bound(
         kind in prop::sample::select(vec!["zv", "zvd", "ei"]),
@@ -127,7 +129,8 @@ proptest! {
     }
 }
 
-/// What is left at rest of a ramp's beginning through one table, of the hand-over, and of the ramp's end through the next: in words.
+/// Returns the ringing at rest, in words, after a ramp that begins with one table, is handed over, and ends with the
+/// next.
 fn bound(family: &TableFamily, from: usize, mode: &Mode) -> f64 {
     let of_ends = [from, from + 1].map(|index| {
         let taps = tap_impulses(&family.members[index].tables.table, SAMPLE_HZ);
@@ -137,7 +140,8 @@ fn bound(family: &TableFamily, from: usize, mode: &Mode) -> f64 {
     WORDS_PER_SAMPLE as f64 * SAMPLE_HZ * (of_ends[0] + added + of_ends[1])
 }
 
-/// Amplitude in words, at rest, of a ramp that began with one table, was handed over to the next at `change`, and ended at `end`.
+/// Returns the amplitude in words, at rest, after a ramp that began with one table, was handed over to the next at
+/// `change`, and ended at `end`.
 fn ringing(family: &TableFamily, from: usize, change: usize, end: usize, mode: &Mode) -> f64 {
     let plant = Plant::new(&[(*mode, 1.0)]).unwrap();
     let tables = |index: usize| family.members[index].tables.table.clone();
@@ -161,7 +165,7 @@ fn ringing(family: &TableFamily, from: usize, change: usize, end: usize, mode: &
     machine.vibration()
 }
 
-/// A bound that nothing comes near says little: over the phases of the change the largest is near it.
+/// A bound that is never approached says little: over the phases of the change, the largest ringing is close to it.
 #[test]
 fn unit_the_bound_of_a_handover_is_nearly_reached() {
     let points = ["[[0.0, 60.0, 0.0], [1.0, 30.0, 0.0]]".to_owned()];

@@ -1,4 +1,5 @@
-//! Shapers for several modes at once against numbers that were computed elsewhere (`golden/joint.json` says where).
+//! Shapers for several modes at once, compared with numbers that were computed elsewhere (`golden/joint.json` says
+//! where).
 
 use crate::support;
 
@@ -144,7 +145,7 @@ fn golden_vibrationless_optimum() {
         close(found.index, number(&row["Delta"]), 1e-9, key);
         all_close(&found.ratios, &numbers(&row["omega"]), 1e-9, key);
     }
-    // Known to the digits printed.
+    // These are known to the printed digits.
     let orders: [(u32, f64, &[f64]); 2] = [
         (4, 0.4537311, &[0.5799420, 0.7972949, 1.0983381, 1.3862888]),
         (5, 0.6420906, &[0.3804580, 0.5325671, 0.7169933, 0.9746735, 1.3941908]),
@@ -275,13 +276,13 @@ fn golden_antisymmetric_machine_takes_two_impulses_per_class() {
             .unwrap()
             .impulses
     };
-    // The paper's 30, 105, 385: {105, 385} at 35, {30} alone; four impulses in place of eight.
+    // The paper's modes 30, 105, 385: {105, 385} have the divisor 35, {30} is alone; four impulses replace eight.
     let modes = [(30.0, 0.0, ""), (105.0, 0.0, ""), (385.0, 0.0, "")];
     let found = design(&shaper("antisymmetric", 0.05), &modes);
     let (a, b) = (0.5 / 35.0, 0.5 / 30.0);
     all_close(&times(found.impulses()), &[0.0, a, b, a + b], 1e-15, "times");
     assert_eq!(amplitudes(found.impulses()), [0.25; 4]);
-    // 2 and 14, damped as in the paper's example, undamped frequencies as the file gives them.
+    // The modes 2 and 14 are damped as in the paper's example, with the undamped frequencies of the file.
     let scale = (1.0f64 - 1e-4).sqrt();
     let modes = [(2.0 / scale, 0.01, ""), (14.0 / scale, 0.01, "")];
     let expected = golden("damped")["paper"]["common_spacing_exact"]["amplitudes"].clone();

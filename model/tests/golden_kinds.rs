@@ -1,5 +1,5 @@
-//! The kinds with several humps, the bias-point kinds and the hybrids of two modes, against numbers computed elsewhere
-//! (`golden/*.json` say where).
+//! The kinds with several humps, the bias-point kinds and the hybrids of two modes, compared with numbers computed
+//! elsewhere (`golden/*.json` say where).
 
 use crate::support;
 use crate::support::golden;
@@ -88,7 +88,7 @@ fn golden_bias_point_shapers() {
     }
 }
 
-/// The robot with a kind per mode: `ZV-EI`, or, with the negative kinds, `NZV-NEI`.
+/// Returns the robot with a kind per mode: `ZV-EI`, or, with the negative kinds, `NZV-NEI`.
 fn robot(name: &str) -> (AxisDesign, Plant) {
     let kinds = name.split('-').map(|part| match part.strip_prefix('N') {
         Some(rest) => format!("shaper = \"ps-{}\"", rest.to_lowercase()),
@@ -140,7 +140,7 @@ fn golden_responses_of_the_robot() {
         let partial = numbers(&row["partial"]);
         close(sums.min, partial[0], 1e-9, name);
         close(sums.max, partial[1], 1e-9, name);
-        // Every microsecond of 40 ms, and at the impulses, where the response has its kinks.
+        // The response is sampled every microsecond of 40 ms, and at the impulses, where it has its kinks.
         let curve = step_response(&plant, impulses, 0.04, 40_001);
         let lowest = curve.iter().map(|(_, y)| *y).fold(0.0, f64::min);
         close(lowest, number(&row["under"]), 1e-6, name);
@@ -163,7 +163,7 @@ fn golden_responses_of_the_robot() {
     }
 }
 
-/// Largest distance from the step after the last impulse.
+/// Returns the largest distance from the step after the last impulse.
 fn left_after(plant: &Plant, design: &AxisDesign) -> f64 {
     let last_s = design.impulses.duration_s();
     let curve = step_response(plant, design.impulses.impulses(), last_s + 0.1, 200_001);
@@ -173,7 +173,7 @@ fn left_after(plant: &Plant, design: &AxisDesign) -> f64 {
 
 #[test]
 fn golden_negative_hybrids_lift_the_tolerance_and_reach_five_times_the_step() {
-    // V in percent at both modes, from the notes on the negative-impulse paper.
+    // These are V in percent at both modes, from the notes on the negative-impulse paper.
     let known = BTreeMap::from([
         ("ZV-EI", [0.0, 0.17]),
         ("ZVD-EI", [0.0, 0.006]),

@@ -1,4 +1,4 @@
-//! Designs, figures and taps against numbers that were computed elsewhere (`golden/*.json` say where).
+//! Designs, figures and taps, compared with numbers that were computed elsewhere (`golden/*.json` say where).
 
 use crate::support;
 use crate::support::golden;
@@ -50,7 +50,7 @@ fn golden_single_mode_designs_and_figures() {
                 close(residual_vibration(impulses, &off), number(expected), 1e-9, &what);
             }
         }
-        // The contract widens the tolerance by 1e-6, the golden width does not.
+        // Our width uses a tolerance that is widened by 1e-6; the golden width does not.
         for (key, tolerance) in [("insens_5pct", 0.05), ("insens_at_Vtol", tolerance)] {
             if let Some(expected) = row.get(key) {
                 let found = insensitivity(impulses, &mode, tolerance).unwrap();

@@ -22,7 +22,7 @@ const UNSHAPED: [Impulse; 1] = [Impulse {
     amplitude: 1.0,
 }];
 
-/// Plant and shaper of one axis.
+/// Returns plant and shaper of one axis.
 fn axis(kind: &str, mode: (f64, f64, &str)) -> (Plant, AxisTables) {
     let machine = machine(10_000, "modal", &shaper(kind, 0.05), &[mode]);
     let mut design = design_machine(&machine).unwrap();
@@ -60,7 +60,7 @@ fn golden_impulses_of_both_axes() {
     }
 }
 
-/// Figures of the exact impulses and of the integer table on the simulated plant.
+/// Returns the figures of the exact impulses and of the integer table on the simulated plant.
 fn both(kind: &str, mode: (f64, f64, &str)) -> [PlantFigures; 2] {
     let (plant, axis) = axis(kind, mode);
     [
@@ -85,8 +85,8 @@ fn golden_overshoot_unshaped_and_on_a_plant_that_is_10_percent_off() {
     percent(plant_figures(&plant, &UNSHAPED).nominal.overshoot, 60.530, 5e-4);
     let (plant, _) = axis("zv", Y);
     percent(plant_figures(&plant, &UNSHAPED).nominal.overshoot, 61.376, 5e-4);
-    // The figures of the exact impulses to the digits printed; those of the integer table at 10 kHz within a fiftieth
-    // of them, because two taps keep an impulse exactly at the nominal pole only.
+    // The figures of the exact impulses agree to the printed digits; those of the integer table at 10 kHz agree
+    // within a fiftieth, because two taps keep an impulse exact only at the nominal pole.
     for (kind, mode, minus, plus, half_digit) in [
         ("zv", X, 9.53, 5.77, 5.1e-3),
         ("zvd", X, 1.501, 1.247, 5.1e-4),
@@ -124,11 +124,11 @@ fn golden_nominal_plant_comes_to_rest() {
     }
 }
 
-/// Largest distance from the target, in micrometres, after the end of a shaped 5 mm move of 0.2 m/s and 8 m/s² on a plant
-/// whose frequency is off by `ratio`.
+/// Returns the largest distance from the target, in micrometres, after the end of a shaped 5 mm move of 0.2 m/s and 8
+/// m/s² on a plant whose frequency is `ratio` times the modelled one.
 fn distance_after_a_move(kind: &str, ratio: f64) -> f64 {
     let (plant, axis) = axis(kind, X);
-    // The notes move with a trapezoid of velocity: a jerk without limit.
+    // The notes use a trapezoid of velocity: a jerk without limit.
     let profile = Profile::new(0.0, 0.005, 0.2, 8.0, 1e9).unwrap();
     let impulses = axis.design.impulses.impulses();
     let shaped = |time_s: f64| -> f64 {
@@ -137,7 +137,7 @@ fn distance_after_a_move(kind: &str, ratio: f64) -> f64 {
             .map(|i| i.amplitude * profile.position(time_s - i.time_s));
         shares.sum()
     };
-    // The plant takes steps; the middle of each of these short ones is on the smooth command.
+    // The plant takes steps; the middle of each of these short steps is on the smooth command.
     let sample_hz = 200_000.0;
     let end_s = profile.duration_s() + axis.design.impulses.duration_s();
     let mut plant = SampledPlant::new(&plant.scaled(ratio), 1.0 / sample_hz, 0.0);
@@ -153,7 +153,7 @@ fn distance_after_a_move(kind: &str, ratio: f64) -> f64 {
 
 #[test]
 fn golden_vibration_after_a_point_to_point_move() {
-    // The notes print the two off plants as +10 % / −10 %.
+    // The notes print the two deviating plants as +10 % / −10 %.
     for (kind, ratio, expected, half_digit) in [
         ("none", 1.0, 11.0, 0.05),
         ("zv", 1.0, 0.0, 1e-6),

@@ -1,4 +1,4 @@
-//! What a machine is built as, decided once.
+//! The hardware configuration of a machine, which is derived in one place.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::Hardware;
@@ -49,7 +49,7 @@ fn unit_a_machine_whose_tick_is_too_short_can_still_be_looked_at() {
 
 #[test]
 fn unit_shapers_that_do_not_suit_a_stage_are_a_reason_and_no_error() {
-    // 16 bits hold no travel of a hundred millimetres, so the file must not name one.
+    // 16 bits cannot hold a travel of a hundred millimetres, so the file must not name one.
     let lines = STAGE.lines().filter(|line| !line.trim_start().starts_with("travel"));
     let text = lines.collect::<Vec<_>>().join("\n") + "\n[fixed_point]\ncommand_bits = 16\n";
     let machine = machine(&text);

@@ -1,4 +1,4 @@
-//! Where the kinds with humps end: the limits that an error names divide the designs from the errors.
+//! Limits of the kinds with humps: the limits that an error names separate the designs from the errors.
 
 use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{DesignError, hump_ei};
@@ -11,7 +11,7 @@ fn mode(damping: f64) -> Mode {
     }
 }
 
-/// The largest damping for a tolerance and the largest tolerance for a damping, as an error names them.
+/// Returns the largest damping for a tolerance and the largest tolerance for a damping, as an error names them.
 fn limits(kind: ShaperKind, damping: f64, tolerance: f64) -> (f64, f64) {
     match hump_ei::design(kind, &mode(damping), tolerance) {
         Err(DesignError::NoSolution {
@@ -25,7 +25,8 @@ fn limits(kind: ShaperKind, damping: f64, tolerance: f64) -> (f64, f64) {
 
 #[test]
 fn unit_where_the_branch_folds_one_damping_divides_designs_from_errors() {
-    // From about 0.283 on the sheet from the undamped shaper folds at 0.133; another goes on above it.
+    // From about 0.283 on, the solution that starts at the undamped shaper folds at 0.133; another one continues
+    // above it.
     for tolerance in [0.28, 0.2825, 0.284, 0.2856, 0.2872, 0.288] {
         let (end, _) = limits(ShaperKind::TwoHumpEi, 0.8, tolerance);
         let expected = if tolerance < 0.2828 { 0.158 } else { 0.13 };

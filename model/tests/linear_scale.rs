@@ -18,7 +18,7 @@ fn wait(scale: &mut LinearScale, inputs: Inputs, clocks: u32) {
     }
 }
 
-/// A tick with these positions, and the deviation that comes of it.
+/// Plays a tick with these positions, and returns the resulting deviation.
 fn tick(scale: &mut LinearScale, tied: Inputs, motor_position: i32, scale_position: i32) -> i32 {
     let inputs = Inputs {
         tick: true,
@@ -40,7 +40,7 @@ fn align(scale: &mut LinearScale, tied: Inputs, motor_position: i32, scale_posit
 
 #[test]
 fn unit_the_deviation_is_in_the_unit_of_the_loop() {
-    // 5 motor counts are 2 of the scale.
+    // 5 motor counts are 2 counts of the scale.
     let on_scale = tied(&ScaleRatio::new(5.0, 2.0).unwrap(), true);
     let watched = tied(&ScaleRatio::for_monitor(5.0, 2.0).unwrap(), false);
     assert_eq!(tick(&mut LinearScale::new(), on_scale, 500, 190), 10);
@@ -87,12 +87,12 @@ fn unit_velocities_are_scaled_in_their_turn() {
     scale.step(&velocity);
     wait(&mut scale, tied, PASS_CLOCKS);
     assert_eq!(scale.outputs().velocity, -(7 << 15));
-    // With the tick: after the positions.
+    // An align with the tick takes effect after the positions.
     let mut scale = LinearScale::new();
     scale.step(&Inputs { tick: true, ..velocity });
     wait(&mut scale, tied, 2 * PASS_CLOCKS);
     assert_eq!(scale.outputs().velocity, -(7 << 15));
-    // Without a loop on the scale: as they are.
+    // Without a loop on the scale, position and velocity pass unchanged.
     let watched = Inputs {
         use_scale: false,
         ..velocity
@@ -132,7 +132,7 @@ proptest! {
         let mut travelled = 0i32;
         for step in way {
             travelled += step;
-            // What is converted moves by `travelled`, the other one by what that is, to a half.
+            // The converted position moves by `travelled`, the other one by the equivalent, to half a count.
             let exact = f64::from(travelled) * ratio.value();
             if exact.abs() > 1e9 {
                 return Ok(());

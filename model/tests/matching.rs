@@ -7,7 +7,8 @@ use posicast_model::digitise::{DELAY_MAX_SAMPLES, DigitiseError};
 use posicast_model::machine_file::{self, Machine, Scale, ScaleUse};
 use proptest::prelude::*;
 
-/// Axes `a`, `b`, … of a kind, frequency and damping each, and further lines at the end.
+/// Returns a machine with the axes `a`, `b`, …, each with a kind, frequency and damping, and further lines at the
+/// end.
 fn machine(digitise: &str, axes: &[(&str, f64, f64)], more: &str) -> Machine {
     let mut text = format!(
         "name = \"stage_of_axes\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[fixed_point]\n\
@@ -34,8 +35,8 @@ fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-12, "{found} {expected}");
 }
 
-/// The XY stage, from another program: impulses by their closed form, two taps each by solving for the pole sum, the fraction
-/// convolved in, largest remainders.
+/// The XY stage, from another program: impulses in closed form, two taps each by solving for the pole sum, the
+/// fraction convolved in, largest remainders.
 #[test]
 fn golden_the_xy_stage() {
     let design = design_machine(&machine("modal", &XY, "[stage]\ncontour_speed = 0.1\n")).unwrap();
@@ -120,7 +121,7 @@ fn unit_an_axis_without_modes_gets_the_lag_of_the_others() {
     let delay = design.axes[1].delay;
     assert_eq!((delay.shaper_s, delay.mode_lag_s), (0.0, 0.0));
     near(delay.added_s, design.stage.unwrap().total_s);
-    // A two-tap table: a delay of a fraction of a sample.
+    // This is a two-tap table: a delay of a fraction of a sample.
     assert_eq!(design.axes[1].table.taps().len(), 2);
 }
 
@@ -152,7 +153,7 @@ fn unit_a_loop_that_holds_the_load_has_no_lag_of_modes() {
 
 #[test]
 fn unit_a_delay_beyond_the_ring_is_an_error_that_names_the_slowest_axis() {
-    // As much as the file may ask for fits at 10 kHz.
+    // The largest delay that the file may ask for fits at 10 kHz.
     design_machine(&machine("modal", &XY, "[stage]\nextra_delay_s = 1.0\n")).unwrap();
     let mut late = machine("modal", &XY, "[stage]\n");
     for extra_delay_s in [1.63, 1e300, f64::INFINITY] {
@@ -165,7 +166,7 @@ fn unit_a_delay_beyond_the_ring_is_an_error_that_names_the_slowest_axis() {
     }
 }
 
-/// A stage of two to four axes.
+/// Returns a stage of two to four axes.
 fn some_stage() -> impl Strategy<Value = (Machine, f64)> {
     let kinds = prop::sample::select(vec!["zv", "zvd", "ei", "ps-zv", "um-zvd", "two-hump-ei", "none"]);
     let methods = prop::sample::select(vec!["modal", "linear", "nearest"]);
@@ -185,13 +186,13 @@ proptest! {
         let mut largest_rounding_s = 0.0f64;
         let mut slowest_s = 0.0f64;
         for (axis, alone) in design.axes.iter().zip(&alone.axes) {
-            // Before rounding: as the taps are, not as the figures say.
+            // Before rounding, the taps count, not the printed figures.
             let own_s = alone.digitised.mean_delay_samples() / 1e4 + axis.delay.mode_lag_s;
             let real_s = axis.digitised.mean_delay_samples() / 1e4 + axis.delay.mode_lag_s;
             slowest_s = slowest_s.max(own_s);
             prop_assert!((real_s - stage.total_s).abs() < 1e-9, "{} {}", real_s, stage.total_s);
             prop_assert!(axis.delay.added_samples >= 0.0);
-            // After it.
+            // After rounding.
             let taps = axis.digitised.taps.as_slice();
             let span = f64::from(taps[taps.len() - 1].delay_samples - taps[0].delay_samples);
             let bound_s = 0.5 * span * axis.quantising_error() / 1e4 + 1e-15;
@@ -211,7 +212,7 @@ proptest! {
         let design = design_machine(&machine).unwrap();
         let alone = design_machine(&Machine { stage: None, ..machine.clone() }).unwrap();
         for ((axis, tables), alone) in machine.axes.iter().zip(&design.axes).zip(&alone.axes) {
-            // At the mode and beside it: (1 − f, f) has a gain of at most 1 for every mode.
+            // This holds at the mode and beside it: (1 − f, f) has a gain of at most 1 for every mode.
             for mode in [axis.modes[0].mode, axis.modes[0].mode.scaled(ratio)] {
                 let [later, before] = [tables, alone].map(|t| residual_vibration(&t.digitised.impulses(1e4), &mode));
                 prop_assert!(later <= before + 1e-12, "{} {}", later, before);

@@ -1,11 +1,12 @@
-//! A mode that was measured with the motor free, against the eigenvalues of two masses with a spring and a damper between them.
+//! A mode that was measured with the motor free, compared with the eigenvalues of two masses with a spring and a
+//! damper between them.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Matrix4};
 use posicast_model::mode::Mode;
 
-/// Two masses, the stiffness and the damping between them.
+/// Two masses, and the stiffness and the damping between them.
 struct TwoMasses {
     motor: f64,
     load: f64,
@@ -13,7 +14,7 @@ struct TwoMasses {
     damping: f64,
 }
 
-/// The mode of a complex pole: its size is ω, the part of it that decays ζω.
+/// Returns the mode of a complex pole: its magnitude is ω, its decay rate is ζω.
 fn mode_of(poles: impl IntoIterator<Item = nalgebra::Complex<f64>>) -> Mode {
     let pole = poles.into_iter().max_by(|a, b| a.im.total_cmp(&b.im)).unwrap();
     Mode {
@@ -23,7 +24,7 @@ fn mode_of(poles: impl IntoIterator<Item = nalgebra::Complex<f64>>) -> Mode {
 }
 
 impl TwoMasses {
-    /// Both move: states are two positions and two velocities.
+    /// Returns the mode with both masses free; the states are two positions and two velocities.
     #[rustfmt::skip]
     fn free(&self) -> Mode {
         let Self { motor, load, stiffness: k, damping: c } = *self;
@@ -36,7 +37,7 @@ impl TwoMasses {
         mode_of(system.complex_eigenvalues().iter().copied())
     }
 
-    /// The motor stands.
+    /// Returns the mode with the motor held.
     fn motor_held(&self) -> Mode {
         let system = Matrix2::new(0.0, 1.0, -self.stiffness / self.load, -self.damping / self.load);
         mode_of(system.complex_eigenvalues().iter().copied())

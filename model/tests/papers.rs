@@ -1,11 +1,11 @@
-//! The papers' tables: how many rows end with which verdict, and that none is a fault of ours.
+//! The papers' tables: how many rows have which verdict, and that none is a bug of ours.
 //!
-//! The counts are those of the notes on the papers, one row per printed number. A change of them is a change of what
-//! posicast says about a paper: it needs a reason.
+//! The counts are those of the notes on the papers, one row per printed number. If they change, posicast says
+//! something else about a paper, which needs a reason.
 
 use posicast_model::papers::{Paper, PaperVerdict, Value};
 
-/// Reproduced, errata, not comparable.
+/// Returns the numbers of reproduced, erratum and not comparable rows.
 fn counts(paper: Paper) -> [usize; 3] {
     let rows = paper.reproduce().unwrap();
     let faults: Vec<_> = rows
@@ -83,7 +83,7 @@ fn unit_the_figures_have_finite_points() {
     }
 }
 
-/// What is right in place of the errata, recomputed elsewhere, to the digits given there.
+/// The correct values that replace the errata, recomputed elsewhere, to the digits given there.
 #[test]
 fn golden_our_numbers_of_the_errata() {
     let cases: [(Paper, &str, &[f64], f64); 17] = [

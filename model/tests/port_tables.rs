@@ -1,4 +1,4 @@
-//! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
+//! The table of ports in a block's datasheet agrees with its list of ports. `scripts/regenerate` writes it again.
 
 use posicast_model::rtl::{
     Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, error_table,
@@ -24,7 +24,7 @@ const DATASHEETS: [(&str, PortList); 12] = [
     ("trace", trace::PORTS),
 ];
 
-/// Those of blocks with sizes.
+/// The lists of blocks with sizes.
 const SIZED: [(&str, &[SizedPortRow]); 3] = [
     ("cascade", cascade::PORTS),
     ("shaper", shaper::plain::PORTS),
@@ -33,7 +33,7 @@ const SIZED: [(&str, &[SizedPortRow]); 3] = [
 
 const TITLE: &str = "| port | | width |";
 
-/// A row of the table.
+/// Returns a row of the table.
 fn row(name: &str, direction: Direction, width: &str, signed: bool, unit: &str, meaning: &[&str]) -> String {
     let direction = match direction {
         Direction::Input => "in",
@@ -80,7 +80,7 @@ fn sized(list: &[SizedPortRow]) -> String {
     }))
 }
 
-/// `datasheet` with each of its tables of ports, which have as many `tables`, from its list.
+/// Returns `datasheet` with each of its tables of ports replaced; `None` if it does not have as many as `tables`.
 fn with_tables(datasheet: &str, tables: &[String]) -> Option<String> {
     let mut parts = datasheet.split(TITLE);
     let mut derived = parts.next()?.to_owned();

@@ -1,4 +1,4 @@
-//! What holds for every shaper of several modes at once, whatever the modes; and that absurd numbers end in errors.
+//! What holds for every shaper of several modes at once, whatever the modes; and that absurd numbers give errors.
 
 use crate::support;
 
@@ -22,7 +22,7 @@ fn sum(impulses: &ImpulseSequence) -> f64 {
     impulses.impulses().iter().map(|i| i.amplitude).sum()
 }
 
-/// Modes from 10 Hz on, each 1.15 to 3 times the one before.
+/// Returns modes from 10 Hz on, each 1.15 to 3 times the previous one.
 fn separate_modes(most: usize, damping: f64) -> impl Strategy<Value = Vec<Mode>> {
     prop::collection::vec((1.15..3.0, 0.0..damping), 1..=most).prop_map(|rows| {
         let mut frequency_hz = 10.0;
@@ -34,7 +34,7 @@ fn separate_modes(most: usize, damping: f64) -> impl Strategy<Value = Vec<Mode>>
     })
 }
 
-/// The sum `Σ A_i (t_i − t_n) e^{p (t_i − t_n)}` at a mode, in units of its radians.
+/// Returns the sum `Σ A_i (t_i − t_n) e^{p (t_i − t_n)}` at a mode, in units of its radians.
 fn moment(impulses: &ImpulseSequence, mode: &Mode) -> f64 {
     let end_s = impulses.duration_s();
     let (mut re, mut im) = (0.0, 0.0);
@@ -142,7 +142,8 @@ proptest! {
             let at = solution.low_hz + probe * (solution.high_hz - solution.low_hz);
             prop_assert!(worst(at) <= tolerance * (1.0 + 1e-6));
         }
-        // The residual says by itself whether a frequency serves, as long as it is not higher than every mode allows.
+        // The residual itself shows whether a frequency is suitable, as long as it is not higher than every mode
+        // allows.
         for k in 0..200 {
             let at = lowest_hz * (1.0 + f64::from(k) / 20.0 + probe / 20.0);
             if at < modes[0].frequency_hz && worst(at) < tolerance * (1.0 - 1e-6) {
@@ -176,7 +177,7 @@ proptest! {
             let at = 1.0 + found.index * (f64::from(k) / 500.0 - 1.0);
             prop_assert!(2.0 * gain(&found.ratios, at) <= epsilon * (1.0 + 1e-8));
         }
-        // More frequencies, a wider band; no move of a single one makes it wider.
+        // More frequencies give a wider band; changing a single one does not make it wider.
         if order > 1 && epsilon <= EPSILON_MAX[order as usize - 2] {
             prop_assert!(optimum(order - 1, epsilon).unwrap().index < found.index);
         }
@@ -290,7 +291,7 @@ fn unit_each_refusal_names_the_axis_the_kind_and_the_way_out() {
     assert!(refused("kind = \"simultaneous\"", &five).contains("5 modes: 1 to 4 are solved together"));
     let message = refused("kind = \"vibrationless\"\norder = 5\nepsilon = 0.5", &[(10.0, 0.0, "")]);
     assert!(message.contains("for epsilon from 1e-6 to 0.06"), "{message}");
-    // Damping lifts a mode above the tolerance of undamped amplitudes: named, not hidden.
+    // Damping raises a mode above the tolerance of the undamped amplitudes: it is named, not hidden.
     let message = refused(
         "kind = \"periodic\"",
         &[(10.0, 0.0, ""), (30.0, 0.2, ""), (90.0, 0.3, "")],

@@ -1,4 +1,5 @@
-//! What the EI, negative and bias-point kinds promise, at random modes and tolerances, from a millihertz to a megahertz.
+//! What the EI, negative and bias-point kinds guarantee, at random modes and tolerances, from a millihertz to a
+//! megahertz.
 
 use std::f64::consts::PI;
 
@@ -37,7 +38,7 @@ fn mode(damping: impl Strategy<Value = f64>) -> impl Strategy<Value = Mode> {
     })
 }
 
-/// A tolerance, small ones as often as large ones.
+/// Returns a tolerance, small ones as often as large ones.
 fn tolerance(most: f64) -> impl Strategy<Value = f64> {
     (1e-5f64.ln()..most.ln()).prop_map(f64::exp)
 }
@@ -114,7 +115,8 @@ proptest! {
                 prop_assert!(at(1.0 - off) <= tolerance * (1.0 + 1e-9) && at(1.0 + off) <= tolerance * (1.0 + 1e-9));
             }
             ShaperKind::UmZvd | ShaperKind::PsZvd => {
-                // Of second order round the mode: a hundredth of the distance, a ten-thousandth of the residual.
+                // It is of second order around the mode: a hundredth of the distance gives a ten-thousandth of the
+                // residual.
                 prop_assert!(at(1.0) < 1e-12);
                 prop_assert!(at(1.0 + 1e-5) < 1.1e-4 * at(1.0 + 1e-3) + 1e-12);
             }
@@ -183,7 +185,7 @@ proptest! {
 
 #[test]
 fn prop_designs_scale_with_the_frequency() {
-    // A power of two between the frequencies: every digit of every time must follow.
+    // The two frequencies differ by a power of two: every digit of every time must scale.
     for damping in [0.0, 0.1, 0.25] {
         for kind in HUMPS.into_iter().chain(NEGATIVE) {
             let [slow, fast] = [0.001, 0.001 * 2f64.powi(30)].map(|frequency_hz| {

@@ -1,4 +1,5 @@
-//! What holds for every shaper, whatever the mode: sums, zeros, tolerances, tables; and that absurd numbers end in errors.
+//! What holds for every shaper, whatever the mode: sums, zeros, tolerances, tables; and that absurd numbers give
+//! errors.
 
 use crate::support;
 
@@ -16,7 +17,7 @@ use posicast_model::taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIEN
 use proptest::prelude::*;
 use support::{machine, shaper};
 
-/// Kinds that leave nothing at the mode.
+/// Kinds that leave no vibration at the mode.
 const ZERO_KINDS: [(ShaperKind, u32); 4] = [
     (ShaperKind::Zv, 1),
     (ShaperKind::Zvd, 2),
@@ -24,7 +25,7 @@ const ZERO_KINDS: [(ShaperKind, u32); 4] = [
     (ShaperKind::Zvddd, 4),
 ];
 
-/// A mode from a centihertz to 100 kHz.
+/// Returns a mode from a centihertz to 100 kHz.
 fn mode(damping: impl Strategy<Value = f64>) -> impl Strategy<Value = Mode> {
     (-2.0..5.0, damping).prop_map(|(decade, damping)| Mode {
         frequency_hz: 10f64.powf(decade),
@@ -36,11 +37,11 @@ fn sum(impulses: &[Impulse]) -> f64 {
     impulses.iter().map(|i| i.amplitude).sum()
 }
 
-/// A machine with one or two modes of these kinds, at 10 kHz.
+/// Returns a machine with one or two modes of these kinds, at 10 kHz.
 fn some_machine() -> impl Strategy<Value = Machine> {
     let kinds = prop::sample::select(vec!["zv", "zvd", "zvdd", "zvddd", "mzv", "ei", "zv-ei"]);
     let methods = prop::sample::select(vec!["modal", "linear", "nearest"]);
-    // Up to the damping at which `zv-ei` still exists for every one of these tolerances.
+    // The damping goes up to the value at which `zv-ei` still exists for every one of these tolerances.
     let modes = prop::collection::vec((10.0..2000.0, 0.0..0.3), 1..3);
     (kinds, methods, modes, 0.01..0.2).prop_map(|(kind, method, modes, tolerance)| {
         let modes: Vec<_> = modes.into_iter().map(|(f, z): (f64, f64)| (f, z, "")).collect();
@@ -55,7 +56,7 @@ proptest! {
         prop_assert!((sum(shaper.impulses()) - 1.0).abs() < 1e-14);
         prop_assert!(shaper.impulses().iter().all(|i| i.amplitude > 0.0));
         prop_assert!(residual_vibration(shaper.impulses(), &mode) < 1e-12);
-        // A factor more, a derivative more: near the mode the residual is a higher power of the error.
+        // Each further factor adds a derivative: near the mode the residual is a higher power of the error.
         let off = residual_vibration(shaper.impulses(), &mode.scaled(1.0 + 1e-3));
         prop_assert!(off < 1.1 * (1.6e-3 / (1.0 - mode.damping * mode.damping).sqrt()).powi(family.1 as i32) + 1e-15);
     }
@@ -83,7 +84,7 @@ proptest! {
         family in prop::sample::select(ZERO_KINDS.to_vec()),
         ratio in 0.2..3.0,
     ) {
-        // Within a decade or so: beyond it, V is what is left of 1 after 2^50 or underflows.
+        // The frequencies are within about a decade: beyond it, V is the rest of 1 after 2^50, or underflows.
         let second = Mode { frequency_hz: first.frequency_hz * (second.frequency_hz.log10() - 1.5).exp2(), ..second };
         let a = zv::design(family.0, &first, family.1).unwrap();
         let b = zv::design(ShaperKind::Zvd, &second, 2).unwrap();
@@ -131,7 +132,7 @@ proptest! {
             let real = axis.digitised.taps.iter().find(|r| r.delay_samples == tap.delay_samples).unwrap();
             prop_assert!((f64::from(tap.coefficient) - real.weight * scale).abs() < 1.0);
         }
-        // The largest F: one more bit and some coefficient would not fit.
+        // This is the largest F: with one more bit, some coefficient would not fit.
         let largest = axis.digitised.taps.iter().map(|t| t.weight.abs()).fold(0.0, f64::max);
         prop_assert!(
             design.coefficient_fraction == COEFFICIENT_FRACTION_MAX || largest * scale * 2.0 > f64::from(COEFFICIENT_MAX) - 1.0
@@ -144,7 +145,7 @@ proptest! {
         let axis = &design.axes[0];
         let same_end = axis.table.longest_delay_samples() == axis.digitised.taps.last().unwrap().delay_samples;
         for figures in axis.mode_figures(&machine.axes[0], design.sample_hz) {
-            // Where the last tap rounds to zero the two residuals count from different ends.
+            // If the last tap rounds to zero, the two residuals count from different ends.
             if same_end {
                 let excess = figures.residual_quantised - figures.residual_digitised;
                 prop_assert!(excess.abs() <= axis.quantising_error() + 1e-14);
@@ -154,7 +155,7 @@ proptest! {
 
     #[test]
     fn prop_integer_output_stays_within_its_bound(machine in some_machine(), command in prop::collection::vec(any::<i32>(), 1..60)) {
-        // Small words: saturation is excluded from the bound.
+        // The words are small, because the bound does not cover saturation.
         let command: Vec<i64> = command.into_iter().map(|word| i64::from(word >> 8)).collect();
         let axis = &design_machine(&machine).unwrap().axes[0];
         let fraction = axis.table.coefficient_fraction();
@@ -209,7 +210,7 @@ proptest! {
     }
 }
 
-/// Any number at all, and often one that is nearly sensible.
+/// Returns any number, often one that is almost sensible.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         any::<f64>(),
@@ -286,7 +287,7 @@ proptest! {
         }
         let [start, end, velocity, acceleration, jerk] = limits;
         if let Ok(profile) = Profile::new(start, end, velocity, acceleration, jerk) {
-            // Samples by the million are legal, and slow: a thousand of them show as much.
+            // Millions of samples are valid and slow: a thousand of them show as much.
             let sample_hz = sample_hz.min(1000.0 / profile.duration_s());
             if let Ok(positions) = profile.samples(sample_hz, 0.0) {
                 let _ = command_words(&positions, end, bits, fraction);

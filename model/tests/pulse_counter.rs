@@ -1,11 +1,11 @@
-//! The pulse counter against what a motion engineer expects of it, alone and with its divider.
+//! What a motion engineer expects of the pulse counter, alone and with its divider.
 
 use posicast_model::rtl::divider::{self, Divider, DividerConfig};
 use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
 use proptest::prelude::*;
 use serde_json::Value;
 
-/// Clocks per tick of these tests.
+/// Number of clocks per tick in these tests.
 const TICK_CLOCKS: u32 = 200;
 /// Levels of A and B in the order of counting up.
 const STATES: [(bool, bool); 4] = [(false, false), (true, false), (true, true), (false, true)];
@@ -17,7 +17,7 @@ struct Bench {
     inputs: Inputs,
     angle: usize,
     until_tick: u32,
-    /// Indices that were latched.
+    /// Number of latched indices.
     indices: u32,
 }
 
@@ -58,7 +58,7 @@ impl Bench {
         (0..clocks).for_each(|_| self.clock());
     }
 
-    /// One quadrature state on or back, then so many clocks in it.
+    /// Makes one quadrature step up or down, then waits this many clocks.
     fn turn(&mut self, up: bool, clocks: u32) {
         self.angle = if up { self.angle + 1 } else { self.angle + 3 } % 4;
         (self.inputs.a, self.inputs.b) = STATES[self.angle];
@@ -69,7 +69,7 @@ impl Bench {
         self.counter.outputs().velocity
     }
 
-    /// Ends right after the velocity of a tick.
+    /// Runs until right after the velocity of a tick, and returns it.
     fn next_velocity(&mut self) -> i32 {
         while !self.counter.outputs().velocity_valid {
             self.clock();
@@ -79,7 +79,7 @@ impl Bench {
     }
 }
 
-/// What so many clocks per count are in Q16.16 counts per tick.
+/// Returns the velocity in Q16.16 counts per tick for this many clocks per count.
 fn exact(clocks_per_count: u32, up: bool) -> i32 {
     let size = (u64::from(TICK_CLOCKS) << 16) / u64::from(clocks_per_count);
     if up { size as i32 } else { -(size as i32) }
@@ -180,7 +180,7 @@ fn unit_the_index_latches_the_count_after_the_step_of_its_clock_and_presets_the_
     let shown = bench.counter.outputs();
     assert_eq!((shown.index_count, shown.count, shown.position), (2, 2, 1000));
     assert!(bench.indices == 1 && !shown.index_armed && !shown.index_seen);
-    // Once: the next index changes nothing.
+    // It latches once: the next index changes nothing.
     bench.inputs.z = false;
     bench.turn(true, 20);
     bench.inputs.z = true;
@@ -236,7 +236,7 @@ fn unit_at_standstill_the_velocity_falls_with_the_time_and_ends_at_zero() {
     for ticks in 1..40u32 {
         let velocity = i64::from(bench.next_velocity());
         assert!((last..0).contains(&velocity), "{velocity}");
-        // By then the last edge lies at least three ticks less back.
+        // By then the last edge was at least three ticks ago.
         if ticks > 3 {
             assert!(
                 velocity >= i64::from(exact((ticks - 3) * TICK_CLOCKS, false)),
@@ -309,7 +309,7 @@ proptest! {
             let before = counter.step(&inputs);
             let after = counter.outputs();
             prop_assert!(after.count.wrapping_sub(before.count).abs() <= 1);
-            // In the clock after the preset, to the count with the preset's step, without that of this clock.
+            // In the clock after the preset, the step of the preset is added to the count, not that of this clock.
             if presets {
                 prop_assert_eq!(before.count.wrapping_sub(after.origin), inputs.preset_value);
             }
@@ -358,7 +358,7 @@ proptest! {
     }
 }
 
-/// A counter by `hold` and one by `step`.
+/// A counter advanced by `hold` and one by `step`.
 #[derive(Default)]
 struct Both {
     fast: PulseCounter,

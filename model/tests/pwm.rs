@@ -1,4 +1,4 @@
-//! The PWM's model against its pin rule, its fast path, and what a motion engineer expects of it.
+//! The PWM's model compared with its pin rule and its fast path, and what a motion engineer expects of it.
 
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Pattern, Timing};
 use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, Gates, Inputs, Outputs, Pwm, PwmConfig};
@@ -15,7 +15,7 @@ fn config() -> PwmConfig {
     PwmConfig::new(ActiveLow::default(), 1, 1).unwrap()
 }
 
-/// Inputs without any fault.
+/// Returns inputs without any fault.
 fn healthy(timing: &Timing) -> Inputs {
     Inputs {
         enable: true,
@@ -39,7 +39,8 @@ fn gates(shown: &Outputs) -> Gates {
     }
 }
 
-/// A PWM that has just begun to run, at the first position of its first period, with `inputs` since long.
+/// Returns a PWM that has just begun to run, at the first position of its first period, with `inputs` applied for a
+/// long time.
 fn started(inputs: &Inputs) -> Pwm {
     let mut pwm = Pwm::new(&config());
     let clears = Inputs {
@@ -68,7 +69,7 @@ fn commands() -> impl Strategy<Value = Vec<(usize, i64)>> {
     prop::collection::vec((0usize..40, -120i64..=120), 1..60)
 }
 
-/// Every gate in every clock, by the pin rule.
+/// Returns every gate in every clock, by the pin rule.
 fn by_the_rule(timing: &Timing, at_peak: bool, latched: &[Latched]) -> Vec<Gates> {
     let rising = timing.period / 2;
     let mut bridge = Bridge::default();
@@ -93,7 +94,7 @@ fn by_the_rule(timing: &Timing, at_peak: bool, latched: &[Latched]) -> Vec<Gates
     shown
 }
 
-/// Every gate in every clock, by the clocked model.
+/// Returns every gate in every clock, by the clocked model.
 fn by_the_clock(timing: &Timing, at_peak: bool, latched: &[Latched]) -> Vec<Gates> {
     let with = |latched: &Latched| Inputs {
         mode: latched.mode as u8,
@@ -148,7 +149,7 @@ proptest! {
             let latched: Vec<_> = duties.iter().map(|&duty| Latched { mode, duty, max_duty: 0xffff }).collect();
             let shown = by_the_rule(&timing, at_peak, &latched);
             for sides in [|g: &Gates| (g.a_high, g.a_low), |g: &Gates| (g.b_high, g.b_low)] {
-                // Runs of equal states: neither side, high, low.
+                // A run is a sequence of equal states: neither side, high, or low.
                 let mut runs: Vec<((bool, bool), i64)> = Vec::new();
                 for gates in &shown {
                     match runs.last_mut() {
@@ -157,7 +158,7 @@ proptest! {
                     }
                 }
                 prop_assert!(runs.iter().all(|(state, _)| *state != (true, true)));
-                // The first begins, the last ends somewhere.
+                // The first and the last run may be cut.
                 for (state, clocks) in runs.iter().skip(1).rev().skip(1) {
                     let least = if *state == (false, false) { timing.dead_time } else { timing.minimum_pulse };
                     prop_assert!(*clocks >= least, "{:?} for {} clocks, {:?}", state, clocks, timing);
@@ -262,7 +263,8 @@ fn unit_the_floor_holds_and_running_refuses() {
     assert_eq!(pwm.outputs(&inputs).dead_time_used, 1);
 }
 
-/// With 2 · (dead time + minimum pulse) both sides last the minimum and no longer, so that a leg that is late stays late.
+/// With 2 · (dead time + minimum pulse) both sides last the minimum and no longer, so that a leg that is late stays
+/// late.
 #[test]
 fn unit_a_period_without_slack_is_not_started() {
     let with_period = |period| {
@@ -309,7 +311,7 @@ fn unit_a_leg_that_starts_late_catches_up() {
     };
     let edges: Vec<Option<usize>> = (0..60).map(&mut edge_of).collect();
     assert_eq!((edges[0], edges[27]), (Some(56), edges[59]), "{edges:?}");
-    // By the pin rule: half the pulse before the peak; the pins follow by a clock.
+    // By the pin rule, half the pulse is before the peak; the pins follow by a clock.
     assert_eq!(edges[59], Some(35 - 15 / 2 + 1));
 }
 
@@ -350,15 +352,16 @@ fn unit_the_time_base_sets_the_phase_while_off() {
         inputs.sync = true;
         pwm.step(&inputs);
         inputs.sync = false;
-        // The first finds it elsewhere, and it waits at 12 for the second. From then on the position is 12 in the clock after
-        // `sync`; the trigger comes with the pins, another clock later.
+        // The first `sync` finds it elsewhere, and it waits at 12 for the second. From then on the position is 12 in
+        // the clock after `sync`; the trigger comes with the pins, another clock later.
         pwm.step(&inputs);
         assert_eq!(pwm.outputs(&inputs).trigger, turn > 0, "turn {turn}");
         pwm.hold(&inputs, 298);
     }
 }
 
-/// What runs when, with a host that enables at once: clocks from reset to `running`, and whether it was ever out of phase.
+/// Returns, for a host that enables at once, the clocks from reset to `running`, and whether the PWM was ever out of
+/// phase.
 fn first_start(config: &PwmConfig, inputs: &Inputs, tick_clocks: u64) -> (Option<u64>, bool) {
     let mut pwm = Pwm::new(config);
     let mut start = None;
@@ -400,7 +403,7 @@ fn unit_on_a_time_base_it_does_not_start_before_it_is_in_phase() {
     assert!(first_start(&alone, &healthy(&timing), 1000).1);
 }
 
-/// Another period, taken while off: it is in phase by chance only, and waits for the next `sync`.
+/// Another period, set while it is off: the PWM is in phase by chance only, and waits for the next `sync`.
 #[test]
 fn unit_with_another_period_it_waits_for_the_time_base_again() {
     for config in [config(), config().on_time_base()] {
@@ -451,7 +454,7 @@ fn unit_a_mask_takes_the_pins_and_nothing_else() {
     for clock in 0..800 {
         let inputs = if (200..600).contains(&clock) { &masked } else { &open };
         let (expected, shown) = (bare.step(&open), hidden.step(inputs));
-        // One clock later, as a register does.
+        // A register shows it one clock later.
         let pins = if (201..601).contains(&clock) {
             Gates::default()
         } else {

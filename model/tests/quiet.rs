@@ -1,4 +1,5 @@
-//! What a block says of its quiet clocks, against the block clock by clock. A new block gets a line in `blocks`.
+//! What a block says about its quiet clocks, compared with the block clock by clock. A new block needs a line in
+//! `blocks`.
 
 use crate::support::random_inputs;
 use crate::support::stage;
@@ -32,7 +33,7 @@ use random_inputs::{Hints, Random, RandomInputs, STAGE, TICK_CLOCKS};
 use stage::{axis, pwm_config, settings, shaper_config, stage};
 use wrong::Wrong;
 
-/// A block to be tried, and values for its inputs.
+/// A block to be tested, and values for its inputs.
 struct Tried {
     name: &'static str,
     make: Box<dyn Fn() -> Box<dyn Moore>>,
@@ -208,7 +209,7 @@ fn blocks() -> Vec<Tried> {
     ]
 }
 
-/// Two of a block, one clocked, one passed where it is quiet.
+/// Two instances of a block: one is clocked, the other skips its quiet clocks.
 struct Pair {
     clocked: Box<dyn Moore>,
     passed: Box<dyn Moore>,
@@ -242,7 +243,7 @@ impl Pair {
         }
     }
 
-    /// What the passed one shows with the inputs, counters as so many clocks later.
+    /// Returns what the skipping instance shows with the inputs, with its counters advanced by this many clocks.
     fn expected(&mut self, clocks: u64) -> Vec<u64> {
         let mut shown = vec![0; self.outputs.len()];
         self.passed.show_with(&self.inputs.values, &mut shown);
@@ -262,7 +263,8 @@ impl Pair {
         })
     }
 
-    /// Some clocks with the same inputs, but for those that are ignored; returns how many of them were passed.
+    /// Plays some clocks with the same inputs, except for those that are ignored; returns how many of them were
+    /// skipped.
     fn hold(&mut self, clocks: u64) -> Result<u64, String> {
         let (mut left, mut quiet) = (clocks, 0);
         let mut shown = vec![0; self.outputs.len()];

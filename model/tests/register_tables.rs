@@ -1,4 +1,4 @@
-//! `docs/register-tables.md` is what the register maps say. `scripts/regenerate` writes it anew.
+//! `docs/register-tables.md` agrees with the register maps. `scripts/regenerate` writes it again.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -47,7 +47,7 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
     ])
 }
 
-/// The example's.
+/// Returns the stage of the example.
 fn stage() -> Result<Component, Box<dyn Error>> {
     let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml"))?;
     let stage = hardware::stage(&machine, &design_machine(&machine)?)?;

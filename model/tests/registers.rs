@@ -1,4 +1,4 @@
-//! The bank's fast path against its step, descriptions that do not hold together, and parts that make no whole.
+//! The bank's fast path compared with its step, inconsistent register maps, and parts that do not form a component.
 
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::composition::{Composition, CompositionError, Part};
@@ -49,7 +49,7 @@ fn description() -> Description {
         )
 }
 
-/// What is wrong with the description after `change`.
+/// Returns what is wrong with the register map after `change`.
 fn refused(change: impl FnOnce(&mut Description)) -> MapError {
     let mut description = description();
     change(&mut description);
@@ -171,7 +171,7 @@ fn unit_parts_that_make_no_whole_are_refused() {
         "two parts are called `first`",
         "driven by `second.quotient`",
         "nothing drives the net `nothing`",
-        "no port `strat`",
+        "no unconnected port `strat`",
         "other bits than the net `quotient`",
         "cannot be tied to 2",
         "`steps` is no net",
@@ -181,7 +181,7 @@ fn unit_parts_that_make_no_whole_are_refused() {
     }
 }
 
-/// Inputs of the small bank: reset seldom, the rest at random, held for some clocks.
+/// Returns inputs of the small bank: a rare reset, the rest at random, held for some clocks.
 fn traffic() -> impl Strategy<Value = Vec<(Vec<u64>, u64)>> {
     let inputs = (
         0u32..40,

@@ -1,4 +1,4 @@
-//! The command FIFO's model: what a host sees, and `hold` against `step`.
+//! The command FIFO's model: what a host sees, and `hold` compared with `step`.
 
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::segments::{
@@ -42,7 +42,7 @@ fn write_words(segments: &mut Segments, words: [u32; ENTRY_WORDS]) {
     }
 }
 
-/// One tick; what the outputs show after it.
+/// Plays one tick; returns the outputs after it.
 fn tick(segments: &mut Segments) -> Outputs {
     tick_with(segments, &QUIET)
 }
@@ -110,9 +110,9 @@ fn without_an_entry_while_moving_it_stops_by_itself_and_says_so() {
     let shown = segments.outputs(2);
     assert!(shown.underrun && shown.velocity == 0 && shown.acceleration == 0);
     assert_eq!(shown.state, SegmentsState::Stopped);
-    // v = 55 counts per tick after 10 ticks, against 1 count per tick²: 55 ticks, and one to be at rest.
+    // v = 55 counts per tick after 10 ticks, decelerated by 1 count per tick²: 55 ticks, and one to be at rest.
     assert_eq!(states.iter().filter(|state| **state == SegmentsState::Stop).count(), 56);
-    // Nothing is taken until the host says so.
+    // Nothing is taken until the host permits it.
     write(&mut segments, &jerk(1, 0));
     assert!(segments.outputs(2).refused && segments.outputs(2).level == 0);
     segments.step(&Inputs { restart: true, ..QUIET });
@@ -274,7 +274,8 @@ fn from(counts: i32, entry: &Entry, inputs: &Inputs, ticks: usize) -> Vec<Output
 fn the_command_stops_before_the_end_of_its_word_and_never_wraps() {
     let way = |side: i32| (side * (REACH_COUNTS - 3_000), jerk(600, i64::from(side) << 32));
     for side in [1, -1] {
-        // Up to 1,200 counts per tick, against 1 count per tick², and against next to nothing: what is left stands at once.
+        // Up to 1,200 counts per tick, decelerated by 1 count per tick², and by almost nothing: the rest stops at
+        // once.
         for stop_deceleration in [1 << 24, 1, 0] {
             let inputs = Inputs {
                 stop_deceleration,
@@ -296,7 +297,7 @@ fn the_command_stops_before_the_end_of_its_word_and_never_wraps() {
                 assert!(stop_deceleration == 0 || decelerates || stands, "{before:?} {after:?}");
             }
         }
-        // A rotary axis turns for ever; and the way back from the end is open.
+        // A rotary axis turns for ever, and the way back from the end is open.
         let (counts, entry) = way(side);
         let shown = from(counts, &entry, &Inputs { modulo: true, ..QUIET }, 590);
         assert!(shown.iter().all(|shown| !shown.out_of_range));
@@ -315,7 +316,7 @@ fn the_command_stops_before_the_end_of_its_word_and_never_wraps() {
     }
 }
 
-/// Three moves of four ticks, by 2, 6 and −4 counts, of three entries each: jerk j, −j, −j, j.
+/// Returns three moves of four ticks, by 2, 6 and −4 counts, of three entries each: the jerks j, −j, −j, j.
 fn three_moves() -> Vec<Entry> {
     let moves = [1i64, 3, -2].map(|way| way << 32);
     let entries = moves.map(|way| [jerk(1, way), jerk(2, -way), jerk(1, way)]);
@@ -341,7 +342,8 @@ fn a_feed_hold_stands_at_the_next_rest_and_keeps_the_queue() {
                 segments.outputs(2)
             })
             .collect();
-        // The first tick reads, and moves nothing. A move that has begun is played to its end, and none after it begins.
+        // The first tick reads and moves nothing. A move that has begun is played to its end, and none after it
+        // begins.
         let moves_played = [0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3][asked];
         let stands = shown[19];
         assert_eq!(
@@ -355,7 +357,7 @@ fn a_feed_hold_stands_at_the_next_rest_and_keeps_the_queue() {
             (moves_played < 3, moves_played < 3)
         );
         assert_eq!(usize::from(stands.level), [8, 5, 2, 0][moves_played]);
-        // It goes on where it stood: each tick that is left is played, and the end is exact.
+        // It continues from where it stood: each remaining tick is played, and the end is exact.
         let left = (1..40).find(|_| tick(&mut segments).state == SegmentsState::Hold);
         assert_eq!(left, Some((4 * (3 - moves_played)).max(1)));
         assert_eq!(segments.command(), Integrator::resting_at(4));

@@ -1,4 +1,5 @@
-//! What a machine does that is handed over from one table to another while it moves: the figures of `docs/shaper.md`.
+//! Motion of a machine whose shaper changes from one table to another while it moves: the figures of
+//! `docs/shaper.md`.
 
 use crate::support;
 
@@ -24,14 +25,14 @@ fn zvd(frequency_hz: f64) -> TapTable {
     design_machine(&machine).unwrap().axes[0].table.clone()
 }
 
-/// A move of constant velocity: at `CHANGE` it is in the middle of it, and at both ends it excites.
+/// Returns a move of constant velocity: `CHANGE` is in the middle of it, and both ends excite vibration.
 fn words() -> Vec<i64> {
     let there = |n: usize| (DISTANCE * n.min(MOVE_SAMPLES) as f64 / MOVE_SAMPLES as f64).round() as i64;
     (0..MOVE_SAMPLES + 400).map(there).collect()
 }
 
-/// Largest step of the shaped position from sample to sample, and the amplitude with which a machine of `frequency_hz`
-/// rings once the shaped command stands still, per million of the distance.
+/// Returns the largest step of the shaped position from sample to sample, and the amplitude with which a machine of
+/// `frequency_hz` rings once the shaped command stands still, per million of the distance.
 fn run(old: &TapTable, new: &TapTable, how: u8, frequency_hz: f64) -> (i64, f64) {
     let config = ShaperConfig::new(32, old.clone())
         .unwrap()
@@ -69,7 +70,7 @@ fn run(old: &TapTable, new: &TapTable, how: u8, frequency_hz: f64) -> (i64, f64)
 #[test]
 fn prop_after_a_handover_the_residual_is_that_of_the_new_shaper() {
     let (old, new) = (zvd(40.0), zvd(60.0));
-    // The machine's mode went from 40 to 60 Hz: a lighter load, for example.
+    // The machine's mode went from 40 to 60 Hz, for example because of a lighter load.
     let (step_alone, alone) = run(&new, &new, swap_how::AT_ONCE, 60.0);
     let (_, not_changed) = run(&old, &old, swap_how::AT_ONCE, 60.0);
     let (step_at_once, _) = run(&old, &new, swap_how::AT_ONCE, 60.0);

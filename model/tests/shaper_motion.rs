@@ -1,5 +1,4 @@
-//! The shaper for commands in motion: its two models against each other, and against what a handover and a modulo axis
-//! promise.
+//! The motion shaper: its two models compared with each other, and with what a handover and a modulo axis guarantee.
 
 use posicast_model::rtl::shaper::{Inputs, MotionShaper, Shaper, ShaperConfig, ShaperMotion, swap_how};
 use posicast_model::taps::{Tap, TapTable};
@@ -8,7 +7,7 @@ use std::collections::BTreeMap;
 
 const FRACTION: u32 = 14;
 
-/// Tables of up to 8 taps whose coefficients sum to one.
+/// Returns tables of up to 8 taps whose coefficients sum to one.
 fn tables(longest: u32) -> impl Strategy<Value = TapTable> {
     prop::collection::btree_map(0..=longest, -9000..9000i32, 1..8).prop_map(|taps| complete(taps).unwrap())
 }
@@ -34,7 +33,7 @@ fn config(word_bits: u32, table: TapTable, channels: u32, modulo: bool) -> Shape
 #[derive(Debug, Clone)]
 enum Event {
     Sample([i64; 3]),
-    /// So many samples that repeat the last.
+    /// This many samples that repeat the last one.
     Hold(u32),
     Start([i64; 3]),
     Swap(TapTable, u8, u8),
@@ -91,7 +90,7 @@ impl Both {
         expected
     }
 
-    /// Loads and asks, unless a swap is on its way or the bank is in use; says whether it did.
+    /// Loads a table and requests a swap, unless a swap is pending or the bank is in use; returns whether it did.
     fn swap(&mut self, table: &TapTable, bank: u8, how: u8) -> bool {
         if self.clocked.outputs().swap_pending || self.clocked.outputs().bank == bank {
             return false;
@@ -142,7 +141,8 @@ proptest! {
         }
     }
 
-    /// Not the formula of the datasheet but what it is made from: every increment goes through one table, whole.
+    /// This checks not the formula of the datasheet but its basis: every increment passes through one table as a
+    /// whole.
     #[test]
     fn prop_in_a_handover_each_increment_goes_through_exactly_one_table(
         old in tables(30), new in tables(30), samples in prop::collection::vec(-100_000..100_000i64, 80), change in 1..50usize
@@ -177,7 +177,8 @@ proptest! {
             }
             let [y, y_velocity, _] = shaper.push([*next, next - x, 0]);
             x = *next;
-            // Both positions and the velocity are rounded by half an LSB each, so that an integer differs by one at most.
+            // Both positions and the velocity are rounded by at most half an LSB each, so that integers differ by one
+            // at most.
             prop_assert!((y - position - y_velocity).abs() <= 1, "sample {}", n);
             summed += y_velocity;
             prop_assert!((y - summed).abs() <= (n as i64 + 3) / 2, "sample {}", n);

@@ -1,4 +1,4 @@
-//! The shaper's two models against each other, and against exact arithmetic.
+//! The shaper's two models compared with each other, and with exact arithmetic.
 
 use fixed::types::I96F32;
 use posicast_model::rtl::shaper::{Inputs, Outputs, SampleShaper, Shaper, ShaperConfig, pass_clocks};
@@ -6,13 +6,13 @@ use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
-/// Tables of up to 40 taps whose coefficients sum to one, of any sign and any size that fits.
+/// Returns tables of up to 40 taps whose coefficients sum to one, of any sign and any size that fits.
 fn tables(fraction: u32, longest: u32) -> impl Strategy<Value = TapTable> {
     let size = (4 << fraction).min(COEFFICIENT_MAX);
     prop::collection::btree_map(0..=longest, -size..=size, 1..40).prop_map(move |taps| complete(fraction, taps))
 }
 
-/// Makes the coefficients sum to 2^fraction by changing as few as it takes, from the last.
+/// Makes the coefficients sum to 2^fraction by changing as few as possible, beginning with the last.
 fn complete(fraction: u32, mut taps: BTreeMap<u32, i32>) -> TapTable {
     taps.values_mut().filter(|c| **c == 0).for_each(|c| *c = 1);
     let mut missing = (1i64 << fraction) - taps.values().map(|&c| i64::from(c)).sum::<i64>();
@@ -30,7 +30,7 @@ fn complete(fraction: u32, mut taps: BTreeMap<u32, i32>) -> TapTable {
     TapTable::new(fraction, list.collect()).unwrap_or_else(|_| TapTable::bypass(fraction).unwrap())
 }
 
-/// What happens to a shaper, in the order of a sensible host, and what does not make sense.
+/// Events of a shaper: those of a sensible host, and invalid ones.
 #[derive(Debug, Clone)]
 enum Event {
     Sample { x: i64, pause: u32 },
@@ -110,7 +110,7 @@ proptest! {
                     prop_assert_eq!(clocked.outputs().y, fast.start(x));
                 }
                 Event::Table(table, bank) => {
-                    // A host loads a bank at rest: the hardware refuses another, and so is not asked.
+                    // A host loads a bank at rest: the hardware would refuse another, so that one is not requested.
                     if next_table.is_none() && clocked.outputs().bank != bank {
                         load(&mut clocked, &table, bank);
                         prop_assert!(clocked.outputs().swap_pending && !clocked.outputs().refused);

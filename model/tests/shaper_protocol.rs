@@ -14,7 +14,7 @@ fn table(taps: &[(u32, i32)]) -> TapTable {
     TapTable::new(16, taps.iter().map(tap).collect()).unwrap()
 }
 
-/// Half now, half four samples ago.
+/// Returns a shaper whose output is half the current sample plus half the one four samples ago.
 fn shaper() -> Shaper {
     let config = ShaperConfig::new(16, table(&[(0, ONE / 2), (4, ONE / 2)])).unwrap();
     Shaper::new(&config, 99)
@@ -55,7 +55,7 @@ fn start(x: i64) -> Inputs {
     }
 }
 
-/// Clocks `inputs`, and shows what the outputs are after it.
+/// Clocks `inputs`, and returns the outputs after it.
 fn clock(shaper: &mut Shaper, inputs: Inputs) -> Outputs {
     shaper.step(&inputs);
     shaper.outputs()
@@ -68,7 +68,7 @@ fn idle(shaper: &mut Shaper, clocks: u32) -> Outputs {
     shaper.outputs()
 }
 
-/// A strobe and its whole pass; gives `y`.
+/// Plays a strobe and its whole pass; returns `y`.
 fn sample(shaper: &mut Shaper, x: i64) -> i64 {
     shaper.step(&strobe(x));
     let shown = (0..300).map(|_| idle(shaper, 1)).find(|shown| shown.valid);
@@ -122,7 +122,7 @@ fn unit_an_early_strobe_drops_the_pass_but_not_the_sample() {
     let mut shaper = shaper();
     sample(&mut shaper, 100);
     clock(&mut shaper, strobe(200));
-    // The last clock in which it still is an overrun: the dropped pass was about to show its result.
+    // The last clock of the pass is still an overrun: the dropped pass was about to show its result.
     idle(&mut shaper, pass_clocks(2) - 2);
     let shown = clock(&mut shaper, strobe(300));
     assert!(shown.overrun && shown.busy && !shown.valid);
@@ -148,7 +148,7 @@ fn unit_an_early_strobe_drops_the_pass_but_not_the_sample() {
     );
 }
 
-/// What a host reads back of a place: coefficient and delay.
+/// Returns what a host reads back at a place: coefficient and delay.
 fn read(shaper: &mut Shaper, bank: u8, index: u16) -> (i32, u16) {
     let place = Inputs {
         tap_bank: bank,
@@ -187,7 +187,7 @@ fn unit_taps_of_all_banks_are_read_back() {
         assert_eq!([0, 1, 2].map(|index| read(&mut shaper, 2, index)), of_second);
         assert_eq!(read(&mut shaper, 3, 0), (0, 0));
     }
-    // Begun anew: what was loaded behind it is no tap of the table any more.
+    // Loading begins again: taps loaded after it no longer belong to the table.
     clock(&mut shaper, swap(0));
     sample(&mut shaper, 0);
     clock(&mut shaper, write(2, 0, 3, 1));
@@ -214,7 +214,7 @@ fn unit_a_read_waits_for_a_pass_and_for_a_write_and_changes_neither() {
     clock(&mut shaper, start(0));
     clock(&mut shaper, strobe(100));
     clock(&mut shaper, read);
-    // The strobe was clock 0: busy until `valid`, whose clock serves the read.
+    // The strobe was clock 0: the shaper is busy until `valid`, in whose clock the read is done.
     for _ in 2..pass_clocks(2) {
         assert!(clock(&mut shaper, Inputs::default()).tap_read_waits);
     }
@@ -397,7 +397,7 @@ fn unit_a_full_table_takes_no_more() {
             "{index}"
         );
     }
-    // An index of six bits cannot go on from here; only 0 is in sequence, and begins anew.
+    // An index of six bits cannot continue from here; only 0 is in sequence, and begins again.
     assert!(clock(&mut shaper, write(1, 63, 1, 0)).refused);
     assert!(clock(&mut shaper, swap(1)).swap_pending);
     assert_eq!((0..64).map(|_| sample(&mut shaper, 6400)).last(), Some(6400));

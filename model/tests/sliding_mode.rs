@@ -1,4 +1,5 @@
-//! The controller: golden vectors, float against fixed point, clocks against ticks, and closed loops on a mass with friction.
+//! The controller: golden vectors, floating against fixed point, clocks against ticks, and closed loops on a mass
+//! with friction.
 
 use posicast_model::control::{FloatController, Gains, Tracking};
 use posicast_model::rtl::sliding_mode::{
@@ -7,7 +8,7 @@ use posicast_model::rtl::sliding_mode::{
 use proptest::prelude::*;
 use serde_json::Value;
 
-/// The golden coefficients, in mA.
+/// Returns the golden coefficients in mA.
 fn golden_gains(coefficients: &Value, clamp_ma: f64) -> Gains {
     let of = |key: &str| coefficients[key].as_f64().unwrap();
     let per_acceleration = of("gain_mA_per_count_per_T2");
@@ -40,7 +41,7 @@ fn golden_vectors_within_a_milliampere() {
         let motion = TickMotion {
             position_reference: (of("r_n") << 8) as i32,
             velocity_reference: ((of("r_n") - of("r_nm1")) << 16) as i32,
-            // One vector jumps by 500 counts, which a word does not hold: it is clamped all the same.
+            // One vector jumps by 500 counts, which a word does not hold: it is clamped like any other.
             acceleration_reference: (acceleration << 24).clamp(i32::MIN.into(), i32::MAX.into()) as i32,
             position: of("x_n") as i32,
             velocity: ((of("x_n") - of("x_nm1")) << 16) as i32,
@@ -62,7 +63,7 @@ fn law() -> impl Strategy<Value = Law> {
     prop_oneof![Just(Law::SlidingMode), Just(Law::Pd), Just(Law::Pid)]
 }
 
-/// Gains of any sign over four decades, such that no word but the command saturates.
+/// Returns gains of any sign over four decades, such that no word but the command saturates.
 fn moderate_gains() -> impl Strategy<Value = Gains> {
     let signed = |size: f64| {
         (prop::bool::ANY, -4.0..0.0f64).prop_map(move |(negative, power)| {
@@ -105,7 +106,7 @@ fn moderate_gains() -> impl Strategy<Value = Gains> {
     })
 }
 
-/// e up to 20 counts, velocities up to 10 counts/T apart.
+/// Returns motion with e up to 20 counts and velocities that differ by up to 10 counts/T.
 fn moderate_motion() -> impl Strategy<Value = TickMotion> {
     let small = 20i32 << 16;
     (
@@ -137,10 +138,11 @@ fn tracking(motion: &TickMotion) -> Tracking {
     }
 }
 
-/// The bound of the datasheet: how far the fixed-point command may be from the floating-point one, in command units.
-/// `gains` are wanted, the hardware has `actual`; `integral` is ∫e in counts·T.
+/// Returns the bound of the datasheet: how far the fixed-point command may be from the floating-point one, in command
+/// units. `gains` are wanted, the hardware has `actual`; `integral` is ∫e in counts·T.
 fn command_bound(gains: &Gains, actual: &Gains, motion: &Tracking, law: Law, integral: f64) -> f64 {
-    // Of a product: what its gain lost, times the operand, and what the operand lost, times the gain.
+    // The error of a product is the rounding of its gain times the operand, plus the rounding of the operand times
+    // the gain.
     let product = |row: SettingRow, operand: f64, lost: f64| {
         (gains.get(row) - actual.get(row)).abs() * (operand.abs() + lost) + gains.get(row).abs() * lost
     };
@@ -206,7 +208,7 @@ proptest! {
             let bound = command_bound(&gains, &actual, &seen, law, integral);
             prop_assert!((command - wanted.command).abs() <= bound, "{command} {wanted:?} {bound}");
             prop_assert_eq!((shown.saturated_high | shown.saturated_low) & !(1 << 5), 0);
-            // Right at the limit the two may freeze differently.
+            // Right at the limit the two may freeze the integral differently.
             let limited = i8::from(shown.limited_high) - i8::from(shown.limited_low);
             if limited != wanted.limited {
                 break;
@@ -246,11 +248,11 @@ proptest! {
                 inputs = Inputs { start: false, setting: settings.word(usize::from(address)), ..inputs };
             };
             prop_assert_eq!(clocks, CONTROL_CLOCKS);
-            // The flag of a duty that was cut shows a clock after it.
+            // The flag of a limited duty shows one clock after it.
             let Outputs { saturated_high, saturated_low, .. } = clocked.outputs();
             let shown = Outputs { saturated_high, saturated_low, ..shown };
             let expected = fast.control(Law::from_bits(laws[tick]), modulo, &motion, &settings);
-            // The law is held until the next start, and with it the address of step 0: 0.
+            // The law is held until the next start, and with it the address of step 0, which is 0.
             prop_assert_eq!(shown, expected);
         }
     }
@@ -274,7 +276,7 @@ proptest! {
 
 #[test]
 fn unit_at_rest_on_the_reference_nothing_is_commanded() {
-    // sgn(0) = 0: neither the boundary layer nor the Coulomb term, however steep, moves anything.
+    // sgn(0) = 0: neither the boundary layer nor the Coulomb term, however steep, gives a command.
     let mut settings = Settings::default();
     for row in SettingRow::ALL {
         settings.set_gain(row, Gain::nearest(f64::from(row.exponent() + 16).exp2(), row).unwrap());
@@ -305,16 +307,16 @@ fn unit_the_integral_freezes_against_the_limit_and_survives_a_change_of_law() {
         };
         f64::from(controller.control(law, false, &motion, &settings).command) / 4096.0
     };
-    // 10 counts a tick: 0.1 more each; the limit is passed at the 11th sum and frozen there.
+    // 10 counts per tick add 0.1 each; the limit is exceeded at the 11th sum and frozen there.
     let wound: Vec<f64> = (0..100).map(|_| tick(Law::Pid, 10)).collect();
     assert!((wound[5] - 0.5).abs() < 2e-3, "{wound:?}");
     assert_eq!(wound[99], 1.0);
-    // Another law leaves the integral alone.
+    // Another law does not change the integral.
     for _ in 0..50 {
         assert_eq!(tick(Law::Pd, -10), 0.0);
         tick(Law::SlidingMode, 500);
     }
-    // At once off the limit, not after 90 ticks.
+    // It leaves the limit at once, not after 90 ticks.
     let back: Vec<f64> = (0..4).map(|_| tick(Law::Pid, -10)).collect();
     assert!(back[0] == 1.0 && (back[3] - 0.8).abs() < 3e-3, "{back:?}");
 }

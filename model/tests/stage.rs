@@ -1,4 +1,4 @@
-//! The stage of a machine file: that its parts fit together.
+//! The stage of a machine file: its parts fit together.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -6,7 +6,7 @@ use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageConfig;
 
-/// The example's stage, with these tables on its X axis.
+/// Returns the example's stage, with these tables on its X axis.
 fn stage(tables: &str) -> (StageConfig, Component) {
     let text = include_str!("../../examples/xy-stage.toml");
     let text = text.replacen("[axis.pwm]", &format!("{tables}\n[axis.pwm]"), 1);

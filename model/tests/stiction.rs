@@ -1,4 +1,4 @@
-//! The simulated axis as motor and table with friction that sticks, as `breakaway` in `[axis.mechanics]` asks for it.
+//! The simulated axis as motor and table with static friction, as `breakaway` in `[axis.mechanics]` requests it.
 
 use posicast_model::machine_file::{self, Machine};
 use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
@@ -19,7 +19,7 @@ const BACK: DrivePins = DrivePins {
     ..FORWARD
 };
 
-/// X of the XY stage with a torque drive; `keys` go into `[axis.mechanics]`.
+/// Axis X of the XY stage with a torque drive; `keys` go into `[axis.mechanics]`.
 fn machine(keys: &str, friction: &str) -> Machine {
     let text = format!(
         "name = \"m\"
@@ -59,7 +59,7 @@ fn plant(machine: &Machine) -> AxisPlant {
     AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default()).unwrap()
 }
 
-/// Periods of the PWM at a mean command.
+/// Plays periods of the PWM at a mean command.
 fn drive(plant: &mut AxisPlant, share: f64, periods: u32) {
     let forward = ((1.0 + share) / 2.0 * 2_500.0).round() as u64;
     for _ in 0..periods {
@@ -85,7 +85,7 @@ fn unit_without_friction_it_is_the_mode_of_both_masses() {
 #[test]
 fn unit_it_stays_below_the_breakaway_force_and_leaves_above() {
     let friction = "coulomb = 40.0\nviscous = 200.0";
-    // 50 N of 1425 N, slowly.
+    // 50 N of 1425 N, applied slowly.
     for (newton, moves) in [(50.0, false), (70.0, true)] {
         let mut plant = plant(&machine("breakaway = 60", friction));
         for part in 1..=100 {

@@ -1,4 +1,5 @@
-//! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
+//! The words of the supervisor: computed by hand, never less strict than the file, and an error for what does not
+//! fit.
 
 use posicast_model::control::{
     LostSign, Supervision, SupervisionError, TableBounds, lost_sign, no_travel, supervision,
@@ -12,7 +13,7 @@ const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constan
                       full_scale_a = 3.0";
 const VELOCITY: &str = "mode = \"velocity\"\nfull_scale_velocity = 0.5";
 
-/// One controlled axis of a million counts per metre at 10 kHz with these limits.
+/// Returns one controlled axis of a million counts per metre at 10 kHz with these limits.
 fn machine(axis: &str, drive: &str, limits: &str) -> Machine {
     let text = format!(
         "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
@@ -23,7 +24,7 @@ fn machine(axis: &str, drive: &str, limits: &str) -> Machine {
     machine_file::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A table of so many samples whose steps go so far.
+/// Returns the bounds of a table with this many samples and this largest step.
 fn bounds(longest_delay_samples: u32, farthest: f64) -> TableBounds {
     TableBounds {
         longest_delay_samples,
@@ -39,7 +40,7 @@ fn with(limits: &str) -> Result<Supervision, SupervisionError> {
     of(&machine("", TORQUE, limits))
 }
 
-/// Nothing is watched, nothing is waited for.
+/// Supervision with every check disabled and every wait zero.
 const LEFT_OUT: Supervision = Supervision {
     off_causes: 0b1000_1101_1000_0111,
     brake_release_ticks: 0,
@@ -68,7 +69,7 @@ fn unit_a_key_left_out_gives_its_documented_word() {
     let mut without = machine("", TORQUE, "");
     without.axes[0].limits = None;
     assert_eq!(of(&without), Ok(LEFT_OUT));
-    // Where 0.2 s are more ticks than the word holds, or less than one.
+    // Here 0.2 s are more ticks than the word holds, or less than one.
     for (sample_hz, ticks) in [(1e6, 65535), (1.0, 1)] {
         without.clock.sample_hz = sample_hz;
         assert_eq!(of(&without).unwrap().direct_hold_ticks, ticks);
@@ -85,11 +86,11 @@ fn golden_words_worked_out_by_hand() {
         brake_release_ticks: 500,
         brake_apply_ticks: 300,
         settle_ticks: 79,
-        // 100,000 counts of 256.
+        // 100,000 counts in units of 1/256.
         soft_limit_plus: 25_600_000,
         soft_limit_minus: -25_600_000,
         limits_after_homing: true,
-        // 1000 counts of 65536.
+        // 1000 counts in units of 1/65536.
         following_error_limit: 65_536_000,
         deviation_limit: 50,
         saturation_ticks: 3000,
@@ -121,16 +122,16 @@ fn golden_words_worked_out_by_hand() {
     );
     assert_eq!(found[4..8], [25_600_000, -25_600_000, 1, 65_536_000]);
     assert_eq!(found.len(), 19);
-    // A velocity drive: half of 500 mm/s.
+    // A velocity drive has half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
     assert_eq!((velocity.lost_command, velocity.watches_direction), (1_024_000, true));
-    // With the scale's position ten times as many counts; the test signal's word then ends at 25.6 µm.
+    // The scale's position has ten times as many counts; the test signal's word then ends at 25.6 µm.
     let mut scale = machine("", TORQUE, limits);
     scale.axes[0].scale.as_mut().unwrap().usage = ScaleUse::Position;
     let scale = of(&scale).unwrap();
     assert_eq!((scale.deviation_limit, scale.following_error_limit), (500, 655_360_000));
     assert_eq!((scale.soft_limit_plus, scale.excitation_limit), (256_000_000, 25_600));
-    // Nothing stops at the travel of an axis that turns on.
+    // An axis that turns without end does not stop at its travel.
     let modulo = of(&machine("modulo = true", TORQUE, limits)).unwrap();
     assert_eq!((modulo.soft_limit_plus, modulo.soft_limit_minus), (0, 0));
 }
@@ -235,7 +236,8 @@ fn unit_a_travel_fits_wherever_the_axis_stands_at_reset() {
         text.contains("takes 0.2") && text.contains("at most 0.1015808 m at 80000000 counts"),
         "{text}"
     );
-    // A micrometre reaches 8.126464 m, with 8 m/s² at 0.25 m/s less 3.9 mm for a stop; a shaper may go further than its command.
+    // A resolution of one micrometre reaches 8.126464 m; with 8 m/s² at 0.25 m/s, a stop takes 3.9 mm of it. A shaper
+    // may go further than its command.
     let reaches = |travel: f64, farthest: f64| {
         let mut machine = machine("", TORQUE, "velocity = 0.25\nacceleration = 8.0");
         machine.axes[0].limits.as_mut().unwrap().travel = Some([-1.0, travel - 1.0]);
@@ -253,7 +255,7 @@ fn unit_a_travel_fits_wherever_the_axis_stands_at_reset() {
     assert_eq!(taps([1 << 14, 1 << 13, 1 << 13]), bounds(2, 1.0));
     assert_eq!(taps([1 << 15, -(1 << 16), 1 << 16]), bounds(2, 2.0));
     assert_eq!(taps([3 << 14, -(1 << 15), 1 << 14]).farthest, 1.5);
-    // Without a travel there is a warning that says how far it goes; a rotary axis turns for ever.
+    // Without a travel, a warning tells the reach; a rotary axis turns for ever.
     let warning = no_travel(&machine("", TORQUE, "").axes[0]).unwrap().to_string();
     assert!(warning.contains("reaches 8.126464 m"), "{warning}");
     assert_eq!(no_travel(&machine("modulo = true", TORQUE, "").axes[0]), None);
@@ -261,7 +263,8 @@ fn unit_a_travel_fits_wherever_the_axis_stands_at_reset() {
 }
 
 proptest! {
-    /// Over the whole range of the file and beyond the words: a limit or an error, and never a looser one.
+    /// Over the whole range of the file and beyond the words, the result is a limit or an error, and never a less
+    /// strict limit.
     #[test]
     fn prop_no_word_is_looser_than_its_value(
         exponent in prop::collection::vec(-14.0..9.0f64, 8),
@@ -274,7 +277,7 @@ proptest! {
         machine.axes[0].counts_per_unit = counts_per_unit;
         machine.clock.sample_hz = sample_hz;
         let limits = machine.axes[0].limits.as_mut().unwrap();
-        // One value at a time, so that each meets its own word.
+        // One value changes at a time, so that each meets its own word.
         let which = (exponent[7] * 1e3).abs() as usize % 7;
         match which {
             0 => limits.following_error = Some(value(0)),
@@ -314,7 +317,7 @@ proptest! {
 
 #[test]
 fn unit_a_wrong_sign_is_watched_where_a_sound_axis_stops_sooner() {
-    // Half of 3 A are 11.085 m/s²: 0.25 m/s take 22.55 ms, and a fifth more 27.06 ms.
+    // Half of 3 A give 11.085 m/s²: 0.25 m/s take 22.55 ms, and a fifth more 27.06 ms.
     let of = |drive, limits: &str| lost_sign(&machine("", drive, limits).axes[0]);
     let velocity = "velocity = 0.25\n";
     let LostSign::TooShort { least_s } = of(TORQUE, &format!("{velocity}encoder_lost_s = 0.027")) else {

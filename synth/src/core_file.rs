@@ -1,23 +1,24 @@
-//! The FuseSoC core of the output folder: its Verilog as file sets, with a target that lints and one that simulates.
+//! The FuseSoC core of the output folder: its Verilog as file sets, with one target that lints and one that
+//! simulates.
 //!
 //! ```text
 //! fusesoc --cores-root DIR run --target lint posicast:machines:NAME
 //! fusesoc --cores-root DIR run --target sim  posicast:machines:NAME
 //! ```
 //!
-//! `sim` runs a bench that is written here from the register map: it reads every constant of the stage over the bus, and ends
-//! with an error where one is not what the map says.
+//! The target `sim` runs a bench that is written here from the register map: it reads every constant of the stage
+//! over the bus, and ends with an error where one differs from the map.
 
 use posicast_model::rtl::registers::{Access, RegisterMap};
 use posicast_model::rtl::{Direction, Port};
 use std::fmt::Write;
 
-/// Version of the core: that of the register maps' major number.
+/// Version of the core, with the register maps' major number.
 const VERSION: &str = "1.0.0";
-/// Clocks in reset.
+/// Number of clocks in reset.
 const RESET_CLOCKS: u32 = 4;
 
-/// What a core is written from.
+/// Data from which a core is written.
 #[derive(Debug, Clone, Copy)]
 pub struct Core<'a> {
     /// The machine's name.
@@ -26,11 +27,12 @@ pub struct Core<'a> {
     pub top: &'a str,
     /// All Verilog files, as paths in the folder.
     pub files: &'a [String],
-    /// Registers and ports of the top module, where it has any registers.
+    /// Register map and ports of the top module, where it has registers.
     pub bus: Option<(&'a RegisterMap, &'a [Port])>,
 }
 
-/// The files of the core, as path in the output folder and text: `NAME.core`, and the bench that its target `sim` runs.
+/// The files of the core, as path in the output folder and text: `NAME.core`, and the bench that its target `sim`
+/// runs.
 pub fn files(core: &Core<'_>) -> Vec<(String, String)> {
     let bench = core.bus.map(|(map, ports)| (bench_path(core), bench(core, map, ports)));
     let of_core = (format!("{}.core", core.machine), description(core));

@@ -1,6 +1,7 @@
-//! The datasheets of the blocks, which registers and Verilog name: the pages of `docs/`, for the output folder.
+//! The datasheets of the blocks, to which registers and Verilog refer: pages of `docs/`, copied into the output
+//! folder.
 //!
-//! They stand in `docs/` of the folder, as in the project. A link to a page that does not go with them becomes its words.
+//! They are in the folder's `docs/`, as in the project. A link to a page that is not copied is replaced by its text.
 
 /// Folder of the datasheets in the output folder.
 pub const FOLDER: &str = "docs";
@@ -11,23 +12,23 @@ macro_rules! pages {
     };
 }
 
-/// Of every machine.
+/// Datasheets of every machine.
 const SHAPER: [(&str, &str); 1] = pages!["shaper"];
-/// Of machines with components.
+/// Datasheets of machines with components.
 const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divider" "pwm" "sliding_mode"];
 /// Of machines with a stage.
 const STAGE: [(&str, &str); 9] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
 ];
 
-/// What a machine has beside the shapers of its top module.
+/// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BuiltBlocks {
-    /// Nothing.
+    /// None.
     Shapers,
     /// Blocks of axes, as components on a bus.
     Components,
-    /// Those, joined to a stage.
+    /// Blocks of axes joined to a stage.
     Stage,
 }
 
@@ -41,7 +42,7 @@ pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
     pages.iter().map(file).collect()
 }
 
-/// A page whose links to other pages are kept where `is_there` knows the page's name.
+/// The page; links to other pages are kept only where `is_there` knows the page's name.
 fn with_links_to(text: &str, is_there: impl Fn(&str) -> bool) -> String {
     let mut rest = text;
     let mut page = String::with_capacity(text.len());
@@ -57,7 +58,7 @@ fn with_links_to(text: &str, is_there: impl Fn(&str) -> bool) -> String {
     page + rest
 }
 
-/// The first link: what is before it, its words, its target, what is after it.
+/// The first link: the text before it, its label, its target, and the text after it.
 fn link(text: &str) -> Option<(&str, &str, &str, &str)> {
     let middle = text.find("](")?;
     let begin = text[..middle].rfind('[')?;

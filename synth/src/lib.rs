@@ -1,10 +1,10 @@
-//! What leaves posicast for a device: the output folder ([`package`]), what of it is opened in Quartus ([`sopc`]), the C driver
-//! ([`driver`]), the documents of the registers ([`register_documents`]) and the datasheets ([`datasheets`]), what takes the shapers
-//! into a design of one's own ([`kit`]), and the estimates of what its Verilog costs ([`yosys`])
-//! and how fast it is ([`clock`]).
+//! Everything that posicast writes for a device: the output folder ([`package`]), the files for Quartus ([`sopc`]),
+//! the C driver ([`driver`]), the documents of the registers ([`register_documents`]), the datasheets
+//! ([`datasheets`]), the kit for the user's own design ([`kit`]), and estimates of the resources ([`yosys`]) and the
+//! clock ([`clock`]) of its Verilog.
 //!
-//! Folder and estimates do not know how the files came to be: they take bytes and file names. The others are written from the
-//! register maps and ports of `posicast-model`.
+//! Folder and estimates do not know how the files were made: they take bytes and file names. The others are written
+//! from the register maps and ports of `posicast-model`.
 
 pub mod clock;
 pub mod core_file;

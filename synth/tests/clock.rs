@@ -1,4 +1,4 @@
-//! The clock estimate, by the nextpnr that `scripts/install-tools` puts into `.venv`: without it these tests fail.
+//! The clock estimate, by the nextpnr that `scripts/install-tools` puts into `.venv`; these tests fail without it.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -24,10 +24,10 @@ fn netlist_a_longer_carry_is_a_slower_clock() {
     let yosys = Yosys::installed().unwrap();
     let mhz = |top: &str| tool().highest_mhz(&yosys, &rtl(top), top).unwrap();
     let (counter, product) = (mhz("counter"), mhz("product"));
-    // A counter of a few bits is faster than a product and the sum behind it. The ECP5 stops at 600 MHz or so.
+    // A counter of a few bits is faster than a product with the sum after it. The limit of the ECP5 is about 600 MHz.
     assert!(product < counter, "{product} {counter}");
     assert!((20.0..1000.0).contains(&product), "{product}");
-    // The same seed, the same figure.
+    // The same seed gives the same figure.
     assert_eq!(mhz("counter").to_bits(), counter.to_bits());
     assert!(tool().method().contains("nextpnr-"), "{}", tool().method());
 }

@@ -1,4 +1,4 @@
-//! Who owns what in an output folder, and that nothing is half written.
+//! The ownership of files in an output folder, and that no file is half written.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use posicast_synth::package::{self, Committed, Package, PackageError};
 use tempfile::TempDir;
 
-/// Every file under a folder, path to contents.
+/// Returns every file under a folder, path to contents.
 fn snapshot(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -39,7 +39,7 @@ const FILES: [(&str, &str); 3] = [
     ("rtl/shaper_x.v", "module shaper_x; endmodule\n"),
 ];
 
-/// A folder that holds a package of [`FILES`].
+/// Returns a folder with a package of [`FILES`].
 fn written() -> (TempDir, PathBuf) {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("out");
@@ -324,7 +324,7 @@ fn write_with_evidence(
 
 const EVIDENCE: [(&str, &str); 2] = [("report.json", "{\"result\": \"pass\"}\n"), ("wave/rtl.vcd", "$end\n")];
 
-/// [`FILES`] with a file that evidence may have the name of, and another machine file.
+/// Returns [`FILES`] with a file that evidence may have the name of, and another machine file.
 fn generated(machine: &'static str) -> Vec<(&'static str, &'static str)> {
     let mut files = FILES.to_vec();
     files[0].1 = machine;
@@ -354,7 +354,7 @@ fn unit_evidence_stays_as_long_as_machine_file_and_verilog_are_what_it_is_about(
     assert_eq!(committed.kept, ["report.json", "wave/rtl.vcd"]);
     assert_eq!(snapshot(&folder), after_run, "nothing of the run was lost");
 
-    // What the user changed of it is nobody's business as long as it stays.
+    // A file of it that the user changed is not touched as long as it stays.
     fs::write(folder.join("wave/rtl.vcd"), "edited").unwrap();
     assert_eq!(write(&folder, files).unwrap().kept, ["report.json", "wave/rtl.vcd"]);
     let error = write_with_evidence(&folder, &without_report, &EVIDENCE).unwrap_err();
@@ -387,7 +387,7 @@ fn unit_evidence_of_another_machine_file_or_other_verilog_goes_and_is_named() {
         assert!(!folder.join("wave").exists());
         let report = fs::read_to_string(folder.join("report.json")).unwrap();
         assert!(report.contains("name"), "{report}");
-        // And it does not come back with the machine file.
+        // It does not return with the machine file.
         assert!(write(&folder, &generated("1\n")).unwrap().kept.is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! Estimates and checks by the Yosys that is installed: without it these tests fail.
+//! Estimates and checks by the installed Yosys; these tests fail without it.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -44,8 +44,8 @@ fn netlist_memory_multipliers_and_registers_are_those_of_the_source() {
             let r = blocks[index].resources;
             (r.memory_bits, r.multipliers, r.registers)
         };
-        // Ring and ROM keep their read registers; the upper bits of the product are flip-flops. The lower 16 have no
-        // reader: they go.
+        // Ring and ROM keep their read registers; the upper bits of the product are flip-flops. The lower 16 are
+        // never read and are removed.
         assert_eq!(of(0), (1024 * 16 + 64 * 18, 1, 16), "{family}");
         assert_eq!(of(1), (1024 * 32 + 64 * 18, 2, 32), "{family}");
         assert_eq!(of(2), (0, 0, 10), "{family}");
@@ -211,7 +211,7 @@ fn netlist_the_logic_element_has_a_carry_chain_and_a_synchronous_clear() {
         let total = yosys.estimate(&rtl(&["accumulator"]), "accumulator", Family::Cyclone2);
         total.unwrap().total.cells
     };
-    // 24 bits of a sum, 24 of a difference; the enable of the register together with its reset.
+    // 24 bits of a sum and 24 of a difference; the enable of the register is combined with its reset.
     assert_eq!(cells(Mapping::LogicElement), 49);
     assert!(cells(Mapping::Luts) > 120, "{}", cells(Mapping::Luts));
 }

@@ -1,17 +1,17 @@
-//! What must not outlive the process, and what a signal does.
+//! Resources that must not outlive the process, and the handling of signals.
 //!
 //! ```text
 //!  signal ─► lock the list for good ─► kill every process group ─► remove files and folders, the youngest first ─► exit
 //! ```
 //!
-//! - [`listen`] catches SIGINT (exit status 130), SIGTERM (143) and SIGHUP (129; not where it is ignored, as under `nohup`). A
-//!   second signal ends the process at once.
-//! - Whatever is made outside of the process, a folder or a program, is made and put on the list under one lock. A signal takes
-//!   that lock and never gives it back: nothing new can come into being behind its back, and a thread that would go on to report
-//!   an error about its vanished files waits instead.
-//! - What must be done completely or not at all runs in [`uninterrupted`].
-//! - SIGKILL cannot be caught. What it leaves is found by the next run where it would be in its way (the staging folder of an
-//!   output folder, a build in the cache of simulations), and is ignored elsewhere.
+//! - [`listen`] catches SIGINT (exit status 130), SIGTERM (143) and SIGHUP (129; not where it is ignored, as under
+//!   `nohup`). A second signal ends the process at once.
+//! - Everything that is made outside the process, a folder or a program, is made and put on the list under one lock.
+//!   A signal takes that lock and never releases it: nothing new can be made after that, and a thread that would
+//!   report an error about its vanished files waits instead.
+//! - Actions that must be done completely or not at all run in [`uninterrupted`].
+//! - SIGKILL cannot be caught. What it leaves is found by the next run where it would be in its way (the staging
+//!   folder of an output folder, a build in the cache of simulations), and is ignored elsewhere.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -21,25 +21,25 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How often, and how long apart, removing a folder is tried: a program that was just killed may still add a file.
+/// Number of attempts to remove a folder, and their interval: a program that was just killed may still add a file.
 const REMOVAL_TRIES: u32 = 100;
 const REMOVAL_PAUSE: Duration = Duration::from_millis(10);
 
-/// Something that a signal removes.
+/// A resource that a signal removes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Leftover {
     /// A file.
     File(PathBuf),
-    /// A folder with all that is in it.
+    /// A folder with its contents.
     Tree(PathBuf),
-    /// A folder, if nothing is in it.
+    /// A folder, if it is empty.
     EmptyFolder(PathBuf),
 }
 
 impl Leftover {
     fn remove(&self) {
         match self {
-            // What cannot be removed stays: there is nobody left to tell.
+            // An error is ignored, because nobody is left to report it to.
             Self::File(path) => drop(fs::remove_file(path)),
             Self::EmptyFolder(path) => drop(fs::remove_dir(path)),
             Self::Tree(path) => remove_tree(path),
@@ -57,7 +57,7 @@ fn remove_tree(path: &Path) {
     }
 }
 
-/// What is to be cleaned up.
+/// The list of resources.
 #[derive(Debug)]
 struct List {
     next: u64,
@@ -71,12 +71,12 @@ static LIST: Mutex<List> = Mutex::new(List {
     groups: BTreeSet::new(),
 });
 
-/// The list; after a signal this never returns.
+/// Locks the list; after a signal this never returns.
 fn list() -> MutexGuard<'static, List> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Entries of the list. Dropped, it strikes them off: what they name is gone, or is to stay.
+/// Entries of the list. When dropped they are removed from it, because the resources are gone or shall stay.
 #[derive(Debug)]
 pub struct Listed(Vec<u64>);
 
@@ -89,10 +89,11 @@ impl Drop for Listed {
     }
 }
 
-/// Makes something and lists what of it a signal has to remove, the outermost folder first; no signal comes between the two.
+/// Makes something, and lists the resources of it that a signal must remove, the outermost folder first; no signal
+/// comes between the two.
 ///
 /// # Errors
-/// Those of `make`. Nothing is listed then.
+/// Those of `make`; nothing is listed then.
 pub fn listed<T, E>(make: impl FnOnce() -> Result<(T, Vec<Leftover>), E>) -> Result<(T, Listed), E> {
     let mut list = list();
     let (made, leftovers) = make()?;
@@ -107,14 +108,14 @@ pub fn listed<T, E>(make: impl FnOnce() -> Result<(T, Vec<Leftover>), E>) -> Res
     Ok((made, Listed(ids)))
 }
 
-/// Does something that a signal must not cut in two. `action` must not use this module, nor [`scratch`](crate::scratch) or
-/// [`process`](crate::process), which do.
+/// Runs an action that a signal must not interrupt. `action` must not use this module, nor
+/// [`scratch`](crate::scratch) or [`process`](crate::process), which use it.
 pub fn uninterrupted<T>(action: impl FnOnce() -> T) -> T {
     let _list = list();
     action()
 }
 
-/// Strikes entries off together with an `action` that a signal must not come before or behind.
+/// Removes entries from the list together with running an `action`; no signal comes between the two.
 pub(crate) fn settled<T>(listed: &mut Listed, action: impl FnOnce() -> T) -> T {
     let mut list = list();
     let result = action();
@@ -124,13 +125,13 @@ pub(crate) fn settled<T>(listed: &mut Listed, action: impl FnOnce() -> T) -> T {
     result
 }
 
-/// The work is done and only its result is still to be told: a signal from now on changes nothing. If one came before, this
-/// never returns, since the process is about to end.
+/// Declares that the work is done and only its result remains to be printed: a signal changes nothing from now on. If
+/// one came before, this never returns, since the process is about to end.
 pub fn done() {
     std::mem::forget(list());
 }
 
-/// Starts a program as leader of a process group that a signal kills.
+/// Starts a program as leader of a process group, which a signal kills.
 pub(crate) fn started<T>(start: impl FnOnce() -> io::Result<(T, i32)>) -> io::Result<(T, i32)> {
     let mut list = list();
     let (program, group) = start()?;
@@ -138,7 +139,7 @@ pub(crate) fn started<T>(start: impl FnOnce() -> io::Result<(T, i32)>) -> io::Re
     Ok((program, group))
 }
 
-/// The group has ended.
+/// Removes a group that has ended from the list.
 pub(crate) fn ended(group: i32) {
     list().groups.remove(&group);
 }
@@ -161,13 +162,13 @@ mod unix {
     use std::sync::atomic::AtomicBool;
     use std::thread;
 
-    /// What the shell adds to the number of a signal that ended a program.
+    /// Offset that a shell adds to the number of a signal for the exit status.
     const EXIT_STATUS_BASE: i32 = 128;
 
-    /// From now on SIGINT, SIGTERM and SIGHUP clean up before they end the process.
+    /// Installs handlers for SIGINT, SIGTERM and SIGHUP, which clean up before they end the process.
     ///
     /// # Errors
-    /// The system refuses a handler or a thread.
+    /// An error if the system refuses a handler or a thread.
     pub fn listen() -> io::Result<()> {
         let mut caught = vec![SIGINT, SIGTERM];
         if !ignored(SIGHUP) {
@@ -175,7 +176,7 @@ mod unix {
         }
         let arrived = Arc::new(AtomicBool::new(false));
         for signal in &caught {
-            // In this order: the first signal finds the flag low and raises it, the second finds it high.
+            // The order matters: the first signal finds the flag low and raises it, the second finds it high.
             register_conditional_shutdown(*signal, EXIT_STATUS_BASE + signal, Arc::clone(&arrived))?;
             register(*signal, Arc::clone(&arrived))?;
         }
@@ -197,21 +198,21 @@ mod unix {
             leftover.remove();
         }
         let name = signal_hook::low_level::signal_name(signal).unwrap_or("a signal");
-        // On a terminal a progress bar may stand in the line.
+        // On a terminal a progress bar may occupy the line.
         let before = if io::stderr().is_terminal() { "\n" } else { "" };
         let _ = writeln!(io::stderr(), "{before}posicast: ended by {name}");
-        // Without the exit functions of C and C++: a simulation may be running in another thread.
+        // The exit functions of C and C++ are bypassed, because a simulation may be running in another thread.
         signal_hook::low_level::exit(EXIT_STATUS_BASE + signal);
     }
 
-    /// Kills every process of a group. One that has ended is no error.
+    /// Kills every process of a group. It is not an error if the group has ended.
     pub(crate) fn kill_group(group: i32) {
         if let Some(group) = Pid::from_raw(group) {
             let _ = kill_process_group(group, Signal::KILL);
         }
     }
 
-    /// Whether whoever started us wants the signal ignored, as `nohup` does; unknown counts as no.
+    /// Whether the parent process wants the signal ignored, as `nohup` does; false if that is unknown.
     fn ignored(signal: i32) -> bool {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -220,10 +221,10 @@ mod unix {
     }
 }
 
-/// Signals are those of Unix: elsewhere the system's own rules hold.
+/// Does nothing: signals are those of Unix, and elsewhere the system's own rules apply.
 ///
 /// # Errors
-/// None.
+/// This never returns an error.
 #[cfg(not(unix))]
 pub fn listen() -> io::Result<()> {
     Ok(())

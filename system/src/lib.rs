@@ -1,4 +1,5 @@
-//! What posicast asks of the operating system: temporary folders, other programs, signals, files under a name that a user gave.
+//! Services of the operating system: temporary folders, other programs, signals, and files with names that a user
+//! gave.
 //!
 //! ```text
 //!  scratch ──┐ registers what must not outlive the process
@@ -6,12 +7,13 @@
 //!  output ───┘
 //! ```
 //!
-//! - [`scratch`]: temporary folders and files that go when their value does, and also when a signal ends the process.
-//! - [`process`]: programs that run in a process group of their own, so that a program ends together with all that it started.
-//! - [`tool`]: the executables of external tools, and how a run of one came to its end.
-//! - [`interrupt`]: the list of both, and what happens on a signal.
-//! - [`output`]: a file under a name that a user gave: complete or not at all, never in the place of an input, and in the place
-//!   of another file only if posicast wrote that one.
+//! - [`scratch`]: temporary folders and files that are removed when their value is dropped, and also when a signal
+//!   ends the process.
+//! - [`process`]: programs in a process group of their own, so that a program ends together with all that it started.
+//! - [`tool`]: the executables of external tools, and how a run of one ended.
+//! - [`interrupt`]: the list of temporary resources and programs, and the handling of signals.
+//! - [`output`]: a file with a name that a user gave. It is written completely or not at all, never replaces an
+//!   input, and replaces another file only if posicast wrote that one.
 
 pub mod interrupt;
 pub mod output;

@@ -1,5 +1,5 @@
-//! Other programs. Each leads a process group of its own, so that it ends together with all that it started: at its time limit,
-//! when its value is dropped, and when a signal ends the process.
+//! Other programs. Each leads a process group of its own, so that it ends together with all that it started: at its
+//! time limit, when its value is dropped, and when a signal ends the process.
 
 use crate::interrupt;
 use std::io;
@@ -7,10 +7,10 @@ use std::process::{Child, Command, ExitStatus, Output};
 use std::time::Duration;
 use wait_timeout::ChildExt;
 
-/// A program that runs.
+/// A running program.
 #[derive(Debug)]
 pub struct Running {
-    /// Until its end was waited for.
+    /// The process; `None` after waiting for its end.
     child: Option<Child>,
     group: i32,
 }
@@ -37,12 +37,12 @@ pub fn start(command: &mut Command) -> io::Result<Running> {
 }
 
 impl Running {
-    /// The program, for its pipes; `None` once its end was waited for.
+    /// The process, for its pipes; `None` after waiting for its end.
     pub fn child(&mut self) -> Option<&mut Child> {
         self.child.as_mut()
     }
 
-    /// Waits for its end, reads what it prints into its pipes, and returns both.
+    /// Reads the program's output from its pipes, waits for its end, and returns both.
     ///
     /// # Errors
     /// Those of [`Child::wait_with_output`].
@@ -64,10 +64,11 @@ impl Running {
         status
     }
 
-    /// Waits for its end, at most for `limit`; then it is ended, with all that it started, and `None` returned.
+    /// Waits for its end for at most `limit`. After that the program is ended together with all that it started, and
+    /// `None` is returned.
     ///
     /// # Errors
-    /// Those of waiting.
+    /// The errors of waiting.
     pub fn wait_within(mut self, limit: Duration) -> io::Result<Option<ExitStatus>> {
         let child = self.child.as_mut().ok_or_else(no_more)?;
         let status = child.wait_timeout(limit)?;
@@ -75,7 +76,7 @@ impl Running {
             self.child = None;
             interrupt::ended(self.group);
         }
-        // Otherwise it is ended as it is dropped.
+        // Without a status it is ended when it is dropped.
         Ok(status)
     }
 }
@@ -85,7 +86,7 @@ impl Drop for Running {
         if let Some(mut child) = self.child.take() {
             #[cfg(unix)]
             interrupt::kill_group(self.group);
-            // It may have ended by itself in the meantime; both calls then do nothing.
+            // The program may have ended in the meantime; both calls then do nothing.
             let _ = child.kill();
             let _ = child.wait();
             interrupt::ended(self.group);
@@ -104,7 +105,7 @@ mod tests {
     use std::io::{BufRead, BufReader};
     use std::process::Stdio;
 
-    /// A shell that starts another program, and says its number.
+    /// A shell that starts another program, and the number of that program.
     fn two_programs() -> (Running, i32) {
         let mut command = Command::new("sh");
         command.args(["-c", "sleep 600 & echo $!; wait"]).stdout(Stdio::piped());

@@ -1,4 +1,4 @@
-//! Temporary folders and files. They go when their value is dropped, and when a signal ends the process.
+//! Temporary folders and files. They are removed when their value is dropped, and when a signal ends the process.
 
 use crate::interrupt::{self, Leftover, Listed};
 use std::fs::File;
@@ -6,30 +6,30 @@ use std::io;
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-/// What the name of a temporary folder begins with, unless it says more.
+/// Default prefix of a temporary folder's name.
 pub const PREFIX: &str = "posicast-";
 
 /// A temporary folder.
 #[derive(Debug)]
 pub struct Folder {
-    // Dropped before its entry of the list.
+    // This is dropped before its entry of the list.
     folder: TempDir,
     _listed: Listed,
 }
 
 impl Folder {
-    /// A new, empty folder whose name begins with `prefix`, in the system's folder for temporary files.
+    /// Makes a new, empty folder whose name begins with `prefix`, in the system's folder for temporary files.
     ///
     /// # Errors
-    /// The folder cannot be created.
+    /// An error if the folder cannot be created.
     pub fn new(prefix: &str) -> io::Result<Self> {
         Self::new_in(prefix, &std::env::temp_dir())
     }
 
-    /// The same in the folder `parent`.
+    /// Makes such a folder in `parent`.
     ///
     /// # Errors
-    /// The folder cannot be created.
+    /// An error if the folder cannot be created.
     pub fn new_in(prefix: &str, parent: &Path) -> io::Result<Self> {
         let (folder, listed) = interrupt::listed(|| {
             let folder = Builder::new().prefix(prefix).tempdir_in(parent)?;
@@ -42,16 +42,16 @@ impl Folder {
         })
     }
 
-    /// Where it is.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 }
 
-/// A temporary file without a name.
+/// Makes a temporary file without a name.
 ///
 /// # Errors
-/// The file cannot be created.
+/// An error if the file cannot be created.
 pub fn unnamed() -> io::Result<File> {
     interrupt::uninterrupted(tempfile::tempfile)
 }
@@ -64,14 +64,14 @@ pub(crate) struct Beside {
 }
 
 impl Beside {
-    /// A file in `folder`.
+    /// Makes a file in `folder`.
     pub(crate) fn new(folder: &Path) -> io::Result<Self> {
         let (file, listed) = interrupt::listed(|| {
             let mut builder = Builder::new();
             #[cfg(unix)]
             {
                 use std::os::unix::fs::PermissionsExt;
-                // The default of temporary files, 0600, would stay on the finished file.
+                // Temporary files have mode 0600 by default, which would stay on the finished file.
                 builder.permissions(std::fs::Permissions::from_mode(0o644));
             }
             let file = builder.prefix(".posicast-").tempfile_in(folder)?;
@@ -86,7 +86,7 @@ impl Beside {
         self.file.as_file_mut()
     }
 
-    /// Gives it its name, in place of what has it now.
+    /// Gives the file its name, and replaces a file that has that name now.
     pub(crate) fn put(mut self, path: &Path) -> io::Result<()> {
         let file = self.file;
         let renamed = interrupt::settled(&mut self.listed, || file.persist(path));

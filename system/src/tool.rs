@@ -1,4 +1,4 @@
-//! External tools: which executable is meant, and how a run of it came to its end.
+//! External tools: finds the executable, and reports how a run of it ended.
 
 use crate::{process, scratch};
 use std::ffi::OsStr;
@@ -7,24 +7,24 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Duration;
 
-/// How a tool came to its end.
+/// How a run of a tool ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ended {
-    /// With exit status 0; what it printed, on either stream.
+    /// With exit status 0; contains the output of both streams.
     Well(String),
-    /// With another one.
+    /// With another exit status, or by a signal.
     Badly {
-        /// The exit status, or the signal.
+        /// Exit status, or the signal.
         status: ExitStatus,
-        /// What it printed, on either stream.
+        /// Output of both streams.
         printed: String,
     },
-    /// Not by itself: it had no more time, and was ended.
+    /// Killed at its time limit.
     TimeOut,
 }
 
-/// The executables that a tool may be, in the order in which they are tried: the one that the environment variable names, if
-/// it names one, else these names in the search path.
+/// The executables that a tool may have, in the order in which they are tried: the one that the environment variable
+/// names, if it names one, else these names in the search path.
 pub fn executables(variable: &str, names: &[&str]) -> Vec<PathBuf> {
     match std::env::var_os(variable) {
         Some(program) if !program.is_empty() => vec![program.into()],
@@ -32,7 +32,8 @@ pub fn executables(variable: &str, names: &[&str]) -> Vec<PathBuf> {
     }
 }
 
-/// The file that would run under this name: itself where it has a folder, else the first in the search path. Nothing is started.
+/// The file that would run for this name: itself if it has a folder, else the first in the search path. Nothing is
+/// started.
 pub fn located(program: &Path) -> Option<PathBuf> {
     let plain = program.components().count() == 1;
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -65,8 +66,8 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// A command without standard input, in `folder`, where it also keeps its own temporary files: they go with the folder even if
-/// it is killed.
+/// A command without standard input, in `folder`, which is also its folder for temporary files: they are removed with
+/// it even if the command is killed.
 pub fn command_in(program: impl AsRef<OsStr>, folder: &Path) -> Command {
     let mut command = command(program);
     let temporary = std::path::absolute(folder);
@@ -78,9 +79,10 @@ pub fn command_in(program: impl AsRef<OsStr>, folder: &Path) -> Command {
 /// Runs a command for at most `limit`.
 ///
 /// # Errors
-/// Those of starting it ([`io::ErrorKind::NotFound`] where it is not installed), and of the file that takes what it prints.
+/// Those of starting it ([`io::ErrorKind::NotFound`] where it is not installed), and of the file that takes its
+/// output.
 pub fn run_within(command: &mut Command, limit: Duration) -> io::Result<Ended> {
-    // A file, not a pipe: nobody has to read while the tool runs.
+    // The output goes to a file, not a pipe, so that nobody has to read while the tool runs.
     let mut log = scratch::unnamed()?;
     command.stdout(log.try_clone()?).stderr(log.try_clone()?);
     let Some(status) = process::start(command)?.wait_within(limit)? else {
@@ -96,7 +98,7 @@ pub fn run_within(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     })
 }
 
-/// The end of what a tool printed, where the cause stands: at most so many lines, with how many there were before.
+/// The end of a tool's output, where the cause is found: at most this many lines, with the number of lines before.
 pub fn last_lines(printed: &str, most: usize) -> String {
     let lines: Vec<&str> = printed.lines().filter(|line| !line.trim().is_empty()).collect();
     let from = lines.len().saturating_sub(most);

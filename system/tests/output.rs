@@ -1,4 +1,4 @@
-//! Which file a command may write to, and what it leaves there.
+//! The files that a command may write to, and their contents after it.
 
 use posicast_system::output::{Draft, OutputError, OutputFiles, is_ours, write_text};
 use std::fs;

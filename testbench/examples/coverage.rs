@@ -1,5 +1,5 @@
-//! Which lines, nets and bins of the blocks the lock step reaches, with an explanation of all that it does not:
-//! `cargo run --release -p posicast-testbench --example coverage [-- OPTIONS]`.
+//! Measures which lines, nets and bins of the blocks the lockstep runs reach, and explains those that are not
+//! reached: `cargo run --release -p posicast-testbench --example coverage [-- OPTIONS]`.
 //!
 //! ```text
 //! --block NAME    only these blocks; may be given several times
@@ -7,9 +7,9 @@
 //! --write         renews the table in docs/verification.md, or the rows of the block
 //! ```
 //!
-//! Prints the table, and what is wrong on standard error. Exit status: 0 every hole explained and no explanation outdated, 1
-//! not so, 2 cannot run, 3 a tool is missing.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+//! Prints the table, and errors on standard error. Exit status: 0 if every hole is explained and no explanation is
+//! outdated, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::process::ExitCode;
 
@@ -76,7 +76,7 @@ fn cover() -> Result<bool, Error> {
         .iter()
         .find(|name| !blocks.iter().any(|block| block.name() == *name))
     {
-        return Err(Error::Option(format!("--block {unknown}: there is no such block")));
+        return Err(Error::Option(format!("--block {unknown}: no such block")));
     }
     blocks.retain(|block| arguments.blocks.is_empty() || arguments.blocks.iter().any(|name| name == block.name()));
     let explanations = explanation::all()?;

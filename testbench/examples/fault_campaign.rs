@@ -1,11 +1,11 @@
-//! The fault campaign, with as many cases as wanted: `docs/fault-campaign.md`.
+//! Runs the fault campaign with any number of cases; see `docs/fault-campaign.md`.
 //!
 //! ```text
 //! cargo run --release -p posicast-testbench --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
 //! ```
 //!
-//! `--rtl N`: N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins there: to
-//! run a case again that failed. Exit status 1 if a case was not as demanded.
+//! `--rtl N` runs N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins
+//! with this case, to repeat one that failed. Exit status 1 if a case did not meet its expectation.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -44,7 +44,7 @@ impl Options {
                 "--seed" => options.seed = value,
                 "--rtl" => options.rtl = value,
                 "--threads" => options.threads = value.min(64) as usize,
-                _ => return Err(format!("{name} is no option\n{USAGE}")),
+                _ => return Err(format!("{name} is not an option\n{USAGE}")),
             }
         }
         Ok(options)

@@ -1,9 +1,10 @@
-//! Proves what `testbench/formal` says of the blocks: `cargo run -p posicast-testbench --example formal [-- BLOCK…]`.
+//! Proves the properties in `testbench/formal` of the blocks:
+//! `cargo run -p posicast-testbench --example formal [-- BLOCK…]`.
 //!
-//! Prints a row per proof. Exit status: 0 all proven and all covers reached, 1 not so, 2 cannot run, 3 a tool is missing.
-//! `POSICAST_FORMAL_KEEP` names a folder that keeps all files, counterexamples as VCD among them;
-//! `POSICAST_FORMAL_SECONDS` limits each run of an engine (900).
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+//! Prints a row per proof. Exit status: 0 if all properties are proven and all covers reached, 1 otherwise, 2 if it
+//! cannot run, 3 if a tool is missing. `POSICAST_FORMAL_KEEP` names a folder that keeps all files, including
+//! counterexamples as VCD; `POSICAST_FORMAL_SECONDS` limits each run of an engine (900).
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -50,7 +51,7 @@ fn prove() -> Result<bool, Error> {
         is_good &= outcome.is_good();
     }
     if kept.is_none() && is_good {
-        // What cannot be deleted stays in the temporary folder: no reason to fail.
+        // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
         let _ = std::fs::remove_dir_all(&temporary);
     }
     Ok(is_good)

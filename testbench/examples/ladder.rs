@@ -1,13 +1,13 @@
-//! All rungs of the verification ladder, and one table at the end: `scripts/verify-all`.
+//! Runs all rungs of the verification ladder and prints one table at the end: `scripts/verify-all`.
 //!
 //! ```text
 //! --clocks N      of the lock step, per machine and seed (10,000,000); the other rungs shrink with it
 //! --only RUNG     only this rung; may be given several times
 //! ```
 //!
-//! Runs the other examples and the command line, as they are built beside it, and `cargo test` for the property tests; what
-//! they say goes to standard error. Exit status: 0 all rungs hold, 1 not so, 2 bad usage.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+//! It runs the other examples and the command line, as they are built beside it, and `cargo test` for the property
+//! tests; their output goes to standard error. Exit status: 0 if all rungs hold, 1 otherwise, 2 for wrong usage.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::error::Error;
 use std::io::{BufRead, BufReader};
@@ -56,7 +56,7 @@ impl Options {
         Ok(options)
     }
 
-    /// What is so much at ten million clocks, and less with fewer, but not below `least`.
+    /// Scales `whole`, the amount for ten million clocks, to the number of clocks; the result is at least `least`.
     fn share(&self, whole: u64, least: u64) -> u64 {
         (whole as u128 * u128::from(self.clocks) / 10_000_000).clamp(least.into(), whole.into()) as u64
     }
@@ -109,7 +109,8 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
             &[],
             &[("assertions", "properties"), ("covers reached", "covers")],
         ),
-        // Always the published sample: of others, or in fewer clocks, a mutant may stay unknown.
+        // The mutation rung always uses the published sample: for other mutants, or in fewer clocks, some may stay
+        // unknown.
         "mutation" => example(name, "mutate", &[], &[("mutants", "mutants"), ("unknown", "unknown")]),
         "coverage" => example(
             name,
@@ -122,7 +123,7 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
     }
 }
 
-/// The folder with the examples, and the command line beside it.
+/// Returns the folder with the examples, and the command line beside it.
 fn programs() -> Result<(PathBuf, PathBuf), Box<dyn Error>> {
     let own = std::env::current_exe()?;
     let examples = own.parent().ok_or("this program is in no folder")?;
@@ -133,7 +134,8 @@ fn programs() -> Result<(PathBuf, PathBuf), Box<dyn Error>> {
     Ok((examples.to_owned(), posicast))
 }
 
-/// Runs a program with what it says shown on standard error as it comes, and returns what it printed and whether it ended with 0.
+/// Runs a program and passes its standard error on as it comes. Returns what it printed and whether its exit status
+/// was 0.
 fn run(command: &mut Command) -> Result<(String, bool), Box<dyn Error>> {
     let name = command.get_program().to_string_lossy().into_owned();
     let started = command.stdout(Stdio::piped()).spawn();
@@ -150,7 +152,7 @@ fn run(command: &mut Command) -> Result<(String, bool), Box<dyn Error>> {
     Ok((text, program.wait()?.success()))
 }
 
-/// A rung that is an example with a table.
+/// Runs a rung that is an example with a table.
 fn example(name: &str, program: &str, arguments: &[String], columns: Columns) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
     let (text, succeeded) = run(Command::new(programs()?.0.join(program)).args(arguments))?;
@@ -164,7 +166,7 @@ fn example(name: &str, program: &str, arguments: &[String], columns: Columns) ->
     ))
 }
 
-/// Every example machine with every seed through `posicast verify`.
+/// Runs every example machine with every seed through `posicast verify`.
 fn lock_step(clocks: u64) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
@@ -203,7 +205,7 @@ fn lock_step(clocks: u64) -> Result<Rung, Box<dyn Error>> {
     ))
 }
 
-/// The property tests of the workspace, with so many cases each.
+/// Runs the property tests of the workspace with this many cases each.
 fn fuzz(cases: u64) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
     let mut command = Command::new("cargo");
@@ -235,7 +237,7 @@ fn fuzz(cases: u64) -> Result<Rung, Box<dyn Error>> {
     ))
 }
 
-/// The fault campaign of a stage.
+/// Runs the fault campaign of a stage.
 fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
     let mut command = Command::new(programs()?.0.join("fault_campaign"));

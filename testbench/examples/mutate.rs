@@ -1,4 +1,4 @@
-//! Puts mutants into the blocks and finds out what becomes of each:
+//! Puts mutants into the blocks and finds out whether each is detected:
 //! `cargo run --release -p posicast-testbench --example mutate [-- OPTIONS]`.
 //!
 //! ```text
@@ -8,9 +8,9 @@
 //! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
 //! ```
 //!
-//! Prints the table, and while it works a line per block. Exit status: 0 nothing is unknown, 1 something is, 2 cannot run,
-//! 3 a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+//! Prints the table, and a line per block while it works. Exit status: 0 if nothing is unknown, 1 if something is, 2
+//! if it cannot run, 3 if a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -119,21 +119,21 @@ fn mutate() -> Result<bool, Error> {
             start.elapsed().as_secs_f64()
         );
         if write {
-            // One by one: what took long is not lost with what comes after it.
+            // The subjects run one by one, so that finished results are not lost if a later one fails.
             let subjects = all()?;
             MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &subjects))?;
         }
         rows.push(row);
     }
     if kept.is_none() {
-        // What cannot be deleted stays in the temporary folder: no reason to fail.
+        // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
         let _ = std::fs::remove_dir_all(&temporary);
     }
     print!("{}", table(&rows));
     Ok(rows.iter().all(|row| row.unknown.is_empty()))
 }
 
-/// The named mutants, each in the stage of the example machine.
+/// Tries the named mutants, each in the stage of the example machine.
 fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> {
     let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
     let machine = machine_file::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;

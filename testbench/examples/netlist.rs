@@ -1,9 +1,9 @@
-//! Every block through Yosys to a netlist of logic elements, simulated against the model and proven equal to the RTL:
-//! `cargo run --release -p posicast-testbench --example netlist [-- --clocks N] [BLOCK…]`.
+//! Synthesises every block with Yosys to a netlist of logic elements, simulates it against the model and proves it
+//! equal to the RTL: `cargo run --release -p posicast-testbench --example netlist [-- --clocks N] [BLOCK…]`.
 //!
-//! Prints a row per block. Without names all blocks but the stage, whose parts they are. `--clocks 0` only proves. Exit status: 0
-//! all equal, 1 not so, 2 cannot run, 3 a tool is missing.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+//! Prints a row per block. Without names it takes all blocks but the stage, which consists of them. `--clocks 0` only
+//! proves. Exit status: 0 if all are equal, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -14,9 +14,9 @@ use posicast_testbench::blocks::{Block, Sources, library};
 use posicast_testbench::lockstep::report;
 use posicast_testbench::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 
-/// Clocks of the simulation where none are asked for.
+/// Default number of clocks of the simulation.
 const CLOCKS: u64 = 100_000;
-/// What each engine of a proof gets.
+/// Time limit of each engine of a proof.
 const LIMIT: Duration = Duration::from_secs(300);
 
 fn main() -> ExitCode {
@@ -38,7 +38,7 @@ fn compare() -> Result<bool, Box<dyn Error>> {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     let mut clocks = CLOCKS;
     if names.first().is_some_and(|first| first == "--clocks") {
-        clocks = names.get(1).ok_or("--clocks: write a number behind it")?.parse()?;
+        clocks = names.get(1).ok_or("--clocks needs a number")?.parse()?;
         names.drain(..2);
     }
     let yosys = Yosys::installed()?;
@@ -64,7 +64,7 @@ fn compare() -> Result<bool, Box<dyn Error>> {
     Ok(is_good)
 }
 
-/// Prints a block's row, and says whether it is good.
+/// Prints a block's row, and returns whether it is good.
 fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Error>> {
     let parts = NetlistParts::of(block.modules()?);
     let (logic, kept) = (Sources::of_modules(&parts.logic)?, Sources::of_modules(&parts.kept)?);

@@ -1,8 +1,8 @@
-//! Every block under Verilator and under Icarus, and their waveforms compared:
+//! Runs every block under Verilator and under Icarus, and compares their waveforms:
 //! `cargo run --release -p posicast-testbench --example second_simulator [-- --clocks N] [BLOCK…]`.
 //!
-//! Prints a row per block. Exit status: 0 all equal, 1 not so, 2 cannot run, 3 a tool is missing.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+//! Prints a row per block. Exit status: 0 if all are equal, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::process::ExitCode;
 
@@ -27,7 +27,7 @@ fn compare() -> Result<bool, Error> {
     let mut clocks = 20_000;
     if arguments.first().is_some_and(|first| first == "--clocks") {
         let number = arguments.get(1).and_then(|text| text.parse().ok());
-        clocks = number.ok_or_else(|| Error::Option("--clocks: write a number of clocks behind it".to_owned()))?;
+        clocks = number.ok_or_else(|| Error::Option("--clocks needs a number".to_owned()))?;
         arguments.drain(..2);
     }
     let blocks = library()?;

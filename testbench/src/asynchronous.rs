@@ -1,18 +1,18 @@
-//! What no clock sees: pulses between two edges of the clock, in Icarus, on the block's own Verilog.
+//! Tests effects that no clock samples: pulses between two clock edges, in Icarus, on the block's own Verilog.
 //!
-//! A lock step gives one set of inputs per clock, so a latch that needs the clock looks the same as one that does not. A block
-//! that has such a path brings a testbench of its own ([`Block::asynchronous`]): it prints a line `not …` for each thing that
-//! does not hold, and `passed` at its end.
+//! A lock step has one set of inputs per clock, so a latch that needs the clock looks the same as one that does not.
+//! A block with such a path has a testbench of its own ([`Block::asynchronous`]), which prints a line `not …` for
+//! each failed check, and `passed` at its end.
 
 use crate::Error;
 use crate::blocks::{Block, Sources};
 use crate::icarus;
 use crate::lockstep::report::{self, LockstepReport};
 
-/// What the instance of the row ends with.
+/// Suffix of the row's instance.
 const INSTANCE: &str = "pulses between clocks";
 
-/// Runs the block's directed test, where it has one, as a report of one row.
+/// Runs the block's directed test, if it has one, and returns a report of one row.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog.
@@ -46,7 +46,7 @@ pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<LockstepRepo
     Ok(Some(LockstepReport::new(cycles, vec![row])))
 }
 
-/// The row of a test that could not be run: it says why, and is no match.
+/// A row for a test that could not be run, with the reason; it does not count as a match.
 pub fn not_run(block: &dyn Block, why: &str) -> Option<LockstepReport> {
     block.asynchronous()?;
     let row = report::BlockReport {

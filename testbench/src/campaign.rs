@@ -1,13 +1,13 @@
-//! The stimuli that a machine's lock step goes through: the delay line filled, every directed case, a real move, then random
-//! to the end.
+//! The stimuli of a machine's lock step: the delay lines are filled, then come every directed case and a real move,
+//! then random stimuli to the end.
 //!
 //! ```text
 //! | noise, a sample per pass | directed case 1 | … | corner case n | real move | random, seeded …        |
 //! |◄──────────────── [`Campaign::least_clocks`] ──►|
 //! ```
 //!
-//! One run, so that each phase begins in whatever state the one before has left: the noise, every directed case and the move
-//! begin with a reset, the random stimuli do not. What slow simulators must reach comes first.
+//! It is one run, so that each phase begins in the state that the one before has left: the noise, every directed case
+//! and the move begin with a reset, the random stimuli do not. What slow simulators must reach comes first.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use posicast_model::rtl::shaper::ShaperConfig;
 
 use crate::stimuli::{Action, Directed, Fill, Layout, MotionStimuli, Random, Stimuli, cases, corners, motion_cases};
 
-/// Clocks between the strobes of the move beyond a pass: idle clocks, a handful.
+/// Idle clocks between the move's samples.
 const IDLE_CLOCKS: u64 = 5;
 
 /// The phases, one after the other.
@@ -30,16 +30,16 @@ struct Phase<'a> {
 }
 
 impl<'a> Campaign<'a> {
-    /// The campaign for the shapers of `layout`, built of `configs`. `words` is the move: command words per axis; none, and
-    /// the move is left out. The move gets at most a quarter of `cycles`, so that a long move does not crowd out the random
-    /// stimuli.
+    /// The campaign for the shapers of `layout`, built with `configs`. `words` has the move as command words per
+    /// axis; without words the move is left out. The move gets at most a quarter of `cycles`, so that a long move
+    /// leaves room for the random stimuli.
     pub fn new(layout: &Layout, configs: &[&ShaperConfig], words: &'a [Vec<i64>], cycles: u64, seed: u64) -> Self {
         let pass_clocks = longest_pass_clocks(configs);
         let mut phases = VecDeque::from([Phase {
             stimuli: Box::new(Fill::new(layout, seed)),
             clocks: fill_clocks(configs),
         }]);
-        // A corner belongs to one axis's sizes; on the others it is one more script.
+        // A corner case is for the sizes of one axis; for the others it is one more script.
         let corner_cases = layout.axes.iter().flat_map(corners);
         for (_, script) in directed(layout).into_iter().chain(corner_cases) {
             let directed = Directed::new(layout, script);
@@ -63,7 +63,8 @@ impl<'a> Campaign<'a> {
         }
     }
 
-    /// Clocks after which the delay lines were full, every tap was seen, and every directed case is over.
+    /// Number of clocks after which the delay lines were full, every tap was exercised, and every directed case is
+    /// over.
     pub fn least_clocks(layout: &Layout, configs: &[&ShaperConfig]) -> u64 {
         let pass_clocks = longest_pass_clocks(configs);
         let cases = directed(layout).into_iter();
@@ -72,13 +73,13 @@ impl<'a> Campaign<'a> {
     }
 }
 
-/// Clocks of the longest pass of all: in a handover two tables long.
+/// Clocks of the longest pass, which is a handover over two tables.
 fn longest_pass_clocks(configs: &[&ShaperConfig]) -> u32 {
     let passes = configs.iter().map(|config| config.pass_clocks(config.most_products()));
     passes.max().unwrap_or(0)
 }
 
-/// Clocks of the phase that fills the delay lines, whose passes go over the machine's tables only.
+/// Clocks of the phase that fills the delay lines, in which only the machine's tables are in use.
 fn fill_clocks(configs: &[&ShaperConfig]) -> u64 {
     let products = |config: &ShaperConfig| (config.channels() * config.table().taps().len()) as u32;
     let pass = configs.iter().map(|config| config.pass_clocks(products(config))).max();
@@ -89,7 +90,7 @@ fn fill_clocks(configs: &[&ShaperConfig]) -> u64 {
     Fill::clocks(longest.unwrap_or(0), pass.unwrap_or(0))
 }
 
-/// The directed cases that suit the shapers of the layout.
+/// The directed cases for the shapers of the layout.
 fn directed(layout: &Layout) -> Vec<(&'static str, Vec<Action>)> {
     let in_motion = layout.axes.iter().any(|axis| axis.swap_how.is_some());
     let mut all = cases();

@@ -1,4 +1,4 @@
-//! The same Verilog in two simulators that share nothing, and their waveforms compared by our own [`diff`].
+//! Runs the same Verilog in two independent simulators, and compares their waveforms by our own [`diff`].
 //!
 //! ```text
 //!               ┌─► Verilator ─────────────────────► verilator.vcd ─┐
@@ -6,14 +6,16 @@
 //!  (same rows)  └─► Icarus, without initial values ► unset.vcd ─────┘─► diff, from the release of the first reset on
 //! ```
 //!
-//! - Verilator's memories, and what it leaves unset, start at random; Icarus's start as `x`, and its waveform, which it writes
-//!   itself, says so. An `x` or `z` on an output is a difference, from the first clock on.
-//! - The emitted Verilog gives every register its reset value at power-up, which would hide a register without a reset. In the
-//!   third run it does not: all registers are `x` until the reset, and no output may be from then on.
-//! - The first two runs are also in lock step with the model, whose outputs the stimuli react to; so is the third, whose
-//!   mismatches before the reset do not count.
+//! - Verilator's memories, and unset registers, start at random; Icarus's start as `x`, which its own waveform shows.
+//!   An `x` or `z` on an output is a difference, from the first clock on.
+//! - The emitted Verilog gives every register its reset value at power-up, which would hide a register without a
+//!   reset. The third run is without these values: all registers are `x` until the reset, and no output may be `x`
+//!   after it.
+//! - The first two runs are also in lock step with the model, to whose outputs the stimuli react; so is the third,
+//!   whose mismatches before the reset do not count.
 //!
-//! What it does not show: that both simulators do not share a misunderstanding of the language; what lies inside of a block.
+//! This does not show whether both simulators share a misunderstanding of the language, nor compare signals inside a
+//! block.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -30,30 +32,30 @@ use crate::netlist::has_memory;
 use crate::wave::{Heading, Recorder};
 use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
 
-/// The clock of the waveforms: Icarus's testbench has two steps of 1 ns per clock.
+/// Clock frequency of the waveforms: Icarus's testbench has two steps of 1 ns per clock.
 const CLOCK_HZ: f64 = 500e6;
 /// The input that resets a block.
 const RESET: &str = "rst";
 
-/// What came out for a block.
+/// Result for a block.
 #[derive(Debug, Clone)]
 pub struct CrosssimOutcome {
-    /// Ports of the block.
+    /// Number of ports of the block.
     pub ports: usize,
-    /// Verilator against the model.
+    /// Lock step of Verilator with the model.
     pub verilator: LockstepReport,
-    /// Icarus against the model.
+    /// Lock step of Icarus with the model.
     pub icarus: LockstepReport,
-    /// Icarus's waveform against Verilator's.
+    /// Comparison of Icarus's waveform with Verilator's.
     pub waves: Comparison,
-    /// The same without initial values, from the release of the first reset on.
+    /// Comparison of the run without initial values, from the release of the first reset on.
     pub unset: Comparison,
-    /// How long it took.
+    /// Duration of the runs.
     pub time: Duration,
 }
 
 impl CrosssimOutcome {
-    /// Whether all is equal, and all was compared: every port, in as many clocks as were run.
+    /// Whether everything is equal and was compared: every port, in every clock of the run.
     pub fn is_good(&self) -> bool {
         let matched = [&self.verilator, &self.icarus].map(|report| report.result == report::LockstepVerdict::Match);
         let whole = |waves: &Comparison| {
@@ -67,18 +69,18 @@ impl CrosssimOutcome {
     }
 }
 
-/// Runs a block for so many clocks in both simulators; `folder` gets the waveforms.
+/// Runs a block for this many clocks in both simulators, and writes the waveforms into `folder`.
 ///
 /// # Errors
-/// As [`Sources::verilated`], [`lockstep::run`] and [`diff::compare`].
+/// Those of [`Sources::verilated`], [`lockstep::run`] and [`diff::compare`].
 pub fn run(block: &dyn Block, clocks: u64, seed: u64, folder: &Path) -> Result<CrosssimOutcome, Error> {
     run_modules(block, &block.modules()?, clocks, seed, folder)
 }
 
-/// The same with other Verilog: a block that was changed on purpose.
+/// Runs a block with other Verilog, for example one that was changed on purpose.
 ///
 /// # Errors
-/// As [`run`].
+/// Those of [`run`].
 pub fn run_modules(
     block: &dyn Block,
     modules: &[Module],
@@ -97,7 +99,7 @@ pub fn run_modules(
 
     let exact = DiffOptions {
         require_all: true,
-        // The testbench's own variable.
+        // This is a variable of the testbench.
         ignore: vec![format!("{SCOPE}.posicast_read")],
         ..DiffOptions::default()
     };
@@ -158,7 +160,7 @@ impl Bench<'_> {
         let mut model = self.block.model(self.seed);
         let instances = self.block.instances(model.ports());
         let mut stimuli = self.block.stimuli(self.clocks, self.seed);
-        // Both waveforms must be as long as each other, however much is wrong.
+        // Both waveforms must have the same length, even if much is wrong.
         let options = lockstep::LockstepOptions {
             mismatch_limit: u64::MAX,
             ..lockstep::LockstepOptions::cycles(self.clocks)
@@ -175,7 +177,8 @@ impl Bench<'_> {
     }
 }
 
-/// The module without the values that its registers have at power-up. A memory keeps its contents: that of a ROM is what it is.
+/// The module without the values that its registers have at power-up. A memory keeps its contents, because those of a
+/// ROM are fixed.
 fn without_initial_values(module: &Module) -> Module {
     if has_memory(module) {
         return module.clone();
@@ -193,7 +196,7 @@ fn without_initial_values(module: &Module) -> Module {
     Module { text, ..module.clone() }
 }
 
-/// The outputs of a block that are compared.
+/// Number of outputs of a block that are compared.
 pub fn outputs(block: &dyn Block) -> usize {
     let model = block.model(0);
     let outputs = model.ports().iter().filter(|port| port.direction == Direction::Output);

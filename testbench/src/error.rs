@@ -1,4 +1,4 @@
-//! Everything that can go wrong here, by cause.
+//! Errors of this crate, by cause.
 
 use std::path::{Path, PathBuf};
 
@@ -7,76 +7,76 @@ use posicast_hdl::emit::EmitError;
 use posicast_model::rtl::StepError;
 use wavecmp::WaveError;
 
-/// Why a comparison could not be made. That something *differs* is a result, never an error.
+/// Why a comparison could not be made. A *difference* is a result, never an error.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// An external program is not installed: exit status 3.
     #[error("{tool}: not found ({purpose}). {remedy}")]
     ToolMissing {
-        /// The program that was looked for.
+        /// Name of the program.
         tool: String,
-        /// What it is needed for.
+        /// Purpose of the program.
         purpose: &'static str,
-        /// How to get it.
+        /// How to install it.
         remedy: &'static str,
     },
-    /// An external program ran and failed.
+    /// An external program failed.
     #[error("{tool} failed while {doing} ({status}):\n{output}")]
     ToolFailed {
-        /// The program.
+        /// Name of the program.
         tool: String,
-        /// What it was doing.
+        /// Its task.
         doing: &'static str,
-        /// Its exit status in words.
+        /// Its exit status, in words.
         status: String,
-        /// The last lines of its output.
+        /// Last lines of its output.
         output: String,
     },
     /// The Verilog's ports are not those of the model.
     #[error("module `{top}` does not have the expected ports:\n{}\nThe Verilog was edited, or belongs to another \
              machine file: generate it again, or verify the folder it came from", .problems.join("\n"))]
     Ports {
-        /// The module.
+        /// Name of the module.
         top: String,
-        /// One line per port that differs.
+        /// A line for each port that differs.
         problems: Vec<String>,
     },
     /// Model and device under test have different ports.
     #[error("model and device under test cannot be compared: {0}")]
     Unlike(String),
-    /// A block that cannot be written as Verilog, or that RustHDL refuses.
+    /// A block cannot be written as Verilog, or RustHDL refuses it.
     #[error(transparent)]
     Block(BlockError),
     /// A source file, cache folder or output file cannot be read or written.
     #[error("{}: cannot {doing}: {source}", .path.display())]
     File {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What was tried.
+        /// What was attempted.
         doing: &'static str,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The shared object that Verilator built cannot be used.
+    /// The shared object that Verilator built cannot be loaded.
     #[error("{}: the built simulation cannot be loaded ({reason}); delete that file and try again", .path.display())]
     Load {
-        /// The shared object.
+        /// Path of the shared object.
         path: PathBuf,
-        /// What the loader says.
+        /// The loader's reason.
         reason: String,
     },
     /// A simulator stopped.
     #[error("clock {clock}: {source}")]
     Step {
-        /// Clocks since the start of the run.
+        /// Number of clocks since the start of the run.
         clock: u64,
-        /// What it says.
+        /// The simulator's error.
         source: StepError,
     },
     /// A waveform cannot be read, or compared.
     #[error(transparent)]
     Wave(#[from] WaveError),
-    /// An option, or an argument, that does not fit.
+    /// An option does not fit the files with which it is used.
     #[error("{0}")]
     Option(String),
 }
@@ -84,10 +84,10 @@ pub enum Error {
 /// Why there is no hardware to compare.
 #[derive(Debug, thiserror::Error)]
 pub enum BlockError {
-    /// The emitter cannot write it.
+    /// The emitter cannot write the block.
     #[error(transparent)]
     Emit(#[from] EmitError),
-    /// RustHDL found a fault in it.
+    /// RustHDL found an error in the block.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }

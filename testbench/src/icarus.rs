@@ -1,11 +1,11 @@
-//! The second simulator: Icarus Verilog. Slow, independent, and it knows `x`.
+//! Icarus Verilog, the second simulator: slow and independent, with four-valued signals.
 //!
-//! A generated testbench reads one line of inputs from its standard input, settles, writes one line of outputs, and gives
-//! one clock; `vvp` runs beside us and is talked to through two pipes. No VPI, and no files that grow with the length, unless
-//! a waveform is asked for ([`Icarus::recording`]).
+//! A generated testbench reads a line of inputs from its standard input, settles, writes a line of outputs, and makes
+//! one clock; `vvp` runs as a child process with two pipes. There is no VPI, and no file grows with the length of the
+//! run, unless a waveform is requested ([`Icarus::recording`]).
 //!
-//! An output that is `x` or `z` is a mismatch where the device is a [`Device`], and a [`StepError`] where it is stepped as
-//! a [`ClockedBlock`], which has no word for it.
+//! An output that is `x` or `z` is a mismatch where the simulation is used as a [`Device`], and a [`StepError`] where
+//! it is used as a [`ClockedBlock`], which cannot represent it.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -30,17 +30,17 @@ const ICARUS: Tool = Tool {
 const VVP: Tool = Tool {
     name: "vvp",
     variable: "VVP",
-    purpose: "it runs what iverilog compiled",
+    purpose: "it runs the output of iverilog",
     remedy: "It comes with Icarus Verilog (Debian: apt-get install iverilog)",
 };
-/// Bytes that a line of outputs may have: 64 per port and more than enough for any top module.
+/// Largest length in bytes of a line of outputs: 64 per port, and more than enough for any top module.
 const LINE_BYTES: u64 = 1 << 20;
 
-/// The scope of the testbench, and so of the signals in a waveform.
+/// Scope of the testbench, and so of the signals in a waveform.
 pub const SCOPE: &str = "posicast_bench";
-/// The waveform, in the folder in which `vvp` runs.
+/// Name of the waveform in the folder in which `vvp` runs.
 const WAVES: &str = "waves.vcd";
-/// What `vvp` runs.
+/// Name of the compiled program that `vvp` runs.
 const PROGRAM: &str = "bench.vvp";
 
 /// A Verilog module that runs under Icarus.
@@ -48,7 +48,7 @@ const PROGRAM: &str = "bench.vvp";
 pub struct Icarus {
     ports: Vec<Port>,
     outputs: Vec<Port>,
-    // Dropped, it is ended; the folder in which it runs goes behind it.
+    // This is ended when it is dropped; its folder is removed after that.
     process: Running,
     to: Option<ChildStdin>,
     from: BufReader<ChildStdout>,
@@ -61,16 +61,17 @@ impl Icarus {
     /// Compiles the module with its testbench and starts it.
     ///
     /// # Errors
-    /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog, which includes ports
-    /// that are missing or have another width.
+    /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog, for example because
+    /// ports are missing or have another width.
     pub fn build(source: &VerilogSource<'_>) -> Result<Self, Error> {
         Self::start(source, "")
     }
 
-    /// The same, with a waveform of `clk` and all ports, written by Icarus itself: below [`SCOPE`], four-valued.
+    /// Builds a simulation that records a waveform of `clk` and all ports, written by Icarus itself: below [`SCOPE`],
+    /// four-valued.
     ///
     /// # Errors
-    /// As [`Self::build`].
+    /// Those of [`Self::build`].
     pub fn recording(source: &VerilogSource<'_>) -> Result<Self, Error> {
         Self::start(
             source,
@@ -78,12 +79,12 @@ impl Icarus {
         )
     }
 
-    /// Ends a simulation that was [`Self::recording`], and puts its waveform into the file `to`.
+    /// Ends a simulation that was built by [`Self::recording`], and copies its waveform to the file `to`.
     ///
     /// # Errors
-    /// [`Error::File`] where the file cannot be written, or where nothing was recorded.
+    /// [`Error::File`] where the file cannot be written, or nothing was recorded.
     pub fn finish(mut self, to: &Path) -> Result<(), Error> {
-        // Without input the testbench ends, and closes its file.
+        // At the end of its input the testbench ends and closes its file.
         self.to = None;
         let status = self.process.wait();
         status.map_err(|cause| VVP.failed("simulating", "not ended".to_owned(), &cause.to_string()))?;
@@ -100,7 +101,8 @@ impl Icarus {
 
         let mut compile = ICARUS.command();
         compile.env("TMPDIR", folder.path());
-        // A port of another width is only a warning to Icarus, in words that only it uses: made an error below.
+        // Icarus only warns about a port of another width, with a text that it uses for nothing else; this is made an
+        // error below.
         compile
             .args(["-g2005", "-Wall", "-s", SCOPE, "-o"])
             .arg(folder.path().join(PROGRAM))
@@ -164,7 +166,7 @@ impl Icarus {
         if let Some(to) = &mut self.to {
             to.write_all(self.line.as_bytes()).map_err(stopped)?;
         }
-        // What the Verilog itself prints comes before our line, which has a mark.
+        // Lines that the Verilog itself prints may come before ours, which has a mark.
         loop {
             self.line.clear();
             let count = self
@@ -185,7 +187,7 @@ impl Icarus {
     }
 }
 
-/// Begins a line of outputs.
+/// Mark at the start of a line of outputs.
 const MARK: &str = "posicast-outputs";
 
 fn parse(line: &str, ports: &[Port], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
@@ -194,7 +196,7 @@ fn parse(line: &str, ports: &[Port], outputs: &mut [u64], unknown: &mut [u64]) -
         let digits = values.next().unwrap_or_default();
         if digits.len() != port.width as usize {
             return Err(StepError(format!(
-                "Icarus: `{digits}` is no value of output `{}`",
+                "Icarus: `{digits}` is not a value of output `{}`",
                 port.name
             )));
         }
@@ -239,7 +241,7 @@ impl ClockedBlock for Icarus {
     }
 }
 
-/// Compiles a testbench with the top module `top` and these files, runs it to its end, and returns what it printed.
+/// Compiles a testbench with the top module `top` and these files, runs it to its end, and returns its output.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog.
@@ -257,7 +259,7 @@ pub(crate) fn directed(bench: &str, top: &str, files: &[PathBuf]) -> Result<Stri
     Ok(String::from_utf8_lossy(&ran.stdout).into_owned())
 }
 
-/// The testbench, with what else it is to do in `also`.
+/// The testbench, with additional text `also`.
 fn testbench(source: &VerilogSource<'_>, also: &str) -> String {
     let inputs: Vec<&Port> = source
         .ports

@@ -1,34 +1,34 @@
-//! The rungs of the verification ladder in one table: block × rung.
+//! The rungs of the verification ladder in one table: blocks by rungs.
 //!
 //! ```text
 //! rung ─► a program ─► its table, a row per block instance ─► sums of some columns, per block ─► a cell
 //!                   └─► its exit status ─► whether the rung holds
 //! ```
 //!
-//! All programs print Markdown tables whose first column is the block; that is their common format. A rung that printed no
+//! All programs print Markdown tables whose first column is the block; this is their common format. A rung without a
 //! row does not hold, whatever its exit status is.
 
 use std::fmt::Write as _;
 use std::time::Duration;
 
-/// Columns that are summed, each with what follows the sum in the cell.
+/// Columns that are summed, each with the unit that follows the sum in the cell.
 pub type Columns = &'static [(&'static str, &'static str)];
 
-/// What came of a rung.
+/// Result of a rung.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rung {
-    /// Its name.
+    /// Name of the rung.
     pub name: String,
-    /// Cells by block, in the order of the program.
+    /// Cells by block, in the order of the program's output.
     pub cells: Vec<(String, String)>,
-    /// Exit status 0, and something in the table.
+    /// Whether the exit status is 0 and the table is not empty.
     pub holds: bool,
-    /// How long it took.
+    /// Duration of the rung.
     pub time: Duration,
 }
 
 impl Rung {
-    /// A rung of these rows, each a block and its numbers, which are summed per block.
+    /// A rung with these rows, each a block with its numbers, which are summed per block.
     pub fn new(name: &str, units: &[&str], rows: &[(String, Vec<u64>)], succeeded: bool, time: Duration) -> Self {
         let mut sums: Vec<(String, Vec<u64>)> = Vec::new();
         for (block, numbers) in rows {
@@ -59,7 +59,7 @@ impl Rung {
     }
 }
 
-/// The rows of the tables in a program's output that have a column `block` and these columns: block and numbers.
+/// The rows of the tables in a program's output that have a column `block` and these columns, as block and numbers.
 pub fn rows(output: &str, columns: Columns) -> Vec<(String, Vec<u64>)> {
     let mut rows = Vec::new();
     let mut places: Option<(usize, Vec<usize>)> = None;
@@ -74,7 +74,7 @@ pub fn rows(output: &str, columns: Columns) -> Vec<(String, Vec<u64>)> {
             places = place("block").zip(numbers);
             continue;
         };
-        // The line below the heads, and sums, which are in bold.
+        // This skips the line below the headings, and sums, which are in bold.
         if cells.iter().all(|cell| cell.chars().all(|c| c == '-')) || cells.iter().any(|cell| cell.starts_with("**")) {
             continue;
         }
@@ -89,7 +89,7 @@ fn cells(line: &str) -> Option<Vec<&str>> {
     Some(inner.split('|').map(str::trim).collect())
 }
 
-/// The number that a cell begins with; 0 where there is none.
+/// The number with which a cell begins; 0 if there is none.
 fn number(cell: &str) -> u64 {
     let digits: String = cell
         .chars()
@@ -99,8 +99,8 @@ fn number(cell: &str) -> u64 {
     digits.parse().unwrap_or(0)
 }
 
-/// All rungs: a row per block in the order in which they come, a column per rung, and at the end what holds and how long it
-/// took.
+/// The table of all rungs: a row per block in the order of appearance, a column per rung, and at the end whether each
+/// holds and its duration.
 pub fn table(rungs: &[Rung]) -> String {
     let mut blocks: Vec<&str> = Vec::new();
     for (block, _) in rungs.iter().flat_map(|rung| &rung.cells) {

@@ -7,25 +7,25 @@
 //!                                                                     └─► wave ─► *.vcd ─► diff ─► verdict
 //! ```
 //!
-//! - [`verilator`] builds Verilog into a shared object, once per content, and drives it: the fast way.
-//! - [`icarus`] runs the same Verilog in a second, independent simulator that knows `x`.
-//! - [`stimuli`] makes inputs: directed cases, seeded random mixtures, real motion; and counts what they reached.
+//! - [`verilator`] builds Verilog into a shared object, once per content, and runs it: the fast simulator.
+//! - [`icarus`] runs the same Verilog in a second, independent, four-valued simulator.
+//! - [`stimuli`] makes inputs: directed cases, seeded random mixtures, real motion; and counts what they reach.
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
 //! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
-//! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
-//! - [`fault_campaign`] puts a stage with its machine in every fault, at random clocks of a move.
-//! - [`register_tests`] asks registers, through the bus, for what their description promises.
+//! - [`campaign`] is the order of stimuli for a machine; [`recording`] records a real move as waveforms.
+//! - [`fault_campaign`] injects every fault into a stage with its machine, at random clocks of a move.
+//! - [`register_tests`] checks over the bus that registers behave as described.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
-//! - [`asynchronous`] tests what no clock sees.
+//! - [`asynchronous`] tests effects that no clock samples.
 //! - [`crosssim`] compares the waveforms of two simulators.
-//! - [`coverage`] measures which lines and nets a lock step reaches, and wants a reason for the rest.
-//! - [`formal`] proves what property files say of the blocks.
+//! - [`coverage`] measures which lines and nets a lock step reaches, and requires a reason for the rest.
+//! - [`formal`] proves the properties of property files.
 //! - [`netlist`] simulates and proves what a synthesiser made of a block.
 //! - [`replay`] plays a recording into model and RTL.
 //! - [`ladder`] puts the results of all rungs into one table.
-//! - [`mutation`] puts faults into the blocks, and finds out which checks notice.
+//! - [`mutation`] puts faults into the blocks, and finds out which checks detect them.
 //! - [`wave`] writes waveforms; the crate `wavecmp` compares two of them.
-//! - [`wording`] counts things and writes times for people.
+//! - [`wording`] writes counts and times for people.
 
 pub mod asynchronous;
 pub mod blocks;

@@ -1,4 +1,4 @@
-//! A block's netlist, as a synthesiser wrote it, against the block: simulated, and proven.
+//! Compares a block's netlist, as a synthesiser wrote it, with the block, by simulation and by proof.
 //!
 //! ```text
 //!  modules ─┬─ logic ─► synthesiser ─► netlist ─┬─► with models of its cells ─► Verilator, lock step with the model
@@ -6,12 +6,12 @@
 //!           └─ memories, multipliers: kept ─────────┴─► RTL = netlist?  Yosys: miter ─► ABC: register correspondence, PDR
 //! ```
 //!
-//! - Memories, ROMs and multipliers are modules of their own, which a device has as blocks. They are kept: in the simulation they
-//!   are what they were; in the proof they are cut out, on both sides. What comes out of them is then anything, and what goes
-//!   into them is compared like an output. Equal inputs give equal contents, so the proof holds for the whole.
+//! - Memories, ROMs and multipliers are modules of their own, which a device has as blocks. They are kept: the
+//!   simulation uses them unchanged; the proof cuts them out, on both sides. Their outputs are then free, and their
+//!   inputs are compared like outputs. Equal inputs give equal contents, so the proof holds for the whole.
 //! - The proof is for all inputs in all clocks from power-up on, resets included, without a bound.
-//! - An asynchronous clear counts as it is in a clock.
-//! - The netlist is read from its text, so a changed table is seen.
+//! - An asynchronous clear counts as a synchronous one.
+//! - The netlist is read from its text, so a changed table is detected.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -25,31 +25,31 @@ use crate::blocks::{self, Block, Sources};
 use crate::formal::{YOSYS, abc, asserted};
 use crate::lockstep::report::LockstepReport;
 
-/// Longest difference that is searched for, in clocks: more than a division lasts.
+/// Length in clocks of the longest difference that is searched for: longer than a division.
 const SEARCHED_CLOCKS: u32 = 150;
 
 const COMPARING: &str = "comparing RTL and netlist";
 
-/// Whether two versions of a block do the same: its RTL and its netlist, or the block and a mutant.
+/// Whether two versions of a block are equivalent: its RTL and its netlist, or the block and a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EquivalenceVerdict {
-    /// For all inputs and for ever.
+    /// They are equivalent, for all inputs and without a bound.
     Equivalent,
-    /// Some input tells them apart in this clock after power-up, from 0.
+    /// Some input makes them differ in this clock after power-up, from 0.
     Different {
-        /// The clock.
+        /// Number of the clock.
         clock: u32,
     },
-    /// Neither within the time limit.
+    /// Neither was found within the time limit.
     Unknown,
 }
 
-/// A block's Verilog, sorted.
+/// A block's Verilog, sorted by what is mapped.
 #[derive(Debug, Clone)]
 pub struct NetlistParts {
-    /// What is mapped to logic elements; the top among them.
+    /// Modules that are mapped to logic elements, the top among them.
     pub logic: Vec<Module>,
-    /// What is kept.
+    /// Modules that are kept.
     pub kept: Vec<Module>,
 }
 
@@ -62,15 +62,15 @@ impl NetlistParts {
     }
 }
 
-/// Whether a module is a memory: the emitter's RAM and ROM are, and nothing else has one.
+/// Whether a module is a memory: only the emitter's RAM and ROM contain one.
 pub(crate) fn has_memory(module: &Module) -> bool {
     module.text.contains(" words [0:")
 }
 
-/// The netlist with the models of its cells in lock step with the block's model.
+/// Runs the netlist, with the models of its cells, in lock step with the block's model.
 ///
 /// # Errors
-/// As [`Sources::verilated`] and [`blocks::check`].
+/// Those of [`Sources::verilated`] and [`blocks::check`].
 pub fn simulate(
     block: &dyn Block,
     parts: &NetlistParts,
@@ -93,11 +93,12 @@ pub fn simulate(
     blocks::check(block, &mut device, clocks, seed, &mut |_| {})
 }
 
-/// Whether the netlist does what the RTL does; `folder` gets the files. ABC's engines get `limit` each.
+/// Checks whether the netlist is equivalent to the RTL, with files in `folder`. Each of ABC's engines gets the time
+/// limit `limit`.
 ///
 /// # Errors
-/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses RTL or netlist, which includes ports
-/// or kept modules that only one of them has; [`Error::File`] for the files.
+/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses RTL or netlist, for
+/// example because only one of them has a port or kept module; [`Error::File`] for the files.
 pub fn equivalent(
     top: &str,
     parts: &NetlistParts,
@@ -159,25 +160,25 @@ pub fn equivalent(
     }))
 }
 
-/// What came out for a block.
+/// Result for a block.
 #[derive(Debug, Clone)]
 pub struct EquivalenceOutcome {
-    /// Logic elements that compute, and flip-flops.
+    /// Number of logic elements that compute, and of flip-flops.
     pub cells: [usize; 2],
-    /// Kept modules.
+    /// Number of kept modules.
     pub kept: usize,
-    /// Netlist against the model; none where it was not simulated.
+    /// Lock step of the netlist with the model; `None` if it was not simulated.
     pub simulated: Option<LockstepReport>,
-    /// Netlist against the RTL.
+    /// Equivalence of the netlist with the RTL.
     pub verdict: EquivalenceVerdict,
-    /// How long it took, without the synthesis.
+    /// Duration without the synthesis.
     pub time: Duration,
 }
 
-/// Simulates a netlist for so many clocks, none if that is 0, and proves it.
+/// Simulates a netlist for this many clocks (0: not at all), and proves it.
 ///
 /// # Errors
-/// As [`simulate`] and [`equivalent`].
+/// Those of [`simulate`] and [`equivalent`].
 pub fn check(
     block: &dyn Block,
     parts: &NetlistParts,

@@ -1,23 +1,23 @@
-//! The tables of `docs/verification.md`: each stands between two marks, and the program that measures renews what is there.
+//! The tables of `docs/verification.md`: each is between two marks, and the program that measures updates it.
 
 use std::path::Path;
 
 use crate::Error;
 
-/// Lines of the page between which a table stands.
+/// The lines of the page between which a table is.
 #[derive(Debug, Clone, Copy)]
 pub struct Marks {
-    /// Above it.
+    /// Line above the table.
     pub begin: &'static str,
-    /// Below it.
+    /// Line below the table.
     pub end: &'static str,
 }
 
 impl Marks {
-    /// `page` with what `renew` makes of the text between the marks.
+    /// Returns `page` with the text between the marks replaced by what `renew` makes of it.
     ///
     /// # Errors
-    /// [`Error::Option`] where the page has no marks, one after the other.
+    /// [`Error::Option`] where the page does not contain the two marks in order.
     pub fn renewed(&self, page: &str, renew: impl FnOnce(&str) -> String) -> Result<String, Error> {
         let Self { begin, end } = self;
         let parts = page.split_once(begin).and_then(|(before, rest)| {
@@ -32,10 +32,10 @@ impl Marks {
         Ok(format!("{before}{begin}\n\n{}\n{end}{after}", renew(old)))
     }
 
-    /// Renews the page itself.
+    /// Updates the page itself.
     ///
     /// # Errors
-    /// As [`renewed`](Self::renewed); [`Error::File`] where the page cannot be read or written.
+    /// Those of [`renewed`](Self::renewed), and [`Error::File`] where the page cannot be read or written.
     pub fn renew(&self, renew: impl FnOnce(&str) -> String) -> Result<(), Error> {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/verification.md"));
         let failed = |doing| {

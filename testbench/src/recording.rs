@@ -1,4 +1,4 @@
-//! A real move recorded as waveforms: by the model, by the RTL, and by the float design beside them.
+//! Records a real move as waveforms: of the model, of the RTL, and of the float design.
 //!
 //! ```text
 //!  time       0       40 ns         1.1 µs                      100.04 µs
@@ -8,11 +8,11 @@
 //!  strobe     ________/‾‾‾\___________________________________/‾‾‾\____     sample n: n samples after the reset
 //! ```
 //!
-//! All times are those of the machine: its clock, a strobe each sample period, the outputs as many clocks later as a pass takes.
-//! Between two samples a shaper waits for thousands of clocks, which would fill a waveform with nothing. These clocks are neither
-//! simulated nor recorded: behind each strobe come the clocks of a pass and some in which nothing happens any more, and the file
-//! [says](crate::wave::Recorder::skip_to) where clocks are left out. What a shaper does does not depend on how long it waited;
-//! a test compares with a recording of all clocks.
+//! All times are those of the machine: its clock, a strobe per sample period, and outputs that come as many clocks
+//! later as a pass takes. Between two samples a shaper waits for thousands of clocks, which would fill a waveform
+//! with nothing. These clocks are neither simulated nor recorded: after each strobe come the clocks of a pass and
+//! some idle ones, and the file [says](crate::wave::Recorder::skip_to) where clocks are left out. A shaper's results
+//! do not depend on how long it waited; a test compares with a recording of all clocks.
 
 use std::path::Path;
 
@@ -23,17 +23,17 @@ use crate::lockstep::Device;
 use crate::stimuli::{AxisLayout, Layout, MotionStimuli, Stimuli};
 use crate::wave::{Heading, Recorder, Signal};
 
-/// Idle clocks after a pass, so that each sample's output is seen to stand.
+/// Number of idle clocks after a pass, so that each sample's output is visible.
 const IDLE_CLOCKS: u64 = 5;
 
 /// A move of all axes of a machine.
 #[derive(Debug, Clone)]
 pub struct Move<'a> {
-    /// Where the shapers' ports are.
+    /// Positions of the shapers' ports.
     pub layout: &'a Layout,
-    /// Command words per axis, all of one length.
+    /// Command words per axis, all of the same length.
     pub words: &'a [Vec<i64>],
-    /// Most clocks of a pass.
+    /// Largest number of clocks of a pass.
     pub pass_clocks: u32,
     /// The machine's clock in Hz, a multiple of the sample rate.
     pub clock_hz: f64,
@@ -41,26 +41,26 @@ pub struct Move<'a> {
     pub sample_hz: f64,
 }
 
-/// What came out of a recorded move.
+/// Result of a recorded move.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecordedMove {
-    /// Shaped words per axis, one per `valid`.
+    /// Shaped words per axis, one per clock with `valid`.
     pub shaped: Vec<Vec<i64>>,
-    /// The clock of each of them, counted among those that are recorded.
+    /// The clock of each of them, counted in recorded clocks.
     pub valid_clocks: Vec<Vec<u64>>,
-    /// Clocks that are recorded.
+    /// Number of recorded clocks.
     pub recorded_clocks: u64,
-    /// Clocks of the machine from the beginning to the last that is recorded.
+    /// Number of the machine's clocks from the start to the last recorded one.
     pub clocks: u64,
 }
 
 impl Move<'_> {
-    /// Clocks of a sample period.
+    /// Clocks per sample period.
     fn tick_clocks(&self) -> u64 {
         (self.clock_hz / self.sample_hz).round().max(1.0) as u64
     }
 
-    /// Clocks that are recorded from each strobe on.
+    /// Number of clocks that are recorded from each strobe on.
     fn recorded_clocks(&self) -> u64 {
         (u64::from(self.pass_clocks) + IDLE_CLOCKS).min(self.tick_clocks())
     }
@@ -76,7 +76,7 @@ impl Move<'_> {
         }
     }
 
-    /// What the file says about its times.
+    /// The comment of the file about its times.
     fn comment(&self, motion: &MotionStimuli<'_>) -> String {
         let (tick, recorded) = (self.tick_clocks(), self.recorded_clocks());
         let mut text = format!(
@@ -144,8 +144,8 @@ impl Move<'_> {
         Ok(trace)
     }
 
-    /// Writes the float design's outputs, in LSB, as real signals `<axis>_y` that change in the very clocks in which the
-    /// hardware's do (`trace`).
+    /// Writes the float design's outputs, in LSB, as real signals `<axis>_y` that change in the same clocks as the
+    /// hardware's in `trace`.
     ///
     /// # Errors
     /// [`Error::File`] where the file cannot be written.
@@ -165,7 +165,7 @@ impl Move<'_> {
             ..Heading::default()
         };
         let mut recorder = Recorder::create_with(path, self.clock_hz, &[scope], &signals, &heading)?;
-        // After reset the hardware shows 0, after the start its start position, then one sample per `valid`.
+        // The hardware shows 0 after reset, its start position after the start, and then one sample per `valid`.
         let start_shows = motion.first_strobe() + 1;
         let mut next = vec![0usize; names.len()];
         let mut values = vec![0f64.to_bits(); names.len()];
@@ -193,7 +193,7 @@ struct Place {
     width: u32,
 }
 
-/// Where each axis's `y` and `valid` are among the outputs.
+/// Positions of each axis's `y` and `valid` among the outputs.
 struct Places(Vec<Place>);
 
 impl Places {
@@ -212,7 +212,7 @@ impl Places {
     }
 }
 
-/// The output that shows the shaped position: `y`, or `y_0` of a shaper for motion.
+/// Name of the output for the shaped position: `y`, or `y_0` of a motion shaper.
 fn output_of(axis: &AxisLayout) -> String {
     port_of(&axis.name, if axis.swap_how.is_some() { "y_0" } else { "y" })
 }

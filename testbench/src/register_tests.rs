@@ -1,6 +1,7 @@
-//! The six classic register tests, from a register map: what a host may rely on, asked through the bus alone.
+//! The six classic register tests, derived from a register map: they check over the bus alone what a host may rely
+//! on.
 //!
-//! | test | asks |
+//! | test | question |
 //! |---|---|
 //! | [`reset_values`] | does every register read as described after a reset, and again after a reset in mid-life? |
 //! | [`read_write`] | does every writable register keep a word, and none of the others? |
@@ -9,28 +10,28 @@
 //! | [`random_with_resets`] | do reads agree with the description after any writes, with resets in between? |
 //! | [`byte_enables`] | does a write reach the enabled bytes, for all sixteen patterns? |
 //!
-//! They know the description, and nothing of model or Verilog, so both are held to it. What hardware may change by
-//! itself (live words, flags from outside, and what is guarded by a pin) is left out unless [`RegisterHardware::Still`] says that
-//! the pins are ours: then inputs are 0, and guards open.
+//! They know only the description, and nothing of model or Verilog, so both are tested against it. What the hardware
+//! may change by itself (live words, flags from outside, and registers that a pin guards) is left out unless
+//! [`RegisterHardware::Still`] says that the test controls the pins: inputs are then 0, and guards open.
 
 use posicast_model::rtl::registers::{Access, FlagSource, Register, RegisterMap};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Who holds the inputs of the registers.
+/// Who drives the inputs of the registers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RegisterHardware {
-    /// The test: a bank alone.
+    /// The test drives them: the bank is alone.
     Still,
-    /// A block behind the bank.
+    /// A block behind the bank drives them.
     Running,
 }
 
-/// A test: `Err` says what was found where.
+/// A test; the error says what was found where.
 pub type Test = fn(&mut Host<'_>) -> Result<(), String>;
 
-/// All six, by name.
+/// All six tests with their names.
 pub const TESTS: [(&str, Test); 6] = [
     ("reset values", reset_values),
     ("read-write", read_write),
@@ -40,7 +41,7 @@ pub const TESTS: [(&str, Test); 6] = [
     ("byte enables", byte_enables),
 ];
 
-/// A host on the bus of a block, and what it knows of the registers.
+/// A host on the bus of a block, with its knowledge of the registers.
 pub struct Host<'a> {
     map: &'a RegisterMap,
     block: &'a mut dyn ClockedBlock,
@@ -48,15 +49,15 @@ pub struct Host<'a> {
     inputs: Vec<u64>,
     outputs: Vec<u64>,
     read_data: usize,
-    /// What each register must read as.
+    /// Expected word of each register.
     expected: Vec<u32>,
 }
 
 impl<'a> Host<'a> {
-    /// A host on `block`, whose registers are those of `map`; it begins with a reset.
+    /// Makes a host for `block`, whose registers are those of `map`; it begins with a reset.
     ///
     /// # Errors
-    /// In words, where the block cannot be stepped.
+    /// A message, where the block cannot be stepped.
     pub fn new(
         map: &'a RegisterMap,
         block: &'a mut dyn ClockedBlock,
@@ -94,7 +95,7 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// What the word at `offset` reads as.
+    /// Reads the word at `offset`.
     fn read(&mut self, offset: u32) -> Result<u32, String> {
         self.inputs[1..6].copy_from_slice(&[offset.into(), 1, 0, 0xf, 0]);
         self.clock()?;
@@ -103,7 +104,7 @@ impl<'a> Host<'a> {
         Ok(self.outputs[self.read_data] as u32)
     }
 
-    /// Writes, and keeps in mind what that does.
+    /// Writes a word, and updates the expected words.
     fn write(&mut self, offset: u32, data: u32, bytes: u32) -> Result<(), String> {
         self.inputs[1..6].copy_from_slice(&[offset.into(), 0, 1, bytes.into(), data.into()]);
         self.clock()?;
@@ -119,7 +120,7 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// The description's word on a write.
+    /// Updates the expected words after a write, by the description.
     fn expect(&mut self, at: usize, data: u32, enabled: u32) {
         let register = &self.map.registers()[at];
         let merged = (self.expected[at] & !enabled | data & enabled) & register.mask();
@@ -157,7 +158,7 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Bits that the host can tell beforehand.
+    /// Mask of the bits that the host can predict.
     fn certain(&self, register: &Register) -> u32 {
         let running = self.hardware == RegisterHardware::Running;
         match &register.access {
@@ -188,7 +189,7 @@ impl<'a> Host<'a> {
         (0..self.map.registers().len()).try_for_each(|at| self.check(at, when))
     }
 
-    /// Registers that keep what is written, whatever hardware does.
+    /// The registers that keep what is written, whatever the hardware does.
     fn keepers(&self) -> Vec<usize> {
         let keeps = |register: &Register| match register.access {
             Access::Configuration | Access::InterruptEnable | Access::Staged => true,
@@ -204,15 +205,15 @@ impl<'a> Host<'a> {
     }
 }
 
-/// Ones in the bytes that are enabled.
+/// A mask with ones in the enabled bytes.
 fn enabled(bytes: u32) -> u32 {
     (0..4).fold(0, |mask, byte| mask | ((bytes >> byte & 1) * 0xff) << (8 * byte))
 }
 
-/// Every register reads as described after a reset, and again after one in mid-life.
+/// Checks that every register reads as described after a reset, and again after a later reset.
 ///
 /// # Errors
-/// In words, what was found.
+/// A message that says what was found.
 pub fn reset_values(host: &mut Host<'_>) -> Result<(), String> {
     host.check_all("after a reset")?;
     for at in 0..host.map.registers().len() {
@@ -222,10 +223,10 @@ pub fn reset_values(host: &mut Host<'_>) -> Result<(), String> {
     host.check_all("after a second reset")
 }
 
-/// Every writable register keeps a word; writes of the others change nothing that can be read.
+/// Checks that every writable register keeps a word, and that writes to others change nothing that can be read.
 ///
 /// # Errors
-/// In words, what was found.
+/// A message that says what was found.
 pub fn read_write(host: &mut Host<'_>) -> Result<(), String> {
     for data in [0, u32::MAX, 0xaaaa_aaaa, 0x5555_5555, 0x0123_4567] {
         for at in 0..host.map.registers().len() {
@@ -242,10 +243,10 @@ pub fn read_write(host: &mut Host<'_>) -> Result<(), String> {
     host.check_all("after writes of all")
 }
 
-/// Every bit of a field goes to one and to zero, and no other bit with it.
+/// Checks that every bit of a field can be set and cleared, and that no other bit changes with it.
 ///
 /// # Errors
-/// In words, what was found.
+/// A message that says what was found.
 pub fn bit_bash(host: &mut Host<'_>) -> Result<(), String> {
     for at in host.keepers() {
         for bit in 0..32 {
@@ -258,10 +259,11 @@ pub fn bit_bash(host: &mut Host<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Every register is where it is described, and nowhere else: each gets a word of its own, the rest of the window another.
+/// Checks that every register is where it is described, and nowhere else: each gets a word of its own, the rest of
+/// the window another.
 ///
 /// # Errors
-/// In words, what was found.
+/// A message that says what was found.
 pub fn aliasing(host: &mut Host<'_>) -> Result<(), String> {
     let word = |offset: u32| (offset + 1).wrapping_mul(0x9e37_79b9);
     for at in host.keepers() {
@@ -281,17 +283,17 @@ pub fn aliasing(host: &mut Host<'_>) -> Result<(), String> {
     host.check_all("after writes all over the window")
 }
 
-/// Reads agree with the description after any writes, with resets in between.
+/// Checks that reads agree with the description after arbitrary writes, with resets in between.
 ///
 /// # Errors
-/// In words, what was found.
+/// A message that says what was found.
 pub fn random_with_resets(host: &mut Host<'_>) -> Result<(), String> {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(6);
     for turn in 0..3000 {
         let at = rng.random_range(0..host.map.registers().len());
         let (data, bytes) = (rng.next_u32(), if turn & 1 == 0 { 0xf } else { rng.next_u32() & 0xf });
         match host.map.registers()[at].access {
-            // What these do depends on pins.
+            // The effect of these depends on pins.
             Access::Commit { .. } | Access::Snapshot => {}
             _ => host.write(host.offset(at), data, bytes)?,
         }
@@ -304,10 +306,11 @@ pub fn random_with_resets(host: &mut Host<'_>) -> Result<(), String> {
     host.check_all("at the end")
 }
 
-/// A write reaches the enabled bytes, for all sixteen patterns, and words that are taken whole only by the last.
+/// Checks that a write reaches the enabled bytes, for all sixteen patterns, and registers that take only whole words
+/// with the last pattern alone.
 ///
 /// # Errors
-/// In words, what was found.
+/// A message that says what was found.
 pub fn byte_enables(host: &mut Host<'_>) -> Result<(), String> {
     for at in 0..host.map.registers().len() {
         let access = host.map.registers()[at].access.clone();

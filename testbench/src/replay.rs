@@ -1,4 +1,4 @@
-//! A recording replayed: its inputs into model and device, and its outputs against the model's.
+//! Replays a recording: its inputs go into model and device, and its outputs are compared with the model's.
 //!
 //! ```text
 //!                       ┌─► model ─────┬─► lock step: device = model?
@@ -7,12 +7,12 @@
 //!      └──────► outputs ───────────────┘
 //! ```
 //!
-//! - Values are those just before each edge of the recorded clock. All edges are replayed, those in reset too; what the
-//!   recording shows counts from the release of its reset on, from the first edge where it has none.
-//! - Model and device begin as at power-up. A recording that begins later, without a reset, does not fit them.
-//! - An input that is not in the file, and a bit of one that is `x` or `z`, is 0.
-//! - An output that is not in the file, and a bit of one that is `x` or `z`, is not compared.
-//! - The file is read three times, never kept: memory does not depend on its length.
+//! - Values are those just before each edge of the recorded clock. All edges are replayed, also those in reset;
+//!   recorded outputs are compared from the release of the reset on, or from the first edge if there is none.
+//! - Model and device begin as at power-up. A recording that begins later, without a reset, does not match them.
+//! - An input that is not in the file, and an input bit that is `x` or `z`, is 0.
+//! - An output that is not in the file, and an output bit that is `x` or `z`, is not compared.
+//! - The file is read three times and never kept in memory, so memory does not depend on its length.
 
 use std::path::Path;
 
@@ -27,34 +27,34 @@ use wavecmp::WaveError;
 use wavecmp::diff::DiffOptions;
 use wavecmp::sample::{Player, PortMap, Recorded, WantedSignal};
 
-/// What the rows of the recording are called, behind the instance.
+/// Suffix of the names of the recording's rows.
 const RECORDED: &str = "recorded";
 
-/// A recording that has something in common with a block.
+/// A recording that has signals in common with a block.
 #[derive(Debug, Clone)]
 pub struct Replay {
     map: PortMap,
     ports: Vec<Port>,
 }
 
-/// What a file says as a whole.
+/// Extent of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Extent {
-    /// Edges of its clock.
+    /// Number of edges of its clock.
     pub clocks: u64,
-    /// Those from the release of reset on.
+    /// Number of edges from the release of reset on.
     pub compared: u64,
-    /// Clocks in which an input had bits that were `x` or `z`.
+    /// Number of clocks in which an input had bits that were `x` or `z`.
     pub unknown_inputs: u64,
-    /// Clocks from the release on in which an output had such bits.
+    /// Number of clocks from the release on in which an output had such bits.
     pub unknown_outputs: u64,
 }
 
 impl Replay {
-    /// Matches the file with the block's ports below the scope of its top; nothing, where they have none in common.
+    /// Matches the file with the block's ports below the scope of its top; `None` where they have none in common.
     ///
     /// # Errors
-    /// As [`PortMap::find`].
+    /// Those of [`PortMap::find`].
     pub fn new(block: &dyn Block, path: &Path, options: &DiffOptions) -> Result<Option<Self>, Error> {
         let ports = block.model(0).ports().to_vec();
         let wanted: Vec<WantedSignal> = ports.iter().map(wanted).collect();
@@ -62,35 +62,35 @@ impl Replay {
         Ok(map.map(|map| Self { map, ports }))
     }
 
-    /// Ports that are in the file.
+    /// Number of ports that are in the file.
     pub fn found(&self) -> usize {
         self.map.found()
     }
 
-    /// How clock and reset were found.
+    /// Notes on how clock and reset were found.
     pub fn notes(&self) -> &[String] {
         &self.map.notes
     }
 
-    /// Inputs that are not in the file, and so are 0.
+    /// Inputs that are not in the file, and are held at 0.
     pub fn missing_inputs(&self) -> Vec<String> {
         missing(&self.map, &self.ports, Direction::Input)
     }
 
-    /// Outputs that are not in the file, and so are compared between model and device only.
+    /// Outputs that are not in the file, and are compared between model and device only.
     pub fn missing_outputs(&self) -> Vec<String> {
         missing(&self.map, &self.ports, Direction::Output)
     }
 
-    /// Signals of the file that are no port of the block.
+    /// Number of signals of the file that are not ports of the block.
     pub fn strangers(&self) -> usize {
         self.map.strangers
     }
 
-    /// Reads the file once, at most so many clocks of it.
+    /// Reads the file once, up to this many clocks.
     ///
     /// # Errors
-    /// As [`Player::next`].
+    /// Those of [`Player::next`].
     pub fn extent(&self, most_clocks: u64) -> Result<Extent, Error> {
         let mut player = self.map.play()?;
         let mut row = vec![None; self.ports.len()];
@@ -115,10 +115,11 @@ impl Replay {
         Ok(extent)
     }
 
-    /// Replays so many clocks: the device against the model, then the recording, in rows of their own.
+    /// Replays this many clocks. The device and the recording are compared with the model, in rows of their own.
     ///
     /// # Errors
-    /// As [`lockstep::run`], and [`Player::next`] of a file that has changed since its [`Replay::extent`] was taken.
+    /// Those of [`lockstep::run`], and of [`Player::next`] for a file that has changed since its [`Replay::extent`]
+    /// was taken.
     pub fn run(
         &self,
         block: &dyn Block,
@@ -191,7 +192,7 @@ fn wanted(port: &Port) -> WantedSignal {
     }
 }
 
-/// The ports of one direction that a file has not.
+/// The ports of one direction that a file lacks.
 fn missing(map: &PortMap, ports: &[Port], direction: Direction) -> Vec<String> {
     let of = ports.iter().enumerate().filter(|(_, port)| port.direction == direction);
     of.filter(|(at, _)| !map.has(*at))
@@ -199,7 +200,7 @@ fn missing(map: &PortMap, ports: &[Port], direction: Direction) -> Vec<String> {
         .collect()
 }
 
-/// Places of the ports of one direction.
+/// Indices of the ports with one direction.
 fn places(ports: &[Port], direction: Direction) -> Vec<usize> {
     let of = ports.iter().enumerate().filter(|(_, port)| port.direction == direction);
     of.map(|(at, _)| at).collect()
@@ -224,7 +225,8 @@ impl Stimuli for Inputs {
     }
 }
 
-/// The recorded outputs as a device. What the recording does not say is taken from a model, so that it is no mismatch.
+/// The recorded outputs as a device. What the recording does not contain is taken from a model, so that it is no
+/// mismatch.
 struct Shown {
     player: Player,
     model: Box<dyn ClockedBlock>,

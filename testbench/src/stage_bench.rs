@@ -1,4 +1,5 @@
-//! A stage with its machine: a host on the bus, drives and encoders at the pins, and, beside the model, the RTL if wanted.
+//! A stage with its machine: a host on the bus, drives and encoders at the pins, and optionally the RTL beside the
+//! model.
 //!
 //! ```text
 //!  host: write, read ─► bus ─┐                    ┌─► gates, drive_enable, brake_release ─► plants ─┐
@@ -7,11 +8,13 @@
 //!                            └───────────────────────────────────────── a, b, z ◄───────────────────┘
 //! ```
 //!
-//! With a device every clock is stepped and compared. Without one the model runs event by event, much faster, and exactly
-//! the same. The plants hear the model.
+//! With a device every clock is stepped and compared. Without one the model runs event by event, much faster and with
+//! exactly the same result. The plants follow the model.
 //!
-//! Faults: [`StageBench::set`] drives lines, [`StageBench::force_encoder`] and [`StageBench::break_wire`] cut or corrupt an encoder,
-//! [`StageBench::force_scale`] a scale, [`StageBench::jam`] holds an axis, [`StageBench::displace`] disturbs it. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
+//! Faults: [`StageBench::set`] drives lines; [`StageBench::force_encoder`] and [`StageBench::break_wire`] cut or
+//! corrupt an encoder, [`StageBench::force_scale`] a scale; [`StageBench::jam`] holds an axis,
+//! [`StageBench::displace`] disturbs it. Forbidden states of the pins are checked in every clock:
+//! [`StageBench::watched`].
 
 mod watch;
 
@@ -28,7 +31,7 @@ use crate::Error;
 use crate::lockstep::report::Mismatch;
 use crate::lockstep::{Device, Instance, Lockstep, LockstepOptions};
 
-/// Lines that are high while all is well.
+/// Lines of an axis that are high in normal operation.
 const HEALTHY: [&str; 5] = [
     "limit_plus_n",
     "limit_minus_n",
@@ -36,56 +39,56 @@ const HEALTHY: [&str; 5] = [
     "drive_fault_n",
     "fault_n",
 ];
-/// The same, of the stage.
+/// Lines of the stage that are high in normal operation.
 const HEALTHY_SHARED: [&str; 2] = ["emergency_stop_n", "pll_locked"];
-/// What a tick records of each axis: nets of the stage, behind the axis's name.
+/// Nets of each axis, without the axis's name, that are recorded in a tick.
 const RECORDED: [&str; 4] = ["command_position", "shaped_position", "count", "error"];
 
-/// States of an axis, as `STATUS.state` has them.
+/// States of an axis, as values of `STATUS.state`.
 pub mod state {
     use posicast_model::rtl::axis::SupervisorState;
 
-    /// Outputs off.
+    /// The outputs are off.
     pub const OFF: u32 = SupervisorState::Off as u32;
-    /// Outputs off, nothing wrong.
+    /// The outputs are off and nothing is wrong.
     pub const READY: u32 = SupervisorState::Ready as u32;
-    /// Outputs on, the command stands.
+    /// The outputs are on and the command stands still.
     pub const HOLD: u32 = SupervisorState::Hold as u32;
-    /// Segments play.
+    /// Segments are played.
     pub const RUN: u32 = SupervisorState::Run as u32;
-    /// Slowing down.
+    /// The command slows down.
     pub const QUICK_STOP: u32 = SupervisorState::QuickStop as u32;
-    /// A cause, until it is cleared.
+    /// There was a fault, until its causes are cleared.
     pub const FAULT: u32 = SupervisorState::Fault as u32;
 }
 
 /// An axis at a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisSample {
-    /// Of the segments, counts.
+    /// Command position in counts.
     pub command: f64,
-    /// Of the shaper, counts.
+    /// Shaped position in counts.
     pub shaped: f64,
-    /// Of the encoder, counts.
+    /// Count of the encoder.
     pub count: f64,
-    /// Of the controller, counts.
+    /// Error of the controller in counts.
     pub error: f64,
-    /// The motor in m or rad.
+    /// Position of the motor in m or rad.
     pub motor: f64,
-    /// The load in m or rad.
+    /// Position of the load in m or rad.
     pub load: f64,
 }
 
-/// Where an axis's pins are among the stage's.
+/// Indices of an axis's pins among the stage's ports.
 struct Places {
     encoder: [usize; 3],
-    /// A and B of the scale.
+    /// Lines A and B of the scale.
     scale: Option<[usize; 2]>,
     drive: [usize; 6],
     recorded: [usize; 4],
 }
 
-/// What stands between an axis of the machine and the stage.
+/// Faults between an axis of the machine and the stage.
 #[derive(Debug, Clone, Copy, Default)]
 struct Fault {
     encoder: Option<EncoderPins>,
@@ -97,16 +100,16 @@ struct Fault {
 /// A fault of one wire of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wire {
-    /// A stays at this level.
+    /// Line A stays at this level.
     AStuck(bool),
-    /// B does.
+    /// Line B stays at this level.
     BStuck(bool),
-    /// A has the wires of its pair exchanged: the encoder counts the other way.
+    /// The two wires of the pair A are exchanged: the encoder counts in the other direction.
     AInverted,
 }
 
 impl Wire {
-    /// What the lines are then.
+    /// The lines with the fault.
     fn of(self, lines: EncoderPins) -> EncoderPins {
         match self {
             Self::AStuck(a) => EncoderPins { a, ..lines },
@@ -116,7 +119,7 @@ impl Wire {
     }
 }
 
-/// A net to look at often: see [`StageBench::probe`].
+/// A net that is read often: see [`StageBench::probe`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Probe(usize);
 
@@ -164,10 +167,12 @@ pub struct StageBench {
 }
 
 impl StageBench {
-    /// A stage after a reset of two clocks, all lines healthy. `plants`: one per axis. `device`: the RTL, to be compared.
+    /// Starts a stage with a reset of two clocks and all lines in normal operation. `plants` has one plant per axis;
+    /// `device` is the RTL to compare, if wanted.
     ///
     /// # Errors
-    /// [`Error::Unlike`] if there is not a plant per axis, or the device has other ports; [`Error::Step`] where a simulator stops.
+    /// [`Error::Unlike`] if there is not one plant per axis, or the device has other ports; [`Error::Step`] where a
+    /// simulator stops.
     pub fn new(
         config: &StageConfig,
         component: &Component,
@@ -244,7 +249,7 @@ impl StageBench {
         Ok(bench)
     }
 
-    /// A reset of so many clocks, at any time. Counters begin anew at 0 where the plants are.
+    /// Resets for this many clocks, at any time. Counters restart at 0, where the plants are.
     ///
     /// # Errors
     /// [`Error::Step`] where a simulator stops.
@@ -256,44 +261,44 @@ impl StageBench {
         Ok(())
     }
 
-    /// The counters are right as they are: from now on none may be further away from its plant than now.
+    /// Accepts the present counts: from now on no counter may deviate from its plant by more than now.
     pub fn rebase(&mut self) {
         for ((watched, plant), places) in self.watched.iter_mut().zip(&self.plants).zip(&self.places) {
             watched.rebase(self.model.value(places.recorded[2]), plant);
         }
     }
 
-    /// What was seen at an axis's pins, in every clock since the start.
+    /// What was observed at an axis's pins since the start, in every clock.
     pub fn watched(&self, axis: usize) -> &Watched {
         &self.watched[axis]
     }
 
-    /// What the pins of an axis showed in the last clock.
+    /// The levels of an axis's pins in the last clock.
     pub fn pins(&self, axis: usize) -> DrivePins {
         self.shown[axis]
     }
 
-    /// The lines of an axis's encoder are these, from the next clock on, whatever the plant does; `None`: the plant's.
+    /// Forces the lines of an axis's encoder from the next clock on; `None`: they follow the plant.
     pub fn force_encoder(&mut self, axis: usize, pins: Option<EncoderPins>) {
         self.faults[axis].encoder = pins;
     }
 
-    /// One wire of an axis's encoder is broken, from the next clock on; `None`: none is.
+    /// Breaks a wire of an axis's encoder from the next clock on; `None`: none is broken.
     pub fn break_wire(&mut self, axis: usize, wire: Option<Wire>) {
         self.faults[axis].wire = wire;
     }
 
-    /// The same for A and B of its scale, as [`force_encoder`](Self::force_encoder).
+    /// Forces the lines A and B of an axis's scale, as [`force_encoder`](Self::force_encoder) does for the encoder.
     pub fn force_scale(&mut self, axis: usize, pins: Option<EncoderPins>) {
         self.faults[axis].scale = pins;
     }
 
-    /// Jams an axis, or frees it: the plant stands as if its brake were applied.
+    /// Jams an axis, or frees it: its plant stands as if its brake were applied.
     pub fn jam(&mut self, axis: usize, jammed: bool) {
         self.faults[axis].jammed = jammed;
     }
 
-    /// Puts an axis so many counts of its encoder away from where it is: a disturbance.
+    /// Displaces an axis by this many counts of its encoder, as a disturbance.
     pub fn displace(&mut self, axis: usize, counts: f64) {
         self.plants[axis].displace(counts);
     }
@@ -303,7 +308,7 @@ impl StageBench {
         &self.axes
     }
 
-    /// Clocks since the start.
+    /// Number of clocks since the start.
     pub fn now(&self) -> u64 {
         self.now
     }
@@ -322,7 +327,8 @@ impl StageBench {
         })
     }
 
-    /// Drives an input that is neither an encoder's nor the bus's: `x_limit_plus_n`, from the next clock on.
+    /// Drives an input that belongs neither to an encoder nor to the bus, such as `x_limit_plus_n`, from the next
+    /// clock on.
     ///
     /// # Errors
     /// [`Error::Unlike`] if there is no such input.
@@ -333,7 +339,7 @@ impl StageBench {
         Ok(())
     }
 
-    /// What an output showed in the last clock.
+    /// Value of an output in the last clock.
     ///
     /// # Errors
     /// [`Error::Unlike`] if there is no such output.
@@ -343,7 +349,7 @@ impl StageBench {
         Ok(self.outputs[place])
     }
 
-    /// What a net between registers and axes carries: `x_state`, for example.
+    /// Value of a net between registers and axes, such as `x_state`.
     ///
     /// # Errors
     /// [`Error::Unlike`] if there is no such net.
@@ -351,7 +357,7 @@ impl StageBench {
         Ok(self.at(self.probe(net)?))
     }
 
-    /// The same net for many looks.
+    /// A handle with which a net can be read often.
     ///
     /// # Errors
     /// [`Error::Unlike`] if there is no such net.
@@ -361,22 +367,22 @@ impl StageBench {
         Ok(Probe(place))
     }
 
-    /// What it carries in the clock that comes, as far as registers say.
+    /// Value of the net in the next clock, as far as registers determine it.
     pub fn at(&self, probe: Probe) -> u64 {
         self.model.value(probe.0)
     }
 
-    /// From now on, each tick records all axes.
+    /// Starts recording all axes at each tick.
     pub fn record(&mut self) {
         self.samples = Some(vec![Vec::new(); self.axes.len()]);
     }
 
-    /// What was recorded, one list per axis, and no more from now on.
+    /// Returns the recorded samples, one list per axis, and ends the recording.
     pub fn recorded(&mut self) -> Vec<Vec<AxisSample>> {
         self.samples.take().unwrap_or_default()
     }
 
-    /// So many clocks.
+    /// Simulates this many clocks.
     ///
     /// # Errors
     /// [`Error::Step`] where a simulator stops.
@@ -453,7 +459,7 @@ impl StageBench {
         }
     }
 
-    /// The word of a register on the bus.
+    /// Address of a register on the bus.
     fn address(&self, register: &str) -> Result<u64, Error> {
         let found = self.component.map().register(register);
         let found = found.ok_or_else(|| Error::Unlike(format!("the stage has no register `{register}`")))?;
@@ -469,7 +475,7 @@ impl StageBench {
         Ok(())
     }
 
-    /// Writes the word at this address, as a program on the bus does: one clock.
+    /// Writes the word at this address, as a program on the bus does; it takes one clock.
     ///
     /// # Errors
     /// [`Error::Unlike`] for an address beyond the stage's windows; [`Error::Step`] where a simulator stops.
@@ -478,10 +484,10 @@ impl StageBench {
         self.access(address, Some(data))
     }
 
-    /// Reads the word at this address: two clocks.
+    /// Reads the word at this address; it takes two clocks.
     ///
     /// # Errors
-    /// As [`write_at`](Self::write_at).
+    /// Those of [`write_at`](Self::write_at).
     pub fn read_at(&mut self, address: u32) -> Result<u32, Error> {
         let address = self.inside(address)?;
         self.access(address, None)?;
@@ -496,7 +502,7 @@ impl StageBench {
         }
     }
 
-    /// Writes a register: one clock.
+    /// Writes a register; it takes one clock.
     ///
     /// # Errors
     /// [`Error::Unlike`] if there is no such register; [`Error::Step`] where a simulator stops.
@@ -505,10 +511,10 @@ impl StageBench {
         self.access(address, Some(data))
     }
 
-    /// Reads a register: two clocks.
+    /// Reads a register; it takes two clocks.
     ///
     /// # Errors
-    /// As [`write`](Self::write).
+    /// Those of [`write`](Self::write).
     pub fn read(&mut self, register: &str) -> Result<u32, Error> {
         let address = self.address(register)?;
         self.access(address, None)?;
@@ -516,10 +522,10 @@ impl StageBench {
         Ok(self.outputs[self.read_data] as u32)
     }
 
-    /// Reads a field of a register.
+    /// Reads a field of a register. Names are without the axis: `("x", "status", "state")`.
     ///
     /// # Errors
-    /// As [`write`](Self::write), and if there is no such field. Names are without the axis: `("x", "status", "state")`.
+    /// Those of [`write`](Self::write), and [`Error::Unlike`] if there is no such field.
     pub fn field(&mut self, axis: &str, register: &str, field: &str) -> Result<u32, Error> {
         let word = self.read(&format!("{axis}_{register}"))?;
         let found = self.component.map().register(&format!("{axis}_{register}"));
@@ -529,10 +535,10 @@ impl StageBench {
         Ok(field.of(word))
     }
 
-    /// Writes an entry to an axis's FIFO: four clocks.
+    /// Writes an entry to an axis's FIFO; it takes four clocks.
     ///
     /// # Errors
-    /// As [`write`](Self::write).
+    /// Those of [`write`](Self::write).
     pub fn segment(&mut self, axis: &str, entry: &Entry) -> Result<(), Error> {
         for (place, word) in entry.words().into_iter().enumerate() {
             self.write_word(&format!("{axis}_segment"), place, word)?;
@@ -540,16 +546,16 @@ impl StageBench {
         Ok(())
     }
 
-    /// Writes one word of a register that has several: one clock.
+    /// Writes one word of a register that has several; it takes one clock.
     ///
     /// # Errors
-    /// As [`write`](Self::write).
+    /// Those of [`write`](Self::write).
     pub fn write_word(&mut self, register: &str, place: usize, data: u32) -> Result<(), Error> {
         let address = self.address(register)?;
         self.access(address + place as u64, Some(data))
     }
 
-    /// Clocks until an axis's state is that, at most so many; says whether it came.
+    /// Simulates until an axis has this state, for at most this many clocks; returns whether it has.
     ///
     /// # Errors
     /// [`Error::Step`] where a simulator stops.
@@ -565,12 +571,13 @@ impl StageBench {
         Ok(true)
     }
 
-    /// From reset to HOLD on all axes: clears the PWM's first trip, switches on, and waits for the brake. Says whether all came.
+    /// Goes from reset to HOLD on all axes: clears the PWM's first trip, switches on, and waits for the brake.
+    /// Returns whether all axes are in HOLD.
     ///
     /// # Errors
     /// [`Error::Step`] where a simulator stops.
     pub fn switch_on(&mut self, most_clocks: u64) -> Result<bool, Error> {
-        // Filters and encoders settle.
+        // This lets filters and encoders settle.
         self.clocks(1000)?;
         for axis in self.axes.clone() {
             self.write(&format!("{axis}_clear_faults"), 0)?;
@@ -586,7 +593,7 @@ impl StageBench {
         for axis in self.axes.clone() {
             let net = format!("{axis}_can_start");
             let end = self.now + most_clocks;
-            // High in HOLD alone, once the brake is open.
+            // `can_start` is high only in HOLD, once the brake is open.
             while self.now < end && self.net(&net)? == 0 {
                 self.clocks(100)?;
             }

@@ -1,4 +1,5 @@
-//! Runs external programs: missing and failed are different errors, and a failure keeps the end of the output.
+//! Runs external programs. A missing and a failed program are different errors, and a failure keeps the end of the
+//! output.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -10,10 +11,10 @@ use posicast_system::tool::{self, Ended};
 
 use crate::Error;
 
-/// Lines of a failed program's output that an error keeps: the cause is at the end, after the noise.
+/// Number of last lines of a failed program's output that an error keeps, where the cause is found.
 const LAST_LINES: usize = 20;
 
-/// An external program: how it is called, what for, and how to get it.
+/// An external program: its name, its purpose, and how to install it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tool {
     pub(crate) name: &'static str,
@@ -24,7 +25,7 @@ pub(crate) struct Tool {
 }
 
 impl Tool {
-    /// The executable: that of the environment variable, else the plain name.
+    /// Path of the executable: that of the environment variable, else the plain name.
     pub(crate) fn program(&self) -> PathBuf {
         let found = tool::executables(self.variable, &[self.name]).into_iter().next();
         found.unwrap_or_else(|| self.name.into())
@@ -34,12 +35,12 @@ impl Tool {
         tool::command(self.program())
     }
 
-    /// The same, in `folder`: see [`tool::command_in`].
+    /// A command in `folder`: see [`tool::command_in`].
     pub(crate) fn command_in(&self, folder: &Path) -> Command {
         tool::command_in(self.program(), folder)
     }
 
-    /// Runs to the end and returns the output of a success.
+    /// Runs the command to its end, and returns the output of a success.
     pub(crate) fn run(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         let output = self.output(command, doing)?;
         if output.status.success() {
@@ -48,14 +49,14 @@ impl Tool {
         Err(self.failed(doing, output.status.to_string(), &text(&output)))
     }
 
-    /// Runs to the end, whatever the exit status.
+    /// Runs the command to its end, whatever its exit status is.
     pub(crate) fn output(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let output = process::start(command).and_then(process::Running::output);
         output.map_err(|cause| self.not_started(doing, &cause))
     }
 
-    /// What a success printed; none if it did not end within `limit`, and was stopped.
+    /// Output of a success; `None` if the command did not end within `limit` and was stopped.
     pub(crate) fn run_within(
         &self,
         command: &mut Command,
@@ -90,7 +91,7 @@ impl Tool {
     }
 }
 
-/// Standard output and standard error as one text.
+/// Standard output and standard error in one text.
 pub(crate) fn text(output: &Output) -> String {
     let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
     text.push_str(&String::from_utf8_lossy(&output.stderr));

@@ -1,4 +1,4 @@
-//! The cascade's Verilog against its bit-exact model, every output in every clock.
+//! The cascade's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

@@ -1,4 +1,4 @@
-//! Coverage of a few blocks, as the example `coverage` measures all of them; and that it notices what is not reached.
+//! Coverage of a few blocks, as the example `coverage` measures it for all of them; unreached code must be detected.
 
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::Block;
@@ -64,7 +64,7 @@ fn coverage_without_a_hole_for_an_explanation_is_noticed() {
     );
 }
 
-/// What Verilator counts of a module whose behaviour is plain to see.
+/// Verilator's counts for a module whose behaviour is obvious.
 #[test]
 fn coverage_counts_what_happens_and_nothing_else() {
     const VERILOG: &str = "module plain(input clk, input go, input stay, output reg [1:0] count);\n\
@@ -103,11 +103,11 @@ fn coverage_counts_what_happens_and_nothing_else() {
     assert_eq!(count(PointKind::Line, "not if (go) begin"), 2);
     assert_eq!(count(PointKind::Line, "if (stay) begin"), 0);
     assert_eq!(count(PointKind::Line, "not if (stay) begin"), 18);
-    // Its random start may be another value, once.
+    // Its random start value may differ from it once.
     assert!((17..=19).contains(&count(PointKind::Toggle, "count[0]")));
     assert!(count(PointKind::Toggle, "count[1]") <= 1);
 
-    // One that does not count says so.
+    // A simulation that does not count reports it.
     let mut plain = Verilated::build(&source, 1).unwrap();
     assert!(
         plain

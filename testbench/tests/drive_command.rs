@@ -1,4 +1,4 @@
-//! The drive command's Verilog against its bit-exact model, every output in every clock.
+//! The drive command's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

@@ -1,4 +1,4 @@
-//! The internal encoder's Verilog against its bit-exact model, every output in every clock.
+//! The internal encoder's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

@@ -1,4 +1,4 @@
-//! The excitation's Verilog against its bit-exact model, every output in every clock.
+//! The excitation's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

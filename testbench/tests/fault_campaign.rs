@@ -1,6 +1,7 @@
-//! The fault campaign: a share of its cases on the model, a few with the RTL beside it, and stages that are slower than stated.
+//! The fault campaign: a share of its cases on the model, a few with the RTL beside it, and stages that react more
+//! slowly than stated.
 //!
-//! All of them: `scripts/verify-all`, which runs the example of the same name.
+//! `scripts/verify-all` runs all cases, with the example of the same name.
 
 use std::thread;
 
@@ -18,7 +19,7 @@ use posicast_testbench::fault_campaign::{Bed, FaultKind, FaultReport, TABLE, run
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, Wire, state};
 
-/// Cases of every kind.
+/// Number of cases of every kind.
 const ROUNDS: u64 = 8;
 const SEED: u64 = 7;
 
@@ -26,15 +27,15 @@ fn threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// The first case of a kind.
+/// Returns the first case of a kind.
 fn number(kind: FaultKind) -> u64 {
     TABLE.iter().position(|row| row.kind == kind).unwrap() as u64
 }
 
-/// One case of that kind, on a machine whose stage has another supervision than is demanded.
+/// Runs one case of that kind on a machine whose stage has a supervision that differs from the expected one.
 fn on_a_changed_stage(kind: FaultKind, change: fn(&mut Supervision)) -> FaultReport {
     let mut bed = Bed::new().unwrap();
-    // What is demanded stays as it is.
+    // The expectations do not change.
     let mut config = bed.stage.config.clone();
     for axis in &mut config.axes {
         change(&mut axis.supervision);
@@ -71,13 +72,14 @@ fn lockstep_faults_with_the_rtl_beside_the_model() {
 
 #[test]
 fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
-    // A half bridge pushes one way only, and does not do these moves: it is in the test below.
+    // A half bridge pushes in one direction only and cannot do these moves: it is in the test below.
     for mode in [PwmMode::Direction, PwmMode::FullBridge, PwmMode::LockedAntiphase] {
         for (filter_clocks, drive) in [(0, 0.5), (8, 0.6), (16, 0.5)] {
             let bed = Bed::of(|axis| {
                 axis.pwm.as_mut().unwrap().mode = mode;
                 axis.encoder.as_mut().unwrap().filter_clocks = filter_clocks;
-                // Nothing but the watch of the encoder sees it: no scale to compare with, no time of saturation.
+                // Only the supervision of the encoder can detect it: there is no scale to compare with, and no time
+                // of saturation.
                 let limits = axis.limits.as_mut().unwrap();
                 (limits.deviation, limits.saturation_s) = (None, 0.0);
                 limits.encoder_lost_command = drive;
@@ -87,7 +89,7 @@ fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
                 let cases = (0..3).map(|round| number(kind) + round * TABLE.len() as u64);
                 for case in cases {
                     let report = run(&bed, case..case + 1, SEED, 1).unwrap();
-                    // The gains are those of another mode: where small moves end is not what is asked here.
+                    // The gains are those of another mode: the end position of small moves is not tested here.
                     let mut failures = report.failures().to_vec();
                     failures.retain(|failure| !failure.ends_with("after the fault"));
                     assert_eq!(failures, [""; 0], "{mode:?}, filter {filter_clocks}: {report}");
@@ -97,7 +99,8 @@ fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
     }
 }
 
-/// The machine with which an encoder of one stuck line was not seen: 118,622 counts at full speed, without a cause.
+/// A machine on which an encoder with one stuck line was once not detected: it moved 118,622 counts at full speed,
+/// without a cause.
 const LOST_ENCODER: &str = include_str!("fixtures/lost-encoder.toml");
 
 #[test]
@@ -114,7 +117,7 @@ fn unit_a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
     }
 }
 
-/// Each line, at each level, stuck at full speed.
+/// Each line sticks, at each level, at full speed.
 fn stuck_lines_stop(machine: &Machine) {
     let design = design_machine(machine).unwrap();
     let stage = hardware::stage(machine, &design).unwrap().unwrap();
@@ -146,13 +149,13 @@ fn stuck_lines_stop(machine: &Machine) {
             0,
             "{stuck}"
         );
-        // At most the whole speed for the time of the watch, and what comes before and after.
+        // The bound is full speed for the time of the supervision, plus the parts before and after.
         let on = (bench.plant(0).count() - at).abs();
         assert!(on < 150 * 50, "{stuck}: {on} counts");
     }
 }
 
-/// Only the watch of the encoder sees it, with a drive that takes a velocity; torques are in `wrong_sign.rs`.
+/// Only the supervision of the encoder detects it with a velocity drive; `wrong_sign.rs` tests torque drives.
 #[test]
 fn unit_a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
     let bed = Bed::of(|axis| {

@@ -1,4 +1,4 @@
-//! The linear scale's Verilog against its bit-exact model, every output in every clock.
+//! The linear scale's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

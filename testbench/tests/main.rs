@@ -1,4 +1,4 @@
-//! The tests of `posicast-testbench`, in one program: linking is most of what a program of its own would cost.
+//! The tests of `posicast-testbench` in one program, because linking takes most of the time of a small test program.
 #![cfg(test)]
 
 mod axis;

@@ -28,8 +28,8 @@ fn ringing_um(moved: &Moved) -> f64 {
     1e6 * moved.axes[0].residual.peak
 }
 
-/// Handed over on the way, the load rings within what the design says of the hand-overs; with the ROM's table alone it rings as of a
-/// frequency that is off by a quarter.
+/// With handovers during the move, the load rings within the design's bound of the handovers; with only the ROM's
+/// table it rings as with a frequency that is wrong by a quarter.
 #[test]
 fn lockstep_tables_are_handed_over_while_the_mode_moves() {
     let machine = machine(ARM);

@@ -1,6 +1,7 @@
-//! Some blocks as netlists of logic elements: against their models, and proven equal to their RTL; and netlists with a fault.
+//! Some blocks as netlists of logic elements: compared with their models, and proven equal to their RTL; and netlists
+//! with a fault.
 //!
-//! All blocks: the example `netlist`, in `scripts/verify-all`.
+//! The example `netlist` covers all blocks, in `scripts/verify-all`.
 
 use std::time::Duration;
 
@@ -52,7 +53,7 @@ impl Mapped {
     }
 }
 
-/// Plain logic; carry chains; a carry into a chain that is a signal; a kept ROM and RAM.
+/// The blocks have plain logic; carry chains; a carry into a chain that is a signal; a kept ROM and RAM.
 #[test]
 fn netlist_is_proven_equal_to_the_rtl() {
     for (name, kept) in [("group", 0), ("divider", 0), ("pwm", 0), ("setting_banks", 2)] {
@@ -70,7 +71,7 @@ fn netlist_does_what_the_model_does() {
     assert_eq!((report.result, report.cycles), (report::LockstepVerdict::Match, CLOCKS));
 }
 
-/// One table inverted, in the way a mapper's fault would look.
+/// One table is inverted, as a fault of a mapper would look.
 #[test]
 fn netlist_with_a_wrong_table_is_found_by_simulation_and_proof() {
     let mapped = Mapped::new("group");
@@ -91,7 +92,7 @@ fn netlist_with_a_wrong_table_is_found_by_simulation_and_proof() {
     );
 }
 
-/// It works from the first reset on, so only the proof, which begins at power-up, sees it.
+/// The netlist works from the first reset on, so only the proof, which begins at power-up, finds the fault.
 #[test]
 fn netlist_with_a_wrong_power_up_is_found_by_the_proof() {
     let outcome = Mapped::new("group")

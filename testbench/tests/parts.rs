@@ -1,4 +1,4 @@
-//! The small blocks between others: lock step of each against its model.
+//! The small blocks between others: lockstep of each with its model.
 
 use crate::support;
 

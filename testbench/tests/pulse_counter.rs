@@ -1,4 +1,4 @@
-//! The pulse counter's Verilog against its bit-exact model, every output in every clock.
+//! The pulse counter's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

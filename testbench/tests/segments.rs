@@ -1,4 +1,4 @@
-//! The command FIFO's Verilog against its bit-exact model, every output in every clock.
+//! The command FIFO's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

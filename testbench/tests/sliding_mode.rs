@@ -1,4 +1,4 @@
-//! The controller's Verilog against its bit-exact model, every output in every clock.
+//! The controller's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 
@@ -10,7 +10,7 @@ fn sliding_mode() -> SlidingModeBlock {
     SlidingModeBlock::new("", "alone")
 }
 
-/// Insists that a break is found within 750,000 clocks.
+/// Requires that an error is found within 750,000 clocks.
 #[track_caller]
 fn caught(from: &str, to: &str) {
     support::caught(&sliding_mode(), from, to, 750_000);
@@ -34,7 +34,7 @@ fn lockstep_a_command_that_is_cut_until_its_count_stops() {
     let mut clock = 0;
     let mut stimuli = |seen: &[u64], inputs: &mut [u64]| {
         clock += 1;
-        // Every gain is 1/2 and the limit 1: every reference velocity is too much.
+        // Every gain is 1/2 and the limit 1: every reference velocity exceeds it.
         let setting = if seen[0] == 11 { 1 } else { 0x1_0000 };
         let now = Inputs {
             rst: clock < 3,

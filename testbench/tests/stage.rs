@@ -1,4 +1,4 @@
-//! The stage of the example machine: its Verilog against its model, and what a host does with it.
+//! The stage of the example machine: its Verilog compared with its model, and what a host does with it.
 
 use crate::support;
 
@@ -23,7 +23,7 @@ use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
 use posicast_testbench::stage_bench::{StageBench, state};
 use support::{assert_match, caught, icarus_agrees, million_random_clocks};
 
-/// Clocks of a PWM period in the random runs.
+/// Number of clocks of a PWM period in the random runs.
 const PERIOD_CLOCKS: u32 = 80;
 
 fn machine() -> Machine {
@@ -51,7 +51,7 @@ fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
     StageBench::new(&stage.config, &component, plants, device, 1).unwrap()
 }
 
-/// Switches on, moves both axes by so many counts, and says how long that took.
+/// Switches on, moves both axes by this many counts, and returns how long that took.
 fn move_both(machine: &Machine, bench: &mut StageBench, counts: i64) -> u64 {
     assert!(bench.switch_on(20_000_000).unwrap());
     bench.record();
@@ -95,7 +95,8 @@ fn lockstep_a_move_from_reset_to_standstill() {
     assert_eq!(bench.mismatches(), (0, None));
 }
 
-/// So many axes with short ticks, small tables and short times, so that much happens in a million clocks. PWM modes differ.
+/// Returns this many axes with short ticks, small tables and short times, so that much happens in a million clocks.
+/// The PWM modes differ.
 fn quick(axes: usize) -> StageConfig {
     let config = stage(&machine()).config;
     let modes = [
@@ -129,7 +130,8 @@ fn quick(axes: usize) -> StageConfig {
         axis.pwm_mode = mode;
         axis.pwm_period_clocks = PERIOD_CLOCKS;
         axis.modulo = name == "phi";
-        // Of four axes the third is watched by a scale of 2.5 counts per count of the motor, the fourth runs on one.
+        // Of four axes, the third is supervised by a scale of 2.5 counts per count of the motor; the fourth runs on
+        // one.
         axis.scale = matches!(name, "z" | "phi").then(|| StageScale {
             ratio: ScaleRatio::new(1e6, 2.5e6).unwrap(),
             closes_loop: name == "phi",
@@ -151,7 +153,7 @@ fn quick(axes: usize) -> StageConfig {
         watched.limits_after_homing = matches!(name, "y" | "z");
         quick.axes.push(axis);
     }
-    // The shortest tick that holds the schedule, in whole periods.
+    // This is the shortest tick that holds the schedule, in whole periods.
     let periods = quick.timing().duty_clocks() / PERIOD_CLOCKS + 1;
     quick.tick = DividerConfig::new(u64::from(periods * PERIOD_CLOCKS)).unwrap();
     quick
@@ -161,7 +163,7 @@ fn block(axes: usize) -> StageBlock {
     StageBlock::new(&quick(axes), "quick_stage").unwrap()
 }
 
-/// A line of the Verilog that begins with `begins` and has `has`, as it stands there.
+/// Returns the line of the Verilog that begins with `begins` and contains `has`.
 fn line(block: &StageBlock, begins: &str, has: &str) -> String {
     let modules = block.modules().unwrap();
     let mut lines = modules.iter().flat_map(|module| module.text.lines());
@@ -171,14 +173,14 @@ fn line(block: &StageBlock, begins: &str, has: &str) -> String {
         .to_owned()
 }
 
-/// Puts another net on a port, and insists that it is found.
+/// Connects a port to another net, and requires that the error is found.
 fn rewired(axes: usize, port: &str, net: &str, other: &str) {
     let block = block(axes);
     let line = line(&block, &format!(".{port} "), &format!("({net})"));
     caught(&block, &line, &line.replace(&format!("({net})"), other), 300_000);
 }
 
-/// What two runs reached together: what is rare, one of the two shows.
+/// Returns the sum of what two runs reached: a rare event occurs in one of the two.
 fn reached(axes: usize, seeds: [u64; 2]) -> Vec<(String, u64)> {
     let [mut counts, more] = seeds.map(|seed| million_random_clocks(&block(axes), seed, 0).coverage);
     for ((_, count), (_, more)) in counts.iter_mut().zip(more) {
@@ -206,7 +208,7 @@ fn lockstep_two_axes_two_million_random_clocks() {
 
 #[test]
 fn lockstep_four_axes_a_million_random_clocks() {
-    // Which the bins of two axes cover: four have longer ticks, and less happens in as many clocks.
+    // The counters of two axes suffice: four have longer ticks, and less happens in as many clocks.
     million_random_clocks(&block(4), 3, 0);
 }
 
@@ -279,8 +281,8 @@ fn lockstep_catches_a_preset_that_takes_the_users_position() {
     rewired(1, "preset_position", "count", "(user_position)");
 }
 
-/// The clocks that Icarus has where none are asked for reach every flag of every row inside the stage and of the stage: the
-/// model runs beside itself, so this is about the stimuli alone.
+/// With its default number of clocks, a run of Icarus reaches every flag of every row inside the stage and of the
+/// stage. The model runs beside itself, so this tests the stimuli alone.
 #[test]
 fn unit_the_clocks_of_a_verdict_drive_every_flag() {
     let config = stage(&machine()).config;
@@ -292,14 +294,14 @@ fn unit_the_clocks_of_a_verdict_drive_every_flag() {
     for row in rows {
         let seed = blocks::row_seed(row.as_ref(), 1);
         let mut twin = TwoValued(row.model(seed));
-        // As the command line gives a row of the slow simulators.
+        // These are the clocks that the command line gives to a row of the slow simulators.
         let fewest = row.least_clocks().max(20_000);
         let report = blocks::judge(row.as_ref(), &mut twin, fewest..=10 * fewest, seed, &mut |_| {}).unwrap();
         assert_eq!(report.not_exercised_names(), [""; 0], "{fewest} clocks");
     }
 }
 
-/// A row that is not driven enough says so, by the flag.
+/// A row that is not exercised enough names the missing flags.
 #[test]
 fn unit_a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
     let block = posicast_testbench::blocks::SegmentsBlock::new("few", "alone");
@@ -375,7 +377,7 @@ fn lockstep_the_registers_keep_their_promises() {
 
 const DATASHEET: &str = include_str!("../../docs/stage.md");
 
-/// The cells of the rows of the datasheet's table under this head.
+/// Returns the cells of the rows of the datasheet's table under this heading.
 fn rows(head: &str) -> Vec<Vec<String>> {
     let table = DATASHEET.split_once(head).unwrap().1.lines().skip(2);
     let rows = table.take_while(|line| line.starts_with('|'));
@@ -391,7 +393,7 @@ fn number(text: &str) -> u32 {
     hexadecimal.unwrap_or_else(|| text.parse()).unwrap()
 }
 
-/// The register, or the field of one as `X_STATUS.state`.
+/// Reads a register, or a field of one, such as `X_STATUS.state`.
 fn look(bench: &mut StageBench, name: &str) -> u32 {
     let lower = name.to_lowercase();
     let Some((register, field)) = lower.split_once('.') else {

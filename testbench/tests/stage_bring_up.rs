@@ -1,4 +1,4 @@
-//! A stage with linear scales and what is there for bringing it up: Verilog beside model, on the simulated machine.
+//! A stage with linear scales and the aids for bringing it up: Verilog beside model, on the simulated machine.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -10,14 +10,15 @@ use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, state};
 
-/// The loop of X runs on its scale, that of Y is watched by one; both have a trace memory.
+/// Returns a machine on which the loop of X uses its scale and that of Y is supervised by one; both have a trace
+/// memory.
 fn machine() -> Machine {
     let bring_up = |usage: &str| {
         format!("[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"{usage}\"\n[axis.trace]\nsamples = 256\n[axis.pwm]")
     };
     let text = include_str!("../../examples/xy-stage.toml");
     let text = text.replacen("[axis.pwm]", &bring_up("position"), 1);
-    // Its mode is inside of the loop on the scale, and allows a gain of 130/s.
+    // Its mode is inside the loop on the scale, and allows a gain of 130/s.
     let text = text.replacen("kind = \"pd\"", "kind = \"pd\"\nproportional = 60.0", 1);
     let second = text.rfind("[axis.pwm]").unwrap();
     let text = format!(
@@ -44,7 +45,7 @@ fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
     StageBench::new(&stage.config, &component, plants, device, 1).unwrap()
 }
 
-/// Moves one axis by so many counts of its loop.
+/// Moves one axis by this many counts of its loop.
 fn move_by(machine: &Machine, bench: &mut StageBench, axis: usize, counts: i64) {
     let name = machine.axes[axis].name.clone();
     let at = i64::from(bench.read(&format!("{name}_command_position")).unwrap() as i32) << 24;
@@ -59,7 +60,7 @@ fn move_by(machine: &Machine, bench: &mut StageBench, axis: usize, counts: i64) 
     bench.clocks(250_000).unwrap();
 }
 
-/// The words of a trace that is full or halted.
+/// Returns the words of a trace that is full or halted.
 fn traced(bench: &mut StageBench, axis: &str) -> Vec<i32> {
     let rows = bench.field(axis, "trace_status", "trace_rows").unwrap();
     let words = (0..4 * rows).map(|word| {
@@ -70,10 +71,10 @@ fn traced(bench: &mut StageBench, axis: &str) -> Vec<i32> {
     words.collect()
 }
 
-/// Four signals: shaped position, captured position, error, test signal.
+/// Setup for four signals: shaped position, captured position, error, test signal.
 const SETUP: u32 = 3 | 6 << 4 | 8 << 8 | 11 << 12 | 2 << 16;
 
-/// All that leaves the stage for the drive of X, off while 0.
+/// All outputs of the stage to the drive of X; 0 means off.
 const DRIVE_PINS: [&str; 6] = [
     "x_a_high",
     "x_a_low",
@@ -83,7 +84,7 @@ const DRIVE_PINS: [&str; 6] = [
     "x_brake_release",
 ];
 
-/// In so many clocks, one by one, no pin of X is on.
+/// Checks for this many clocks, one by one, that no pin of X is on.
 fn all_off(bench: &mut StageBench, clocks: u64) {
     for _ in 0..clocks {
         bench.clocks(1).unwrap();
@@ -93,7 +94,8 @@ fn all_off(bench: &mut StageBench, clocks: u64) {
     }
 }
 
-/// From reset: the PWM of X tests itself in READY with this duty. The clocks that its gates of leg A are on.
+/// Runs, from reset, the self-test of X's PWM in READY with this duty. Returns the clocks in which the gates of leg A
+/// are on.
 fn self_test(bench: &mut StageBench, duty: i32) -> (u32, u32) {
     bench.clocks(1000).unwrap();
     bench.write("x_clear_faults", 0).unwrap();
@@ -102,11 +104,11 @@ fn self_test(bench: &mut StageBench, duty: i32) -> (u32, u32) {
     bench.clocks(2 * 5000).unwrap();
     bench.write("x_control", 1 << 1 | 1 << 3).unwrap();
     bench.write("x_direct", duty as u32 & 0x1_ffff).unwrap();
-    // The next tick takes the duty; a period later the one after it is whole.
+    // The next tick takes the duty; one period later the following period is complete.
     all_off(bench, 3 * 5000);
     assert_eq!(bench.net("x_pwm_running").unwrap(), 1);
     let clocks = ["self_test_high", "self_test_low"].map(|field| bench.field("x", "self_test", field).unwrap());
-    // Once with its flag gone first, once with all gone.
+    // In one case its flag is cleared first, in the other everything at once.
     let last = if duty < 0 { 1 << 1 } else { 0 };
     bench.write("x_control", last).unwrap();
     all_off(bench, 3 * 5000);
@@ -117,7 +119,7 @@ fn self_test(bench: &mut StageBench, duty: i32) -> (u32, u32) {
 #[test]
 fn unit_a_self_test_runs_the_pwm_and_nothing_else() {
     let machine = machine();
-    // Locked antiphase, 2500 clocks, dead time 25: the leg's duty is half of period and duty.
+    // Locked antiphase, 2500 clocks, dead time 25: the leg's duty is half of the sum of period and duty.
     for (duty, leg_duty) in [(0, 1250), (200, 1350), (-101, 1199)] {
         let mut bench = bench(&machine, false);
         let count = bench.plant(0).count();
@@ -136,7 +138,7 @@ fn lockstep_a_move_on_the_scale_and_its_trace() {
     assert_eq!(self_test(&mut bench, 200), (1325, 1125));
     assert!(bench.switch_on(20_000_000).unwrap());
     bench.record();
-    // From the start of the move on, every tick.
+    // It traces every tick from the start of the move on.
     bench.write("x_trace_setup", SETUP | 3 << 24).unwrap();
     bench.write("x_trace_rate", 2 << 16).unwrap();
     bench.write("x_trace_arm", 0).unwrap();
@@ -149,7 +151,7 @@ fn lockstep_a_move_on_the_scale_and_its_trace() {
     let trigger = bench.field("x", "trace_status", "trace_trigger_row").unwrap() as usize;
     assert_eq!((words.len(), trigger), (256, 2));
     assert_eq!(bench.field("x", "bring_up_events", "trace_done").unwrap(), 1);
-    // What was traced is what the bench saw at the same ticks.
+    // The trace holds what the bench saw at the same ticks.
     let shaped: Vec<f64> = words.chunks(4).map(|row| f64::from(row[0]) / 256.0).collect();
     let seen: Vec<f64> = samples.iter().map(|sample| sample.shaped).collect();
     assert!(
@@ -157,7 +159,7 @@ fn lockstep_a_move_on_the_scale_and_its_trace() {
         "{shaped:?}\n{seen:?}"
     );
     assert!(shaped.last() > shaped.first());
-    // 300 counts of the scale, 75 of the motor.
+    // 300 counts of the scale are 75 of the motor.
     let (scale, motor) = (bench.plant(0).scale_count().unwrap(), bench.plant(0).count());
     assert!((scale - 300).abs() <= 4 && (motor - 75).abs() <= 2, "{scale} {motor}");
     assert!((bench.field("x", "deviation", "deviation").unwrap() as i32).abs() <= 4);
@@ -172,7 +174,7 @@ fn unit_a_watched_scale_stops_what_leaves_it() {
     assert!(bench.switch_on(20_000_000).unwrap());
     move_by(&machine, &mut bench, 1, 500);
     assert_eq!(bench.read("y_causes").unwrap(), 0);
-    // A scale that stands while the motor moves is a broken coupling.
+    // A scale that stands still while the motor moves means a broken coupling.
     let stands = bench.plant(1).scale();
     bench.force_scale(1, Some(stands));
     let at = bench.read("y_command_position").unwrap() as i32;

@@ -1,5 +1,5 @@
-//! What a stage refuses, and what it waits for: the sign of its feedback with the drive on, a PWM out of step, an interrupt
-//! that nobody can end; and limits that wait for homing.
+//! What a stage refuses, and what it waits for: a change of the feedback's sign with the drive on, a PWM out of step,
+//! an interrupt that cannot be cleared; and limits that wait for homing.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -10,8 +10,8 @@ use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
 use posicast_testbench::stage_bench::{StageBench, state};
 
-/// The example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`: encoder and scale of
-/// X are wired backwards, and the file says so.
+/// Returns the example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`:
+/// encoder and scale of X are wired backwards, and the file says so.
 fn bench(invert: bool) -> StageBench {
     bench_of(invert, "")
 }
@@ -35,7 +35,7 @@ fn bench_of(invert: bool, limits: &str) -> StageBench {
     StageBench::new(&stage.config, &component, plants, None, 1).unwrap()
 }
 
-/// From reset to HOLD with the words of the published bring-up, and the brake open.
+/// Goes from reset to HOLD with the words of the documented bring-up, and the brake released.
 fn switch_on(bench: &mut StageBench, axis: &str) {
     bench.clocks(1000).unwrap();
     bench.write(&format!("{axis}_clear_faults"), 0).unwrap();
@@ -47,7 +47,7 @@ fn switch_on(bench: &mut StageBench, axis: &str) {
     }
 }
 
-/// Registers that choose what the loop takes for its position.
+/// Registers that select the loop's position.
 const FEEDBACK: [&str; 3] = ["x_encoder", "x_scale_control", "x_generator"];
 
 #[test]
@@ -61,7 +61,7 @@ fn unit_the_feedback_is_not_changed_while_the_drive_is_on() {
         assert_eq!(bench.read(register).unwrap(), 0, "{register}");
         assert_eq!(bench.read("flags").unwrap(), 1 << 3, "{register}");
     }
-    // What was bit 2 of CONTROL is none of its any more.
+    // The former bit 2 of CONTROL no longer belongs to it.
     bench.write("x_control", 0b101).unwrap();
     bench.clocks(50_000).unwrap();
     assert_eq!(
@@ -70,7 +70,7 @@ fn unit_the_feedback_is_not_changed_while_the_drive_is_on() {
     );
     assert_eq!(bench.field("x", "status", "state").unwrap(), state::HOLD);
 
-    // Through the brake, off: now they are taken.
+    // Once the brake is applied and the drive off, they are accepted.
     bench.write("x_control", 0).unwrap();
     assert!(bench.wait("x", state::READY, 20_000_000).unwrap());
     bench.clocks(10_000).unwrap();
@@ -83,7 +83,7 @@ fn unit_the_feedback_is_not_changed_while_the_drive_is_on() {
     assert_eq!(bench.read("flags").unwrap(), 0);
 }
 
-/// A machine whose lines count backwards, and whose file says so: the published bring-up keeps the sign.
+/// The lines of this machine count backwards, and its file says so: the documented bring-up keeps the sign.
 #[test]
 fn unit_a_machine_wired_backwards_moves_by_its_file() {
     let mut bench = bench(true);
@@ -107,7 +107,7 @@ fn unit_a_machine_wired_backwards_moves_by_its_file() {
     assert!((scale - 4000).abs() <= 40, "{scale}");
 }
 
-/// A host that enables at once, in direct mode and from there in HOLD: the PWM waits for the time base.
+/// A host enables at once, in direct mode and from there in HOLD: the PWM waits for the time base.
 #[test]
 fn unit_the_pwm_never_runs_out_of_step() {
     for wait in [50, 700, 1300, 2700, 4800] {
@@ -130,7 +130,7 @@ fn unit_the_pwm_never_runs_out_of_step() {
     }
 }
 
-/// Each index interrupts, and a one written to the state ends it, as with any other interrupt.
+/// Each index interrupts, and writing a one to the state clears it, like any other interrupt.
 #[test]
 fn unit_an_index_interrupts_once() {
     const INDEX_SEEN: u32 = 1 << 6;
@@ -157,11 +157,11 @@ fn unit_an_index_interrupts_once() {
     );
 }
 
-/// The pin for an ADC: a clock in each period, at the phase of the register.
+/// The pin for an ADC is active for a clock in each period, at the phase of the register.
 #[test]
 fn unit_the_trigger_comes_at_its_phase() {
     let mut bench = bench(false);
-    // Two ticks: the PWM is in phase.
+    // After two ticks the PWM is in phase.
     bench.clocks(12_000).unwrap();
     let mut phases = |phase| {
         bench.write("x_pwm_trigger", phase).unwrap();
@@ -189,7 +189,7 @@ fn unit_the_trigger_comes_at_its_phase() {
     assert!(later.iter().all(|clocks| clocks % 2500 == 1252), "{later:?}");
 }
 
-/// X by so many counts, and its causes at the end.
+/// Moves X by this many counts, and returns its causes at the end.
 fn moved(bench: &mut StageBench, counts: i32) -> u32 {
     let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
     let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
@@ -209,7 +209,7 @@ fn unit_soft_limits_act_before_homing_unless_the_file_says_otherwise() {
     for after_homing in [false, true] {
         let mut bench = bench_of(false, &format!("soft_limits_after_homing = {after_homing}"));
         switch_on(&mut bench, "x");
-        // Where the file's limits mean nothing yet: the axis stands anywhere in its travel.
+        // The file's limits have no meaning yet: the axis may be anywhere in its travel.
         bench.write("x_soft_limit_plus", 500 << 8).unwrap();
         let causes = moved(&mut bench, 1000);
         assert_eq!(causes, if after_homing { 0 } else { Cause::SoftLimitPlus.bit() });
@@ -223,7 +223,7 @@ fn unit_soft_limits_act_before_homing_unless_the_file_says_otherwise() {
         assert_eq!(bench.field("x", "status", "homed").unwrap(), 1);
         assert_eq!(bench.read("x_causes").unwrap(), 0);
         assert_eq!(moved(&mut bench, 1000), Cause::SoftLimitPlus.bit());
-        // An error of the encoder: the position may be another one.
+        // After an error of the encoder the position may be wrong.
         let lines = bench.plant(0).encoder();
         let pins = EncoderPins {
             a: !lines.a,

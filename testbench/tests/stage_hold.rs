@@ -1,4 +1,5 @@
-//! A feed hold on the example's stage, in lock step with its Verilog: all axes stand in one tick, on the path, and go on from there.
+//! A feed hold on the example's stage, in lockstep with its Verilog: all axes stop in the same tick, on the path, and
+//! continue from there.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::design::design_machine;
@@ -11,7 +12,7 @@ use posicast_model::rtl::segments::{Entry, EntryMotion};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::stage_bench::{StageBench, state};
 
-/// Corners of the path, in counts: along X, then X and Y together.
+/// Corner of the path in counts: along X, then X and Y together.
 const CORNER: i64 = 20;
 
 struct Bed {
@@ -40,7 +41,7 @@ fn bed() -> Bed {
 }
 
 impl Bed {
-    /// Both commands, in LSB of counts.
+    /// Returns both commands in LSB of counts.
     fn at(&mut self) -> [i64; 2] {
         ["x", "y"].map(|axis| {
             let word = self.bench.read(&format!("{axis}_command_position")).unwrap();
@@ -54,7 +55,8 @@ impl Bed {
         }
     }
 
-    /// A tick; whether the commands are on the path: along X to the corner, then equally fast in both, back and down.
+    /// Advances by a tick; returns whether the commands are on the path: along X to the corner, then equally fast in
+    /// both, back and down.
     fn tick(&mut self) -> bool {
         self.bench.clocks(self.tick_clocks - 2).unwrap();
         let [x, y] = self.at();
@@ -81,7 +83,7 @@ fn lockstep_a_feed_hold_keeps_path_and_queue() {
         motion: EntryMotion::Jerk(0),
         notify: false,
     };
-    // X rests where Y dwells, and the other way round nowhere: an axis that held by itself would lose the path.
+    // X rests while Y dwells, but never the other way round: an axis that stopped by itself would leave the path.
     bed.queue("y", &[dwell]);
     bed.queue("y", &down);
     bed.queue("x", &out);
@@ -98,7 +100,7 @@ fn lockstep_a_feed_hold_keeps_path_and_queue() {
     for _ in 0..ticks(&out) {
         assert!(bed.tick());
     }
-    // At the corner, with the second move in both FIFOs.
+    // It is at the corner, with the second move in both FIFOs.
     assert_eq!(bed.at(), [CORNER << 8, 0]);
     assert_eq!(bed.both("fifo", "feed_held"), [1, 1]);
     assert_eq!(bed.both("status", "state"), [state::RUN; 2]);

@@ -1,7 +1,7 @@
 //! The end of the position's word on a stage: what stops a command that runs away, with soft limits and without.
 //!
-//! The axis follows its shaped command ideally, by its encoder's lines, a count per clock at most. So the way to the end of the word,
-//! with the outputs off, takes as many clocks as counts.
+//! The axis follows its shaped command ideally, by its encoder's lines, at most one count per clock. So the way to
+//! the end of the word, with the outputs off, takes as many clocks as counts.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::design::design_machine;
@@ -20,10 +20,10 @@ struct Bed {
     model: Composed,
     inputs: Vec<u64>,
     outputs: Vec<u64>,
-    /// Where its encoder is.
+    /// Position of its encoder in counts.
     at: i32,
     tick_clocks: u64,
-    /// Furthest that the command was, in counts.
+    /// Largest position of the command in counts.
     furthest: i32,
 }
 
@@ -95,7 +95,7 @@ impl Bed {
         self.set("avs_write", 0);
     }
 
-    /// The encoder goes there, a count per clock.
+    /// Moves the encoder there, one count per clock.
     fn go(&mut self, counts: i32) {
         while self.at != counts {
             self.at += (counts - self.at).signum();
@@ -106,7 +106,7 @@ impl Bed {
         }
     }
 
-    /// A tick, in which the axis follows.
+    /// Advances by a tick, in which the axis follows.
     fn tick(&mut self) {
         let before = self.at;
         self.go(self.net("shaped_position") >> 8);
@@ -115,7 +115,7 @@ impl Bed {
         self.furthest = self.furthest.max(self.net("command_position") >> 8);
     }
 
-    /// So many ticks at most; whether the state came.
+    /// Advances by at most this many ticks; returns whether the state was reached.
     fn until(&mut self, state: u32, most: u32) -> bool {
         for _ in 0..most {
             if self.net("state") == state as i32 {
@@ -126,7 +126,7 @@ impl Bed {
         false
     }
 
-    /// From OFF or FAULT to READY, once the brake has closed.
+    /// Goes from OFF or FAULT to READY, once the brake is applied.
     fn make_ready(&mut self) {
         self.write("x_control", 0, 0);
         while self.net("drive_enable") != 0 {
@@ -136,7 +136,7 @@ impl Bed {
         assert!(self.until(state::READY, 10));
     }
 
-    /// From OFF or FAULT to HOLD, with the brake open.
+    /// Goes from OFF or FAULT to HOLD, with the brake released.
     fn switch_on(&mut self) {
         self.make_ready();
         self.write("x_control", 0, 1);
@@ -150,7 +150,7 @@ impl Bed {
         unreachable!("the brake does not open");
     }
 
-    /// Two counts per tick outwards, for ever; what stopped it. The axis stands afterwards.
+    /// Moves outwards without end at two counts per tick; returns what stopped it. The axis stands still afterwards.
     fn run_away(&mut self) -> u32 {
         for (ticks, jerk) in [(1, 2i64 << 32), (1, -2 << 32), (1 << 20, 0)] {
             let motion = EntryMotion::Jerk(jerk);
@@ -194,14 +194,14 @@ fn unit_no_command_runs_away_beyond_the_position_word() {
     assert!((limit..REACH_COUNTS).contains(&bed.furthest), "{}", bed.furthest);
     assert_eq!(bed.net("segments_out_of_range"), 0);
 
-    // Without one, the end of the range does, with half of what is left before it.
+    // Without one, the end of the range does, with half of the remaining way before it.
     bed.write("x_soft_limit_plus", 0, 0);
     bed.switch_on();
     assert_eq!(bed.run_away(), Cause::Segments.bit());
     assert_eq!(bed.net("segments_out_of_range"), 1);
     assert!((REACH_COUNTS..STAND_COUNTS).contains(&bed.furthest), "{}", bed.furthest);
 
-    // Moved beyond it with the outputs off, the axis is not switched on.
+    // Moved beyond it with the outputs off, the axis cannot be switched on.
     bed.make_ready();
     bed.go(STAND_COUNTS + 1);
     bed.write("x_control", 0, 1);

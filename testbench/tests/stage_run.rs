@@ -1,4 +1,4 @@
-//! The closed loop of `run`: what is expected of a move, and what the stage makes of it.
+//! The closed loop of `run`: the expectations for a move, and its result on the stage.
 
 use posicast_model::contour::{Contour, ContourLimits, shapes};
 use posicast_model::design::design_machine;
@@ -25,7 +25,7 @@ fn stage(machine: &Machine) -> MachineStage {
         .unwrap()
 }
 
-/// The move of a machine, and what it should come to.
+/// Runs the move of a machine; returns it with its expectations.
 fn moved(machine: &Machine, shaping: Shaping, factor: f64) -> (Moved, Vec<Expected>) {
     let run = StageRun::new(machine, &stage(machine).config, 1).unwrap();
     (
@@ -41,7 +41,7 @@ const RUNS: [(Shaping, f64); 4] = [
     (Shaping::Shaped, 1.1),
 ];
 
-/// Whether the first axis follows, and rings no more, than it should.
+/// Returns whether the first axis follows, and whether it rings no more than it should.
 fn holds(moved: &Moved, expected: &[Expected]) -> [bool; 2] {
     let (found, allowed) = (&moved.axes[0], &expected[0]);
     [
@@ -88,7 +88,7 @@ fn unit_a_broken_shaper_rings_more_than_is_allowed() {
             delay_samples: 0,
             coefficient: 1 << fraction,
         };
-        // The last tap at the place of the first: its coefficient is there too.
+        // The last tap moves to the place of the first, whose coefficient includes its own.
         let mut merged = taps[..taps.len() - 1].to_vec();
         merged[0].coefficient += taps[taps.len() - 1].coefficient;
         let mut slow = machine.clone();
@@ -97,8 +97,8 @@ fn unit_a_broken_shaper_rings_more_than_is_allowed() {
         }
         let mut tables = vec![("bypass", vec![first])];
         if kind != "ei" {
-            // EI leaves its tolerance at its mode, and no more a fifth beside it: that is what it is for. Its outer impulses at one
-            // place are a ZV shaper.
+            // EI reaches its tolerance at its mode, and not more a fifth beside it, as intended. With its outer
+            // impulses in one place it is a ZV shaper.
             tables.push(("a tap off", merged));
             let wrong = stage(&slow).config.axes[0].shaper.table().taps().to_vec();
             tables.push(("20 % off", wrong));
@@ -126,7 +126,7 @@ fn unit_a_broken_shaper_rings_more_than_is_allowed() {
     }
 }
 
-/// A wrist that turns by 5 mrad, and whose gains are so many times those of its file.
+/// Runs a wrist that turns by 5 mrad, with gains `factor` times those of its file.
 fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
     let machine = machine(text);
     let stage = stage(&machine);
@@ -158,7 +158,7 @@ fn unit_a_loop_that_swings_after_its_commands_is_seen() {
     let (moved, expected) = wild_wrist(&unlimited, 120.0);
     let peak = moved.axes[0].tracking.peak;
     assert!(!holds(&moved, &expected)[0] && peak > 5e-3, "{peak}");
-    // And so it is where dead time and friction are more than gains give that the modes bear.
+    // This also holds where dead time and friction need larger gains than the modes permit.
     let (moved, expected) = wild_wrist(WRIST, 1.0);
     assert_eq!(moved.trouble, None);
     assert!(!holds(&moved, &expected)[0]);
@@ -173,8 +173,8 @@ fn unit_a_move_of_a_few_counts_is_none() {
     assert!(expected.iter().all(|axis| !axis.moves()), "{expected:?}");
 }
 
-/// Section 6 of the notes on the XY stage: ZVD leaves 71.06 um of a circle of 10 mm at 100 mm/s, and 4.2 um where the delays are equal. The
-/// stage adds what its loop and its counts do: half a micrometre.
+/// Section 6 of the notes on the XY stage: ZVD leaves 71.06 um on a circle of 10 mm at 100 mm/s, and 4.2 um with
+/// equal delays. The stage adds the error of its loop and its counts, half a micrometre.
 #[test]
 fn golden_the_stage_goes_round_a_contour_as_the_notes_say() {
     let machine = machine(XY);

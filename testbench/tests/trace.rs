@@ -1,4 +1,4 @@
-//! The trace memory's Verilog against its bit-exact model, every output in every clock.
+//! The trace memory's Verilog compared with its bit-exact model: every output in every clock.
 
 use crate::support;
 

@@ -1,5 +1,5 @@
-//! A feedback of the wrong sign: the loop runs away, in HOLD from the smallest disturbance. It must trip, after few ticks and counts; and
-//! a sound machine must not, however it stops.
+//! A feedback of the wrong sign: the loop runs away, in HOLD from the smallest disturbance. It must trip after few
+//! ticks and counts; a healthy machine must not trip, however it stops.
 
 use posicast_model::control::{LostSign, lost_sign};
 use posicast_model::design::design_machine;
@@ -14,29 +14,30 @@ use posicast_testbench::stage_bench::{StageBench, Wire, state};
 const VELOCITY: &str = include_str!("../../examples/xy-stage.toml");
 const TORQUE: &str = include_str!("../../examples/xy-stage-torque.toml");
 const SEED: u64 = 11;
-/// Of the watch: 300 ticks.
+/// Time of the supervision: 300 ticks.
 const LOST_S: f64 = 0.03;
-/// Ticks until a wrong sign has tripped by the watch: those, and until the command is above half of full scale.
+/// Most ticks until the supervision has tripped on a wrong sign: its own ticks, and those until the command is above
+/// half of full scale.
 const MOST_TICKS: u64 = 300 + 300;
-/// Counts in them: full speed of 0.5 m/s for 30 ms, or 20.2 m/s² (2.73 A on 64 kg) for 40 ms.
+/// Most counts in that time: full speed of 0.5 m/s for 30 ms, or 20.2 m/s² (2.73 A on 64 kg) for 40 ms.
 const MOST_COUNTS: i64 = 16_000;
-/// The same by a following error of 1000 counts, with the overshoot of the gates' way.
+/// The same for a following error of 1000 counts, plus the overshoot until the gates are off.
 const MOST_COUNTS_BY_ERROR: i64 = 1200;
-/// Ticks until an axis that runs away is off, at most.
+/// Most ticks until an axis that runs away is off.
 const PATIENCE_TICKS: u64 = 3000;
-/// Clocks until an axis is on, at most.
+/// Most clocks until an axis is on.
 const PATIENCE_CLOCKS: u64 = 1_000_000;
-/// Clocks in which the brake opens and all rests.
+/// Number of clocks in which the brake releases and everything comes to rest.
 const REST_CLOCKS: u64 = 300_000;
 
-/// The machine with something else about its axes.
+/// Returns the machine with changed axes.
 fn machine(text: &str, change: impl Fn(&mut AxisSection)) -> Machine {
     let mut machine = machine_file::parse("stage.toml", text).unwrap();
     machine.axes.iter_mut().for_each(change);
     machine
 }
 
-/// A bench of the machine, whose modes are at other frequencies.
+/// Returns a bench of the machine, whose modes are at other frequencies.
 fn bench(machine: &Machine, frequency_factor: f64) -> StageBench {
     let design = design_machine(machine).unwrap();
     let stage = hardware::stage(machine, &design).unwrap().unwrap();
@@ -54,7 +55,7 @@ fn tick_clocks(machine: &Machine) -> u64 {
     (machine.clock.frequency_hz / machine.clock.sample_hz) as u64
 }
 
-/// A move of X by so many counts.
+/// Starts a move of X by this many counts.
 fn start(bench: &mut StageBench, machine: &Machine, counts: i32) {
     let at = i64::from(bench.read("x_command_position").unwrap() as i32);
     let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
@@ -64,7 +65,7 @@ fn start(bench: &mut StageBench, machine: &Machine, counts: i32) {
     bench.write("start", 1).unwrap();
 }
 
-/// What a wrong sign led to.
+/// Effect of a wrong sign.
 #[derive(Debug)]
 struct RunAway {
     causes: u32,
@@ -72,7 +73,7 @@ struct RunAway {
     counts: i64,
 }
 
-/// X until its outputs are off.
+/// Runs X until its outputs are off.
 fn run_away(bench: &mut StageBench, machine: &Machine, begin: i64) -> RunAway {
     let tick = tick_clocks(machine);
     let mut ticks = 0;
@@ -94,15 +95,15 @@ fn run_away(bench: &mut StageBench, machine: &Machine, begin: i64) -> RunAway {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum When {
-    /// In HOLD, three counts away from where it is held.
+    /// In HOLD, three counts away from the held position.
     Hold,
     /// From the start of a move on.
     Move,
-    /// In the middle of one.
+    /// In the middle of a move.
     InMotion,
 }
 
-/// A machine of the wrong sign, without anything else that would see it.
+/// Runs a machine of the wrong sign, with every other supervision disabled.
 fn of_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: When) -> RunAway {
     let machine = machine(text, |axis| {
         let limits = axis.limits.as_mut().unwrap();
@@ -112,7 +113,7 @@ fn of_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: When) -> 
             limits.following_error = None;
         }
         if when == When::Hold {
-            // Friction holds an axis that is so little away.
+            // Friction would hold an axis that is so little away.
             axis.drive.as_mut().unwrap().coulomb = 0.0;
         }
     });
@@ -172,14 +173,14 @@ fn unit_a_sound_machine_of_torque_drives_does_not_trip_when_it_stops() {
     }
 }
 
-/// Moves there and back, quick stops in the middle: at `stop_deceleration`, and at once.
+/// Moves there and back, with quick stops in the middle: at `stop_deceleration`, and at once.
 fn sound(frequency_factor: f64, stop_deceleration: Option<f64>) {
     let machine = machine(TORQUE, |axis| {
         let LostSign::Watched = lost_sign(axis) else {
             panic!("{} is not watched", axis.name);
         };
         let limits = axis.limits.as_mut().unwrap();
-        // The shortest time with which a wrong sign is watched.
+        // This is the shortest time of the supervision.
         limits.encoder_lost_s = 1e-4;
         limits.following_error = None;
         limits.stop_deceleration = stop_deceleration;

@@ -2,36 +2,36 @@
 
 use std::path::{Path, PathBuf};
 
-/// Why a comparison could not be made. That something *differs* is a result, never an error.
+/// Why a comparison could not be made. A *difference* is a result, never an error.
 #[derive(Debug, thiserror::Error)]
 pub enum WaveError {
     /// A file cannot be read or written.
     #[error("{}: cannot {doing}: {source}", .path.display())]
     File {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What was tried.
+        /// The operation that failed.
         doing: &'static str,
-        /// What the system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// A waveform file that is damaged, or beyond what can be compared in bounded memory.
+    /// A waveform file is damaged, or cannot be compared in bounded memory.
     #[error("{}: {place}: {problem}", .path.display())]
     Damaged {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// `line N`, or `byte N` at the end of a truncated file.
         place: String,
         /// What was found, what is allowed, what to do.
         problem: String,
     },
-    /// An option that does not fit the files it is used with.
+    /// An option does not fit the files with which it is used.
     #[error("{0}")]
     Option(String),
 }
 
 impl WaveError {
-    /// What the system said while `doing` something with a file.
+    /// Converts a system error while `doing` something with a file.
     pub fn file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { path, doing, source }

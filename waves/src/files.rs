@@ -1,16 +1,16 @@
-//! Files that a comparison writes: what goes in is ours, which names may be written to is the caller's.
+//! Files that a comparison writes: the content is ours, the caller decides which names may be written to.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use crate::WaveError;
 
-/// What writes the content of a file.
+/// Writes the content of a file.
 pub type WriteContent<'a> = dyn FnMut(&mut dyn Write) -> Result<(), WaveError> + 'a;
 
 /// Puts files in their places.
 pub trait OutputSink {
-    /// Words for a comment near the beginning of each file, by which the caller knows it again.
+    /// Returns words for a comment near the beginning of each file, by which the caller recognises it.
     fn mark(&self) -> String;
 
     /// Puts a file in its place, complete or not at all. `fill` writes its content, and is called once.
@@ -36,12 +36,13 @@ pub(crate) fn write_error(path: &Path) -> impl FnOnce(io::Error) -> WaveError {
     WaveError::file(path, "write")
 }
 
-/// The text with the mark in a comment: of XML where it begins with `<`, of GTKWave's session files where it begins with `[`,
-/// else in a second line that begins with `#`.
+/// Returns the text with the mark in a comment: of XML if it begins with `<`, of GTKWave's session files if it begins
+/// with `[`, else in a second line that begins with `#`.
 fn marked(text: &str, mark: &str) -> String {
     match text.as_bytes().first() {
         Some(b'<') => {
-            // Behind the declaration, else in the root element: readers look for either at the very beginning.
+            // The comment comes after the declaration, else in the root element: readers look for either at the very
+            // beginning.
             let end = if text.starts_with("<?") { "?>" } else { ">" };
             let (before, after) = text.split_at(text.find(end).map_or(0, |at| at + end.len()));
             format!("{before}\n<!-- {mark} -->\n{}", after.trim_start_matches('\n'))

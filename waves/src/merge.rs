@@ -1,4 +1,5 @@
-//! Several waveforms side by side in one file, with their differences, and the files that open it in a viewer.
+//! Merges several waveforms side by side into one file, with their differences, and writes the files that open it in
+//! a viewer.
 //!
 //! ```text
 //!  model.vcd ─┐            merged.vcd:  model.…  rtl.…  float.…  difference.…
@@ -6,9 +7,9 @@
 //!  float.vcd ─┘            merged.sucl: opens it in Surfer    (surfer -c merged.sucl)
 //! ```
 //!
-//! Each part keeps its signals under a scope of its name, below the scopes that they do not all share. All are on one time
-//! axis, in the finest of their units of time (ten or a hundred of a unit count as that unit). The times of the viewers' files
-//! are in that unit, too.
+//! Each part keeps its signals under a scope with its name, below the scopes that they do not all share. All use one
+//! time axis, in the finest of their units of time (ten or a hundred of a unit count as that unit). The times in the
+//! viewers' files use that unit, too.
 
 use std::collections::HashSet;
 use std::io::{self, BufWriter, Write};
@@ -26,29 +27,31 @@ use crate::unit::unit_for;
 pub struct MergePart<'a> {
     /// Scope in the merged file: `model`, `rtl`, `float`.
     pub scope: &'a str,
-    /// The VCD.
+    /// Path of the VCD.
     pub path: &'a Path,
 }
 
-/// A signal `difference.<name>` = value of one signal minus that of another, as a real number; words are signed, bits are not.
+/// A signal `difference.<name>` = value of one signal minus that of another, as a real number; words are signed, bits
+/// are not.
 #[derive(Debug, Clone, Copy)]
 pub struct DifferenceSignal<'a> {
     /// Name of the new signal.
     pub name: &'a str,
-    /// Part (its place in the list) and signal, full or without the scopes that all signals of its file share.
+    /// Part (its index in the list) and signal, with its full name or without the scopes that all signals of its file
+    /// share.
     pub minuend: (usize, &'a str),
-    /// The same for what is subtracted.
+    /// The same for the subtrahend.
     pub subtrahend: (usize, &'a str),
 }
 
-/// What a merged file is about: some signals, and a time at which the viewers open it.
+/// Subject of a merged file: some signals, and a time at which the viewers open it.
 #[derive(Debug, Clone)]
 pub struct Focus {
-    /// Full names, of each part; the others are left out.
+    /// Full names, for each part; other signals are left out.
     pub signals: Vec<HashSet<String>>,
-    /// The time.
+    /// Time at which the viewers open the file, in femtoseconds.
     pub time_fs: u128,
-    /// How much of the time around it is in view.
+    /// Length of the visible time around it, in femtoseconds.
     pub span_fs: u128,
 }
 
@@ -71,7 +74,7 @@ impl<'a> Output<'a> {
     }
 }
 
-/// With an exponent: written out, large numbers are longer than readers take.
+/// Writes a real with an exponent, because large ones written out are longer than readers accept.
 fn write_real(vcd: &mut Vcd<'_>, id: IdCode, value: f64) -> io::Result<()> {
     writeln!(vcd.writer(), "r{value:e} {id}")
 }
@@ -90,7 +93,7 @@ struct Open {
     signals: Vec<(String, u32)>,
     /// Id in the merged file, by slot.
     ids: Vec<Option<IdCode>>,
-    /// How often each slot was given a value.
+    /// Number of values that each slot was given.
     values: Vec<u64>,
 }
 
@@ -112,7 +115,8 @@ impl Open {
             .filter(|named| matches!(now.kind(named.slot), Kind::Bits(_) | Kind::Real))
             .map(|named| (named.path[shared..].to_owned(), named.slot))
             .collect();
-        // By scope, so that each scope is opened once; within a scope in the order of the file.
+        // The signals are sorted by scope, so that each scope is opened once; within a scope they stay in the order
+        // of the file.
         signals.sort_by(|(a, _), (b, _)| scope_of(a).cmp(scope_of(b)));
         Ok(Self {
             scope: part.scope.to_owned(),
@@ -162,7 +166,7 @@ pub fn merge(
     merge_around(sink, path, parts, differences, None)
 }
 
-/// As [`merge`], with what `focus` is about.
+/// Like [`merge`], restricted to `focus`.
 ///
 /// # Errors
 /// As [`merge`].
@@ -193,7 +197,7 @@ pub fn merge_around(
         let mut subtractions = subtractions(&mut output, &parts, differences)?;
         output.write(|vcd| vcd.enddefinitions())?;
         end = changes(&mut output, &mut parts, &mut subtractions, unit_fs)?;
-        // Viewers show no time behind the last one of the file: GTKWave then opens at the beginning instead.
+        // Viewers show no time after the last one of the file: GTKWave then opens at the beginning instead.
         let room = spot.map(|[time, span]| time.saturating_add(span));
         if let Some(room) = room.filter(|room| *room > end) {
             output.write(|vcd| vcd.timestamp(room))?;
@@ -204,7 +208,7 @@ pub fn merge_around(
     write_views(sink, path, &parts, differences, end, spot)
 }
 
-/// All that changes in the parts, in the order of time; the last time.
+/// Writes all changes of the parts, in the order of time; returns the last time.
 fn changes(
     output: &mut Output<'_>,
     parts: &mut [Open],
@@ -255,7 +259,7 @@ fn number(value: Value<'_>) -> Option<f64> {
     }
 }
 
-/// The part's scopes and signals.
+/// Declares the part's scopes and signals.
 fn declare(output: &mut Output<'_>, part: &mut Open) -> Result<(), WaveError> {
     let (now, ids) = (&part.now, &mut part.ids);
     output.write(|vcd| {
@@ -327,18 +331,19 @@ fn write_value(output: &mut Output<'_>, id: Option<IdCode>, value: Value<'_>) ->
     })
 }
 
-/// GTKWave's formats: right-aligned binary, signed decimal, that as a step curve, and a row more for the curve above.
+/// GTKWave's formats: right-aligned binary, signed decimal, signed decimal as a step curve, and an additional row for
+/// the curve above.
 const GTKWAVE_BIT: &str = "@28";
 const GTKWAVE_SIGNED: &str = "@420";
 const GTKWAVE_CURVE: &str = "@8420";
 const GTKWAVE_ROOM: &str = "@20000\n-\n@20000\n-\n";
-/// Vectors from this width on are numbers that one looks at as a curve.
+/// Vectors with at least this width are numbers that are shown as a curve.
 const CURVE_BITS: u32 = 16;
-/// Width of GTKWave's waves, in units of the 200 pixels that its zoom counts in, so that all of the time is in view.
+/// Width of GTKWave's waves, in units of the 200 pixels in which its zoom counts, so that the whole time is visible.
 const GTKWAVE_WIDTH: f64 = 4.6;
 
-/// The views show what moves: a signal that never changes is found in the viewer's tree. They open at a spot and the time
-/// around it, or show all.
+/// Writes the views. They show the signals that change: one that never changes is found in the viewer's tree. They
+/// open at a time and its surroundings, or show everything.
 fn write_views(
     sink: &dyn OutputSink,
     path: &Path,
@@ -398,7 +403,7 @@ fn write_views(
     }
     surfer.push_str("zoom_fit\n");
     if let Some([time, span]) = spot {
-        // Each halves the time in view; the cursor's place in it comes last.
+        // Each halves the visible time; the cursor's position in it comes last.
         let halvings = (end.max(1) as f64 / span.max(1) as f64).log2().floor().max(0.0) as usize;
         surfer.push_str(&format!(
             "cursor_set {time}\n{}goto_cursor\n",

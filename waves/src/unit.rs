@@ -1,11 +1,12 @@
-//! Units of time that every viewer reads.
+//! Units of time that every viewer reads correctly.
 //!
-//! A unit is always a second divided by a power of 1000. VCD also allows ten and a hundred of these, but viewers disagree on
-//! them: GTKWave multiplies the times of such a file, and not those of its session file, which then opens it elsewhere.
+//! A unit is always a second divided by a power of 1000. VCD also allows ten and a hundred of these, but viewers
+//! disagree on them: GTKWave multiplies the times of such a file but not those of its session file, which then opens
+//! at a wrong time.
 
 use vcd::TimescaleUnit;
 
-/// The units, coarsest first, and how many femtoseconds each has.
+/// The units, coarsest first, and the number of femtoseconds in each.
 const UNITS: [(TimescaleUnit, u64); 6] = [
     (TimescaleUnit::S, 1_000_000_000_000_000),
     (TimescaleUnit::MS, 1_000_000_000_000),
@@ -15,7 +16,8 @@ const UNITS: [(TimescaleUnit, u64); 6] = [
     (TimescaleUnit::FS, 1),
 ];
 
-/// The coarsest unit of which `fs` femtoseconds are a whole number of at least 1, and how many femtoseconds it has.
+/// Returns the coarsest unit of which `fs` femtoseconds are a whole number of at least 1, and its number of
+/// femtoseconds.
 pub fn unit_for(fs: u64) -> (TimescaleUnit, u64) {
     let fitting = UNITS
         .into_iter()

@@ -1,6 +1,6 @@
-//! Counted things and times in sentences for people.
+//! Counts and times in sentences for people.
 
-/// A number of things: `1 signal`, `2 signals`, `0 matches`, `2 axes`.
+/// Returns a count with its noun: `1 signal`, `2 signals`, `0 matches`, `2 axes`.
 pub fn counted(count: u64, noun: &str) -> String {
     if count == 1 {
         return format!("1 {noun}");
@@ -12,15 +12,15 @@ pub fn counted(count: u64, noun: &str) -> String {
     format!("{count} {noun}{}", if hisses { "es" } else { "s" })
 }
 
-/// Units of time, and how many decimal places of each a femtosecond is.
+/// Units of time, with the number of decimal places down to a femtosecond.
 const UNITS: [(&str, usize); 6] = [("s", 15), ("ms", 12), ("us", 9), ("ns", 6), ("ps", 3), ("fs", 0)];
 
-/// A time in femtoseconds as people read it, with all its digits: `40.68904 ms`.
+/// Formats a time in femtoseconds with all its digits: `40.68904 ms`.
 pub fn time(fs: u128) -> String {
     times(&[fs]).concat()
 }
 
-/// Times in one unit, that in which the last of them reads best, all with as many digits as the finest needs.
+/// Formats times in one unit, which suits the last of them; all have as many digits as the finest needs.
 pub fn times(all_fs: &[u128]) -> Vec<String> {
     let last = all_fs.last().copied().unwrap_or(0);
     let power = |places: usize| 10u128.pow(places as u32);

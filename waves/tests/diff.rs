@@ -1,4 +1,4 @@
-//! `diff`: what is equal, what is not, and where it says that it is not.
+//! `diff`: which files are equal, which are not, and what it reports.
 
 use std::path::PathBuf;
 
@@ -9,12 +9,12 @@ use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict, Shown};
 
 use crate::support;
 
-/// A VCD with the given declarations and changes, timescale 1 ns.
+/// Returns a VCD with the given declarations and changes, timescale 1 ns.
 fn text(variables: &str, changes: &str) -> String {
     format!("$timescale 1 ns $end\n{variables}\n$enddefinitions $end\n{changes}\n")
 }
 
-/// `top` with a clock and a signed byte.
+/// Returns `top` with a clock and a signed byte.
 fn clocked(scope: &str, changes: &str) -> String {
     let variables =
         format!("$scope module {scope} $end $var wire 1 c clk $end $var wire 8 y y [7:0] $end $upscope $end");
@@ -52,7 +52,7 @@ fn options(maps: &[&str], tolerances: &[&str]) -> DiffOptions {
 
 #[test]
 fn unit_registers_compare_the_same_at_and_after_the_edge() {
-    // A shows the change at the edge, B a nanosecond later; another timescale in B.
+    // A shows the change at the edge, B a nanosecond later; B has another timescale.
     let a = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c b11 y #20 0c #25 1c");
     let b = clocked(
         "t",
@@ -156,7 +156,7 @@ fn unit_nothing_in_common_is_incomparable() {
         for (a, b) in [(&a, b), (b, &a)] {
             let result = Two::new(a, b).compare(&DiffOptions::default()).unwrap();
             let expected = if *b == no_edge || *a == no_edge {
-                // Both have no common sample, but one has edges that the other lacks.
+                // They have no common sample, but one has edges that the other lacks.
                 (DiffVerdict::Incomparable, samples)
             } else {
                 (DiffVerdict::Incomparable, 0)
@@ -301,10 +301,10 @@ proptest! {
         prop_assert_eq!(there.differences.len(), 1);
         let found = &there.differences[0];
         prop_assert_eq!(&found.signal, &format!("top.dut.s{}", WIDTHS[signal]));
-        // 25 MHz: 40 ns; with the clock, at the edge that ends the step.
+        // 25 MHz is 40 ns; with the clock, the sample is at the edge that ends the step.
         let step = row as u64 + u64::from(clock);
         prop_assert_eq!(found.time, step as f64 * 40.0 / 1e9);
-        // Without clock, a step has two times of change, and the last one a third.
+        // Without a clock, a step has two times of change, and the last one a third.
         prop_assert_eq!(found.count, if clock { 1 } else { 2 + u64::from(row + 1 == rows.len()) });
 
         let back = diff::compare(&b, &a, &DiffOptions::default(), &mut |_| {}).unwrap();

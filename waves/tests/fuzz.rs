@@ -1,7 +1,8 @@
-//! Damaged recordings of every producer: an error or a result, never a panic, and never another result for the same file.
+//! Damaged recordings of every producer: an error or a result, never a panic, and always the same result for the same
+//! file.
 //!
-//! A few hundred on stable in every test run, and as many as `PROPTEST_CASES` says; `fuzz/` has the same for `cargo fuzz`,
-//! without end.
+//! Every test run has a few hundred cases, or as many as `PROPTEST_CASES` says; `fuzz/` has the same for
+//! `cargo fuzz`, without end.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +20,7 @@ fn recordings(extension: &str) -> Vec<Vec<u8>> {
     paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
 }
 
-/// So many, or `PROPTEST_CASES`.
+/// Returns this number of cases, or `PROPTEST_CASES`.
 fn cases(ordinary: u32) -> u32 {
     let wanted = std::env::var("PROPTEST_CASES")
         .ok()
@@ -27,7 +28,7 @@ fn cases(ordinary: u32) -> u32 {
     wanted.unwrap_or(ordinary)
 }
 
-/// Words that matter to a parser, put where they do not belong.
+/// Words with a meaning for a parser, inserted at wrong places.
 const WORDS: [&[u8]; 12] = [
     b"$end ",
     b"$scope module x $end ",
@@ -88,7 +89,7 @@ proptest! {
         let recordings = recordings("vcd");
         let [mut content, other] = which.map(|which| recordings[which.index(recordings.len())].clone());
         if spliced {
-            // The beginning of one with the end of another.
+            // The beginning of one file with the end of another.
             content.truncate(cut[0].index(content.len()));
             content.extend(&other[cut[1].index(other.len())..]);
         }

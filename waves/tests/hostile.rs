@@ -14,7 +14,7 @@ fn compare(path: &Path) -> Result<diff::Comparison, WaveError> {
     diff::compare(path, path, &DiffOptions::default(), &mut |_| {})
 }
 
-/// The error of a file with this content.
+/// Returns the error of a file with this content.
 fn error(content: &[u8]) -> String {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), content).unwrap();

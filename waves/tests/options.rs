@@ -1,11 +1,12 @@
-//! What the options of `diff` do: when, which, how.
+//! The options of `diff`.
 
 use wavecmp::WaveError;
 use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict, Shown, UnknownPolicy, junit};
 
 use crate::support::PlainFiles;
 
-/// A clock, a reset and a byte: rising edges at 5, 15, 25 … ns; each word of `values` stands from one edge to the next.
+/// Returns a clock, a reset and a byte: rising edges at 5, 15, 25 … ns; each word of `values` stays from one edge to
+/// the next.
 fn clocked(values: &[&str], reset_clocks: usize) -> String {
     let mut text = "$timescale 1 ns $end $scope module t $end $var wire 1 c clk $end $var wire 1 r rst $end \
         $var wire 8 y y $end $upscope $end $enddefinitions $end\n"
@@ -50,7 +51,7 @@ fn unit_each_side_starts_behind_its_own_reset() {
     let text = compare(&a, &b, &reset).unwrap().to_string();
     assert!(text.contains("1 edge of the first file, 3 of the second"), "{text}");
     assert!(compare(&a, &b, &with(|o| o.set_reset("nothing").unwrap())).is_err());
-    // Never released: nothing was compared, and that is no success.
+    // The reset is never released: nothing was compared, which is not a success.
     let never = clocked(&["0"; 3], 9);
     assert_eq!(verdict(&never, &never, &reset), (DiffVerdict::Incomparable, 0));
 }
@@ -136,7 +137,7 @@ fn unit_raw_with_time_tolerance_and_glitch_filter() {
     };
     let (at_once, in_steps) = (steps("#7 b10 y"), steps("#5 b1 y #7 b10 y"));
     assert_eq!(verdict(&at_once, &in_steps, &glitch(3)).0, DiffVerdict::Equal);
-    // What never becomes equal again is not forgiven.
+    // A difference that never ends is not tolerated.
     let end = "$timescale 1 ns $end $var wire 1 y y $end $enddefinitions $end #0 0y #10 1y\n";
     let other = end.replace("#10 1y", "#10 0y");
     assert_eq!(verdict(end, &other, &tolerance(1000)).0, DiffVerdict::Different);

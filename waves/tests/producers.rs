@@ -15,11 +15,12 @@ fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
     diff::compare(&fixture(a), &fixture(b), options, &mut |_| {}).unwrap()
 }
 
-/// The counter's ports behind its reset, by the clock of the bench. The top scope is that of the first file.
+/// Returns options for the counter's ports after its reset, by the clock of the bench. The top scope is that of the
+/// first file.
 fn ports(top: &str) -> DiffOptions {
     let mut options = DiffOptions {
         clock: Some(format!("{top}clk")),
-        // GHDL's clock runs for one edge more.
+        // GHDL's clock runs for one more edge.
         end_fs: Some(400_000_000),
         ..DiffOptions::default()
     };
@@ -96,7 +97,7 @@ fn golden_simulators_meet_on_all_signals_but_what_only_one_writes() {
         ..DiffOptions::default()
     };
     let whole = compare("icarus.vcd", "verilator.vcd", &options);
-    // Icarus names `flag$bit` and `odd.name` with the backslash of their escape, and writes no array.
+    // Icarus names `flag$bit` and `odd.name` with the backslash of their escape, and does not write arrays.
     assert_eq!(whole.result, DiffVerdict::Equal, "{whole}");
     assert_eq!(
         whole.only_in_b,

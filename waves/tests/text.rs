@@ -1,8 +1,8 @@
-//! The result of a comparison as people read it: numbers, units, at most 100 columns; and what stays for programs.
+//! The result of a comparison as text: numbers, units, at most 100 columns; and as a document for programs.
 
 use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict};
 
-/// A file with a clock of 20 ns, words of these widths, and these values of each word, clock by clock.
+/// Returns a file with a clock of 20 ns, words of these widths, and these values of each word, clock by clock.
 fn vcd(timescale: &str, ticks_per_ns: u64, widths: &[u32], rows: &[&[i64]], scope: &str) -> String {
     let mut text = format!("$timescale {timescale} $end\n$scope module {scope} $end\n$var wire 1 ! clk $end\n");
     for (at, width) in widths.iter().enumerate() {
@@ -93,7 +93,7 @@ fn unit_a_view_shows_the_value_in_its_format() {
 fn unit_the_text_fits_100_columns() {
     let scope = "a_scope_with_a_long_name.of_many_parts_that_go_on.and_on";
     let scopes = scope.replace('.', " $end\n$scope module ");
-    // Times in femtoseconds that need all their digits.
+    // These are times in femtoseconds that need all their digits.
     let file = |rows: &[&[i64]]| {
         let text = vcd("1 fs", 1_000_001, &[64, 100, 16], rows, &scopes);
         text.replacen("$upscope $end", "$upscope $end\n$upscope $end\n$upscope $end", 1)

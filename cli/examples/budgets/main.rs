@@ -1,12 +1,13 @@
-//! What every block takes of a Cyclone II, against the budgets of the hardware's specification.
+//! Measures the area of every block in a Cyclone II against the budgets of the hardware's specification.
 //!
 //! ```text
 //! cargo run --release -p posicast --example budgets              measure, compare with docs/area.md
 //! cargo run --release -p posicast --example budgets -- --write   measure, write docs/area.md
 //! ```
 //!
-//! Exit status 1: a figure is larger than the one written down, or a row is not written down. So area cannot grow unseen;
-//! where growth is meant, `--write` makes it part of the change. Smaller figures pass. Needs Yosys; takes some seconds.
+//! Exit status 1: a figure is larger than the one in `docs/area.md`, or a row is missing there. So area cannot grow
+//! unnoticed; where growth is intended, `--write` makes it part of the change. Smaller figures pass. Needs Yosys;
+//! takes some seconds.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "its purpose")]
 
 mod table;
@@ -18,11 +19,12 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// A row's figures.
+/// Figures of a row.
 struct Measured {
     row: AreaRow,
     resources: Resources,
-    /// LUTs where Yosys alone maps: no carry chain, no synchronous clear. Not of the whole stage: it takes minutes.
+    /// LUTs as Yosys maps alone, without carry chain and synchronous clear; `None` for the whole stage, where it
+    /// takes minutes.
     luts_by_yosys: Option<u64>,
 }
 

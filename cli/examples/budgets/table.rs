@@ -1,4 +1,4 @@
-//! The page `docs/area.md`, and what has grown since it was written.
+//! The page `docs/area.md`, and the figures that have grown since it was written.
 
 use crate::Measured;
 use posicast_synth::yosys::{Family, Resources};
@@ -93,7 +93,7 @@ fn figures(resources: &Resources) -> String {
     figures.map(|figure| figure.to_string()).join(" | ")
 }
 
-/// One line for each figure of `new` that is above that of `old`, or that `old` has not.
+/// One line for each figure of `new` that is larger than that of `old`, or missing in `old`.
 pub(crate) fn grown(old: &str, new: &str) -> Vec<String> {
     const NAMES: [&str; 5] = ["LUT", "flip-flops", "LE", "M4K", "18×18"];
     let written = rows(old);
@@ -112,7 +112,7 @@ pub(crate) fn grown(old: &str, new: &str) -> Vec<String> {
     lines
 }
 
-/// The figures of a page by block and size.
+/// Figures of a page by block and size.
 fn rows(page: &str) -> BTreeMap<String, Vec<u64>> {
     let row = |line: &str| {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();

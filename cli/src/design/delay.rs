@@ -1,4 +1,4 @@
-//! The delays of the axes of a stage, for people and for programs.
+//! The delays of a stage's axes, for people and for programs.
 
 use crate::output::Table;
 use posicast_model::design::{AxisDelay, MachineDesign, StageDelay};
@@ -7,7 +7,7 @@ use posicast_model::unit::{AxisUnit, show_seconds};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What the delay of an axis is made of, and what is left between the axes; nothing without `[stage]`.
+/// The parts of each axis's delay, and the remaining mismatch; empty without `[stage]`.
 pub(super) fn text(machine: &Machine, design: &MachineDesign) -> String {
     let Some(stage) = &design.stage else {
         return String::new();
@@ -54,9 +54,9 @@ pub(super) fn text(machine: &Machine, design: &MachineDesign) -> String {
 /// `stage` in `design --json` and `report.json`.
 #[derive(Serialize)]
 pub(super) struct StageDocument {
-    /// Of every axis, before the coefficients are rounded.
+    /// Total delay of every axis, before the coefficients are rounded.
     total_delay_s: f64,
-    /// Largest difference of two axes, after it.
+    /// Largest difference between two axes, after rounding.
     mismatch_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     contour_speed: Option<f64>,
@@ -75,7 +75,7 @@ impl StageDocument {
     }
 }
 
-/// An axis's `delay` there: its parts, and their sum.
+/// `delay` of an axis there: its parts and their sum.
 #[derive(Serialize)]
 pub(super) struct DelayDocument {
     shaper_s: f64,

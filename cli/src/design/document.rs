@@ -115,7 +115,7 @@ pub(super) struct CrossGainDocument {
 pub(super) struct ModeDocument {
     pub(super) frequency_hz: f64,
     pub(super) damping: f64,
-    /// As it was measured with the motor free.
+    /// The mode as it was measured with the motor free.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) free: Option<FreeDocument>,
     /// What `[axis.mechanics]` makes it from.

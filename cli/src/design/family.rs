@@ -1,4 +1,4 @@
-//! The family of tables of an axis whose modes move, in the report of a design.
+//! The table family of an axis whose modes move, in the report of a design.
 
 use crate::output::Table;
 use crate::plot::{Curve, Panel};
@@ -13,11 +13,11 @@ use std::fmt::Write;
 
 use super::document::TapDocument;
 
-/// Values at which the residual is drawn.
+/// Number of values at which the residual is drawn.
 const POINTS: u32 = 601;
 /// Digits of a value in a table of text.
 const DIGITS: usize = 5;
-/// So many tolerances are shown.
+/// Shown range of the residual, in tolerances.
 const SHOWN: f64 = 3.0;
 
 /// `family` of an axis in `design --json`. Values of a position are in m or rad.
@@ -27,9 +27,9 @@ pub(super) struct FamilyDocument {
     range: [f64; 2],
     /// Index of the table in the ROM, from 0.
     nominal: usize,
-    /// So many tables cover the range.
+    /// Number of tables that cover the range.
     needed: usize,
-    /// How fast the variable may change, per second; absent for a single table.
+    /// Largest rate of change of the variable, per second; absent for a single table.
     #[serde(skip_serializing_if = "Option::is_none")]
     fastest_per_s: Option<f64>,
     tables: Vec<MemberDocument>,
@@ -39,12 +39,12 @@ pub(super) struct FamilyDocument {
 struct MemberDocument {
     value: f64,
     modes: Vec<MemberMode>,
-    /// Where every mode's residual is within its tolerance.
+    /// Range in which every mode's residual is within its tolerance.
     covers: [f64; 2],
-    /// Below this value the table before is chosen; absent for the first.
+    /// Threshold below which the table before is chosen; absent for the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     down: Option<f64>,
-    /// Above this value the table after is chosen; absent for the last.
+    /// Threshold above which the table after is chosen; absent for the last.
     #[serde(skip_serializing_if = "Option::is_none")]
     up: Option<f64>,
     taps: Vec<TapDocument>,
@@ -66,7 +66,7 @@ pub(super) struct FamilyReport<'a> {
 }
 
 impl<'a> FamilyReport<'a> {
-    /// Nothing where no mode of the axis moves.
+    /// `None` where no mode of the axis moves.
     pub(super) fn new(axis: &'a AxisSection, tables: Option<&'a TableFamily>, sample_hz: f64) -> Option<Self> {
         Some(Self {
             axis,
@@ -187,7 +187,7 @@ impl<'a> FamilyReport<'a> {
         text
     }
 
-    /// Where the axis may move faster than its tables follow.
+    /// A warning where the axis may move faster than its tables follow.
     pub(super) fn warning(&self) -> Option<String> {
         let velocity = self.axis.limits?.velocity.filter(|_| self.family.is_position())?;
         let fastest = self.tables.fastest_per_s(self.sample_hz);

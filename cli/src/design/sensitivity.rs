@@ -6,7 +6,7 @@ use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::unit::trimmed;
 
-/// Frequency ratios that the sensitivity curves show.
+/// Range of frequency ratios that the sensitivity curves show.
 const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
 const CURVE_POINTS: usize = 601;
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What a tool is needed for.
+/// Purpose of a tool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Need {
@@ -27,7 +27,7 @@ pub(super) struct Tool {
     pub(super) install: &'static str,
 }
 
-/// All of them.
+/// All tools.
 pub(super) const TOOLS: [Tool; 14] = [
     Tool {
         names: &["verilator"],
@@ -42,7 +42,7 @@ pub(super) const TOOLS: [Tool; 14] = [
         variable: Some("MAKE"),
         version: &["--version"],
         need: Need::Run,
-        purpose: "builds what Verilator writes",
+        purpose: "builds Verilator's output",
         install: "apt install make",
     },
     Tool {
@@ -50,7 +50,7 @@ pub(super) const TOOLS: [Tool; 14] = [
         variable: None,
         version: &["--version"],
         need: Need::Run,
-        purpose: "compiles what Verilator writes",
+        purpose: "compiles Verilator's output",
         install: "apt install g++",
     },
     Tool {
@@ -74,7 +74,7 @@ pub(super) const TOOLS: [Tool; 14] = [
         variable: Some("VVP"),
         version: &["-V"],
         need: Need::Option,
-        purpose: "runs what iverilog compiled",
+        purpose: "runs the output of iverilog",
         install: "apt install iverilog",
     },
     Tool {

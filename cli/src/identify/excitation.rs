@@ -1,4 +1,4 @@
-//! What the user says of the excitation of an accelerometer's log.
+//! Options that describe the excitation of an accelerometer's log.
 
 use posicast_identify::sweep::Sweep;
 
@@ -12,7 +12,7 @@ pub(super) struct ExcitationFlags {
     pub(super) output_only: bool,
 }
 
-/// Reads a positive number.
+/// Parses a positive number.
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),

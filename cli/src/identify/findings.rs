@@ -1,4 +1,4 @@
-//! What a log tells, whichever way it was found.
+//! The modes found in a log, by whichever method.
 
 use super::excitation::ExcitationFlags;
 use crate::failure::Failure;
@@ -13,16 +13,16 @@ use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
 use posicast_model::unit::trimmed;
 
-/// What was measured beside what the modes make of it: for the pictures.
+/// Measured data and what the modes explain of it, for the plots.
 pub(super) enum Evidence {
-    /// A transfer function, and the fitted one at its points.
+    /// A transfer function, and the fitted one at the same points.
     Transfer {
         points: Vec<ResponsePoint>,
         fitted: Vec<(f64, f64)>,
     },
-    /// A response over time, and what the modes make of it.
+    /// A response over time, and what the modes explain of it.
     Response {
-        /// What the response is.
+        /// Name of the response.
         name: &'static str,
         row_s: f64,
         measured: Vec<f64>,
@@ -41,13 +41,13 @@ impl Evidence {
     }
 }
 
-/// Modes, shapers for them, and where they come from.
+/// Modes and shapers, with their source.
 pub(super) struct Findings {
     pub(super) rows: usize,
     pub(super) sample_s: f64,
-    /// What the log is, in words.
+    /// Description of the log.
     pub(super) source: String,
-    /// How the modes were found, in words.
+    /// Description of the method by which the modes were found.
     pub(super) method: String,
     /// Name of the method in the JSON document.
     pub(super) method_name: &'static str,
@@ -58,10 +58,10 @@ pub(super) struct Findings {
     pub(super) modes: Vec<FoundMode>,
     pub(super) recommended: Vec<Recommendation>,
     pub(super) judgement: Judgement,
-    /// What is wrong with the log, and what it cannot tell.
+    /// Problems of the log, and what it does not contain.
     pub(super) remarks: Vec<String>,
     pub(super) evidence: Evidence,
-    /// Power spectrum of what an accelerometer saw.
+    /// Power spectrum of an accelerometer's log.
     pub(super) spectrum: Option<PowerSpectrum>,
 }
 
@@ -83,7 +83,7 @@ impl Findings {
         Ok(findings)
     }
 
-    /// The template for a machine of these modes.
+    /// The template for a machine with these modes.
     pub(super) fn kind(&self) -> MachineKind {
         const SLOW_HZ: f64 = 2.0;
         match self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ) {
@@ -149,7 +149,7 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
             .into(),
     ];
     if found.modes.is_empty() {
-        remarks.push("nothing in the log decays as a mode would".into());
+        remarks.push("no vibration in the log decays as a mode would".into());
     }
     Ok(Findings {
         rows: 0,
@@ -168,7 +168,7 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
     })
 }
 
-/// The spectrum of a direction, about half a hertz apart.
+/// The spectrum of a direction, with a resolution of about half a hertz.
 fn spectrum(log: &AccelerationLog, direction: &str) -> Option<PowerSpectrum> {
     const SEGMENT_S: f64 = 2.0;
     let (_, record) = log.directions.iter().find(|(name, _)| name == direction)?;
@@ -241,14 +241,14 @@ fn of_position_error(error: PositionError) -> Failure {
     Failure::from(miette::miette!(help = help, "{error}"))
 }
 
-/// `accel_x` is the log of axis `x`.
+/// The axis of a column: `accel_x` is the log of axis `x`.
 fn axis_of(direction: &str) -> Option<String> {
     let letter = direction.strip_prefix("accel_")?.chars().next()?;
     Some(letter.to_string())
 }
 
 fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
-    /// Square of what is left over the noise's from which the fit is not all that is there.
+    /// Ratio of the square of the remainder to that of the noise, above which the fit is incomplete.
     const LEFT_OVER: f64 = 4.0;
     /// Part by which clocks differ that is told: less moves no mode.
     const TOLD_CLOCK: f64 = 1e-5;

@@ -1,4 +1,4 @@
-//! A machine file with the modes that were found.
+//! Writes a machine file with the modes that were found.
 
 use super::findings::Findings;
 use crate::failure::Failure;
@@ -8,10 +8,10 @@ use posicast_model::unit::trimmed;
 use std::path::Path;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
-/// Digits of a frequency and of a damping ratio: more than any log tells.
+/// Digits of a frequency and of a damping ratio: more than any log determines.
 const DIGITS: usize = 6;
 
-/// The template with the one axis that was measured.
+/// The template, with only the axis that was measured.
 pub(super) fn from_template(
     kind: MachineKind,
     path: &Path,
@@ -47,8 +47,8 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
         None => None,
     };
     let Some(target) = index.and_then(|index| axes.get_mut(index)) else {
-        let what = wanted.map_or("the log does not say which axis it is of".into(), |wanted| {
-            format!("there is no axis \"{wanted}\"")
+        let what = wanted.map_or("the log does not name its axis".into(), |wanted| {
+            format!("no axis \"{wanted}\"")
         });
         return Err(Failure::from(miette::miette!(
             help = format!("--axis names the axis that the log is of: {}", names.join(", ")),
@@ -84,7 +84,7 @@ fn position(axes: &ArrayOfTables, wanted: &str) -> Option<usize> {
     (0..axes.len()).find(|&index| name(axes, index).as_deref() == Some(wanted))
 }
 
-/// Replaces a value and keeps the comment behind it.
+/// Replaces a value and keeps the comment after it.
 fn put(table: &mut Table, key: &str, new: toml_edit::Value) {
     let decor = table.get(key).and_then(Item::as_value).map(|old| old.decor().clone());
     let mut new = new;
@@ -94,7 +94,7 @@ fn put(table: &mut Table, key: &str, new: toml_edit::Value) {
     table.insert(key, Item::Value(new));
 }
 
-/// Puts modes and shaper into an axis.
+/// Writes modes and shaper into an axis.
 fn fill(axis: &mut Table, findings: &Findings) {
     let mut modes = ArrayOfTables::new();
     for found in &findings.modes {
@@ -136,7 +136,7 @@ fn noted(number: f64, low: f64, high: f64) -> Item {
     Item::Value(item)
 }
 
-/// The text, if posicast reads it as a machine file.
+/// The text, if posicast accepts it as a machine file.
 fn checked(text: String, path: &Path) -> Result<String, Failure> {
     machine::parse(path, &text)?;
     Ok(text)

@@ -1,4 +1,4 @@
-//! The pictures of `identify`: the fit, the shapers over the frequency, and the ringing.
+//! The plots of `identify`: the fit, the shapers over the frequency, and the ringing.
 
 use super::findings::{Evidence, Findings};
 use crate::plot::{Curve, Mark, Panel, Range, label, time_axis};
@@ -9,9 +9,9 @@ use posicast_model::analysis::sensitivity_curve;
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::unit::{AxisUnit, trimmed};
 
-/// Shapers that are drawn.
+/// Number of shapers that are drawn.
 const SHAPERS: usize = 4;
-/// Frequencies that the curves of the shapers show, relative to a mode's.
+/// Range of frequencies that the curves of the shapers show, relative to a mode's.
 const RATIOS: (f64, f64) = (0.5, 1.5);
 const POINTS: usize = 601;
 
@@ -29,7 +29,7 @@ pub(super) fn panels(findings: &Findings) -> Vec<Panel> {
     panels
 }
 
-/// What the sensor saw, up to half as much again as the highest mode, or as the sweep.
+/// Spectrum of the log, up to one and a half times the highest mode or the end of the sweep.
 fn spectrum(findings: &Findings, power: &PowerSpectrum) -> Panel {
     const LEAST_HZ: f64 = 150.0;
     let highest = findings
@@ -157,7 +157,7 @@ fn shapers(findings: &Findings, mode: usize) -> Panel {
 }
 
 fn ringing(findings: &Findings, best: &Recommendation) -> Panel {
-    /// Periods of the slowest mode that are shown.
+    /// Number of periods of the slowest mode that are shown.
     const PERIODS: f64 = 12.0;
     let slowest = findings
         .modes

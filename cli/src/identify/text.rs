@@ -1,4 +1,4 @@
-//! What `identify` prints for people.
+//! Text that `identify` prints for people.
 
 use super::findings::Findings;
 use crate::output::{Table, percent};

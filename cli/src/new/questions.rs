@@ -1,6 +1,7 @@
-//! The questions of `posicast new`, and what their answers change.
+//! The questions of `posicast new`, and the effect of their answers.
 //!
-//! Every answer is put into the file, and the file checked: what does not fit is said at once, and asked again.
+//! Every answer is put into the file, and the file checked: an answer that does not fit is reported at once, and the
+//! question is asked again.
 
 use super::template::{At, Draft, MachineKind, quoted};
 use crate::design::DesignReport;
@@ -9,19 +10,19 @@ use crate::hardware;
 use std::io::{BufRead, Read, Write};
 use std::path::Path;
 
-/// Units of a linear axis, and how many of them are a metre.
+/// Units of a linear axis, and how many of each make a metre.
 const LENGTHS: [(&str, f64); 3] = [("m", 1.0), ("mm", 1e3), ("um", 1e6)];
-/// Units of a rotary axis, and how many of them are a radian.
+/// Units of a rotary axis, and how many of each make a radian.
 const ANGLES: [(&str, f64); 4] = [
     ("rad", 1.0),
     ("mrad", 1e3),
     ("deg", 180.0 / std::f64::consts::PI),
     ("rev", 0.5 / std::f64::consts::PI),
 ];
-/// Longest answer that is read: no terminal sends a longer line.
+/// Longest answer that is read, in bytes: no terminal sends a longer line.
 const ANSWER_BYTES: u64 = 4096;
 
-/// Where questions are asked and answered.
+/// Source of the answers, and terminal for the questions.
 pub(crate) struct Questions<R, W> {
     answers: R,
     terminal: W,
@@ -29,7 +30,7 @@ pub(crate) struct Questions<R, W> {
 }
 
 impl<R: BufRead, W: Write> Questions<R, W> {
-    /// Asks on `terminal`, reads from `answers`.
+    /// Asks on `terminal`, and reads from `answers`.
     pub(crate) fn new(answers: R, terminal: W) -> Self {
         Self {
             answers,
@@ -38,7 +39,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         }
     }
 
-    /// Asks for everything, and makes the file that `path` will hold.
+    /// Asks all questions, and makes the file that `path` will hold.
     pub(crate) fn draft(&mut self, path: &Path) -> Result<Draft, Failure> {
         self.say("Enter takes the value in brackets; all can be changed in the file later.\n")?;
         let kinds = MachineKind::ALL.map(|(_, name)| name);
@@ -79,7 +80,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         Ok(draft)
     }
 
-    /// The file with an answer in it; asked again until it fits.
+    /// Asks until an answer fits, and returns the file with it.
     fn change(
         &mut self,
         draft: &Draft,
@@ -100,7 +101,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         }
     }
 
-    /// One of a list of words.
+    /// Asks for one of a list of words.
     fn word(&mut self, question: &str, words: &[&str], default: &str) -> Result<String, Failure> {
         let list = words.join(", ");
         loop {
@@ -112,7 +113,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         }
     }
 
-    /// An answer; the default where it is empty, and for all questions after the end of the input.
+    /// Asks a question; returns the default for an empty answer, and for all questions after the end of the input.
     fn ask(&mut self, question: &str, default: &str) -> Result<String, Failure> {
         if self.ended {
             return Ok(default.to_owned());
@@ -139,13 +140,13 @@ impl<R: BufRead, W: Write> Questions<R, W> {
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 fn number(answer: &str) -> Result<f64, String> {
     let number = answer.parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| format!("found `{}`; allowed: a number, such as 47.5", answer.escape_debug()))
 }
 
-/// Whether the file can be built; else the problems, with what to do.
+/// Checks that the file can be built; the error has the problems with their remedies.
 fn fits(draft: &Draft) -> Result<(), String> {
     let machine = draft.machine().map_err(|error| {
         let lines = error.problems().iter().map(|problem| {

@@ -1,16 +1,16 @@
-//! The templates, and how a value of one is replaced.
+//! The templates of machine files, and the replacement of a value in one.
 
 use posicast_model::machine_file::{self, Machine};
 use std::path::Path;
 
-/// What kind of machine a template is for.
+/// Kind of machine that a template is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum MachineKind {
     /// Two belt axes without encoders.
     Printer,
-    /// Two linear axes with everything.
+    /// Two linear axes with encoder, drive and controller.
     Gantry,
-    /// A rotary axis with everything.
+    /// A rotary axis with encoder, drive and controller.
     Joint,
     /// A trolley with a swinging load.
     Crane,
@@ -34,7 +34,7 @@ impl MachineKind {
         }
     }
 
-    /// What the machine is, in words.
+    /// Description of the machine.
     pub(crate) fn about(self) -> &'static str {
         match self {
             Self::Printer => "a 3D printer with two belt axes, shapers only",
@@ -44,24 +44,24 @@ impl MachineKind {
         }
     }
 
-    /// Whether its axes turn: their unit is the radian.
+    /// Whether its axes are rotary, with the radian as their unit.
     pub(crate) fn turns(self) -> bool {
         self == Self::Joint
     }
 }
 
-/// Which table of a machine file a key is in.
+/// Table of a machine file in which a key is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum At {
     /// Before the first table.
     Top,
-    /// `[[axis]]`, counted from 0.
+    /// `[[axis]]` with this index, from 0.
     Axis(usize),
-    /// The first `[[axis.mode]]` of that axis.
+    /// The first `[[axis.mode]]` of the axis with this index.
     FirstMode(usize),
 }
 
-/// A machine file in the making.
+/// A machine file that is being written.
 #[derive(Debug, Clone)]
 pub(crate) struct Draft {
     kind: MachineKind,
@@ -69,7 +69,7 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    /// The template, for a machine with the name of the file where that is a name.
+    /// The template, for a machine with the name of the file where that is a valid name.
     pub(crate) fn new(kind: MachineKind, file: &Path) -> Self {
         let draft = Self {
             kind,
@@ -88,30 +88,30 @@ impl Draft {
         self.kind
     }
 
-    /// The file.
+    /// Text of the file.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// The machine's name.
+    /// Name of the machine.
     pub(crate) fn name(&self) -> &str {
         self.value(At::Top, "name").trim_matches('"')
     }
 
-    /// The machine.
+    /// The machine that the file describes.
     ///
     /// # Errors
-    /// What the machine file's reader says.
+    /// The errors of the machine file's reader.
     pub(crate) fn machine(&self) -> Result<Machine, machine_file::SpecError> {
         machine_file::parse("answer", &self.text)
     }
 
-    /// The value of a key as it stands in the file; nothing where there is none.
+    /// The value of a key as it stands in the file; empty where there is none.
     pub(crate) fn value(&self, at: At, key: &str) -> &str {
         self.place(at, key).map_or("", |place| &self.text[place])
     }
 
-    /// The same file with another value; its comment stays in its column where there is room.
+    /// The file with another value; its comment stays in its column where there is room.
     pub(crate) fn with(&self, at: At, key: &str, value: &str) -> Self {
         let mut text = self.text.clone();
         if let Some(place) = self.place(at, key) {
@@ -126,7 +126,7 @@ impl Draft {
         Self { kind: self.kind, text }
     }
 
-    /// Where a key's value stands in the text.
+    /// Range of a key's value in the text.
     fn place(&self, at: At, key: &str) -> Option<std::ops::Range<usize>> {
         let (mut here, mut axes) = (Some(At::Top), 0);
         let mut start = 0;
@@ -154,7 +154,7 @@ impl Draft {
     }
 }
 
-/// A text as TOML writes it. What TOML would have to escape is left out: no name has it.
+/// A text in TOML quotes. Characters that TOML would have to escape are left out, because no name has them.
 pub(crate) fn quoted(text: &str) -> String {
     let plain: String = text
         .chars()

@@ -3,12 +3,12 @@
 use super::{Area, BAND, DARK_RED, DASH, Drawn, Panel, TEXT_SIZE};
 use plotters::prelude::*;
 
-/// Length of the piece of line before a name, and the gaps beside it, in pixels.
+/// Length of the line sample before a name, and the gaps beside it, in pixels.
 const SAMPLE: i32 = 26;
 const GAP: i32 = 6;
 const BETWEEN: i32 = 20;
 const ROW: i32 = 18;
-/// Width of a letter, on average, as a part of the text's size.
+/// Average width of a letter, as a fraction of the text size.
 const LETTER: f64 = 0.5;
 
 enum Sample {
@@ -20,7 +20,7 @@ enum Sample {
 struct Entry {
     sample: Sample,
     name: String,
-    /// Where it stands in the legend.
+    /// Position in the legend.
     place: (i32, i32),
 }
 
@@ -30,7 +30,8 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The entries in rows so wide, each name once, of a panel that shows the values from `low` to `high`.
+    /// Arranges the entries of a panel that shows the values from `low` to `high`, each name once, in rows of this
+    /// width.
     pub(super) fn new(panel: &Panel, looks: &[(ShapeStyle, bool)], (low, high): (f64, f64), width: i32) -> Self {
         let curves = panel.curves.iter().zip(looks);
         let curves = curves.map(|(curve, (style, is_dashed))| (Sample::Line(*style, *is_dashed), curve.name.clone()));
@@ -59,12 +60,12 @@ impl Legend {
         Self { entries, height }
     }
 
-    /// In pixels.
+    /// Height in pixels.
     pub(super) fn height(&self) -> i32 {
         self.height
     }
 
-    /// With its first row at `origin`.
+    /// Draws the legend with its first row at `origin`.
     pub(super) fn draw(&self, area: &Area<'_>, origin: (i32, i32)) -> Drawn {
         for entry in &self.entries {
             let (x, y) = (origin.0 + entry.place.0, origin.1 + entry.place.1);

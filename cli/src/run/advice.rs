@@ -1,4 +1,4 @@
-//! What a failed check most likely comes from, and what to try.
+//! The likely cause of a failed check, and what to try.
 
 /// A likely cause, and two things to try.
 pub(crate) struct Advice {
@@ -6,7 +6,7 @@ pub(crate) struct Advice {
     pub(crate) remedies: [&'static str; 2],
 }
 
-/// By the beginning of a check's name.
+/// Advice by the beginning of a check's name.
 const ADVICE: [(&str, Advice); 13] = [
     (
         "the command moves every axis",
@@ -24,7 +24,7 @@ const ADVICE: [(&str, Advice); 13] = [
             cause: "a fault of posicast: description and model of a block differ",
             remedies: [
                 "run `posicast verify` with the same --seed, and report its first difference",
-                "run `posicast doctor`, and install what it misses",
+                "run `posicast doctor`, and install the missing tools",
             ],
         },
     ),
@@ -109,7 +109,7 @@ const ADVICE: [(&str, Advice); 13] = [
         },
     ),
     (
-        "the stage does what it is told",
+        "the stage carries out its commands",
         Advice {
             cause: "a limit that is tighter than the loop follows, or a loop that swings: see the cause that is named",
             remedies: [
@@ -130,9 +130,9 @@ const ADVICE: [(&str, Advice); 13] = [
         },
     ),
     (
-        "the shapers take",
+        "the shapers suppress",
         Advice {
-            cause: "the loop swings by itself, or the drive or a word is at its limit, so that the load does not get the shaped command",
+            cause: "the loop oscillates, or the drive or a word is at its limit, so that the load does not get the shaped command",
             remedies: [
                 "look at plots/stage-move.svg, and lower acceleration or the gains",
                 "check frequency_hz and damping, and the mode's participation",
@@ -149,7 +149,7 @@ pub(crate) fn for_check(name: &str) -> Option<&'static Advice> {
         .map(|(_, advice)| advice)
 }
 
-/// The same as lines of text.
+/// The advice as lines of text.
 pub(crate) fn text(name: &str) -> String {
     for_check(name).map_or_else(String::new, |advice| {
         let [first, second] = advice.remedies;
@@ -177,7 +177,8 @@ mod tests {
                 continue;
             };
             names += 1;
-            // What is open is said, and no failure; a move that is too short has its advice in the check of the error.
+            // Open checks are named, but are not failures; a move that is too short gets its advice in the check of
+            // the error.
             assert!(for_check(name).is_some() || name.starts_with("every shaper"), "{name}");
         }
         assert!(names >= 9, "{names}");

@@ -1,4 +1,4 @@
-//! What must hold for a run to end with exit status 0.
+//! The checks of a run, which must all hold for exit status 0.
 
 use super::waves::Waves;
 use crate::bench::{self, Simulator};
@@ -22,19 +22,19 @@ const MEASURED_ROUNDING: f64 = 1e-9;
 /// One check and how it went.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Check {
-    /// What was checked, in a few words.
+    /// Description of the check in a few words.
     pub(crate) name: &'static str,
-    /// Whether it held.
+    /// Whether the check held.
     pub(crate) passed: bool,
-    /// The figures behind it; for a failed one where it failed first.
+    /// The figures of the check; for a failed one the place where it failed first.
     pub(crate) detail: String,
 }
 
-/// What the detail of a check begins with that had nothing, or too little, to compare: it is named, and is not ok.
+/// Prefix of the detail of a check that compared nothing, or too little: it is named, and does not count as ok.
 pub(crate) const NOT_EXERCISED: &str = "not exercised: ";
 
 impl Check {
-    /// How it went, in a word.
+    /// The result in a word.
     pub(crate) fn verdict(&self) -> &'static str {
         match (self.passed, self.detail.starts_with(NOT_EXERCISED)) {
             (false, _) => "FAILED",
@@ -43,7 +43,7 @@ impl Check {
         }
     }
 
-    /// Whether it held by what was compared.
+    /// Whether the check held but compared nothing, or too little.
     pub(crate) fn is_open(&self) -> bool {
         self.passed && self.detail.starts_with(NOT_EXERCISED)
     }
@@ -144,7 +144,7 @@ fn compared(comparison: &Comparison, waves: &Waves) -> String {
     }
 }
 
-/// Every axis moves by a count or more: the waveforms of one that stands compare nothing.
+/// Every axis must move by a count or more: the waveforms of an axis at rest compare nothing.
 pub(crate) fn moves(machine: &Machine, axes: &[AxisSimulation]) -> Check {
     let one = f64::from(machine.fixed_point.command_fraction).exp2();
     let counts = |run: &AxisSimulation| {
@@ -175,12 +175,12 @@ pub(crate) fn moves(machine: &Machine, axes: &[AxisSimulation]) -> Check {
     }
 }
 
-/// The integer tables keep every mode within the tolerance that was asked for.
+/// The integer tables must keep every mode within its tolerance.
 fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check {
     let (beyond, modes) = (beyond_tolerance(machine, design), shaped_modes(machine, design));
     Check {
         name: "the integer taps keep the tolerance that was asked for",
-        // A machine of axes without a shaper asks for nothing: that is said, and is no failure.
+        // A machine whose axes have no shaper asks for nothing: that is reported, and is not a failure.
         passed: beyond.is_empty(),
         detail: match (beyond.first(), modes) {
             (Some(text), _) => text.clone(),
@@ -264,7 +264,8 @@ fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check 
     }
 }
 
-/// Verilator's lint has nothing to say about the Verilog under any of the tops; no check where Verilator does not run it.
+/// Verilator's lint must have no warning about the Verilog under any of the tops; no check where Verilator is not the
+/// simulator.
 pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block]) -> Result<Option<Check>, Failure> {
     if simulator != Simulator::Verilator {
         return Ok(None);
@@ -284,7 +285,7 @@ pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block])
     }))
 }
 
-/// The top module, without the components, fits the device that the machine file names; no check where it names none.
+/// The top module, without the components, must fit the device of the machine file; no check where it names none.
 pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
     machine.target.as_ref()?;
     let excess = estimate.excesses().first().map(|e| {

@@ -1,4 +1,4 @@
-//! The shapers on the simulated machine, as pictures.
+//! Plots of the shapers on the simulated machine.
 
 use crate::failure::Failure;
 use crate::plot::{Band, Curve, Panel, label, time_axis};
@@ -15,7 +15,7 @@ use posicast_model::unit::{ShownUnit, trimmed};
 /// Duration that a step response shows, in shaper durations.
 const SHOWN_DURATIONS: f64 = 4.0;
 const RESPONSE_POINTS: usize = 1200;
-/// Part of a step within which a response has settled.
+/// Fraction of a step within which a response counts as settled.
 const SETTLED: f64 = 0.02;
 
 /// Step responses and the end of the move, two panels per axis.
@@ -35,7 +35,7 @@ pub(crate) fn response_panels(
     Ok(panels)
 }
 
-/// `name`, and when the deviations at these times, in the unit of `time`, have settled to ± `band`.
+/// `name` with the time at which the deviations, given at times in the unit of `time`, have settled to ± `band`.
 pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64, time: ShownUnit) -> String {
     let values: Vec<f64> = deviations.iter().map(|point| point.1).collect();
     match settled_from(&values, band).map(|first| (first, deviations[first].0)) {
@@ -88,8 +88,8 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
     })
 }
 
-/// The machine round its target, from when the unshaped command comes to its end. The deviations after the shaped command's end
-/// say how much of the vertical axis is shown.
+/// The machine near its target, from the end of the unshaped command on. The deviations after the shaped command's
+/// end determine the shown range of the vertical axis.
 fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &AxisSimulation) -> Panel {
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target);

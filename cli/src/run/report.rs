@@ -1,4 +1,4 @@
-//! What `run` reports: a table for people, a document for programs, a picture for both.
+//! The report of `run`: tables for people, a document for programs, plots for both.
 
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageDocument};
@@ -24,7 +24,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::diff::Comparison;
 
-/// Everything that a run found out.
+/// All results of a run.
 pub(crate) struct RunReport<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) design: &'a DesignReport<'a>,
@@ -39,7 +39,7 @@ pub(crate) struct RunReport<'a> {
     pub(crate) checks: &'a [Check],
 }
 
-/// One axis's figures on the simulated machine.
+/// Figures of one axis on the simulated machine.
 pub(crate) struct OnPlant {
     shaped: PlantFigures,
     unshaped: PlantFigures,
@@ -62,7 +62,7 @@ pub(crate) fn on_plants(machine: &Machine, design: &MachineDesign) -> Result<Vec
         .collect()
 }
 
-/// The largest residual of all modes; none without a mode.
+/// The largest residual of all modes; `None` without a mode.
 fn worst(figures: &StepFigures) -> Option<f64> {
     figures.residual.iter().copied().reduce(f64::max)
 }
@@ -103,7 +103,7 @@ impl RunReport<'_> {
         text + &self.verdict()
     }
 
-    /// The simulator, in words.
+    /// Name of the simulator.
     pub(super) fn tool(&self) -> String {
         match self.simulator {
             Simulator::Verilator => verilator::version().map_or_else(|_| self.simulator.to_string(), str::to_owned),
@@ -199,7 +199,7 @@ impl RunReport<'_> {
         format!("RTL against model and float design\n{}", table.text("  "))
     }
 
-    /// The document for programs: also `report.json`.
+    /// The document for programs, which is also `report.json`.
     pub(crate) fn json(&self) -> Document<'_> {
         let axes = self.rows().map(|(index, axis, _)| {
             let plant = &self.plants[index];

@@ -1,7 +1,7 @@
-//! The result of a run on a screen: a line per axis, the area, the checks in a number, and the verdict.
+//! The summary of a run for the terminal: a line per axis, the area, the number of checks, and the verdict.
 //!
-//! A check that failed is shown in full, with its likely cause, however little is asked for; one that compared nothing too, except
-//! by `--quiet`. `--verbose` prints all tables of [`RunReport::text`] instead.
+//! A failed check is always shown in full, with its likely cause; one that compared nothing too, except with
+//! `--quiet`. `--verbose` prints all tables of [`RunReport::text`] instead.
 
 use super::advice;
 use super::checks::Check;
@@ -56,7 +56,7 @@ impl RunReport<'_> {
         )
     }
 
-    /// A line per axis: its shaper, and what it does to the vibration; in closed loop where the loop is.
+    /// A line per axis: its shaper and the vibration with it; in the closed loop where there is one.
     fn axes_text(&self) -> String {
         let mut headings = vec!["axis", "shaper", ">residual, %", ">ringing unshaped", ">shaped"];
         if self.closed_loop.is_some() {
@@ -86,7 +86,7 @@ impl RunReport<'_> {
         table.text("  ")
     }
 
-    /// Lines for some of the checks, each that failed with its likely cause.
+    /// Lines for the checks to show; each failed one comes with its likely cause.
     pub(super) fn checks_text(&self, shown: impl Fn(&Check) -> bool) -> String {
         let mut text = String::new();
         for check in self.checks.iter().filter(|check| shown(check)) {
@@ -103,7 +103,7 @@ impl RunReport<'_> {
         text
     }
 
-    /// What the checks come to.
+    /// The verdict that follows from the checks.
     pub(super) fn verdict(&self) -> String {
         let (pass, fail) = (style::passed("PASS"), style::bad("FAIL"));
         let mut text = match (self.checks.iter().all(|c| c.passed), self.simulator) {
@@ -120,7 +120,7 @@ impl RunReport<'_> {
     }
 }
 
-/// The shapers beside the device.
+/// Area of the shapers compared with the device.
 fn area(estimate: &Estimate) -> String {
     let (total, device) = (&estimate.total, &estimate.device);
     format!(
@@ -137,7 +137,7 @@ fn area(estimate: &Estimate) -> String {
     )
 }
 
-/// How many files went where.
+/// Number of files and their folder.
 pub(super) fn folder(root: &Path, files: &[PathBuf]) -> String {
     format!(
         "{} files written to {}: {}\n",

@@ -16,21 +16,21 @@ use posicast_testbench::wave::merge;
 use wavecmp::diff::{self, Comparison, DiffOptions};
 use wavecmp::merge::{DifferenceSignal, MergePart};
 
-/// The waveforms of the move and what their comparison says.
+/// The waveforms of the move with the result of their comparison.
 pub(super) struct Waves {
-    /// Output samples of each axis.
+    /// Number of output samples of each axis.
     pub(super) samples: Vec<usize>,
-    /// Clocks of the machine that the move lasts; of these the idle ones between two passes are not recorded.
+    /// Number of the machine's clocks that the move lasts; the idle clocks between two samples are not recorded.
     pub(super) clocks: u64,
-    /// RTL against model, exact.
+    /// Comparison of RTL and model, which must be equal.
     pub(super) model: Comparison,
-    /// RTL against float design, within the bound.
+    /// Comparison of RTL and float design, within the bound.
     pub(super) float: Comparison,
-    /// Largest difference of RTL and float design per axis, in LSB.
+    /// Largest difference between RTL and float design per axis, in LSB.
     pub(super) largest_difference_lsb: Vec<f64>,
 }
 
-/// A machine's shapers beside their model: at random, and through the move.
+/// A machine's shapers compared with their model, with random stimuli and during the move.
 pub(super) struct Job<'a> {
     pub(super) machine: &'a Machine,
     pub(super) top: &'a MachineShapers,
@@ -40,7 +40,7 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Random stimuli, clock by clock.
+    /// Compares them with random stimuli, clock by clock.
     pub(super) fn lockstep(&self, cycles: Option<u64>) -> Result<LockstepReport, Failure> {
         let bench = Bench {
             block: self.top,
@@ -50,7 +50,7 @@ impl Job<'_> {
         bench::compare_all(&[bench], self.simulator, self.seed)
     }
 
-    /// The move: its waveforms go into the package.
+    /// Simulates the move, whose waveforms go into the package.
     pub(super) fn waves(
         &self,
         package: &mut Package,

@@ -8,13 +8,13 @@ use posicast_synth::yosys::{Yosys, YosysError};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// The tops that were asked for, and what places and routes them.
+/// The tops that were asked for, and the tools that place and route them.
 pub(super) struct Clocks<'a> {
     tool: PlaceAndRoute,
     tops: &'a [String],
 }
 
-/// The highest clock of a top.
+/// The highest clock frequency of a top.
 #[derive(Serialize)]
 pub(super) struct ClockEstimate {
     pub(super) name: String,
@@ -29,7 +29,7 @@ pub(super) struct ClockEstimates {
 }
 
 impl<'a> Clocks<'a> {
-    /// None was asked for: none. Says what is missing or misspelt before anything long begins.
+    /// `None` if no top was asked for. Names a missing tool or a misspelt top before anything long begins.
     pub(super) fn of(tops: &'a [String], machine: &str, components: &[String]) -> Result<Option<Self>, Failure> {
         if tops.is_empty() {
             return Ok(None);
@@ -45,7 +45,7 @@ impl<'a> Clocks<'a> {
         Ok(Some(Self { tool, tops }))
     }
 
-    /// One after the other.
+    /// Estimates the tops one after the other.
     pub(super) fn estimate(&self, yosys: &Yosys, files: &[PathBuf]) -> Result<ClockEstimates, Failure> {
         let estimate = |top: &String| {
             let spinner = progress::spinner(&format!("nextpnr places and routes {top}"));
@@ -62,7 +62,7 @@ impl<'a> Clocks<'a> {
 }
 
 impl ClockEstimates {
-    /// A table, and where the figures come from.
+    /// A table, and the method of the estimate.
     pub(super) fn text(&self) -> String {
         let mut table = Table::new(&["top", ">clock, MHz"]);
         for clock in &self.tops {

@@ -1,4 +1,4 @@
-//! What `verify` prints: the rows, what was found, and a last line that says what was compared and how much.
+//! The output of `verify`: the rows, the findings, and a last line that says what was compared and how much.
 
 use super::folder::Folder;
 use crate::bench::Simulator;
@@ -8,7 +8,7 @@ use crate::style;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use serde::Serialize;
 
-/// Names that the text shows of a list; JSON has all.
+/// Number of names of a list that the text shows; JSON has all.
 const SHOWN: usize = 8;
 
 /// `verify --json`.
@@ -16,9 +16,9 @@ const SHOWN: usize = 8;
 pub(super) struct Document<'a> {
     #[serde(flatten)]
     pub(super) report: &'a LockstepReport,
-    /// What no clock of the run exercised, though a verdict would speak of it: then there is none.
+    /// What no clock of the run exercised although a verdict would speak of it; there is then no verdict.
     pub(super) not_exercised: Vec<String>,
-    /// Clocks that exercise all of it.
+    /// Number of clocks that exercise all of it.
     #[serde(skip)]
     pub(super) least_clocks: u64,
     /// Whether the clocks were asked for with `--cycles`.
@@ -32,18 +32,18 @@ pub(super) struct Document<'a> {
     pub(super) replayed: Option<&'a Replayed>,
 }
 
-/// What a folder's files say, beside the simulation.
+/// What the folder's files say, beside the simulation.
 enum Files {
-    /// They are posicast's, or edits of the Verilog are accepted; or there is no folder.
+    /// They are those that posicast generates, or edits of the Verilog are accepted; or there is no folder.
     Agree,
-    /// Verilog was edited, and nobody accepted it.
+    /// Verilog was edited, and edits are not accepted.
     Edited,
-    /// A table, the machine file or the list of modules is another.
+    /// A table, the machine file or the list of modules differs.
     Contradict,
 }
 
 impl Document<'_> {
-    /// Why the command fails; nothing where all was exercised and equal.
+    /// Why the command fails; `None` where everything was exercised and equal.
     pub(super) fn failed(&self) -> Option<String> {
         if self.report.result == LockstepVerdict::Match {
             return None;
@@ -51,7 +51,9 @@ impl Document<'_> {
         Some(match (self.report.mismatches(), self.of_files()) {
             (1.., _) if self.replayed.is_some() => "recording, RTL and model do not match".to_owned(),
             (1.., _) => "the RTL does not match the model".to_owned(),
-            (0, Files::Contradict) => "the folder is not what posicast generates from its machine file".to_owned(),
+            (0, Files::Contradict) => {
+                "the folder differs from what posicast generates from its machine file".to_owned()
+            }
             (0, Files::Edited) => "no verdict: Verilog of the folder was edited".to_owned(),
             (0, Files::Agree) => format!("no verdict: too little was exercised; {}", self.remedy()),
         })
@@ -75,7 +77,7 @@ impl Document<'_> {
         }
     }
 
-    /// Clocks of the shortest row in which something was not exercised.
+    /// Number of clocks of the shortest row in which something was not exercised.
     fn fewest_clocks(&self) -> u64 {
         let rows = self.report.blocks.iter().filter(|row| !row.not_exercised.is_empty());
         rows.map(|row| row.cycles).min().unwrap_or(u64::MAX)
@@ -112,15 +114,13 @@ impl Document<'_> {
             (LockstepVerdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
             (_, 1.., _) => "MISMATCH".to_owned(),
             (_, 0, Files::Contradict) => {
-                "MISMATCH: the files are not those of the machine file, though what was simulated is equal".to_owned()
+                "MISMATCH: the files are not those of the machine file, although the simulation is equal".to_owned()
             }
-            (_, 0, Files::Edited) => {
-                "NO VERDICT: what was simulated is equal, but Verilog was edited, and no simulation \
+            (_, 0, Files::Edited) => "NO VERDICT: the simulation is equal, but Verilog was edited, and no simulation \
                                       sees every fault"
-                    .to_owned()
-            }
+                .to_owned(),
             (_, 0, Files::Agree) => format!(
-                "NO VERDICT: what was compared is equal, and {} things were not exercised; {}",
+                "NO VERDICT: the comparison is equal, but {} things were not exercised; {}",
                 self.not_exercised.len(),
                 self.remedy()
             ),

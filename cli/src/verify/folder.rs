@@ -1,32 +1,34 @@
-//! A folder's files beside what posicast generates from the machine file in it: tables, and whatever else was edited.
+//! Compares a folder's files with what posicast generates from the machine file in it: tables, and whatever else was
+//! edited.
 //!
-//! The simulation says whether the Verilog behaves as the model of the machine file. It does not say that a table is the
-//! machine file's where few samples reach it, nor that the machine file is the one the Verilog was generated from. Both are
-//! compared directly: a difference in a table, or in the machine file, is no match, whatever the simulation says. Verilog
-//! that was edited otherwise is named, and is no match either: no random run sees every fault that an edit may bring. Who
-//! edits on purpose says so with `--edited`, and the simulation decides.
+//! The simulation says whether the Verilog behaves as the model of the machine file. It does not say whether a table
+//! is the machine file's where few samples reach it, nor whether the machine file is the one from which the Verilog
+//! was generated. Both are compared directly: a difference in a table, or in the machine file, is no match, whatever
+//! the simulation says. Verilog that was edited otherwise is named, and is no match either: no random run sees every
+//! fault that an edit may bring. A user who edits on purpose says so with `--edited`, and the simulation then
+//! decides.
 
 use posicast_hdl::emit::Module;
 use posicast_synth::package::Contents;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Bits of a coefficient, the low ones of a word of a tap table; the others are the delay.
+/// Width of a coefficient, which is in the low bits of a word of a tap table; the other bits are the delay.
 const COEFFICIENT_BITS: u32 = 18;
-/// What the name of a tap table's module ends with.
+/// Suffix of the name of a tap table's module.
 const TAPS: &str = "machine_taps";
-/// Differences that the text shows; JSON has all.
+/// Number of differences that the text shows; JSON has all.
 const SHOWN: usize = 12;
 
-/// Where a file of the folder is not what posicast generates from the machine file beside it.
+/// A place where the folder differs from what posicast generates from the machine file in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct Difference {
-    /// Below the folder.
+    /// Path of the file in the folder.
     file: String,
-    /// The first line that differs, from 1; none where the file as a whole is meant.
+    /// The first line that differs, from 1; `None` where the difference is the file as a whole.
     line: Option<usize>,
     kind: Kind,
-    /// In words.
+    /// Description of the difference.
     what: String,
 }
 
@@ -35,40 +37,40 @@ pub(super) struct Difference {
 enum Kind {
     /// The machine file was edited after the Verilog was generated.
     Machine,
-    /// A word of a ROM.
+    /// A word of a ROM differs.
     Table,
-    /// A module that the machine file asks for is not there.
+    /// A module that the machine file asks for is missing.
     Missing,
-    /// The Verilog, in another way.
+    /// The Verilog differs in another way.
     Verilog,
-    /// Comments or white space.
+    /// Comments or white space differ.
     Comment,
-    /// A file that posicast does not generate.
+    /// The folder has a file that posicast does not generate.
     Extra,
 }
 
 impl Kind {
-    /// Whether the folder cannot be what posicast generates, nor behave like it.
+    /// Whether the folder can be neither what posicast generates, nor behave like it.
     fn contradicts(self) -> bool {
         matches!(self, Self::Machine | Self::Table | Self::Missing)
     }
 }
 
-/// What was found in a folder.
+/// The findings about a folder.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Folder {
-    /// Verilog files that are, byte for byte, what posicast generates.
+    /// Number of Verilog files that are, byte for byte, what posicast generates.
     identical: usize,
     differences: Vec<Difference>,
-    /// Whether the simulation alone judges Verilog that was edited: the user asked for it.
+    /// Whether the user asked that the simulation alone judges edited Verilog.
     edits_accepted: bool,
     #[serde(skip)]
     path: PathBuf,
 }
 
 impl Folder {
-    /// Compares the folder `root` with these modules, which were generated from the machine file in it. With `edits_accepted`,
-    /// Verilog that was edited is named and does not fail.
+    /// Compares the folder `root` with these modules, which were generated from the machine file in it. With
+    /// `edits_accepted`, Verilog that was edited is named and does not fail.
     pub(super) fn compare(
         root: &Path,
         contents: &Contents,
@@ -90,7 +92,7 @@ impl Folder {
             let name = format!("{}.v", module.name);
             let file = format!("rtl/{name}");
             let Some(at) = rest.iter().position(|path| path.ends_with(&name)) else {
-                let what = "is not there, and the machine file asks for it".to_owned();
+                let what = "is missing, and the machine file requires it".to_owned();
                 folder.add(&file, None, Kind::Missing, what);
                 continue;
             };
@@ -104,7 +106,7 @@ impl Folder {
         }
         for path in rest {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let what = "is no file that posicast generates for this machine".to_owned();
+            let what = "is not a file that posicast generates for this machine".to_owned();
             folder.add(&format!("rtl/{name}"), None, Kind::Extra, what);
         }
         Ok(folder)
@@ -119,7 +121,7 @@ impl Folder {
         });
     }
 
-    /// A file of the module `name` that has another `text` than the one that is `wanted`.
+    /// Compares a file of the module `name`, whose text differs from the `wanted` one.
     fn file(&mut self, file: &str, name: &str, wanted: &str, text: &str) {
         let (ours, theirs) = (words(wanted), words(text));
         for (address, (_, word)) in &ours {
@@ -157,12 +159,12 @@ impl Folder {
         self.contradicts() || (self.edited() > 0 && !self.edits_accepted)
     }
 
-    /// Whether a table, the machine file or the list of modules is another than posicast's.
+    /// Whether a table, the machine file or the list of modules differs from posicast's.
     pub(super) fn contradicts(&self) -> bool {
         self.differences.iter().any(|difference| difference.kind.contradicts())
     }
 
-    /// Lines of Verilog that were edited, tables left out.
+    /// Number of edited lines of Verilog, without tables.
     fn edited(&self) -> usize {
         self.differences.iter().filter(|d| d.kind == Kind::Verilog).count()
     }
@@ -184,7 +186,7 @@ impl Folder {
             );
             text += match self.contradicts() {
                 true => "To keep a table that was edited, put it into the machine file instead (kind = \"custom\").\n",
-                false => "To let the simulation alone judge what was edited: --edited.\n",
+                false => "Use --edited to let only the simulation judge the edited files.\n",
             };
         }
         text
@@ -202,7 +204,7 @@ impl Folder {
 
 type Words = std::collections::BTreeMap<u64, (usize, String)>;
 
-/// The statement `words[N] = VALUE;` of a line.
+/// Address and value of a statement `words[N] = VALUE;`.
 fn words_of(line: &str) -> Option<(u64, String)> {
     let (address, rest) = line.trim().strip_prefix("words[")?.split_once(']')?;
     let (value, _) = rest.trim().strip_prefix('=')?.split_once(';')?;
@@ -217,7 +219,7 @@ fn words(text: &str) -> Words {
         .collect()
 }
 
-/// The lines that say something: without comments, with single spaces, with their numbers. Words of a ROM are left out.
+/// The lines with code, without comments and with single spaces, with their numbers. Words of a ROM are left out.
 fn code(text: &str) -> Vec<(usize, String)> {
     let lines = (1..).zip(text.lines());
     let plain = lines
@@ -229,7 +231,7 @@ fn code(text: &str) -> Vec<(usize, String)> {
     plain.filter(|(_, line)| !line.is_empty()).collect()
 }
 
-/// The first line of `theirs` that is another than in `ours`, and its number.
+/// The first line of `theirs` that differs from `ours`, with its number.
 fn first_difference(ours: &[(usize, String)], theirs: &[(usize, String)]) -> Option<(usize, String)> {
     let differs = ours.iter().zip(theirs).find(|((_, our), (_, their))| our != their);
     if let Some((_, (line, found))) = differs {
@@ -245,7 +247,7 @@ fn first_difference(ours: &[(usize, String)], theirs: &[(usize, String)]) -> Opt
     }
 }
 
-/// A word of the table of `module` that is another one, in words.
+/// Describes a word of the table of `module` that differs.
 fn of_word(module: &str, address: u64, found: Option<&str>, wanted: &str) -> String {
     let Some(found) = found else {
         return format!("word {address} is missing; the machine file gives {wanted}");

@@ -1,4 +1,4 @@
-//! Bad input: exit status 2, nothing on standard output, a message that names place and remedy, nothing written.
+//! Invalid input: exit status 2, nothing on standard output, a message that names place and remedy, no files written.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -88,7 +88,7 @@ fn cli_a_pass_longer_than_a_sample_is_printed_by_design_and_refused_by_generate(
     );
 }
 
-/// The XY stage with another sample rate and PWM frequency.
+/// Returns the XY stage with another sample rate and PWM frequency.
 fn fast_stage(sample_hz: &str, pwm_hz: &str) -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     text.replace("sample_hz = 10_000 ", &format!("sample_hz = {sample_hz} "))
@@ -101,7 +101,7 @@ fn fast_stage(sample_hz: &str, pwm_hz: &str) -> String {
 
 #[test]
 fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_the_others() {
-    // 200 clocks, and 700 at the largest rate of whole periods of 100 clocks.
+    // The tick has 200 clocks, and 700 at the largest rate of whole periods of 100 clocks.
     let machine = fast_stage("250_000", "500_000");
     let sum = "capture 4 + divide 102 + shape 43 + control 517 = 666 clocks";
     let words = ["machine.toml:13: clock.sample_hz", sum, "lasts 200", "up to 71428.5"];
@@ -111,7 +111,7 @@ fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_t
     let (_folder, file) = scratch(&machine);
     let design = posicast().arg("design").arg(&file).assert().success();
     design.stdout(predicate::str::contains("does not fit").and(predicate::str::contains(sum)));
-    // A shaper alone goes on: 250 clocks are enough for its pass.
+    // A shaper alone is accepted: 250 clocks are enough for its pass.
     let alone = one_axis("kind = \"zvd\"", MODE).replace("10_000", "200_000");
     let (folder, file) = scratch(&alone);
     let mut generate = posicast();

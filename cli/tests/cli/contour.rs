@@ -1,4 +1,4 @@
-//! `simulate --contour`: a path of two axes.
+//! `simulate --contour` with a path of two axes.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -13,7 +13,7 @@ fn simulate(arguments: &[&str]) -> assert_cmd::assert::Assert {
         .assert()
 }
 
-/// The figures of the notes on the XY stage: 71.06 um with own delays, 4.2 um with equal ones.
+/// The figures of the notes on the XY stage: 71.06 um with each axis's own delay, 4.2 um with equal ones.
 #[test]
 fn golden_a_circle_has_the_figures_of_the_notes() {
     let folder = tempfile::tempdir().unwrap();
@@ -96,7 +96,7 @@ fn cli_paths_that_cannot_be_driven_are_refused() {
         ),
         (
             vec!["--contour", "circle", "--move", "1"],
-            "the contour says where the axes go",
+            "the contour defines where the axes go",
         ),
         (
             vec!["--contour", "circle", "--plot", "x.png"],

@@ -15,7 +15,7 @@ fn cli_design_gives_the_published_shaper_of_the_xy_stage() {
     assert_eq!(document["name"], "xy_stage");
     let x = &document["axes"][0];
     assert_eq!((x["name"].as_str(), x["kind"].as_str()), (Some("x"), Some("zvd")));
-    // The source paper's Gx, sections 4 and 5: amplitudes to six digits, times to a nanosecond.
+    // From the source paper's Gx, sections 4 and 5: amplitudes to six digits, times to a nanosecond.
     let published = [(0.0, 0.388050), (3.861771e-3, 0.469773), (7.723542e-3, 0.142177)];
     for (impulse, (time_s, amplitude)) in x["impulses"].as_array().unwrap().iter().zip(published) {
         assert!((impulse["time_s"].as_f64().unwrap() - time_s).abs() < 0.5e-9);
@@ -124,7 +124,7 @@ fn cli_design_makes_the_axes_of_a_stage_equally_late_and_says_what_is_left() {
     let document = json(&output.get_output().stdout);
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     let stage = &document["stage"];
-    // The slowest axis alone: its shaper's mean and 2ζ/ω.
+    // This is the slowest axis alone: its shaper's mean delay plus 2ζ/ω.
     assert!((number(&stage["total_delay_s"]) - 4.65e-3).abs() < 1e-6, "{stage}");
     assert_eq!(number(&stage["contour_speed"]), 0.1);
     assert!(
@@ -138,7 +138,7 @@ fn cli_design_makes_the_axes_of_a_stage_equally_late_and_says_what_is_left() {
         x["delay"]
     );
     assert_eq!(number(&y["delay"]["added_samples"]), 0.0);
-    // What the contract says of the shaper itself stays.
+    // The figures of the shaper itself are unchanged.
     assert!((number(&x["delay_s"]) - 2.9122670e-3).abs() < 1e-9);
     let taps = x["quantised"]["taps"].as_array().unwrap();
     assert_eq!((taps.len(), taps[0]["delay_samples"].as_u64()), (8, Some(13)));

@@ -6,7 +6,7 @@ use crate::cli::support::{json, posicast, rust_sources};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
-/// A folder with programs that say a version.
+/// Returns a folder with programs that print a version.
 fn programs(names: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for name in names {
@@ -17,7 +17,7 @@ fn programs(names: &[&str]) -> tempfile::TempDir {
     folder
 }
 
-/// `doctor` where these are the only programs.
+/// Returns a `doctor` command for which these are the only programs.
 fn doctor(folder: &Path) -> assert_cmd::Command {
     let mut command = posicast();
     command.arg("doctor").env("PATH", folder);
@@ -105,7 +105,7 @@ fn a_variable_names_another_executable() {
     let table = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{table}");
     assert!(table.contains("9.8.7, as my-yosys, by $POSICAST_YOSYS"), "{table}");
-    // One that is not there is no other one's turn.
+    // A missing program is not replaced by another one.
     let folder = programs(&["verilator", "make", "g++", "yosys"]);
     let output = doctor(folder.path())
         .env("POSICAST_YOSYS", "/no/yosys")

@@ -1,4 +1,5 @@
-//! `generate` and `run` on one folder: neither takes away what the other wrote, and no evidence outlives its machine file.
+//! `generate` and `run` in one folder: neither removes what the other wrote, and no evidence outlives its machine
+//! file.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -6,7 +7,7 @@ use crate::cli::support::{json, one_axis, posicast, scratch};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// One axis with a component on the bus: a package with `sopc/`, `driver/` and `docs/`.
+/// Returns one axis with a component on the bus: a package with `sopc/`, `driver/` and `docs/`.
 fn machine(frequency_hz: &str) -> String {
     let text = one_axis(
         "kind = \"zv\"",
@@ -15,7 +16,7 @@ fn machine(frequency_hz: &str) -> String {
     text + "[axis.encoder]\nfilter_clocks = 8\n"
 }
 
-/// Every file under a folder, path to contents.
+/// Returns every file under a folder, path to contents.
 fn snapshot(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -44,7 +45,7 @@ impl Bench {
         Self { folder }
     }
 
-    /// The folder that both commands take when none is named.
+    /// Returns the folder that both commands use by default.
     fn output(&self) -> PathBuf {
         self.folder.path().join("one")
     }
@@ -105,7 +106,7 @@ fn cli_generate_and_run_share_a_folder_without_loss() {
     );
     assert_eq!(snapshot(&bench.output()), both);
 
-    // A run that does not come to its end leaves both as they are.
+    // A run that does not complete leaves both unchanged.
     let mut run = posicast();
     run.current_dir(bench.folder.path())
         .args(["run", "machine.toml", "--simulator", "icarus"]);
@@ -136,7 +137,7 @@ fn cli_generate_removes_evidence_of_another_machine_file_and_says_so() {
     assert!(report.get("result").is_none(), "the report is the design's again");
     assert_eq!(std::fs::read(bench.output().join("notes.txt")).unwrap(), b"mine");
 
-    // Evidence that was edited is not removed: the command is refused instead.
+    // Edited evidence is not removed: the command is refused instead.
     bench.run(&["--simulator", "icarus"]).success();
     std::fs::write(bench.output().join("wave/merged.gtkw"), "my view").unwrap();
     std::fs::write(bench.folder.path().join("machine.toml"), machine("52.0")).unwrap();
@@ -228,7 +229,7 @@ fn cli_run_says_the_result_in_some_lines_and_all_of_it_if_asked_to() {
         coloured,
         "\u{1b}[1m\u{1b}[32mPASS\u{1b}[0m: the Verilog computes what was designed.\n"
     );
-    // A command that stands still compares nothing: the check that says so is shown, however little is asked for.
+    // A command that stands still compares nothing: the check that reports it is always shown.
     std::fs::write(bench.folder.path().join("still.csv"), "time_s,position\n0,0\n0.01,0\n").unwrap();
     for asked in [&[][..], &["--quiet"]] {
         let (status, failed) = said(&[&["--command", "still.csv"], asked].concat());

@@ -1,8 +1,8 @@
-//! Damaged machine files and command files, and hostile ones: an exit status of the contract, a message, bounded time and
-//! memory, and nothing half-written.
+//! Damaged and hostile machine files and command files: an exit status of the contract, a message, bounded time and
+//! memory, and no half-written files.
 //!
-//! The files are those of the examples, changed so that many are still valid: what is only refused by the parser tests
-//! nothing behind it. A few dozen cases in every run of the tests; `PROPTEST_CASES` asks for more.
+//! The files are those of the examples, changed so that many are still valid: a file that the parser refuses tests
+//! nothing after it. Every run of the tests has a few dozen cases; `PROPTEST_CASES` sets their number.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -24,7 +24,7 @@ const MACHINES: [&str; 8] = [
     "ball-screw.toml",
 ];
 const COMMAND: &str = "time_s,position\n0,0\n0.01,0.001\n0.02,0.002\n0.05,0\n";
-/// What a value is replaced by: the ends of every type, what is just too much, and words of other kinds.
+/// Replacements of values: the ends of every type, values just too large, and words of other kinds.
 const VALUES: [&str; 28] = [
     "0",
     "-0.0",
@@ -55,13 +55,13 @@ const VALUES: [&str; 28] = [
     "\"simultaneous\"",
     "\"vibrationless\"",
 ];
-/// What a number is multiplied by: near enough to be valid, far enough to be at an end of its range.
+/// Factors of numbers: some keep them valid, some take them to an end of their range.
 const FACTORS: [f64; 10] = [-1.0, 1e-6, 1e-3, 0.1, 0.5, 1.0001, 2.0, 10.0, 1e3, 1e6];
-/// Most that a run may have: the debug program needs a tenth of each.
+/// Memory limit of a run; the debug program needs a tenth of it.
 const MEMORY_KIB: u64 = 2 << 20;
 const TIME: Duration = Duration::from_secs(30);
 
-/// So many cases, or `PROPTEST_CASES`.
+/// Returns the configuration for this number of cases, or `PROPTEST_CASES`.
 fn config(ordinary: u32) -> ProptestConfig {
     let wanted = std::env::var("PROPTEST_CASES")
         .ok()
@@ -77,18 +77,18 @@ fn config(ordinary: u32) -> ProptestConfig {
 /// A change of a text.
 #[derive(Debug, Clone)]
 enum Damage {
-    /// The value behind a `=`, or a field of a CSV line.
+    /// Replaces the value after a `=`, or a field of a CSV line.
     Value(Index, &'static str),
-    /// A number times this.
+    /// Multiplies a number by this factor.
     Number(Index, f64),
-    /// Lines of another file put in.
+    /// Inserts lines of another file.
     Splice(Index, usize, Index, usize),
     Remove(Index),
     Double(Index),
-    /// Bytes in place of others.
+    /// Replaces bytes by others.
     Bytes(Index, usize, Vec<u8>),
     Cut(Index),
-    /// The same opening bracket so many times.
+    /// Repeats the same opening bracket this many times.
     Nest(Index, usize),
 }
 
@@ -107,7 +107,7 @@ fn damage() -> impl Strategy<Value = Vec<Damage>> {
     prop::collection::vec(one, 1..5)
 }
 
-/// Where the numbers of a text are.
+/// Returns the ranges of the numbers in a text.
 fn numbers(text: &str) -> Vec<std::ops::Range<usize>> {
     let is_digit = |c: u8| c.is_ascii_digit() || b"._".contains(&c);
     let bytes = text.as_bytes();
@@ -262,7 +262,7 @@ proptest! {
     }
 }
 
-/// Runs on the XY stage with this text replaced, and wants it refused with these words.
+/// Runs on the XY stage with this text replaced, and expects an error with these words.
 #[track_caller]
 fn refused(from: &str, to: &str, words: &str) {
     let folder = tempfile::tempdir().unwrap();
@@ -298,13 +298,13 @@ fn cli_a_table_of_a_hundred_thousand_impulses_is_refused_at_once() {
     let impulses: String = (0..100_000).map(|n| format!("[{n}, 1],")).collect();
     let text = std::fs::read_to_string(example("custom-shaper.toml")).unwrap();
     let at = text.find("impulses").unwrap();
-    // Beyond the largest file, too: cut to what is read.
+    // The text is also longer than the largest file, so it is cut to what is read.
     let text = format!("{}impulses = [{impulses}]\n", &text[..at]);
     std::fs::write(folder.path().join("machine.toml"), &text[..(1 << 20) - 1]).unwrap();
     assert_eq!(survives(folder.path(), COMMANDS[0]).unwrap().status.code(), Some(2));
 }
 
-/// A file without an end, as a machine and as a command: both once took all memory.
+/// An endless file, as a machine and as a command; both once took all memory.
 #[test]
 #[cfg(target_os = "linux")]
 fn cli_files_without_an_end_are_refused() {
@@ -323,7 +323,7 @@ fn cli_files_without_an_end_are_refused() {
     }
 }
 
-/// A command of some 10^14 samples, and of positions whose distance is no number.
+/// A command of some 10^14 samples, and one of positions whose distance is not a number.
 #[test]
 fn cli_commands_beyond_all_bounds_are_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();

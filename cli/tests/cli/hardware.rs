@@ -1,17 +1,17 @@
-//! `run`, `generate` and `verify`: the Verilog, its simulation, and what happens when it is broken.
+//! `run`, `generate` and `verify`: the Verilog, its simulation, and errors put into it.
 
 #![cfg(test)] // lets clippy see that this is test code
 
 use crate::cli::support::{example, json, posicast};
 use std::path::{Path, PathBuf};
 
-/// Clocks that reach every directed case of the example and some random ones.
+/// Number of clocks that reach every directed case of the example and some random ones.
 const CYCLES: &str = "60000";
 
-/// The XY stage with open loops: what the closed loop does is in `stage.rs`.
+/// Returns the XY stage with open loops; `stage.rs` tests the closed loop.
 fn without_controllers() -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
-    // The guards of [axis.limits] are of axes with a controller.
+    // The guards of [axis.limits] are for axes with a controller.
     let closed = [
         "[axis.controller]",
         "kind = \"pd\"",
@@ -41,7 +41,7 @@ fn cli_run_goes_the_whole_way_on_the_xy_stage() {
     assert_eq!(document["verify"]["result"], "match");
     let x = &document["axes"][0]["plant"];
     let overshoot = |case: &str| x[case]["overshoot"].as_f64().unwrap();
-    // Measured on the simulated machine; published: 60.53 % unshaped, 1.50 % at -10 %.
+    // Measured on the simulated machine; published are 60.53 % unshaped, 1.50 % at -10 %.
     assert!((overshoot("unshaped") - 0.6053).abs() < 5e-5);
     assert!((overshoot("minus_10_percent") - 0.0150).abs() < 5e-5);
     for file in [
@@ -58,7 +58,8 @@ fn cli_run_goes_the_whole_way_on_the_xy_stage() {
     for wave in ["model", "rtl", "float", "merged"] {
         let text = std::fs::read_to_string(output.join(format!("wave/{wave}.vcd"))).unwrap();
         assert!(text.contains("$timescale 1 ns $end"), "{wave}");
-        // The machine's clock of 20 ns; the strobe of sample 1 comes 100 us after that of sample 0, at the end of the reset.
+        // The machine's clock is 20 ns; the strobe of sample 1 comes 100 us after that of sample 0, at the end of the
+        // reset.
         assert!(
             text.contains("\n#10\n0!\n") && text.contains("\n#100040\n1!\n"),
             "{wave}"
@@ -90,7 +91,8 @@ fn cli_run_of_the_zv_shaper_gives_its_published_overshoot() {
 
 #[test]
 fn cli_a_modulo_axis_goes_the_whole_way_across_the_end_of_its_word() {
-    // 24 bits with 8 of fraction wrap after 65,536 counts: the table turns round five times and comes back a little.
+    // 24 bits with 8 bits of fraction wrap after 65,536 counts: the table turns round five times and comes back a
+    // little.
     let text = crate::cli::support::one_axis("kind = \"zvd\"", "frequency_hz = 40.0\ndamping = 0.1")
         .replace("1_000_000", "1_000\nmodulo = true")
         .replace("[[axis]]", "[fixed_point]\ncommand_bits = 24\n[[axis]]");
@@ -151,7 +153,7 @@ fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_che
         .args(["--json", "--block", "shaper"])
         .env("PATH", "");
     let assert = verify.assert().success().stderr(predicates::str::contains("weaker"));
-    // A size of the shaper is not compiled for each machine, and what is simulated instead is told.
+    // A size of the shaper is not compiled for each machine, and the message names what is simulated instead.
     let assert = assert.stderr(predicates::str::contains("at larger sizes with equal outputs"));
     assert_eq!(json(&assert.get_output().stdout)["simulator"], "rusthdl");
 }
@@ -160,7 +162,7 @@ fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_che
 fn cli_the_shaper_component_of_a_controlled_axis_has_three_channels_where_it_can() {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     let words_of_16 = "[fixed_point]\ncommand_bits = 16\n[[axis]]";
-    // 1 Hz rings for 10,000 samples: a ring of more than one channel does not reach back so far.
+    // 1 Hz rings for 10,000 samples: the ring of a shaper with several channels does not reach back so far.
     let slow = text.replacen("131.117015808451", "1.0", 1);
     let cases = [
         (text.clone(), ["x_2", "swap_how"].as_slice(), [].as_slice()),
@@ -209,7 +211,7 @@ fn generated(folder: &Path) -> PathBuf {
     output
 }
 
-/// Replaces text in one of the generated files, which must hold it.
+/// Replaces text in one of the generated files, which must contain it.
 fn break_file(file: &Path, from: &str, to: &str) {
     let text = std::fs::read_to_string(file).unwrap();
     assert!(text.contains(from), "{} does not hold `{from}`", file.display());
@@ -243,7 +245,7 @@ fn cli_verify_reports_a_broken_bit_of_the_multiplier_and_of_the_address() {
         );
         let document = json(&verify.stdout);
         assert_eq!(document["result"], "mismatch");
-        // Both axes have the module.
+        // Both axes use the module.
         for axis in ["x", "y"] {
             let blocks = document["blocks"].as_array().unwrap();
             let block = blocks.iter().find(|b| b["instance"] == axis).unwrap();

@@ -1,4 +1,4 @@
-//! `posicast identify`: from a log to modes, a machine file and a run; and what it refuses.
+//! `posicast identify`: from a log to modes, a machine file and a run; and the inputs that it refuses.
 
 use crate::cli::support::posicast;
 use posicast_identify::sweep::Sweep;
@@ -102,11 +102,11 @@ fn cli_modes_go_into_an_axis_of_a_machine_that_is_there_and_nothing_else_changes
     let (before, after) = (parsed(&old), parsed(&new));
     assert_eq!(before.axes[0], after.axes[0]);
     assert!((after.axes[1].modes[0].mode.frequency_hz - 60.0).abs() < 0.6);
-    // Comments stay, but for those of the lines that were replaced.
+    // Comments stay, except for those of the replaced lines.
     let comments = |text: &str| text.matches('#').count();
     assert!(comments(&new) + 6 > comments(&old), "{new}");
     for (words, expected) in [
-        (&["new2.toml", "--axis", "z"][..], "there is no axis \"z\""),
+        (&["new2.toml", "--axis", "z"][..], "no axis \"z\""),
         (&["old.toml", "--axis", "y"][..], "an input is never replaced"),
     ] {
         let (status, said, problems) = identify(folder.path(), &[&base[..], words].concat());
@@ -121,7 +121,7 @@ fn cli_a_step_and_a_decay_become_machines() {
     let folder = tempfile::tempdir().unwrap();
     let (frequency_hz, damping) = (0.45f64, 0.01f64);
     let omega = std::f64::consts::TAU * frequency_hz;
-    // A load that swings after the trolley has stopped; and the trolley's step before it.
+    // The load swings after the trolley has stopped; before that comes the trolley's step.
     let swing = |t: f64| (-damping * omega * t).exp() * (omega * (1.0 - damping * damping).sqrt() * t).cos();
     let decay: String = (0..1000)
         .map(|n| format!("{},{}\n", f64::from(n) * 0.02, swing(f64::from(n) * 0.02)))
@@ -155,7 +155,7 @@ fn cli_a_step_and_a_decay_become_machines() {
             "{found}"
         );
         assert!((found["damping"].as_f64().unwrap() - damping).abs() < 1e-6, "{found}");
-        // A slow machine is a crane.
+        // A crane is a slow machine.
         let text = std::fs::read_to_string(folder.path().join(&machine)).unwrap();
         assert!(text.contains("crane"), "{text}");
         let generated = posicast()
@@ -243,7 +243,7 @@ fn cli_a_log_that_says_nothing_fails_and_writes_nothing() {
             "{problems}"
         );
     }
-    // Another sweep than the log's.
+    // This sweep is not that of the log.
     let (status, _, problems) = identify(folder.path(), &["rigid.csv", "--sweep", "5:135:3:60"]);
     assert_eq!(status, Some(2), "{problems}");
     assert!(problems.contains("--sweep describes another sweep"), "{problems}");

@@ -1,4 +1,4 @@
-//! The integration kit of machines that have shapers alone.
+//! The integration kit of machines that have only shapers.
 
 use super::support::{example, posicast};
 use std::path::Path;
@@ -68,7 +68,7 @@ fn cli_the_kits_bench_finds_a_table_that_is_no_longer_whole() {
     let out = folder.path().join("out");
     let rom = out.join("rtl/robot_joint_elbow_machine_taps.v");
     let text = std::fs::read_to_string(&rom).unwrap();
-    // The coefficient is the word's low end.
+    // The coefficient is at the low end of the word.
     let (before, after) = text.split_once("] = 26'h").expect("a word of the table");
     let digits = after.find(|c: char| !c.is_ascii_hexdigit()).unwrap();
     let word = u64::from_str_radix(&after[..digits], 16).unwrap() ^ 1;

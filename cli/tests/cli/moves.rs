@@ -1,4 +1,4 @@
-//! How far, how fast and round which circle the axes move: `--move`, `--speed` and `--radius`.
+//! Distance and speed of the axes' moves, and the circle: `--move`, `--speed` and `--radius`.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -35,23 +35,23 @@ fn cli_a_move_that_cannot_be_is_refused_with_its_option_and_a_remedy() {
     let cases: [(&[&str], &str); 8] = [
         (
             &["--move", "0"],
-            "--move, axis `x`: a move of 0 moves nothing: give a distance in m",
+            "--move, axis `x`: a move of 0 causes no motion: give a distance in m",
         ),
         (
             &["--move", "y=-0.3"],
             "--move, axis `y`: a move of -0.3 m goes from 0 m to -0.3 m, beyond the travel of -0.1 m to 0.1 m: give",
         ),
         (&["--move", "1e-9"], "less than one: give at least 0.000001 m"),
-        (&["--move", "z=1"], "--move: there is no axis `z`"),
+        (&["--move", "z=1"], "--move: no axis `z`"),
         (&["--move", "far"], "`far` is not a number"),
         (
             &["--speed", "0.3"],
             "--speed, axis `x`: a speed of 0.3 m/s is above the axis's velocity limit of 0.25 m/s",
         ),
-        (&["--speed", "-1"], "--speed, axis `x`: a speed of -1 moves nothing"),
+        (&["--speed", "-1"], "--speed, axis `x`: a speed of -1 causes no motion"),
         (
             &["--command", command, "--move", "0.01"],
-            "--move: the command file says how the axes move",
+            "--move: the command file defines how the axes move",
         ),
     ];
     for (arguments, expected) in cases {

@@ -75,10 +75,10 @@ fn a_file_that_exists_is_not_replaced() {
         "{said}"
     );
     assert_eq!(read(folder, "m.toml"), ours);
-    // Ours, and unchanged.
+    // This file is ours and unchanged.
     assert_eq!(status(folder, &["--joint", "--force", "m.toml"]).0, Some(0));
     assert!(read(folder, "m.toml").contains("elbow"));
-    // Somebody's work by now.
+    // This file has been edited by its user.
     let edited = read(folder, "m.toml").replace("elbow", "wrist");
     std::fs::write(folder.join("m.toml"), &edited).unwrap();
     let (code, said) = status(folder, &["--crane", "--force", "m.toml"]);
@@ -101,7 +101,7 @@ fn a_name_that_cannot_be_written_is_bad_input() {
     assert_eq!((code, said.contains("that is a folder")), (Some(2), true), "{said}");
     let (code, said) = status(folder.path(), &["no/where.toml"]);
     assert_eq!(
-        (code, said.contains("there is no folder no")),
+        (code, said.contains("the folder no does not exist")),
         (Some(2), true),
         "{said}"
     );

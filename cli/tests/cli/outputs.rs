@@ -1,4 +1,5 @@
-//! Files under a name that the user gave: inputs and other people's files are not replaced, pipes and devices are written to.
+//! Files under a name that the user gave: inputs and other people's files are not replaced; pipes and devices are
+//! written to.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -43,7 +44,7 @@ impl Bench {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// What the command says on standard error, and that it ends so.
+    /// Checks the exit status and returns what the command prints on standard error.
     fn status(&self, status: i32, words: &[&str]) -> String {
         let output = posicast().current_dir(self.folder.path()).args(words).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
@@ -62,7 +63,8 @@ impl Bench {
     }
 }
 
-/// Every command that writes a file under a name, with `OUT` in its place; its status; and the file that it writes.
+/// Every command that writes a file under a given name, with `OUT` in its place; its exit status; and the file that
+/// it writes.
 const WRITERS: [(&[&str], i32, &str); 5] = [
     (
         &["simulate", "machine.toml", "--command", "a.csv", "-o", "OUT"],
@@ -124,7 +126,7 @@ fn cli_no_command_replaces_what_it_reads() {
 fn cli_a_file_that_posicast_did_not_write_is_replaced_with_force_only() {
     let bench = bench();
     for (words, status, option) in WRITERS {
-        // `--show` makes its own extensions; the others take the name as it is.
+        // `--show` chooses its own extensions; the others take the name as it is.
         let out = if option == "--show" { "mine.vcd" } else { "mine.txt" };
         for text in [
             "years of work",
@@ -149,7 +151,7 @@ fn cli_a_file_that_posicast_did_not_write_is_replaced_with_force_only() {
         bench.status(2, &with(words, out, false));
         std::fs::remove_file(bench.path(out)).unwrap();
     }
-    // The name that nobody gave.
+    // This name was chosen by the command, not by the user.
     std::fs::write(bench.path("one.vcd"), "mine").unwrap();
     let said = bench.status(2, &["simulate", "machine.toml", "--command", "a.csv"]);
     assert!(said.contains("one.vcd"), "{said}");
@@ -180,7 +182,7 @@ fn cli_all_files_of_show_are_asked_for_before_one_is_written() {
     assert!(said.contains("--junit of the same command"), "{said}");
     bench.status(1, &["diff", "a.vcd", "b.vcd", "--show", "first"]);
     bench.status(1, &["diff", "a.vcd", "b.vcd", "--show", "first"]);
-    // A session that GTKWave saved over ours is the user's.
+    // A session that GTKWave saved over ours belongs to the user.
     std::fs::write(bench.path("first.gtkw"), "[*]\n[*] GTKWave Analyzer v3.3.104\n").unwrap();
     assert!(
         bench
@@ -194,7 +196,7 @@ fn cli_a_name_that_is_no_place_for_a_file_is_refused_before_the_work() {
     let bench = bench();
     std::fs::create_dir(bench.path("folder")).unwrap();
     for (words, _, option) in &WRITERS[..4] {
-        for (out, what) in [("folder", "is a folder"), ("no/file", "there is no folder")] {
+        for (out, what) in [("folder", "is a folder"), ("no/file", "does not exist")] {
             let said = bench.status(2, &with(words, out, true));
             assert!(said.contains(option) && said.contains(what), "{said}");
         }
@@ -236,7 +238,7 @@ fn cli_pipes_devices_and_the_standard_output_are_written_to() {
         let said = bench.status(2, &with(WRITERS[1].0, out, false));
         assert!(said.contains("--json"), "{said}");
     }
-    // A shell's `> file`.
+    // This is a shell's `> file`.
     let file = std::fs::File::create(bench.path("redirected.vcd")).unwrap();
     let mut redirected = std::process::Command::new(env!("CARGO_BIN_EXE_posicast"));
     redirected

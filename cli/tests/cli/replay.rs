@@ -14,8 +14,8 @@ use std::process::{Command, Output};
 const CLOCKS: u64 = 2000;
 const SEED: u64 = 7;
 
-/// Records the divider of the XY stage in our own lock step. `change` may change a row of values, clock by clock; ports for
-/// which `keep` is false are left out.
+/// Records the divider of the XY stage in our own lockstep run. `change` may change a row of values, clock by clock;
+/// ports for which `keep` is false are left out.
 fn record(path: &Path, keep: impl Fn(&Port) -> bool, mut change: impl FnMut(u64, &mut [u64])) -> Vec<Port> {
     let block = DividerBlock::new(DividerConfig::new(5000).unwrap(), "");
     let mut model = block.model(SEED);
@@ -98,7 +98,7 @@ fn cli_replay_names_the_signal_and_the_clock_of_one_flipped_bit() {
         |_| true,
         |clock, row| {
             if clock == flipped {
-                // The first output, behind five inputs: `quotient`.
+                // The first output comes after five inputs: `quotient`.
                 row[5] ^= 1 << 9;
             }
         },
@@ -161,7 +161,7 @@ fn cli_replay_does_not_compare_unknown_bits_and_counts_their_clocks() {
     let text = std::fs::read_to_string(&path).unwrap();
     let declaration = text.lines().find(|line| line.contains(" quotient")).unwrap();
     let code = declaration.split_whitespace().nth(3).unwrap();
-    // The lowest bit of every quotient.
+    // This makes the lowest bit of every quotient unknown.
     let (known, unknown) = (["0", "1"].map(|bit| format!("{bit} {code}")), format!("x {code}"));
     let lines = text
         .lines()
@@ -182,7 +182,7 @@ fn cli_replay_refuses_what_it_cannot_use() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recorded.vcd");
     record(&path, |_| true, |_, _| {});
-    // Cut within a line: what ends at the end of one is a shorter recording.
+    // The file is cut within a line: one that ends at the end of a line is a shorter recording.
     let whole = std::fs::read(&path).unwrap();
     let line_end = whole.len() / 3 + whole[whole.len() / 3..].iter().position(|&byte| byte == b'\n').unwrap();
     let cut_within_a_line = whole[..line_end - 1].to_vec();
@@ -194,7 +194,7 @@ fn cli_replay_refuses_what_it_cannot_use() {
     for (text, expected) in [
         (cut_within_a_line, "recorded.vcd"),
         (foreign.into_bytes(), "no signal in common"),
-        (narrow.into_bytes(), "no vector of 18 bits"),
+        (narrow.into_bytes(), "not a vector of 18 bits"),
         (b"no waveform at all".to_vec(), "recorded.vcd"),
     ] {
         std::fs::write(&path, &text).unwrap();
@@ -205,7 +205,7 @@ fn cli_replay_refuses_what_it_cannot_use() {
     }
 }
 
-/// A testbench that knows nothing of ours: a reset, then divisions of random numbers.
+/// A testbench that is independent of ours: a reset, then divisions of random numbers.
 const FOREIGN_BENCH: &str = r#"
 `timescale 1ns / 1ps
 module bench;
@@ -245,7 +245,7 @@ end
 endmodule
 "#;
 
-/// Icarus's own recording of the generated divider: VCD or FST, by the name's end.
+/// Returns Icarus's own recording of the generated divider: VCD or FST, by the name's extension.
 fn record_by_icarus(folder: &Path, define: &str, format: &str) -> PathBuf {
     std::fs::write(folder.join("bench.v"), FOREIGN_BENCH).unwrap();
     let rtl = example("generated/xy_stage/rtl/posicast_divider_5000.v");
@@ -291,7 +291,7 @@ fn cli_replay_takes_unknown_inputs_as_low_and_says_so() {
     let path = record_by_icarus(folder.path(), "UNKNOWN", "vcd");
     let output = replay(&path, &["--map", "bench.dut=posicast_divider_5000", "--json"]);
     let document = json(&output.stdout);
-    // Icarus chose for itself; RTL and model, with a 0 there, must still agree.
+    // Icarus chose a value itself; RTL and model, which have a 0 there, must still agree.
     assert_eq!(document["blocks"][0]["mismatches"], 0);
     assert!(document["stimulus"]["unknown_input_clocks"].as_u64().unwrap() > 20 * 140);
 }

@@ -1,4 +1,4 @@
-//! `posicast schema`: on standard output, and as a file that posicast knows again.
+//! `posicast schema`: on standard output, and as a file that posicast recognises.
 
 use crate::cli::support::{json, posicast};
 

@@ -1,4 +1,5 @@
-//! SIGINT and SIGTERM at various moments: nothing is left behind, no program lives on. And what SIGKILL leaves does no harm.
+//! SIGINT and SIGTERM at various moments: nothing is left behind, and no program survives. What SIGKILL leaves does
+//! no harm.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -44,7 +45,7 @@ impl Bench {
         command
     }
 
-    /// Commands of the programs that this bench started, directly or not, and that still run.
+    /// Returns the commands of the programs that this bench started, directly or not, and that still run.
     fn programs(&self) -> Vec<String> {
         let mark = format!("POSICAST_TEST_BENCH={}", self.folder.path().display());
         let processes = std::fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path());
@@ -58,7 +59,7 @@ impl Bench {
         ours.filter_map(name).map(|name| name.trim().to_owned()).collect()
     }
 
-    /// Waits until `moment`, sends the signal, and returns how the command ended. It may end before.
+    /// Waits until `moment`, sends the signal, and returns how the command ended. It may end before the signal.
     fn interrupted(&self, words: &[&str], moment: &dyn Fn(&Self) -> bool, signal: Signal) -> ExitStatus {
         let mut child = self.command(words).spawn().unwrap();
         let start = Instant::now();
@@ -66,14 +67,14 @@ impl Bench {
             assert!(start.elapsed() < PATIENCE, "{words:?}: the moment does not come");
             std::thread::sleep(Duration::from_millis(1));
         }
-        // Of a process that has ended and was waited for there is no number any more.
+        // The number of a process that has ended and was waited for is no longer valid.
         if child.try_wait().unwrap().is_none() {
             kill_process(Pid::from_child(&child), signal).unwrap();
         }
         ended(&mut child)
     }
 
-    /// That nothing is left: no file beside the machine files and what is built in the cache, and no program.
+    /// Checks that nothing is left: no file except the machine files and what is built in the cache, and no program.
     fn nothing_is_left(&self, what: &str) {
         let start = Instant::now();
         while !self.programs().is_empty() {
@@ -225,7 +226,7 @@ fn cli_a_signal_leaves_an_output_folder_as_it_was() {
         std::fs::write(bench.path("step.csv"), "time_s,position\n0,0\n0.001,0.001\n").unwrap();
         let words = [&["run", "../machine.toml"], more].concat();
         let (signal, status) = SIGNALS[at % 2];
-        // The folder is new, and so it goes; or it was there, and so it stays.
+        // A new folder is removed; an existing one stays.
         for existing in [false, true] {
             if existing {
                 assert!(
@@ -270,7 +271,7 @@ fn cli_a_signal_finds_generate_undone_or_done() {
         if there.is_empty() {
             assert_eq!(ended.code(), Some(status));
         } else {
-            // Done, whether or not the signal came before the list was printed.
+            // The command is done, whether or not the signal came before the list was printed.
             assert!([Some(0), Some(status)].contains(&ended.code()), "{ended}");
             let mut again = bench.command(&["generate", "../xy-stage.toml"]);
             let before = contents(&bench.path("output"));
@@ -317,7 +318,7 @@ fn cli_what_a_killed_run_leaves_is_cleared_by_the_next() {
 fn cli_a_second_signal_ends_a_command_that_is_stuck_in_cleaning_up() {
     use std::io::Write;
     let bench = Bench::new();
-    // Nobody reads its standard error, and the pipe is full: the last word after cleaning up is never said.
+    // Nobody reads its standard error, and the pipe is full: the last message after cleaning up is never printed.
     let (_reader, mut writer) = std::io::pipe().unwrap();
     writer.write_all(&[b' '; 1 << 16]).unwrap();
     let mut command = bench.command(&[
@@ -351,7 +352,7 @@ fn cli_a_signal_ends_a_program_with_all_that_it_started() {
     use std::os::unix::fs::PermissionsExt;
     for (signal, status) in SIGNALS {
         let bench = Bench::new();
-        // A Verilator that never ends, nor does what it starts, whatever becomes of its folder.
+        // This Verilator never ends, nor does what it starts, whatever happens to its folder.
         let tool = bench.path("verilator");
         let text = "#!/bin/sh\n[ \"$1\" = --version ] && { echo Verilator 5.006; exit; }\nsleep 1000 &\nwait\n";
         std::fs::write(&tool, text).unwrap();

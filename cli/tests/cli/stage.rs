@@ -1,4 +1,5 @@
-//! Machines whose loops are complete: the stage that `generate` and `verify` make of them, and the closed loop of `run`.
+//! Machines whose loops are complete: the stage that `generate` and `verify` make of them, and the closed loop of
+//! `run`.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -6,7 +7,7 @@ use crate::cli::support::{example, json, posicast, scratch};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The XY stage with some text replaced, once.
+/// Returns the XY stage with some text replaced, once.
 fn changed(from: &str, to: &str) -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     assert!(text.contains(from), "{from}");
@@ -37,7 +38,7 @@ fn cli_generate_writes_the_stage_and_verify_of_the_folder_compares_it() {
     assert_eq!(instances, ["x, y, Avalon", "x, y, Avalon, 730 clocks per tick"]);
 }
 
-/// The XY stage with the figures of its axes in mm.
+/// Returns the XY stage with the figures of its axes in mm.
 fn in_millimetres() -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     let figures = [
@@ -96,7 +97,7 @@ fn cli_a_file_in_millimetres_gives_the_hardware_of_the_file_in_metres() {
     }
 }
 
-/// Every file below a folder, by its place below another.
+/// Collects every file below a folder, by its path relative to another.
 fn texts_below(folder: &Path, root: &Path, texts: &mut BTreeMap<PathBuf, Vec<u8>>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -127,7 +128,7 @@ fn cli_generate_of_a_stage_that_cannot_be_names_line_and_key_and_writes_nothing(
         ),
     ];
     for (from, to, place) in cases {
-        // A PWM for the fast sample too; it changes nothing for the others.
+        // This PWM also suits the fast sample rate; it changes nothing for the others.
         let text = changed(from, to).replace("frequency_hz = 20_000", "frequency_hz = 500_000");
         let text = text.replace("500e-9", "40e-9").replace("1e-6", "40e-9");
         let text = text.replace("watchdog_s = 0.5", "watchdog_s = 0.05");
@@ -156,7 +157,7 @@ fn cli_generate_of_a_stage_that_cannot_be_names_line_and_key_and_writes_nothing(
 fn cli_a_loop_that_is_not_complete_or_has_short_words_gives_no_stage() {
     let controller = "[axis.controller]                     # turns the position's error into the velocity that is asked for\n\
                       kind = \"pd\"";
-    // Guards are of an axis with a controller; those of Y stay.
+    // Guards need an axis with a controller; those of Y stay.
     let guards = ["following_error", "encoder_lost_s", "watchdog_s"];
     let open = changed(controller, "# ");
     let open = guards.iter().fold(open, |text, guard| text.replacen(guard, "# ", 1));
@@ -195,7 +196,7 @@ fn cli_a_torque_drive_whose_wrong_sign_nothing_sees_is_warned_of() {
         String::from_utf8(run.stderr).unwrap()
     };
     let without = text.replace("following_error", "# ");
-    // 0.25 m/s by half of 22.2 m/s² of X, 12.2 m/s² of Y.
+    // 0.25 m/s are reached by half of 22.2 m/s² of X, and of 12.2 m/s² of Y.
     assert!(!said(&text).contains(unseen) && !said(&without).contains(unseen));
     let short = without.replace("encoder_lost_s = 0.05", "encoder_lost_s = 0.04");
     let short = said(&short);
@@ -206,11 +207,11 @@ fn cli_a_torque_drive_whose_wrong_sign_nothing_sees_is_warned_of() {
     );
     let unknown = said(&without.replace("velocity = 0.25", "# "));
     assert_eq!(unknown.matches(unseen).count(), 2, "{unknown}");
-    // The following error sees it alone.
+    // The following error alone detects it.
     assert!(!said(&text.replace("encoder_lost_s", "# ")).contains(unseen));
 }
 
-/// The XY stage, quick to simulate: a slower clock, and limits at which the move is short.
+/// Returns the XY stage, quick to simulate: a slower clock, and limits for which the move is short.
 pub(super) fn quick() -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     text.replace("frequency_hz = 50_000_000", "frequency_hz = 10_000_000")
@@ -220,7 +221,7 @@ pub(super) fn quick() -> String {
         .replace("jerk = 400.0", "jerk = 8000.0")
 }
 
-/// `run --json` of a machine: exit status, document and what was said.
+/// Runs `run --json` on a machine; returns exit status, document and standard error.
 pub(super) fn run(text: &str, arguments: &[&str]) -> (Option<i32>, serde_json::Value, String, tempfile::TempDir) {
     let (folder, file) = scratch(text);
     let output = folder.path().join("out");
@@ -261,7 +262,7 @@ fn cli_run_closes_the_loop_in_verilog_and_model() {
     let checks = document["checks"].as_array().unwrap();
     let of_stage = checks.iter().filter(|check| {
         let name = check["name"].as_str().unwrap();
-        ["the stage", "the shapers take", "the axes follow"]
+        ["the stage", "the shapers suppress", "the axes follow"]
             .iter()
             .any(|begin| name.starts_with(begin))
     });
@@ -273,7 +274,7 @@ fn cli_run_closes_the_loop_in_verilog_and_model() {
 
 #[test]
 fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_status_1() {
-    // Nothing follows so closely: the first move is a fault.
+    // No axis follows so closely: the first move is a fault.
     let text = quick().replace("following_error = 0.0005", "following_error = 1e-6");
     let (status, document, said, folder) = run(&text, &["--simulator", "rusthdl"]);
     assert_eq!((status, &document["result"]), (Some(1), &"fail".into()), "{said}");
@@ -299,7 +300,7 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
     }
 }
 
-/// Name and detail of each check that failed.
+/// Returns name and detail of each check that failed.
 fn failed(document: &serde_json::Value) -> Vec<(String, String)> {
     let text = |value: &serde_json::Value| value.as_str().unwrap().to_owned();
     let checks = document["checks"].as_array().unwrap();
@@ -312,7 +313,7 @@ fn failed(document: &serde_json::Value) -> Vec<(String, String)> {
 #[test]
 fn cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
     let coarse = quick().replace("counts_per_unit = 1_000_000", "counts_per_unit = 80");
-    // Half a metre per second is less than a count per tick.
+    // Half a metre per second is less than one count per tick.
     let text = coarse.replacen("[target]", "[fixed_point]\ncoefficient_fraction = 1\n[target]", 1);
     let (status, document, said, _folder) = run(&text, &["--simulator", "rusthdl"]);
     assert_eq!(status, Some(1), "{said}");
@@ -338,7 +339,7 @@ fn cli_run_of_ei_shapers_passes_and_says_what_was_expected() {
     let checks = document["checks"].as_array().unwrap();
     let shapers = checks
         .iter()
-        .find(|check| check["name"].as_str().unwrap().starts_with("the shapers take"));
+        .find(|check| check["name"].as_str().unwrap().starts_with("the shapers suppress"));
     let detail = shapers.unwrap()["detail"].as_str().unwrap();
     assert!(
         detail.contains("axis x: 47.") && detail.contains("expected of its design"),

@@ -1,21 +1,21 @@
-//! What the tests of the command line share.
+//! Shared parts of the tests of the command line.
 
 #![cfg(test)] // lets clippy see that this is test code
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
 
-/// The program, in a folder of its own.
+/// Returns the program, in a folder of its own.
 pub(crate) fn posicast() -> Command {
     Command::new(env!("CARGO_BIN_EXE_posicast"))
 }
 
-/// A machine file of the examples.
+/// Returns the path of a machine file of the examples.
 pub(crate) fn example(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name)
 }
 
-/// A scratch folder with `machine.toml` in it.
+/// Returns a scratch folder with `machine.toml` in it.
 pub(crate) fn scratch(machine: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("machine.toml");
@@ -23,7 +23,7 @@ pub(crate) fn scratch(machine: &str) -> (tempfile::TempDir, PathBuf) {
     (folder, file)
 }
 
-/// A one-axis machine with this shaper and this mode.
+/// Returns a one-axis machine with this shaper and this mode.
 pub(crate) fn one_axis(shaper: &str, mode: &str) -> String {
     format!(
         "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n\
@@ -31,12 +31,12 @@ pub(crate) fn one_axis(shaper: &str, mode: &str) -> String {
     )
 }
 
-/// The JSON document on standard output.
+/// Parses the JSON document on standard output.
 pub(crate) fn json(output: &[u8]) -> serde_json::Value {
     serde_json::from_slice(output).unwrap()
 }
 
-/// The Rust files of these packages of the workspace, without their tests.
+/// Returns the Rust files of these packages of the workspace, without their tests.
 pub(crate) fn rust_sources(packages: &[&str]) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let files = packages

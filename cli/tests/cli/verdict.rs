@@ -1,4 +1,5 @@
-//! `verify`: what it takes to say "match", and what is no match though every simulated value is equal.
+//! `verify`: the conditions for the verdict "match", and cases in which every simulated value is equal without a
+//! match.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -6,8 +7,8 @@ use crate::cli::support::{example, json, one_axis, posicast, scratch};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-/// A folder of a machine whose delay line is longer than 20,000 clocks of slow strobes fill: EI at 17 Hz, two modes' worth
-/// of delays.
+/// Returns a folder of a machine whose delay line is longer than 20,000 clocks of slow strobes fill: EI at 17 Hz,
+/// with the delays of two modes.
 fn long_delays(folder: &Path) -> PathBuf {
     let machine = folder.join("machine.toml");
     let text = one_axis("kind = \"zvd\"", "frequency_hz = 17.4\ndamping = 0.05");
@@ -90,7 +91,7 @@ fn cli_verify_of_a_folder_whose_machine_file_was_edited_is_no_match() {
         .map(|difference| difference["kind"].as_str().unwrap())
         .collect();
     assert!(kinds.contains(&"machine") && kinds.contains(&"table"), "{document}");
-    // A comment is an edit too: the hash is not the one the Verilog was generated with.
+    // A comment is an edit too: the hash is not the one for which the Verilog was generated.
     std::fs::write(&machine, format!("{text}# mine\n")).unwrap();
     let commented = verify(&output, &[]);
     assert_eq!(commented.status.code(), Some(1), "{}", said(&commented));

@@ -1,4 +1,4 @@
-//! `verify`: which blocks it compares, and which of them on request.
+//! `verify`: the blocks that it compares, and the choice of some of them.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-/// `verify --json` of a machine file, and the rows as name and instance.
+/// Runs `verify --json` on a machine file; returns the document, and the rows as name and instance.
 fn rows(machine: &Path, arguments: &[&str]) -> (serde_json::Value, Vec<(String, String)>) {
     let mut verify = posicast();
     verify.arg("verify").arg(machine).arg("--json").args(arguments);
@@ -25,12 +25,12 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
     for simulator in ["icarus", "rusthdl"] {
         let arguments = ["--cycles", "3000", "--simulator", simulator];
         let (document, rows) = rows(&example("xy-stage.toml"), &arguments);
-        // 3,000 clocks do not fill a delay line: every value is equal, and that is no verdict.
+        // 3,000 clocks do not fill a delay line: every value is equal, but that is not a verdict.
         assert_eq!(document["result"], "mismatch");
         assert!(!document["not_exercised"].as_array().unwrap().is_empty());
         let component = |block: &str| rows.contains(&(block.to_owned(), "x, Avalon".to_owned()));
         for block in ["shaper", "pulse_counter", "pwm", "sliding_mode"] {
-            // RustHDL's simulator has no registers.
+            // RustHDL's simulator does not have the registers.
             assert_eq!(component(block), simulator == "icarus", "{block}: {rows:?}");
         }
         for (name, instance) in [
@@ -166,7 +166,7 @@ fn cli_verify_of_a_folder_finds_a_broken_component_and_no_other() {
     );
 }
 
-/// A folder as `generate` writes it for the XY stage.
+/// Returns a folder as `generate` writes it for the XY stage.
 fn generated(folder: &Path) -> PathBuf {
     let output = folder.join("out");
     let mut generate = posicast();
@@ -175,7 +175,7 @@ fn generated(folder: &Path) -> PathBuf {
     output
 }
 
-/// `verify` of a folder in Icarus, which has no build to wait for.
+/// Runs `verify` on a folder with Icarus, which needs no build.
 fn verify(output: &Path, arguments: &[&str]) -> Output {
     let mut verify = posicast();
     verify.arg("verify").arg(output).args(["--simulator", "icarus"]);
@@ -206,7 +206,7 @@ fn cli_verify_of_a_folder_compares_the_blocks_in_its_components_and_names_the_br
         std::fs::write(&file, text).unwrap();
         let said = String::from_utf8_lossy(&broken.stdout).into_owned();
         assert_eq!(broken.status.code(), Some(1), "{said}");
-        // Both axes have the module, and so each of their rows finds it.
+        // Both axes use the module, so each of their rows finds the error.
         for axis in ["x", "y"] {
             let row = format!("{block} {axis}, in the {component} component: first mismatch in clock ");
             assert!(said.contains(&row), "{said}");

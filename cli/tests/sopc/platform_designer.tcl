@@ -1,10 +1,11 @@
-# Platform Designer without Quartus: runs a component or a system script and checks what it calls.
+# Replaces Platform Designer: runs the script of a component or of a system and checks its calls.
 #
 #   tclsh platform_designer.tcl component FILE_hw.tcl
 #   tclsh platform_designer.tcl system 13.0|25.1 SCRIPT.tcl FOLDER_OF_COMPONENTS
 #
-# A script runs in an interpreter that has the commands below and no others. Lists of names are what Quartus II 13.0 knows,
-# made by hand from excerpts of its handbook and from public scripts for 13.0 and 13.1: any other name is a finding. Prints a record per line, and exits with 1 on a finding.
+# A script runs in an interpreter with only the commands below. The lists of names contain what Quartus II 13.0 knows. They were
+# made by hand from excerpts of its handbook and from public scripts for 13.0 and 13.1: any other name is a finding. Prints a
+# record per line, and exits with 1 on a finding.
 
 set findings 0
 proc finding {text} {
@@ -15,7 +16,7 @@ proc one_of {what name allowed} {
     if {$name ni $allowed} { finding "$what $name is not known: $allowed" }
 }
 
-# ---- what 13.0 knows of components ----
+# ---- what 13.0 knows about components ----
 
 set versions {10.0 10.1 11.0 11.1 12.0 12.1 13.0}
 set module_properties {
@@ -126,7 +127,7 @@ proc add_interface_port {name port role direction width} {
     puts "port $name $port $role $direction $width"
 }
 
-# What holds of a component as a whole.
+# Checks a component as a whole.
 proc check_component {} {
     foreach name {NAME VERSION} {
         if {![info exists ::module($name)]} { finding "module property $name is missing" }
@@ -174,7 +175,7 @@ proc check_agent {name} {
     }
 }
 
-# Runs a script with these commands, NAME or {NAME PROCEDURE} each.
+# Runs a script with these commands, each given as NAME or {NAME PROCEDURE}.
 proc run {file commands} {
     set child [interp create -safe]
     $child hide package

@@ -1,9 +1,9 @@
-# Quartus without Quartus: runs a .qsf or an .sdc and checks what it calls.
+# Replaces Quartus: runs a .qsf or an .sdc file and checks its calls.
 #
 #   tclsh project.tcl 13.0|25.1 FILE PORT=Input|Output ...
 #
-# The ports are those of the top level. Names are those that the version knows. Prints a record per line, and exits with 1 on a
-# finding: an unknown command, option, assignment or port, a pin used twice.
+# The ports are those of the top level. The lists of names contain what the version knows. Prints a record per line, and exits
+# with 1 on a finding: an unknown command, option, assignment or port, or a pin that is used twice.
 
 set findings 0
 proc finding {text} {
@@ -19,7 +19,7 @@ set quartus [lindex $argv 0]
 if {$quartus eq "13.0"} { lappend globals USE_TIMEQUEST_TIMING_ANALYZER }
 foreach pair [lrange $argv 2 end] { lassign [split $pair =] name direction; set ports($name) $direction }
 
-# Options of a command: 1 where a value follows. Gives a dictionary, other words under {}.
+# Parses the options of a command; 1 marks an option with a value. Returns a dictionary, with other words under {}.
 proc options {command words known} {
     set found [dict create {} {}]
     while {$words ne {}} {

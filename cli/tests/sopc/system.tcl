@@ -1,7 +1,7 @@
-# The commands of a system script, and the vendor's components that our systems use; part of platform_designer.tcl.
+# Commands of a system script, and the vendor's components that our systems use; part of platform_designer.tcl.
 #
-# A component is {parameters} {interface kind end|start span-in-bytes ...}. Of interest are names, kinds and spans: who is
-# connected to whom, at which address, and what leaves the system.
+# A component is {parameters} {interface kind end|start span-in-bytes ...}. Names, kinds and spans are checked: what is
+# connected to what, at which address, and what leaves the system.
 
 set memory {memorySize dataWidth initMemContent blockType}
 set common [dict create \
@@ -43,10 +43,10 @@ set library(25.1) [dict merge $common {
         }
     }
 }]
-# What a system of each version may say it is written for.
+# Versions that a system may name as its own.
 set script_versions(13.0) $versions
 set script_versions(25.1) [concat $versions {13.1 14.0 15.0 16.0 16.1 17.0 18.0}]
-# The roles of what can leave a system, with direction and width, as Platform Designer names the ports.
+# Roles of the interfaces that can leave a system, with direction and width, as Platform Designer names the ports.
 set uart_signals {rxd Input 1 txd Output 1}
 
 proc package_of_system {command exact name version} {
@@ -72,7 +72,7 @@ proc add_instance {name type {version {}}} {
         finding "component $type is not known to $::quartus"
     }
 }
-# An instance of a component of the package: what running its file says.
+# Creates an instance of a component of the package, described by the records of its file.
 proc add_own {name type} {
     set records [exec [info nameofexecutable] $::argv0 component [file join $::components ${type}_hw.tcl]]
     foreach record [split $records \n] {
@@ -123,7 +123,7 @@ proc set_export {name property of} {
     foreach {role direction width} $::signals($of) { puts "export ${name}_$role $direction $width" }
 }
 
-# Bytes that an agent takes on the bus.
+# Returns the number of bytes that an agent occupies on the bus.
 proc span {name} {
     set span [lindex $::end($name) 2]
     if {$span eq "memory"} { return $::value([lindex [split $name .] 0],memorySize) }

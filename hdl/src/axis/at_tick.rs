@@ -1,4 +1,4 @@
-//! A word as it stood at the last tick, from that clock on.
+//! Holds a word as it was at the last tick, from that clock on.
 
 use crate::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A word byte by byte, lowest first: what a comparison takes in four clocks.
+//! Splits a word into bytes, lowest first, which a comparison takes in four clocks.
 
 use crate::prelude::*;
 

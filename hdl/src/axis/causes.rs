@@ -1,7 +1,8 @@
-//! The cause word, and what follows from it: of emergency stop, PWM trip, lost drive and range in the clock in which they become
-//! active, of all others when they stand, a clock later.
+//! The cause word and its consequences: emergency stop, PWM trip, lost drive and range act in the clock in which they
+//! become active, all others one clock later, when their bit is set.
 //!
-//! What follows from causes that stand is registered with them, so that only four lines are on the way to the state.
+//! The consequences of causes that are set are registered with them, so that only four lines are combinational on the
+//! way to the state.
 
 use crate::prelude::*;
 use posicast_model::rtl::axis::{ALWAYS_OFF, CAUSE_BITS, Cause, HARMLESS};
@@ -96,17 +97,17 @@ impl Logic for Causes {
         self.now.next = self.kept.val() | self.lines.val() | self.flags.val() | self.watched.val();
         self.causes_q.d.next = self.now.val();
 
-        comment!("What follows: at once of these lines;");
+        comment!("These lines act at once;");
         self.off.next = (bit_cast::<17, 16>(self.off_causes.val()) | self.always_off.val()) & self.harmful_causes.val();
         self.harmless.next = self.causes_q.q.val() & !self.harmful_causes.val();
         self.switches_off.next = self.emergency.val() | self.tripped.val() | self.out_of_range.val();
         self.fault.next = self.switches_off.val() | self.drive_lost.val() | self.had_fault_q.q.val();
         self.cutting.next = self.by_drive_lost.val() & self.off.val();
         self.cut.next = self.switches_off.val() | self.cutting.val().any() | self.had_cut_q.q.val();
-        comment!("an axis that stops the group never asks here;");
+        comment!("the axis that stops the group is not affected;");
         self.any_cause.next = self.fault.val() | self.harmless.val().any() | self.group_stop.val();
 
-        comment!("of all others when they stand, a clock later");
+        comment!("all others act a clock later, once set");
         self.harmful.next = self.now.val() & self.harmful_causes.val();
         self.cutting_now.next = self.now.val() & self.off.val();
         self.had_fault_q.d.next = self.harmful.val().any();

@@ -1,6 +1,7 @@
-//! Lines, causes, states: what they say to each other, and to the pins.
+//! Joins lines, causes and states, and connects them to the pins.
 //!
-//! An edge at a line reaches the state after `filter_clocks` + 4 clocks: synchroniser 2, filter `filter_clocks` + 1, state 1.
+//! An edge at a line reaches the state after `filter_clocks` + 4 clocks: 2 for the synchroniser, `filter_clocks` + 1
+//! for the filter, 1 for the state.
 
 use super::causes::Causes;
 use super::line::Line;
@@ -48,7 +49,7 @@ impl Logic for Axis {
     fn update(&mut self) {
         comment!("@module axis");
 
-        comment!("After reset, and with nothing to filter, levels");
+        comment!("After reset, and without a filter, levels");
         comment!("are taken as they are");
         self.primed.d.next = (self.primed.q.val() << 1) | self.first_clock.val();
         self.ready.next = self.primed.q.val().get_bit(3);
@@ -84,7 +85,7 @@ impl Logic for Axis {
         self.home_line.filter_clocks.next = self.filter_clocks.val();
         self.level_home.next = self.home_line.level.val();
 
-        comment!("What is watched at ticks");
+        comment!("Checks at ticks");
         self.monitors.clk.next = self.clk.val();
         self.monitors.rst.next = self.rst.val();
         self.monitors.tick.next = self.tick.val();
@@ -111,8 +112,8 @@ impl Logic for Axis {
         self.monitors.command.next = self.command.val();
         self.monitors.limited_ticks.next = self.limited_ticks.val();
 
-        comment!("The range of the position's word: its last 64th");
-        comment!("at either end, and what was cut to its word");
+        comment!("Range of the position word: its last 64th");
+        comment!("at either end, and values clamped to their word");
         self.count_bits.next = unsigned_cast(self.monitors.captured_position.val());
         self.count_above.next = self.count_bits.val().get_bits::<9>(23);
         self.count_end.next = self.count_bits.val().get_bits::<6>(17);
@@ -152,7 +153,7 @@ impl Logic for Axis {
         self.cause_word.watched.next = self.monitors.causes.val();
         self.cause_word.off_causes.next = self.off_causes.val();
 
-        comment!("Homed, until the position is in doubt");
+        comment!("Homed until the position is in doubt");
         self.doubts.next = self.cause_word.causes.val() & self.doubtful_causes.val();
         self.is_homed.next = self.homed_q.q.val();
         if self.write_homed.val() {

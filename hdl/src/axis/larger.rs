@@ -1,16 +1,17 @@
-//! Is a number larger than another? Byte by byte, lowest first: a bit is a table of both numbers' bits and of what is below.
+//! Compares two numbers byte by byte, lowest first: the result of a bit depends on both numbers' bits and on the
+//! result of the bits below.
 
 use crate::prelude::*;
 
 kernel! {
-    /// After the last byte; known as long as nothing `compares`, and forgotten a clock later.
+    /// Valid after the last byte as long as nothing `compares`, and forgotten one clock later.
     pub(super) struct Larger;
 
     inputs {
         rst: Bit,
-        /// A byte is there.
+        /// A byte is present.
         compares: Bit,
-        /// It is the highest of signed numbers.
+        /// It is the highest byte of signed numbers.
         signs: Bit,
         /// The number is the complement of its bytes.
         inverts: Bit,
@@ -33,7 +34,7 @@ impl Logic for Larger {
         if self.inverts.val() {
             self.one.next = !self.number.val();
         }
-        comment!("A bit that is larger, one that is not smaller");
+        comment!("Bits that are larger, and bits not smaller");
         self.above.next = self.one.val() & !self.other.val();
         self.neither.next = self.one.val() | !self.other.val();
         self.above_0.next = self.above.val().get_bit(0) | (self.neither.val().get_bit(0) & self.larger_q.q.val());
@@ -43,7 +44,7 @@ impl Logic for Larger {
         self.above_4.next = self.above.val().get_bit(4) | (self.neither.val().get_bit(4) & self.above_3.val());
         self.above_5.next = self.above.val().get_bit(5) | (self.neither.val().get_bit(5) & self.above_4.val());
         self.above_6.next = self.above.val().get_bit(6) | (self.neither.val().get_bit(6) & self.above_5.val());
-        comment!("A sign counts the other way");
+        comment!("The sign bit has the opposite weight");
         self.higher.next = self.above.val().get_bit(7);
         self.not_lower.next = self.neither.val().get_bit(7);
         if self.signs.val() {

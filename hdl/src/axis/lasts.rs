@@ -1,19 +1,20 @@
-//! Ticks against the ticks that are too many, nibble by nibble, lowest first.
+//! Compares a number of ticks with its limit, nibble by nibble, lowest first.
 
 use super::nibbles::Nibbles;
 use crate::prelude::*;
 
 kernel! {
-    /// Has it lasted for as many ticks as the limit says? Never with a limit of 0. Known as long as nothing `compares`.
+    /// Whether it has lasted for as many ticks as the limit; a limit of 0 never matches. Valid as long as nothing
+    /// `compares`.
     pub(super) struct Lasts;
 
     inputs {
         rst: Bit,
         turn: Bits<2>,
         compares: Bit,
-        /// A nibble of the ticks.
+        /// A nibble of the number of ticks.
         ticks: Bits<4>,
-        /// More than any limit.
+        /// The number of ticks exceeds any limit.
         endless: Bit,
         limit: Bits<16>,
     }
@@ -31,7 +32,7 @@ impl Logic for Lasts {
         self.limit_nibbles.rst.next = self.rst.val();
         self.limit_nibbles.turn.next = self.turn.val();
         self.limit_nibbles.word.next = self.limit.val();
-        comment!("A bit that is less, one that is not more");
+        comment!("Bits that are smaller, and bits not larger");
         self.under.next = !self.ticks.val() & self.limit_nibbles.part.val();
         self.not_over.next = !self.ticks.val() | self.limit_nibbles.part.val();
         self.under_0.next = self.under.val().get_bit(0) | (self.not_over.val().get_bit(0) & self.fewer.q.val());

@@ -1,4 +1,4 @@
-//! One line: synchroniser, then filter.
+//! One line: a synchroniser, then a filter.
 
 use crate::prelude::*;
 use crate::pulse_counter::GlitchFilter;

@@ -1,4 +1,4 @@
-//! The supervisor of an axis in hardware: outputs on and off, motion and stop, and what happens when something goes wrong.
+//! The supervisor of an axis in hardware: it switches the outputs, starts and stops the motion, and reacts to faults.
 //!
 //! The datasheet is `docs/axis.md`, the reference `posicast_model::rtl::axis`.
 
@@ -27,7 +27,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The supervisor in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(Axis::default());
     Ok(Box::new(Simulated::new("axis", block, ports())?))
@@ -38,7 +38,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_axis`, or `axis` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: u32, meaning: &str| Parameter {
         name: name.to_owned(),
@@ -57,12 +57,12 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 parameter(
                     "line_clocks",
                     LINE_CLOCKS,
-                    "from a line to the state, and filter_clocks more",
+                    "from a line to the state, plus filter_clocks",
                 ),
                 parameter(
                     "watch_clocks",
                     WATCH_CLOCKS,
-                    "from a tick to the state, for what is watched at ticks",
+                    "from a tick to the state, for the checks at ticks",
                 ),
                 parameter(
                     "clear_clocks",

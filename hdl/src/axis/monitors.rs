@@ -1,8 +1,9 @@
-//! What is watched at ticks: limits, soft limits, errors against their limits, and what has lasted too long.
+//! The checks at ticks: limits, soft limits, errors against their limits, and time limits.
 //!
-//! Numbers go by bytes, from the tick on, and are compared twice: a limit that a host writes meanwhile is no cause. What both
-//! rounds find is registered: no comparison is on the way to the state. Bytes are taken in clocks 0 to 3 and 5 to 8 after the
-//! tick, compared a clock later, looked at in clocks 5 and 10, and causes in clock 11.
+//! Numbers are compared byte by byte from the tick on, and twice: a limit that a host writes meanwhile causes
+//! nothing. The findings of both rounds are registered, so that no comparison is on the way to the state. Bytes are
+//! taken in clocks 0 to 3 and 5 to 8 after the tick and compared one clock later; the results are evaluated in clocks
+//! 5 and 10, and causes come in clock 11.
 
 use super::at_tick::AtTick;
 use super::lasts::Lasts;
@@ -103,7 +104,7 @@ impl Logic for Monitors {
         }
         self.tells.d.next = self.over.val() & self.was_on.q.val();
 
-        comment!("What the tick shows");
+        comment!("Levels at the tick");
         self.command_bits.next = unsigned_cast(self.command.val());
         self.command_velocity_bits.next = unsigned_cast(self.command_velocity.val());
         self.reference_velocity_bits.next = unsigned_cast(self.reference_velocity.val());
@@ -121,7 +122,7 @@ impl Logic for Monitors {
             self.shaped_backward.d.next = self.reference_velocity_bits.val().get_bit(31);
         }
 
-        comment!("A switch bounces when left: newly needs a way");
+        comment!("Leaving a switch bounces: new with motion only");
         self.limit_plus.next =
             self.on_plus.q.val() & (self.forward.q.val() | (!self.was_on_plus.q.val() & self.shaped_forward.q.val()));
         self.limit_minus.next = self.on_minus.q.val()
@@ -145,7 +146,7 @@ impl Logic for Monitors {
             self.was_past_minus.d.next = self.soft_limits.past_minus.val();
         }
 
-        comment!("Sizes and times");
+        comment!("Magnitudes and times");
         self.error_limit.clk.next = self.clk.val();
         self.error_limit.rst.next = self.rst.val();
         self.error_limit.tick.next = self.tick.val();
@@ -154,7 +155,7 @@ impl Logic for Monitors {
         self.error_limit.number.next = self.error.val();
         self.error_limit.limit.next = self.following_error_limit.val();
         self.error_limit.zero_counts.next = false;
-        comment!("A scale computes the next one from the tick on");
+        comment!("A scale computes its next value from the tick on");
         self.deviation_at_tick.clk.next = self.clk.val();
         self.deviation_at_tick.rst.next = self.rst.val();
         self.deviation_at_tick.tick.next = self.tick.val();
@@ -186,13 +187,13 @@ impl Logic for Monitors {
         self.saturating.ticks.next = self.limited_nibbles.part.val();
         self.saturating.endless.next = false;
         self.saturating.limit.next = self.saturation_ticks.val();
-        comment!("Moved since it last stood still, a clock each");
+        comment!("Has moved since it last stood still");
         self.motion.d.next = self.captured.q.val() - self.still_since.q.val();
         self.motion_bits.next = unsigned_cast(self.motion.q.val());
         self.motion_above.next = self.motion_bits.val().get_bits::<30>(2);
         self.not_forward.d.next = self.motion_bits.val().get_bit(31) | !self.motion_above.val().any();
         self.not_backward.d.next = !self.motion_bits.val().get_bit(31) | self.motion_above.val().all();
-        comment!("Against the command is as not at all, if watched");
+        comment!("Motion against the command may count as none");
         self.not_its_way.next = self.not_forward.q.val();
         if self.drive_backward.q.val() {
             self.not_its_way.next = self.not_backward.q.val();
@@ -203,7 +204,7 @@ impl Logic for Monitors {
             & (self.watches_direction.val() | !self.moves.val())
             & (self.drive_backward.q.val() == self.still_backward.q.val())
             & self.commands.exceeds.val();
-        comment!("The way back is measured from where it turned");
+        comment!("The way back counts from the point of reversal");
         if self.over.val() & (!self.stands.val() | self.moves.val()) {
             self.still_since.d.next = self.captured.q.val();
             self.still_backward.d.next = self.drive_backward.q.val();
@@ -215,7 +216,7 @@ impl Logic for Monitors {
         self.still.compares.next = self.compares.q.val();
         self.still.limit.next = self.lost_ticks.val();
         self.still.clears.next = self.over.val() & !self.stands.val();
-        comment!("A kick waits until the count has gone round");
+        comment!("A kick waits until the count has rotated");
         self.is_kicked.next = self.kicked.val() | self.kick_waits.q.val();
         self.kick_waits.d.next = self.is_kicked.val() & self.compares.q.val();
         self.unkicked.clk.next = self.clk.val();

@@ -1,4 +1,4 @@
-//! Half a word nibble by nibble, lowest first: what a comparison takes in four clocks.
+//! Splits half a word into nibbles, lowest first, which a comparison takes in four clocks.
 
 use crate::prelude::*;
 

@@ -1,9 +1,9 @@
-//! Was any byte of a word other than 0?
+//! Detects whether any byte of a word is not 0.
 
 use crate::prelude::*;
 
 kernel! {
-    /// As `Larger`.
+    /// Valid after the last byte, with the same timing as `Larger`.
     pub(super) struct Nonzero;
 
     inputs { rst: Bit, compares: Bit, part: Bits<8> }

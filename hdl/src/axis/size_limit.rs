@@ -1,4 +1,5 @@
-//! A number against a limit of its size. The size of a negative x is -x - 1: its complement, without a carry.
+//! Compares the magnitude of a number with a limit. The magnitude of a negative x is taken as -x - 1, its complement,
+//! which needs no carry.
 
 use super::bytes::Bytes;
 use super::larger::Larger;
@@ -15,7 +16,7 @@ kernel! {
         compares: Bit,
         number: Signed<32>,
         limit: Bits<32>,
-        /// A limit of 0 is one; otherwise it is none.
+        /// High: 0 is a real limit. Low: 0 disables the check.
         zero_counts: Bit,
     }
     outputs { exceeds: Bit }

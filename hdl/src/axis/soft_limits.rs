@@ -1,4 +1,4 @@
-//! The shaped position against both soft limits; none where both are 0, or while they wait.
+//! Compares the shaped position with both soft limits; there are none if both are 0, or while they wait.
 
 use super::bytes::Bytes;
 use super::larger::Larger;
@@ -16,7 +16,7 @@ kernel! {
         reference_position: Signed<32>,
         soft_limit_plus: Signed<32>,
         soft_limit_minus: Signed<32>,
-        /// There are no limits yet.
+        /// The limits do not act yet.
         waits: Bit,
     }
     outputs { past_plus: Bit, past_minus: Bit }

@@ -1,10 +1,10 @@
-//! Ticks in a row against the ticks that are too many, nibble by nibble, lowest first.
+//! Counts consecutive ticks and compares them with a limit, nibble by nibble, lowest first.
 
 use super::lasts::Lasts;
 use crate::prelude::*;
 
 kernel! {
-    /// A count of ticks that goes round as it is compared, and takes the tick in the first round.
+    /// A count of ticks that rotates while it is compared, and adds the tick in the first round.
     pub(super) struct TickCount;
 
     inputs {
@@ -12,7 +12,7 @@ kernel! {
         tick: Bit,
         turn: Bits<2>,
         compares: Bit,
-        /// Not while it goes round.
+        /// Clears the count; not while it rotates.
         clears: Bit,
         limit: Bits<16>,
     }
@@ -38,7 +38,7 @@ impl Logic for TickCount {
         if self.tick.val() {
             self.carry.d.next = self.one.val();
         }
-        comment!("A carry out of the highest: more than any limit");
+        comment!("A carry out of the top: more than any limit");
         self.endless.d.next = self.endless.q.val() | (self.carry.q.val().any() & !self.compares.val());
         if self.clears.val() {
             self.count.d.next = self.nothing.val();

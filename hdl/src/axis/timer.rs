@@ -1,5 +1,5 @@
-//! The timer of brake and shaper, in ticks: loaded in the first clock of what begins, and over two clocks later at the
-//! earliest. It is cleared in the clock before, so that loading is the same sum as counting.
+//! The timer of brake and shaper, in ticks. It is loaded in the first clock of its event, and over two clocks later
+//! at the earliest. It is cleared in the clock before, so that loading uses the same adder as counting.
 
 use crate::prelude::*;
 
@@ -9,7 +9,7 @@ kernel! {
     inputs {
         rst: Bit,
         counts: Bit,
-        /// Something is loaded in the next clock, and nothing in this one that is needed.
+        /// The timer is loaded in the next clock, and not needed in this one.
         clears: Bit,
         load_release: Bit,
         load_settle: Bit,
@@ -48,7 +48,7 @@ impl Logic for Timer {
         if self.loads.val() {
             self.less_one.next = self.no_ticks.val();
         }
-        comment!("Less one has a carry unless there is none left");
+        comment!("Minus one has a carry unless the count is 0");
         self.addend.next = self.released.val() | self.settled.val() | self.applied.val() | self.less_one.val();
         self.sum.next = bit_cast::<17, 16>(self.left.q.val()) + bit_cast::<17, 16>(self.addend.val());
         self.at_zero.next = !self.sum.val().get_bit(16);

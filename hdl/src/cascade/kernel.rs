@@ -1,4 +1,4 @@
-//! The pass over the stages, two clocks each: one reads and writes the ring, one adds.
+//! Computes a sample over all stages, two clocks each: one reads and writes the ring buffer, one adds.
 //!
 //! ```text
 //! clock      0 (strobe)   2k + 1              2k + 2                 2n + 1         2n + 2
@@ -7,17 +7,17 @@
 //! ring                    write y_k, read     y_k[n − d], add        y := rounded   valid
 //! ```
 //!
-//! One RAM holds the rings of all stages, which share `head` and `age`: a word's address is `{stage, head}`. `age` counts
-//! the samples since the start, so no word is used that was not written since; before it, a stage has seen its constant
-//! input `earlier`, the start value doubled from stage to stage.
+//! One RAM holds the ring buffers of all stages, which share `head` and `age`: a word's address is `{stage, head}`.
+//! `age` counts the samples since the start, so no word is used that was not written since; before the start, a stage
+//! had its constant input `earlier`, the start value doubled from stage to stage.
 //!
-//! A delay is 1 to 2^A − 2: the word read is never the one that is written in the same clock.
+//! A delay is 1 to 2^A − 2, so the word read is never the one written in the same clock.
 
 use crate::prelude::*;
 use posicast_model::rtl::cascade::CascadeConfig;
 
 kernel! {
-    /// W word, S sum of W + one bit per stage, A ring address, I stage index and ADDRESS = A + I bits.
+    /// Sizes: W word bits, S sum bits (W + one per stage), A ring address bits, I stage index bits, ADDRESS = A + I.
     ///
     /// A cascade for `config`, whose sizes must not be above these.
     pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
@@ -92,7 +92,7 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
             }
         }
 
-        comment!("Halves round up, N bits are dropped");
+        comment!("Drop N bits, rounding halves up");
         self.rounded.next = self.sum.q.val() + self.half.val();
         if self.finish.q.val() {
             self.y_q.d.next = self.rounded.val().get_bits::<W>(self.stages.val().index());
@@ -100,7 +100,7 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
             self.busy_q.d.next = false;
         }
 
-        comment!("A start forgets, and cuts off what runs");
+        comment!("A start clears, and abandons a running sample");
         self.age_before.next = self.age.q.val();
         if self.start.val() {
             self.start_value.d.next = self.x.val();
@@ -113,7 +113,7 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
             self.busy_q.d.next = false;
         }
 
-        comment!("A sample, unless a pass runs");
+        comment!("Take a sample, unless one is being computed");
         self.take.next = self.strobe.val() & (self.start.val() | !self.busy_q.q.val());
         self.next_head.next = self.head.q.val() + self.one_sample.val();
         if self.take.val() {
@@ -135,7 +135,7 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
             self.overrun_q.d.next = true;
         }
 
-        comment!("The ring of the stage, and its delay");
+        comment!("Ring buffer of the stage, and its delay");
         self.stage.d.next = self.next_stage.val();
         self.delays.address.next = self.next_stage.val();
         self.back.next = self.head.q.val() - self.delays.data.val();

@@ -2,8 +2,7 @@
 //!
 //! The datasheet is `docs/cascade.md`, the reference `posicast_model::rtl::cascade`.
 //!
-//! One kernel serves all sizes. It is compiled at three, from which the emitter writes any: see
-//! `compiled`.
+//! One kernel serves all sizes. It is compiled at three sizes, from which the emitter writes any: see `compiled`.
 
 mod kernel;
 
@@ -14,7 +13,7 @@ use kernel::Cascade;
 use posicast_model::rtl::cascade::{CascadeConfig, PORTS, pass_clocks, ports};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
-/// The cascade with words of W bits, sums of S, rings of 2^A samples and 2^I stages.
+/// The cascade with words of W bits, sums of S bits, ring buffers of 2^A samples and 2^I stages.
 macro_rules! cascade {
     ($w:literal, $s:literal, $a:literal, $i:literal) => {
         Compiled {
@@ -26,7 +25,7 @@ macro_rules! cascade {
 
 const SIZES: [Compiled<CascadeConfig>; 3] = [cascade!(32, 48, 12, 4), cascade!(24, 52, 13, 6), cascade!(29, 34, 9, 3)];
 
-/// W, S, A and I.
+/// The sizes W, S, A and I.
 fn sizes(config: &CascadeConfig) -> [u32; 4] {
     [
         config.word_bits(),
@@ -38,10 +37,11 @@ fn sizes(config: &CascadeConfig) -> [u32; 4] {
 
 /// The cascade in RustHDL's own simulator.
 ///
-/// It runs at a size that is compiled and holds this cascade, and whose outputs are the same: words are wider, rings larger.
+/// It runs at a compiled size that holds this cascade and has the same outputs: its words are wider and its ring
+/// buffers larger.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &CascadeConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let holding = simulated(config).ok_or(SimulationError::Size {
         block: "cascade",
@@ -54,7 +54,7 @@ pub fn simulate(config: &CascadeConfig) -> Result<Box<dyn ClockedBlock>, Simulat
     )?))
 }
 
-/// The sizes at which [`simulate`] runs the cascade, in words, where they are not its own.
+/// The sizes at which [`simulate`] runs the cascade, in words, if they differ from its own.
 pub fn simulated_as(config: &CascadeConfig) -> Option<String> {
     match simulated(config)?.sizes {
         same if same == sizes(config) => None,
@@ -76,7 +76,7 @@ fn simulated(config: &CascadeConfig) -> Option<&'static Compiled<CascadeConfig>>
 /// The top is called `PREFIX_cascade`, or `cascade` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &CascadeConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: "cascade".to_owned(),

@@ -1,4 +1,4 @@
-//! Shift and add, shift and subtract, shift and negate: one bit per clock in one register.
+//! Multiplies, divides and negates with one bit per clock in one register.
 //!
 //! ```text
 //! phase  27 …  44   product = { partial sum (17), what is left of steps (18) } moves down: T is added where the lowest bit
@@ -8,9 +8,9 @@
 //! phase  96 … 127   product moves down once more: the quotient's bits enter at the top, negated or not
 //! ```
 //!
-//! The lowest bit comes first wherever a number is negated, so that takes no adder: after the lowest one, every bit turns
-//! over. |steps| · T < 2^35 and 16 fraction bits give a quotient of 51 bits. Its upper 20 must be zero, or it is clamped:
-//! from there on all bits are ones. The phases are numbered so that they are easily told apart.
+//! A number is negated lowest bit first, which needs no adder: after the lowest one, every bit is inverted. |steps| ·
+//! T < 2^35 and 16 fraction bits give a quotient of 51 bits. If its upper 20 are not zero, it is clamped: all bits
+//! are ones from there on. The phases are numbered such that they are easy to decode.
 
 use crate::prelude::*;
 use posicast_model::rtl::divider::DividerConfig;
@@ -57,7 +57,7 @@ impl Logic for Divider {
         self.magnitude_bit.next = self.product.q.val().get_bit(0) ^ (self.negative.q.val() & self.turns_over.q.val());
         self.turns_over.d.next = self.downward.q.val() & (self.turns_over.q.val() | self.product.q.val().get_bit(0));
 
-        comment!("Multiply: add T, or not, and shift down");
+        comment!("Multiply: add T or 0, and shift down");
         self.addend.next = self.no_addend.val();
         self.entering.next = self.no_bit.val();
         if self.magnitude_bit.val() {
@@ -80,14 +80,14 @@ impl Logic for Divider {
         self.difference.next = self.shifted.val() - bit_cast::<26, 24>(self.divisor.q.val());
         self.subtracts.next = !self.difference.val().get_bit(25);
 
-        comment!("Beyond 31 bits: all ones");
+        comment!("All ones if the quotient exceeds 31 bits");
         self.kept_bit.next = self.no_bit.val();
         if self.fits.q.val() & (self.subtracts.val() | self.too_large.q.val()) {
             self.kept_bit.next = self.one_bit.val();
         }
 
         comment!("One phase per clock; between divisions,");
-        comment!("what is in the registers does not matter");
+        comment!("the contents of the registers do not matter");
         if self.downward.q.val() {
             self.product.d.next = (bit_cast::<35, 1>(self.entering.val()) << 34)
                 | (bit_cast::<35, 18>(self.partial.val()) << 17)
@@ -103,7 +103,7 @@ impl Logic for Divider {
         if self.busy_q.q.val() {
             self.next_phase.next = self.phase.q.val() + self.one_phase.val();
         }
-        comment!("Too large; while it multiplies, 0 is too small");
+        comment!("Clamped; 0 is too small while multiplying");
         if self.subtracts.val() & !self.fits.q.val() {
             self.too_large.d.next = true;
         }
@@ -133,7 +133,7 @@ impl Logic for Divider {
             self.too_large.d.next = false;
         }
 
-        comment!("Which part a phase is of, told a clock ahead");
+        comment!("Part of the next phase, decoded a clock ahead");
         self.phase.d.next = self.next_phase.val();
         self.last_pass.d.next = self.next_phase.val() >= self.sign_phase.val();
         self.downward.d.next =

@@ -13,13 +13,13 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The divider in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &DividerConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(Divider::new(config));
     Ok(Box::new(Simulated::new("divider", block, ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(config: &DividerConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }
@@ -30,10 +30,10 @@ fn base_name(config: &DividerConfig) -> String {
 
 /// The divider's Verilog.
 ///
-/// The module is called as [`name`] says; all names are bare where `prefix` is empty.
+/// [`name`] gives the module's name; names have no prefix where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: u32, meaning: &str| Parameter {
         name: name.to_owned(),

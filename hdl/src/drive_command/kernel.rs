@@ -1,4 +1,5 @@
-//! One multiplexer for both duties, one comparison for both signs of the manual one, a counter per gate that is tested.
+//! The drive command: one multiplexer for both duties, one comparison for both signs of the manual one, and a counter
+//! for each gate that is tested.
 
 use crate::prelude::*;
 use posicast_model::rtl::axis::SupervisorState;
@@ -51,7 +52,7 @@ impl Logic for DriveCommand {
         self.test_changes.next = self.active.q.val() & (self.self_test.val() ^ self.masked.q.val());
         self.permitted.next =
             (self.axis_state.val() == self.ready_state.val()) & self.direct_enable.val() & !self.test_changes.val();
-        comment!("Ticks since the kick; bit 0 is kept inverted");
+        comment!("Ticks since the kick; bit 0 is stored inverted");
         self.counted.next = self.ticks.q.val() ^ self.one_tick.val();
         self.more.next = self.counted.val() + self.one_tick.val();
         self.last_tick.next = self.tick.val() & (self.counted.val() == self.hold_ticks.q.val());
@@ -88,7 +89,7 @@ impl Logic for DriveCommand {
             self.bound.next = self.least.val();
         }
 
-        comment!("Manual: 2 size + 1 of a negative, no carry");
+        comment!("Manual: twice the size, + 1 if negative; no carry");
         self.negative.next = self.direct_bits.val().get_bit(16);
         self.direct_size.next = self.direct_bits.val().get_bits::<16>(0);
         self.odd.next = self.no_bit.val();
@@ -115,8 +116,8 @@ impl Logic for DriveCommand {
             }
         }
 
-        comment!("Zero while off, at a change, for a tick where the");
-        comment!("sign turns, and towards a limit switch");
+        comment!("0 while off, at a change, for a tick where the");
+        comment!("sign changes, and towards a limit switch");
         if self.tick.val() {
             self.backward.d.next = self.negative.val();
         }
@@ -147,7 +148,7 @@ impl Logic for DriveCommand {
             }
         }
 
-        comment!("Clocks of a gate in a period; the last clock's is");
+        comment!("On-time of a gate in a period; the last clock is");
         comment!("added as it is counted, so that a valley clears");
         self.high_was_on.d.next = self.not_on.val();
         self.low_was_on.d.next = self.not_on.val();

@@ -1,4 +1,5 @@
-//! What the PWM is told, in hardware: the controller's duty, or in direct mode a manual one, or nothing.
+//! The drive command in hardware: it selects what the PWM gets: the controller's duty, in direct mode a manual one,
+//! or 0.
 //!
 //! The datasheet is `docs/drive_command.md`, the reference `posicast_model::rtl::drive_command`.
 
@@ -13,7 +14,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The drive command in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(DriveCommand::default());
     Ok(Box::new(Simulated::new("drive_command", block, ports())?))
@@ -24,13 +25,13 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The module is called `posicast_drive_command`, or `drive_command` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: "drive_command".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "What the PWM is told: the controller's duty, saturated, while the supervisor wants it;\n\
+            about: "Selects the PWM's duty: the controller's, saturated, while the supervisor wants it;\n\
                     in direct mode, in READY and while it is kicked, a manual duty with a limit; else nothing."
                 .to_owned(),
             ports: port_notes(PORTS),

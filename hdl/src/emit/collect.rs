@@ -1,17 +1,18 @@
-//! From RustHDL's object tree to ours: every block with its signals, sub-blocks and kernel, independent of RustHDL's walk.
+//! Converts RustHDL's object tree to ours: every block with its signals, sub-blocks and kernel, independent of
+//! RustHDL's walk.
 
 use super::error::{EmitCause, EmitError};
 use super::types::Type;
 use rust_hdl_core::prelude::{Atom, AtomKind, Block, Probe, TypeDescriptor, TypeKind, Verilog, VerilogLiteral};
 use std::collections::BTreeMap;
 
-/// What a declared signal is to its block.
+/// Role of a declared signal in its block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Input,
     Output,
     Local,
-    /// With its bit pattern.
+    /// A constant with its bit pattern.
     Constant(u64),
 }
 
@@ -28,10 +29,10 @@ pub(super) struct Signal {
 /// The values of an enum type, in order: `State$Idle`, `State$Run`.
 pub(super) type EnumValues = Vec<String>;
 
-/// A block with all that it contains.
+/// A block with everything that it contains.
 #[derive(Debug)]
 pub(super) struct Node {
-    /// Field name in the parent.
+    /// Name of the field in the parent.
     pub(super) raw: String,
     /// Path from the top, joined by dots, for messages.
     pub(super) path: String,
@@ -83,7 +84,7 @@ struct Collector {
     open: Vec<Node>,
     namespaces: Vec<String>,
     root: Option<Node>,
-    /// The first error; RustHDL's walk cannot be stopped.
+    /// The first error, because RustHDL's walk cannot be stopped.
     error: Option<EmitError>,
 }
 
@@ -191,7 +192,7 @@ fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, EmitCause> {
     })
 }
 
-/// RustHDL prints a constant as its bit pattern, also if it is signed.
+/// The bit pattern of a constant; RustHDL prints it even for signed constants.
 fn constant(literal: &VerilogLiteral, ty: Type) -> Result<u64, EmitCause> {
     let (_, value) = literal_value(literal).ok_or(EmitCause::WidthUnknown("a constant"))?;
     EmitCause::pattern(Type::bits(ty.width), value)

@@ -1,4 +1,5 @@
-//! A structural module: instances side by side, common inputs shared, every other port lifted under its instance's name.
+//! Composes a structural module: instances side by side, with common inputs shared, and every other port exported
+//! with its instance's name as prefix.
 
 use super::error::{EmitCause, EmitError};
 use super::names::{self, Taken};
@@ -12,18 +13,19 @@ use posicast_model::rtl::{Direction, Port};
 pub struct ModuleInstance<'a> {
     /// Name of the instance, for example of the axis; its ports become `<name>_<port>`.
     pub name: &'a str,
-    /// What is instantiated.
+    /// The module that is instantiated.
     pub module: &'a Module,
 }
 
 /// Writes the module `top` with `instances` side by side.
 ///
-/// `clk` goes to all that have it. The inputs named in `shared_inputs`, for example `rst` and `strobe`, go to every
-/// instance that has them; every other port `p` of the instance `i` becomes the port `i_p`.
+/// `clk` is connected to all instances that have it. The inputs named in `shared_inputs`, for example `rst` and
+/// `strobe`, are connected to every instance that has them; every other port `p` of the instance `i` becomes the port
+/// `i_p`.
 ///
 /// # Errors
-/// Names that are reserved, malformed or taken twice; a shared input that no instance has, that differs between instances,
-/// or that is an output of one.
+/// An error for names that are reserved, malformed or used twice, and for a shared input that no instance has, that
+/// differs between instances, or that is an output of one.
 pub fn compose(
     top: &str,
     header: &Header,
@@ -36,7 +38,7 @@ pub fn compose(
     };
     names::check_name(top).map_err(at(""))?;
     let mut taken = Taken::default();
-    // Verilator's C++ has no room for a port of the module's own name.
+    // Verilator's C++ cannot handle a port with the module's own name.
     taken.take(top, "the module").map_err(at(top))?;
     let clocked = instances.iter().any(|instance| instance.module.clocked);
     if clocked {
@@ -101,7 +103,7 @@ fn port_type(port: &Port) -> Type {
     }
 }
 
-/// The input `name`, equal in all instances that have it.
+/// The input `name`, which must be equal in all instances that have it.
 fn shared_input(name: &str, instances: &[ModuleInstance<'_>]) -> Result<Port, EmitCause> {
     names::check_name(name)?;
     let mut shared: Option<&Port> = None;

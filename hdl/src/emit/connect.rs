@@ -1,4 +1,4 @@
-//! The Verilog of a composition: its parts' modules, joined by named nets.
+//! Writes the Verilog of a composition: its parts' modules, joined by named nets.
 
 use super::error::{EmitCause, EmitError};
 use super::names::{self, Taken};
@@ -8,12 +8,12 @@ use super::{Header, Module};
 use posicast_model::rtl::composition::{Composition, Connection};
 use posicast_model::rtl::{Direction, Port};
 
-/// Writes the module `top`: one instance per part of `composition`, of the module in the same place of `modules`.
+/// Writes the module `top`: one instance per part of `composition`, of the module with the same index in `modules`.
 ///
-/// Instances are called `u_PART`; nets that are no ports are wires of their own name.
+/// Instances are called `u_PART`; nets that are not ports are wires with their own name.
 ///
 /// # Errors
-/// Names that are reserved or taken twice; a module whose ports are not the part's.
+/// An error for names that are reserved or used twice, and for a module whose ports differ from the part's.
 pub fn connect(
     top: &str,
     header: &Header,
@@ -124,7 +124,7 @@ fn body(composition: &Composition, clocked: bool, modules: &[&Module]) -> String
             .collect();
         if !unread.is_empty() {
             lines.line("");
-            lines.line("// Nets that nothing reads.");
+            lines.line("// Nets that are never read.");
             lines.line(&format!(
                 "wire {} = &{{1'b0, {}}};",
                 super::scope::UNUSED,

@@ -1,7 +1,9 @@
-//! Which construct drives each net: a wire straight to its source, a continuous `assign`, or the `always @(*)` block.
+//! Decides which construct drives each net: a direct connection to its source, a continuous `assign`, or the
+//! `always @(*)` block.
 //!
-//! What is assigned once and unconditionally needs no `always`. That reads better, and it has a value from the start: a
-//! block of constants alone has nothing that would ever trigger it, and would stay X in an event simulator.
+//! A net that is assigned once and unconditionally needs no `always`. That reads better, and the net has a value from
+//! the start: a block with only constants would have nothing that triggers it, and would stay X in an event
+//! simulator.
 
 use super::error::{EmitCause, EmitError};
 use super::ir::{Expression, Statement, each};
@@ -9,12 +11,12 @@ use super::scope::{Net, NetId, Role, Scope};
 use super::types::mask;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A kernel, sorted by construct. A comment goes with the statement that follows it, and is there once.
+/// A kernel, sorted by construct. A comment is kept once, with the statement that follows it.
 #[derive(Debug, Default)]
 pub(super) struct Drivers {
-    /// Inputs of registers and sub-blocks that are just another net or a short expression.
+    /// Inputs of registers and sub-blocks that are driven by another net or by a short expression.
     pub(super) direct: BTreeMap<NetId, Expression>,
-    /// The comments above what wires these inputs.
+    /// The comments for the wiring of these inputs.
     pub(super) notes: BTreeMap<NetId, Vec<String>>,
     /// Comments and assignments.
     pub(super) continuous: Vec<Statement>,
@@ -55,7 +57,7 @@ impl Drivers {
         Ok(drivers)
     }
 
-    /// The bits of each net that are read, by the kernel and by the wires.
+    /// The bits of each net that the kernel and the wires read.
     pub(super) fn bits_read(&self) -> BTreeMap<NetId, u64> {
         let mut bits: BTreeMap<NetId, u64> = BTreeMap::new();
         let mut collect = |statement: &Statement| {
@@ -101,13 +103,14 @@ impl Drivers {
     }
 }
 
-/// Longest expression that stands where it is used, in characters: in the connection of a sub-block's port, and behind `<=`.
+/// Length in characters of the longest expression that is written at its use: in the connection of a sub-block's
+/// port, and after `<=`.
 const SHORT: (usize, usize) = (40, 80);
 
-/// Does what drives this net stand where the net is used?
+/// Whether the driver of this net is written where the net is used.
 fn is_direct(value: &Expression, net: &Net) -> bool {
     let is_short = match net.role {
-        // Yosys takes no signed expression in a connection, whose own sign it loses.
+        // Yosys does not handle signed expressions in a connection: it loses their sign.
         Role::PinIn => !net.ty.signed && !value.text.contains('$') && value.text.len() <= SHORT.0,
         Role::Next => value.text.len() <= SHORT.1,
         _ => false,
@@ -149,8 +152,8 @@ pub(super) fn unread(
     Ok(ranges)
 }
 
-/// Drops each assignment that a later, unconditional one of the same block makes void. The flow check has made sure that
-/// nothing reads in between.
+/// Removes each assignment that a later, unconditional one of the same block overrides. The flow check has made sure
+/// that nothing reads in between.
 fn drop_overridden(block: Vec<Statement>) -> Vec<Statement> {
     let mut later = BTreeSet::new();
     let mut kept = Vec::new();

@@ -1,7 +1,8 @@
-//! What the emitter refuses, where, and what to write instead.
+//! Errors of the emitter: what it refuses, where, and what to write instead.
 //!
-//! An [`EmitError`] says *where* (block and signal), its [`EmitCause`] says *what* was found and *what to do*. Every cause is a
-//! design error of a kernel or of a call, never of a machine file: correct kernels emit for every machine.
+//! An [`EmitError`] says *where* (block and signal), its [`EmitCause`] says *what* was found and *what to do*. Every
+//! cause is a design error of a kernel or of a call, never of a machine file: a correct kernel can be emitted for
+//! every machine.
 
 use super::types::Type;
 
@@ -9,9 +10,9 @@ use super::types::Type;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("block `{block}`, signal `{signal}`: {cause}")]
 pub struct EmitError {
-    /// Path of the block from the top, joined by dots, or the name of the module that was to be composed.
+    /// Path of the block from the top, joined by dots, or the name of the composed module.
     pub block: String,
-    /// The signal that is declared, assigned or read where the error was found; `-` where no signal is concerned.
+    /// The signal whose declaration, assignment or read has the error; `-` where no signal is concerned.
     pub signal: String,
     /// What was found and what to do.
     pub cause: Box<EmitCause>,
@@ -29,7 +30,7 @@ impl EmitError {
 }
 
 impl EmitCause {
-    /// `value` as a bit pattern of the type, or that it does not fit.
+    /// `value` as a bit pattern of the type; an error if it does not fit.
     pub(super) fn pattern(place: Type, value: i128) -> Result<u64, Self> {
         place.pattern(value).ok_or(Self::Literal { value, place })
     }
@@ -40,30 +41,32 @@ impl EmitCause {
 #[non_exhaustive]
 pub enum EmitCause {
     // Names.
-    /// A name that is not plain lower-case snake case.
+    /// A name is not plain lower-case snake case.
     #[error("the name `{0}` is not of the form [a-z][a-z0-9_]*; rename it")]
     BadName(String),
-    /// A keyword of Verilog or SystemVerilog.
+    /// A name is a keyword of Verilog or SystemVerilog.
     #[error("`{0}` is a reserved word of Verilog or SystemVerilog; rename it")]
     ReservedWord(String),
-    /// Two things with one name.
+    /// Two things have the same name.
     #[error("the Verilog name `{name}` is taken by `{other}`; rename one of them")]
     NameCollision {
         /// The name in the Verilog.
         name: String,
-        /// What has it already.
+        /// What uses the name already.
         other: String,
     },
 
-    /// Two modules with one name that say different things.
-    #[error("there are two modules `{0}` that differ; name what they differ in, as in `@module history_${{width x}}`")]
+    /// Two different modules have the same name.
+    #[error(
+        "two modules are named `{0}` and differ; put the difference into the name, as in `@module history_${{width x}}`"
+    )]
     OtherContent(String),
 
     // Declarations.
-    /// Width 0 or above 64.
+    /// The width is 0 or above 64.
     #[error("it is {0} bits wide, allowed are 1 to 64; split it")]
     Width(usize),
-    /// A struct-typed or bidirectional signal, or a RustHDL construct without exact translation.
+    /// A signal is of a struct type or bidirectional, or a RustHDL construct has no exact translation.
     #[error("{found} cannot be expressed exactly; {remedy}")]
     Unsupported {
         /// The construct.
@@ -71,24 +74,24 @@ pub enum EmitCause {
         /// What to write instead.
         remedy: &'static str,
     },
-    /// A clock input under another name.
+    /// A clock input has another name than `clk`.
     #[error("a clock input must be called `clk`; rename it")]
     ClockName,
-    /// A register in a block without `clk` or `rst`.
+    /// A block with registers has no `clk` or `rst`.
     #[error("registers need an input `{0}` in the block that owns them; add it as a one-bit input")]
     MissingInput(&'static str),
-    /// Tag or shape of a leaf.
+    /// The tag or the form of a leaf is wrong.
     #[error("the leaf's tag is wrong: {0}; see the leaf convention in docs/emitter.md")]
     Leaf(String),
 
     // Names used in a kernel.
-    /// A name that is neither a signal nor a loop variable.
+    /// A name is neither a signal nor a loop variable.
     #[error("`{0}` is not a signal of this block; a const generic used as a value goes into a `Constant`")]
     UnknownSignal(String),
-    /// An array index that is not a constant.
+    /// An array index is not a constant.
     #[error("array index in `{0}` is not a constant; compare with each index in a loop")]
     ArrayIndex(String),
-    /// Loop bounds.
+    /// Loop bounds are not constant, or too far apart.
     #[error("loop from {from} to {to} is not unrolled; allowed are at most 1024 turns with constant bounds")]
     Loop {
         /// First index.
@@ -101,7 +104,7 @@ pub enum EmitCause {
     LoopVariable(String),
 
     // Expressions.
-    /// Operands or sides of an assignment of different type.
+    /// Operands, or the sides of an assignment, have different types.
     #[error("`{found}` is {found_type}, {expected} is needed; convert it through a Local of the right type")]
     TypeMismatch {
         /// The expression, as Verilog.
@@ -111,7 +114,7 @@ pub enum EmitCause {
         /// The type that the place needs.
         expected: Type,
     },
-    /// A literal that does not fit.
+    /// A literal does not fit its type.
     #[error("the literal {value} does not fit {place}; use a smaller value or a wider signal")]
     Literal {
         /// The value.
@@ -119,13 +122,13 @@ pub enum EmitCause {
         /// The type it should have.
         place: Type,
     },
-    /// A literal or `signed_bit_cast` where nothing says how wide it is.
+    /// The width of a literal or of a `signed_bit_cast` cannot be determined.
     #[error("the width of {0} cannot be told here; assign it to a Local, or use a `Constant`")]
     WidthUnknown(&'static str),
-    /// A slice, cast or product of an expression (kernel rule 3).
+    /// A slice, cast or product is applied to an expression (kernel rule 3).
     #[error("`{0}` changes width inside a larger expression; assign it to a Local first and use that")]
     NeedsLocal(String),
-    /// A slice beyond its operand.
+    /// A slice exceeds its operand.
     #[error("bits {low} to {high} of `{found}` do not exist: it has {width}; correct the offset")]
     OutOfRange {
         /// The operand.
@@ -137,7 +140,7 @@ pub enum EmitCause {
         /// Width of the operand.
         width: u32,
     },
-    /// A signal as index whose range is not exactly the operand's.
+    /// The range of an index signal is not exactly that of the operand.
     #[error("an index of {index_bits} bits into {width} bits can point outside; use an index that fits exactly")]
     IndexRange {
         /// Width of the index.
@@ -147,13 +150,13 @@ pub enum EmitCause {
     },
 
     // Assignments.
-    /// Input of a submodule, or of a register, read by its owner (kernel rule 4, pitfall P11).
+    /// The owner reads an input of a submodule or of a register (kernel rule 4, pitfall P11).
     #[error("`{0}` is the input of a submodule and is read here; simulation sees its final value, so read its source")]
     ReadsSubmoduleInput(String),
-    /// The kernel drives what others drive.
+    /// The kernel drives a signal that has another driver.
     #[error("it is {0} and cannot be assigned here; assign a Local or an output")]
     NotDrivable(&'static str),
-    /// Clock or reset of a register from elsewhere.
+    /// Clock or reset of a register do not come from this block.
     #[error(
         "a register's `{port}` must be this block's `{expected}`; list the register in `dff_setup!(self, clk, ..)`"
     )]
@@ -163,53 +166,54 @@ pub enum EmitCause {
         /// The only allowed source.
         expected: &'static str,
     },
-    /// Clock of a submodule from elsewhere: there is one clock (kernel rule 5).
+    /// The clock of a submodule does not come from this block: there is one clock (kernel rule 5).
     #[error("the clock of a submodule must be this block's `clk`; assign `self.clk.val()` to it")]
     ClockWiring,
-    /// Latch.
+    /// A signal is not assigned on every path, which makes a latch.
     #[error("it is not assigned on every path, which makes a latch; give it a default before the first `if`")]
     Latch,
-    /// Nothing drives it.
-    #[error("nothing assigns it; assign it, or remove it")]
+    /// Nothing drives a signal.
+    #[error("it is never assigned; assign it, or remove it")]
     NeverAssigned,
-    /// Nothing reads it.
-    #[error("nothing reads it; remove it")]
+    /// Nothing reads a signal.
+    #[error("it is never read; remove it")]
     NeverRead,
-    /// Read where it has no value yet.
+    /// A signal is read before it has a value.
     #[error("`{0}` is read before it is assigned; move the assignment up")]
     ReadBeforeAssigned(String),
-    /// Assigned after a read: the simulation's reader sees the later value, Verilog's the earlier one.
+    /// A signal is assigned after it was read: the simulation's reader sees the later value, Verilog's the earlier
+    /// one.
     #[error("it is assigned again after it was read; assign it for the last time before anything reads it")]
     AssignedAfterRead,
-    /// A match without `_` that leaves values out.
+    /// A match without `_` does not list all values.
     #[error("the match on `{0}` neither lists every value nor ends in `_`; add the missing arm")]
     MatchNotExhaustive(String),
-    /// Conditional logic that depends on constants only.
+    /// A condition depends on constants only.
     #[error("conditions on constants alone never trigger in an event simulator; decide them where the block is built")]
     ConstantCondition,
 
     // Sizes.
-    /// A number that is not a constant plus a sum of sizes.
+    /// A number is not a sum of sizes and a constant.
     #[error(
-        "the number that is {0} at the sizes that are compiled is no sum of sizes and a constant; \
+        "the number that is {0} at the sizes that are compiled is not a sum of sizes and a constant; \
          write it as one, or make it a size of its own"
     )]
     SizeNumber(String),
-    /// A constant or reset value that depends on the size that is compiled instead of the configuration.
+    /// A constant or reset value depends on the compiled size instead of the configuration.
     #[error("the value that is {0} at the sizes that are compiled depends on them; make it from the configuration")]
     SizeValue(String),
-    /// What is not the same at all sizes that are compiled.
+    /// Something differs between the compiled sizes.
     #[error("the {0} differs between the sizes that are compiled; keep a set of sizes for each form")]
     SizesDiffer(String),
 
     // Composition.
-    /// A shared input that no instance has.
+    /// No instance has a shared input.
     #[error("no instance has an input `{0}` to share; remove it from the shared inputs")]
     NoSuchInput(String),
-    /// A shared input of two different types.
+    /// A shared input has two different types.
     #[error("the shared input `{name}` is {first} in one instance and {second} in `{instance}`; make them equal")]
     SharedType {
-        /// The input.
+        /// Name of the input.
         name: String,
         /// Type in the instances before.
         first: Type,
@@ -218,10 +222,10 @@ pub enum EmitCause {
         /// Its type there.
         second: Type,
     },
-    /// A module that is not what the composition's part is: other ports, or one too few.
+    /// A module differs from the composition's part in its ports, or is missing.
     #[error("the part `{0}` has other ports than the module that is to be it; make them from the same configuration")]
     PartPorts(String),
-    /// An output that bears the name of a shared input.
+    /// An output has the name of a shared input.
     #[error("`{0}` is an output of an instance and cannot be shared; rename it or do not share it")]
     SharedOutput(String),
 }

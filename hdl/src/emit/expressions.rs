@@ -1,11 +1,12 @@
-//! Expressions: RustHDL's untyped tree to Verilog text whose width and sign are those of the Rust types.
+//! Converts expressions: RustHDL's untyped tree becomes Verilog text whose width and sign are those of the Rust
+//! types.
 //!
-//! Every value carries its [`Type`]. Operands of an operator have equal types, as in Rust, so no operand is ever extended by
-//! its context and no carry survives that Rust drops. A change of width is written out, and only of a net, a part of a net or
-//! a constant; of a larger expression it needs a Local (kernel rule 3).
+//! Every value has its [`Type`]. Operands of an operator have equal types, as in Rust, so no operand is extended by
+//! its context, and no carry survives that Rust drops. A change of width is written explicitly, and is possible only
+//! for a net, a part of a net or a constant; a larger expression needs a Local for it (kernel rule 3).
 //!
-//! Two constructs of the tree do not say their width: a literal and `signed_bit_cast`. They take it from the other operand
-//! or the target; where there is none, they are refused.
+//! Two constructs of the tree do not state their width: a literal and `signed_bit_cast`. They take it from the other
+//! operand or the target; without one they are refused.
 
 use super::collect::literal_value;
 use super::error::EmitCause;
@@ -25,7 +26,7 @@ pub(super) fn expression(tree: &Tree, ty: Type, scope: &Scope, loops: &Loops) ->
     Ok(writer.values.finish(&value))
 }
 
-/// Writes `tree`, whose type nothing else determines, and tells its type.
+/// Writes `tree`, whose type nothing else determines, and returns its type.
 pub(super) fn free_expression(tree: &Tree, scope: &Scope, loops: &Loops) -> Result<(Expression, Type), EmitCause> {
     let mut writer = Writer::new(scope, loops);
     let value = writer.value(tree, None)?;
@@ -43,7 +44,7 @@ impl<'a> Writer<'a> {
         Self { values, loops }
     }
 
-    /// `want` is the type that the surroundings need, where they say.
+    /// `want` is the type that the context needs, if it determines one.
     fn value(&mut self, tree: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         if let Some(value) = self.number(tree) {
             let ty = want.ok_or(EmitCause::WidthUnknown("a literal"))?;
@@ -90,7 +91,7 @@ impl<'a> Writer<'a> {
 
     // Numbers that have no width of their own.
 
-    /// The value of arithmetic on integer literals and loop variables, which is Rust's arithmetic on integers.
+    /// The value of arithmetic on integer literals and loop variables, which follows Rust's integer arithmetic.
     fn number(&self, tree: &Tree) -> Option<i128> {
         match tree {
             Tree::Paren(inner) => self.number(inner),
@@ -113,8 +114,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The value of an index that is a number or an unsigned constant. Not of arithmetic on constants: the tree does not
-    /// tell whether it wraps at the constant's width.
+    /// The value of an index that is a number or an unsigned constant. Arithmetic on constants is excluded, because
+    /// the tree does not show whether it wraps at the constant's width.
     fn constant_index(&self, tree: &Tree) -> Option<i128> {
         match tree {
             _ if self.number(tree).is_some() => self.number(tree),
@@ -131,7 +132,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Is its width what the surroundings say?
+    /// Whether its width is determined by the context.
     fn takes_width(&self, tree: &Tree) -> bool {
         match tree {
             _ if self.number(tree).is_some() => true,
@@ -149,7 +150,7 @@ impl<'a> Writer<'a> {
 
     // Casts.
 
-    /// `bit_cast::<M, N>(x)` and `bits::<M>(5)`.
+    /// Casts `bit_cast::<M, N>(x)` and `bits::<M>(5)`.
     fn cast(&mut self, inner: &Tree, bits: usize) -> Result<Value, EmitCause> {
         let width = u32::try_from(bits).ok().filter(|width| (1..=64).contains(width));
         let ty = Type::bits(width.ok_or(EmitCause::Width(bits))?);
@@ -161,7 +162,8 @@ impl<'a> Writer<'a> {
         self.values.resize(value, ty)
     }
 
-    /// `signed_cast(bits)`, same width; or `signed_bit_cast::<M, N>(signed)`, whose M the tree does not tell.
+    /// Casts `signed_cast(bits)` with the same width, or `signed_bit_cast::<M, N>(signed)`, whose M the tree does not
+    /// contain.
     fn signed(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let value = self.value(inner, None)?;
         let from = value.ty();
@@ -172,7 +174,8 @@ impl<'a> Writer<'a> {
         self.values.resize(value, Type { width, signed: true })
     }
 
-    /// `unsigned_cast(signed)`, same width. What it casts is computed at its own width, so that a product is refused.
+    /// Cast `unsigned_cast(signed)` with the same width. Its operand is computed at its own width, so a product is
+    /// refused.
     fn unsigned(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let want = want.filter(|_| self.takes_width(inner));
         let value = self.value(inner, want.map(|ty| Type { signed: true, ..ty }))?;
@@ -247,7 +250,7 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// A signal as index or shift amount: its text as an operand, and its width.
+    /// An index or shift amount that is a signal: its text as an operand, and its width.
     fn index(&mut self, tree: &Tree) -> Result<(String, u32), EmitCause> {
         let value = self.value(tree, None)?;
         let width = value.ty().width;
@@ -287,8 +290,8 @@ impl<'a> Writer<'a> {
         Ok(self.operator(&left, op, &right, ty))
     }
 
-    /// Verilog computes a product at the width of its target, which must therefore be the full product, and its operands
-    /// must be nets, which the target's width extends by their own sign.
+    /// Verilog computes a product at the width of its target, which must therefore be that of the full product; the
+    /// operands must be nets, which are extended to that width by their own sign.
     fn product(&mut self, a: &Tree, b: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let (left, right) = (self.value(a, None)?, self.value(b, None)?);
         for operand in [&left, &right] {
@@ -362,7 +365,8 @@ fn symbol(op: &VerilogOp) -> &'static str {
     }
 }
 
-/// `true` or `false`: RustHDL gives them one bit, and integers the width of some Rust integer, which means nothing.
+/// `true` or `false`: RustHDL gives them one bit, and gives integers the width of a Rust integer, which means
+/// nothing.
 fn literal_bit(literal: &VerilogLiteral) -> Result<Value, EmitCause> {
     let (_, value) = literal_value(literal).ok_or(EmitCause::WidthUnknown("a literal"))?;
     let pattern = EmitCause::pattern(BIT, value)?;

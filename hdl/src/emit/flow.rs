@@ -1,8 +1,9 @@
-//! Where RustHDL and a Verilog `always @(*)` block could differ because of the order of statements.
+//! Checks for places where RustHDL and a Verilog `always @(*)` block could differ because of the order of statements.
 //!
-//! RustHDL repeats a kernel until nothing changes, so a reader sees the *final* value of what it reads. Verilog runs the
-//! block once, so a reader sees the value *so far*. The two agree if, on every path, each signal is assigned before it is
-//! read and not assigned after it was read. What is not assigned on every path would be a latch.
+//! RustHDL repeats a kernel until nothing changes, so a reader sees the *final* value of what it reads. Verilog runs
+//! the block once, so a reader sees the value *so far*. The two agree if, on every path, each signal is assigned
+//! before it is read and not assigned after it was read. A signal that is not assigned on every path would be a
+//! latch.
 
 use super::error::{EmitCause, EmitError};
 use super::ir::{Reads, Statement};
@@ -32,16 +33,16 @@ fn error(path: &str, scope: &Scope, id: NetId, cause: EmitCause) -> EmitError {
 
 #[derive(Debug, Clone, Default)]
 struct State {
-    /// Assigned on every path so far.
+    /// Signals assigned on every path so far.
     assigned: BTreeSet<NetId>,
-    /// Assigned on some path so far.
+    /// Signals assigned on some path so far.
     touched: BTreeSet<NetId>,
-    /// Read on some path so far.
+    /// Signals read on some path so far.
     read: BTreeSet<NetId>,
 }
 
 impl State {
-    /// The state after either of two paths.
+    /// The state after one of two paths.
     fn either(mut self, other: &Self) -> Self {
         self.assigned.retain(|id| other.assigned.contains(id));
         self.touched.extend(&other.touched);

@@ -1,6 +1,7 @@
-//! What a module's file begins with: the head of its kernel's file, as plain text for a Verilog comment.
+//! The head of a module's file: the documentation of its kernel's file as plain text for a Verilog comment.
 //!
-//! Links and the fences of drawings go, and letters beyond ASCII, which some tools for Verilog do not read.
+//! Links and the fences of drawings are removed, and letters beyond ASCII, which some Verilog tools cannot read, are
+//! replaced.
 
 /// `(@module tag, lines behind //!)` of every kernel; see `build.rs`.
 const HEADS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/heads.rs"));
@@ -20,7 +21,7 @@ const WORDS: [(char, &str); 11] = [
     ('│', "|"),
 ];
 
-/// The head of the kernel whose tag this is, line by line; a paragraph is one line.
+/// The head of the kernel with this tag, line by line; a paragraph is one line.
 pub(super) fn head(tag: &str) -> Vec<String> {
     let found = HEADS.iter().find(|(name, _)| *name == tag);
     found.map(|(_, text)| plain(text)).unwrap_or_default()
@@ -60,7 +61,7 @@ pub(super) fn plain_words(line: &str) -> String {
             break;
         };
         text.push_str(before);
-        // A link has a target or is a name in backticks; other brackets are those of a word's bits.
+        // A link has a target or is a name in backticks; other brackets belong to a word's bits.
         let target = after.strip_prefix('(').and_then(|target| target.split_once(')'));
         rest = match target {
             Some((_, after)) => {
@@ -88,7 +89,7 @@ pub(super) fn plain_words(line: &str) -> String {
     plain
 }
 
-/// A letter of a drawing: one for one, so that columns stay.
+/// Replaces a letter of a drawing one for one, so that columns stay aligned.
 fn drawing(letter: char) -> char {
     match letter {
         '─' | '−' => '-',

@@ -1,4 +1,4 @@
-//! A kernel after typing: statements whose expressions are Verilog text, with what each reads and drives.
+//! A typed kernel: statements whose expressions are Verilog text, with the nets that each reads and drives.
 
 use super::scope::NetId;
 
@@ -10,11 +10,11 @@ pub(super) type Reads = Vec<(NetId, u64)>;
 pub(super) struct Expression {
     pub(super) text: String,
     pub(super) reads: Reads,
-    /// The net, if the expression is just that net.
+    /// The net, if the expression is only that net.
     pub(super) plain: Option<NetId>,
 }
 
-/// One statement, loops unrolled.
+/// One statement; loops are unrolled.
 #[derive(Debug, Clone)]
 pub(super) enum Statement {
     Comment(String),
@@ -33,7 +33,7 @@ pub(super) enum Statement {
     },
 }
 
-/// One arm of a case; the last of a case has no label and is the default.
+/// One arm of a case; the last arm has no label and is the default.
 #[derive(Debug, Clone)]
 pub(super) struct Arm {
     pub(super) label: Option<Expression>,
@@ -56,7 +56,7 @@ pub(super) fn each<'a>(block: &'a [Statement], visit: &mut dyn FnMut(&'a Stateme
 }
 
 impl Statement {
-    /// What the statement itself reads, without the statements inside.
+    /// Bits that the statement itself reads, without the statements inside it.
     pub(super) fn own_reads(&self) -> impl Iterator<Item = &(NetId, u64)> {
         let (first, labels) = match self {
             Self::Comment(_) => (None, [].as_slice()),

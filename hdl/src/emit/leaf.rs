@@ -1,4 +1,4 @@
-//! Leaves: blocks whose Verilog is written by hand, and the tag that says what they are.
+//! Leaves: blocks with hand-written Verilog, and the tag that describes them.
 //!
 //! ```text
 //! // @dff 8'h05                       a register: reset and power-up value as a bit pattern; ports clock, rst, d, q
@@ -10,7 +10,7 @@
 //! reg [15:0] memory [0:63];           the body, between port list and `endmodule`
 //! ```
 //!
-//! A number that follows from a port's width is written as `${..}`, so that the text serves every size: see
+//! A number that depends on a port's width is written as `${..}`, so that the text serves every size: see
 //! [`numbers`](super::numbers).
 
 use super::collect::{Kind, Node};
@@ -23,7 +23,7 @@ use rust_hdl_core::prelude::Verilog;
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Leaf<'a> {
     pub(super) base_name: &'a str,
-    /// Holds contents that belong to one machine.
+    /// Whether its contents belong to one machine.
     pub(super) of_machine: bool,
     /// Raw names of the outputs declared `reg`.
     pub(super) regs: Vec<&'a str>,
@@ -31,16 +31,16 @@ pub(super) struct Leaf<'a> {
     pub(super) body: Vec<&'a str>,
 }
 
-/// A register, as its tag describes it.
+/// A register as described by its tag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct RegisterTag {
     /// Reset and power-up value.
     pub(super) initial: u64,
-    /// The block that owns the register clocks and resets it, and lets it keep its value, without a statement of the kernel.
+    /// Whether the owning block clocks and resets it, and lets it keep its value, without a statement of the kernel.
     pub(super) is_kept: bool,
 }
 
-/// The tag if `node` is a register.
+/// The tag, if `node` is a register.
 pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, EmitCause> {
     let Verilog::Custom(text) = &node.code else {
         return Ok(None);
@@ -82,13 +82,13 @@ pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, EmitCause> {
     }))
 }
 
-/// The text of a register: what [`register`] reads.
+/// The text of a register, which [`register`] reads.
 pub(super) fn register_text(tag: RegisterTag, ty: Type) -> String {
     let kept = if tag.is_kept { " kept" } else { "" };
     format!("// @dff {}'h{:x}{kept}\n", ty.width, tag.initial)
 }
 
-/// The parts of a leaf's text.
+/// Splits a leaf's text into its parts.
 pub(super) fn parse<'a>(text: &'a str, node: &Node) -> Result<Leaf<'a>, EmitCause> {
     let mut lines = text.lines().map(str::trim_end).peekable();
     let tag = lines.next().and_then(|line| line.strip_prefix("// @leaf "));

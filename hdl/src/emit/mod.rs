@@ -1,19 +1,20 @@
-//! Verilog from RustHDL: a typed emitter that writes exactly what the simulation does, or nothing.
+//! Verilog from RustHDL: a typed emitter that writes exactly what the simulation does, or refuses.
 //!
-//! RustHDL's own generator drops widths and signs on the way, so that its Verilog can compute something else than its
-//! simulation. This one carries the type of every expression to the text. What has no exact, plain translation is refused
-//! with an [`EmitError`] that names the block, the signal and the remedy.
+//! RustHDL's own generator loses widths and signs, so that its Verilog can compute something else than its
+//! simulation. This one keeps the type of every expression up to the text. A construct without an exact, plain
+//! translation is refused with an [`EmitError`] that names the block, the signal and the remedy.
 //!
-//! - In: a RustHDL [`Block`], whose leaves carry tags (below), and names: top, prefix, header.
-//! - Out: one [`Module`] per Verilog file, sub-modules before those that use them, the top last; byte for byte the same in
-//!   each run. Verilog-2001, clean under `verilator --lint-only -Wall` without waivers, accepted by Icarus and Yosys.
+//! - Input: a RustHDL [`Block`], whose leaves have tags (below), and names: top, prefix, header.
+//! - Output: one [`Module`] per Verilog file, sub-modules before those that use them, the top last; byte for byte the
+//!   same in each run. It is Verilog-2001, clean under `verilator --lint-only -Wall` without waivers, and accepted by
+//!   Icarus and Yosys.
 //! - Clock and reset: all registers of a module are clocked by its input `clk` and reset, synchronously, by its input
 //!   `rst`; the reset value is also the power-up value.
-//! - Sharing: equal sub-blocks are one module. Sub-blocks that come out different have different names, by the sizes that their
-//!   `@module` tags name; anything else is an error, so that a name stands for one content wherever it is used.
+//! - Sharing: equal sub-blocks are one module. Sub-blocks that differ have different names, by the sizes in their
+//!   `@module` tags; anything else is an error, so that a name always stands for the same contents.
 //!
-//! A kernel names its module with a comment, and the `//!` lines of its file are what the Verilog begins with. A leaf says both in the
-//! first lines of its text:
+//! A kernel names its module by a comment, and the Verilog begins with the `//!` lines of its file. A leaf states
+//! both in the first lines of its text:
 //!
 //! ```text
 //! comment!("@module tap_sequencer");   base name of the module; without it, the field path
@@ -34,8 +35,9 @@
 //!
 //! # Limits
 //!
-//! Signals of 1 to 64 bits; no struct signals, no bidirectional ports, no black boxes, no interface `join` and `link`. An
-//! `always @(*)` block whose inputs are all tied to constants *by the parent* has no trigger in an event simulator.
+//! Signals have 1 to 64 bits. There are no struct signals, no bidirectional ports, no black boxes, and no interface
+//! `join` and `link`. An `always @(*)` block whose inputs are all tied to constants *by the parent* has no trigger in
+//! an event simulator.
 
 mod collect;
 mod compose;
@@ -80,13 +82,12 @@ pub struct Module {
     pub text: String,
     /// All ports except `clk`, in the order of the port list.
     pub ports: Vec<Port>,
-    /// Has it an input `clk`?
+    /// Whether it has an input `clk`.
     pub clocked: bool,
 }
 
 impl Module {
-    /// Whether it is called `base`, whatever stands before that name, and whatever size behind it: `posicast_handover_32x128_f16`
-    /// is `handover`.
+    /// Whether its name is `base`, with any prefix and any size: `posicast_handover_32x128_f16` is `handover`.
     pub fn is(&self, base: &str) -> bool {
         self.name.match_indices(base).any(|(at, _)| {
             let (before, behind) = (&self.name[..at], &self.name[at + base.len()..]);
@@ -97,24 +98,25 @@ impl Module {
     }
 }
 
-/// What [`emit()`] needs to know beside the block.
+/// Parameters of [`emit()`] in addition to the block.
 #[derive(Debug, Clone, Default)]
 pub struct EmitOptions {
-    /// Base name of the top module; a size that the block has is in it.
+    /// Base name of the top module, which includes the block's size if it has one.
     pub top: String,
-    /// What stands before the names of modules that hold something of a machine, joined by `_`: the machine's and axis's names.
-    /// All other modules begin with [`LIBRARY`]. Where it is empty all names are bare, as a bench wants them.
+    /// Prefix of the names of modules that contain something of a machine, joined by `_`: the machine's and axis's
+    /// names. All other modules begin with [`LIBRARY`]. If it is empty, all names are without prefix, as a bench
+    /// needs them.
     pub prefix: String,
-    /// What the top's file says first.
+    /// Header of the top's file.
     pub header: Header,
 }
 
 /// The comment at the head of a top module's file; version and name are added.
 #[derive(Debug, Clone, Default)]
 pub struct Header {
-    /// What the module is, in a sentence or some lines.
+    /// Description of the module, in a sentence or some lines.
     pub about: String,
-    /// What it was built with.
+    /// Its build parameters.
     pub parameters: Vec<Parameter>,
     /// What its ports are for.
     pub ports: Vec<PortNote>,
@@ -143,12 +145,12 @@ pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<M
 
 /// Writes a kernel at the sizes `wanted` as Verilog, from the same kernel at a few other sizes.
 ///
-/// Each sample is the kernel's sizes and the kernel, all built for one configuration. A width must be a constant plus the sum
-/// of some of the sizes. That is told from the samples: two whose sizes differ by amounts of which no two sets have the
-/// same sum, and at least one more, which all must fit.
+/// Each sample consists of the kernel's sizes and the kernel; all are built for one configuration. A width must be a
+/// constant plus the sum of some of the sizes. The samples determine which: two whose sizes differ by amounts of
+/// which no two subsets have the same sum, and at least one more, which all must agree with.
 ///
 /// # Errors
-/// As [`emit()`], and for what does not follow from the sizes.
+/// Those of [`emit()`], and an error for numbers that do not follow from the sizes.
 pub fn emit_sized<B: Block + ?Sized>(
     samples: &[(&[u32], &B)],
     wanted: &[u32],

@@ -1,4 +1,5 @@
-//! One module per block: leaves from their text, composites from their kernels; equal modules are written once.
+//! Writes one module per block: leaves from their text, composites from their kernels; equal modules are written
+//! once.
 
 use super::collect::{Kind, Node, Signal};
 use super::drivers::{Drivers, unread};
@@ -19,9 +20,9 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) struct Modules<'a> {
     options: &'a EmitOptions,
     written: Vec<Module>,
-    /// What each module says, by its name.
+    /// Contents of each module by its name.
     by_name: BTreeMap<String, Content>,
-    /// Names of the modules that have none of their own, and so that of their first path.
+    /// Names of modules without a tag, which are named after their first path.
     untagged: BTreeMap<Content, String>,
 }
 
@@ -30,16 +31,16 @@ type Content = (Vec<String>, String);
 
 /// A module before it has its final name.
 struct Draft {
-    /// Base name from the kernel's or the leaf's tag.
+    /// Base name from the tag of the kernel or leaf.
     tagged: Option<String>,
-    /// It holds contents of a machine, or a part that does.
+    /// Whether it contains something of a machine, or a part that does.
     of_machine: bool,
     about: Vec<String>,
-    /// From the port list to `endmodule`.
+    /// Text from the port list to `endmodule`.
     body: String,
 }
 
-/// Writes `top` and all that is in it.
+/// Writes `top` and everything in it.
 pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
     let mut modules = Modules {
         options,
@@ -123,7 +124,8 @@ impl Modules<'_> {
         })
     }
 
-    /// Writes the module of a sub-block, unless it is there, and gives its name, and whether it is a machine's.
+    /// Writes the module of a sub-block, unless it exists, and returns its name and whether it contains something of
+    /// a machine.
     fn child(&mut self, node: &Node) -> Result<(String, bool), EmitError> {
         let draft = self.draft(node, &[])?;
         let from_path = || node.path.split('.').skip(1).collect::<Vec<_>>().join("_");
@@ -142,10 +144,10 @@ impl Modules<'_> {
         Ok((name, draft.of_machine))
     }
 
-    /// Takes the name for the module. It is not new where the same module has it already.
+    /// Takes the name for the module. Returns false if the same module has it already.
     ///
     /// # Errors
-    /// [`EmitCause::OtherContent`] where another module has it.
+    /// [`EmitCause::OtherContent`] where another module has the name.
     fn take(&mut self, node: &Node, name: &str, draft: &Draft) -> Result<bool, EmitError> {
         let content = (draft.about.clone(), draft.body.clone());
         match self.by_name.get(name) {
@@ -181,7 +183,7 @@ impl Modules<'_> {
     }
 }
 
-/// The base name of a kernel's module, which `comment!("@module name")` tells, and the head of its file.
+/// The base name of a kernel's module from its `comment!("@module name")`, and the head of its file.
 fn tagged(kernel: &[VerilogStatement], node: &Node) -> Result<(Option<String>, Vec<String>), EmitError> {
     for statement in kernel {
         let VerilogStatement::Comment(raw) = statement else {
@@ -204,7 +206,7 @@ struct Clocking {
 }
 
 impl Clocking {
-    /// Nothing if there are no registers.
+    /// `None` if there are no registers.
     fn find(node: &Node, scope: &Scope) -> Result<Option<Self>, EmitError> {
         let Some(register) = scope.registers.first() else {
             return Ok(None);
@@ -281,7 +283,7 @@ impl Composite<'_> {
         lines.text
     }
 
-    /// What a sub-block's or a register's input is connected to.
+    /// The source to which an input of a sub-block or register is connected.
     fn source(&self, id: NetId) -> &str {
         match self.drivers.direct.get(&id) {
             Some(source) => &source.text,
@@ -289,7 +291,7 @@ impl Composite<'_> {
         }
     }
 
-    /// The comments above what wires this input.
+    /// Writes the comments for the wiring of this input.
     fn notes(&self, lines: &mut Lines, id: NetId) {
         for text in self.drivers.notes.get(&id).into_iter().flatten() {
             lines.line(&format!("// {text}"));
@@ -348,7 +350,7 @@ impl Composite<'_> {
                 }
             });
         });
-        // Below `always @(*)`, which an event simulator must have waiting when these values arrive.
+        // It follows `always @(*)`, which an event simulator must have started when these values arrive.
         lines.section(|lines| lines.nest("initial begin", "end", |lines| initial(lines, "=")));
     }
 }

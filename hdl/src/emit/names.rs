@@ -1,4 +1,4 @@
-//! Which names may appear in the Verilog: lower-case snake case that no tool reserves.
+//! Rules for names in the Verilog: lower-case snake case that no tool reserves.
 
 use super::error::EmitCause;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ const RESERVED: &str = "\
     unsigned until until_with untyped use uwire var vectored virtual void wait wait_order wand weak weak0 weak1 while \
     wildcard wire with within wor xnor xor";
 
-/// Checks a name that stands alone in the Verilog.
+/// Checks a name that is used by itself in the Verilog.
 pub(crate) fn check_name(name: &str) -> Result<(), EmitCause> {
     check_form(name)?;
     if RESERVED.split(' ').any(|word| word == name) {
@@ -33,7 +33,7 @@ pub(crate) fn check_name(name: &str) -> Result<(), EmitCause> {
     Ok(())
 }
 
-/// Checks a name that only ever is a part of one, and may be a keyword.
+/// Checks a name that is only used as part of another, and may be a keyword.
 pub(super) fn check_form(name: &str) -> Result<(), EmitCause> {
     let mut characters = name.chars();
     let plain = characters.next().is_some_and(|first| first.is_ascii_lowercase())
@@ -45,11 +45,11 @@ pub(super) fn check_form(name: &str) -> Result<(), EmitCause> {
     }
 }
 
-/// What the names of modules begin with that are the same for every machine.
+/// Prefix of the modules that are the same for every machine.
 pub const LIBRARY: &str = "posicast";
 
-/// The whole name of a module: `posicast_BASE` where it is the same for every machine, `PREFIX_BASE` where it holds something of
-/// this one, and the base alone where there is no prefix, as in a bench.
+/// The full name of a module: `posicast_BASE` if it is the same for every machine, `PREFIX_BASE` if it contains
+/// something of this one, and the base alone without a prefix, as in a bench.
 pub(super) fn module_name(prefix: &str, of_machine: bool, base: &str) -> String {
     match (prefix, of_machine) {
         ("", _) => base.to_owned(),
@@ -58,12 +58,12 @@ pub(super) fn module_name(prefix: &str, of_machine: bool, base: &str) -> String 
     }
 }
 
-/// RustHDL's path of a signal (`bus$value$0`, `State$Idle`) as part of a Verilog name (`bus_value_0`).
+/// Converts RustHDL's path of a signal (`bus$value$0`, `State$Idle`) to a part of a Verilog name (`bus_value_0`).
 pub(super) fn flatten(raw: &str) -> String {
     raw.replace('$', "_")
 }
 
-/// `State$HoldOff` as a constant's name: `STATE_HOLD_OFF`.
+/// Converts `State$HoldOff` to the name of a constant: `STATE_HOLD_OFF`.
 pub(super) fn constant_name(raw: &str) -> String {
     let mut name = String::new();
     let mut after_small = false;
@@ -77,7 +77,7 @@ pub(super) fn constant_name(raw: &str) -> String {
     name
 }
 
-/// The names of one Verilog scope, each with what it names.
+/// The names of one Verilog scope, each with its owner.
 #[derive(Debug, Default)]
 pub(super) struct Taken(BTreeMap<String, String>);
 

@@ -1,13 +1,13 @@
-//! Numbers in a text that follow from the block: `${..}` in the text of a leaf, and in the name of a module.
+//! Numbers in a text that depend on the block: `${..}` in the text of a leaf, and in the name of a module.
 //!
-//! | in the text | what stands there |
+//! | in the text | replaced by |
 //! |---|---|
 //! | `${width NAME}` | w, the width of a port or another signal |
 //! | `${last_bit NAME}` | w − 1 |
 //! | `${words NAME}` | 2^w |
 //! | `${last_word NAME}` | 2^w − 1 |
 //! | `${pattern NAME HEX}` | the bit pattern as a sized literal, w bits wide |
-//! | `${count ARRAY}` | how many ports the array has |
+//! | `${count ARRAY}` | the number of ports of the array |
 //! | `${value NAME}` | the value of a constant, or the reset value of a register |
 //! | `${log2 NAME}` | the exponent of a constant that is a power of two, of either sign |
 //! | `${if NAME TEXT}` | the text where that value is not 0, else nothing |
@@ -16,7 +16,7 @@ use super::collect::{Kind, Node, Signal};
 use super::error::EmitCause;
 use super::leaf;
 
-/// The text with its numbers, which are those of `node`.
+/// The text with its numbers filled in from `node`.
 pub(super) fn fill(text: &str, node: &Node) -> Result<String, EmitCause> {
     let mut filled = String::new();
     let mut rest = text;
@@ -25,7 +25,11 @@ pub(super) fn fill(text: &str, node: &Node) -> Result<String, EmitCause> {
             .split_once('}')
             .ok_or_else(|| EmitCause::Leaf("a `${` without `}`".to_owned()))?;
         filled.push_str(before);
-        let wrong = || EmitCause::Leaf(format!("`${{{number}}}` is no number of the block, or does not fit it"));
+        let wrong = || {
+            EmitCause::Leaf(format!(
+                "`${{{number}}}` is not a number of the block, or does not fit it"
+            ))
+        };
         filled.push_str(&self::number(number, node)?.ok_or_else(wrong)?);
         rest = after;
     }

@@ -1,7 +1,7 @@
-//! RustHDL's text for a place in a kernel (`bank[(i+1)]$d$next`) to the signal that it means (`bank$3$d`).
+//! Resolves RustHDL's text for a place in a kernel (`bank[(i+1)]$d$next`) to the signal (`bank$3$d`).
 //!
-//! An index is arithmetic of integers and loop variables with `+ - *` and parentheses. Anything else, above all a signal as
-//! index, is refused: Verilog-2001 has no array of ports or instances that a signal could select.
+//! An index is an expression of integers and loop variables with `+ - *` and parentheses. Anything else, above all a
+//! signal as index, is refused: Verilog-2001 has no array of ports or instances that a signal could select.
 
 use super::error::EmitCause;
 

@@ -1,4 +1,5 @@
-//! The text of a module: header, ports, declarations, statements. Verilog-2001, four spaces, one declaration per line.
+//! Writes the text of a module: header, ports, declarations, statements. It is Verilog-2001 with four spaces per
+//! level and one declaration per line.
 
 use super::collect::{Kind, Node, Signal};
 use super::ir::Statement;
@@ -10,10 +11,10 @@ use super::{Header, Parameter, head};
 use posicast_model::rtl::PortNote;
 use std::fmt::Write;
 
-/// What kernels are described in.
+/// Source of the modules that are written from kernels.
 const RUSTHDL: &str = "RustHDL description";
 
-/// Text that grows line by line, indented.
+/// Indented text that is written line by line.
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
     pub(crate) text: String,
@@ -21,7 +22,7 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// A line, wrapped where it is too long, or several of them.
+    /// Writes a line, wrapped if it is too long, or several lines.
     pub(crate) fn line(&mut self, line: &str) {
         for line in line.split('\n') {
             let indented = match line {
@@ -33,13 +34,13 @@ impl Lines {
         }
     }
 
-    /// `open`, what `inner` writes one level deeper, `close`.
+    /// Writes `open`, then what `inner` writes one level deeper, then `close`.
     pub(crate) fn nest(&mut self, open: &str, close: &str, inner: impl FnOnce(&mut Self)) {
         self.line(open);
         self.nest_rest(close, inner);
     }
 
-    /// As [`nest`](Self::nest), under a line that is written already.
+    /// Does the same as [`nest`](Self::nest) below a line that is already written.
     pub(crate) fn nest_rest(&mut self, close: &str, inner: impl FnOnce(&mut Self)) {
         self.depth += 1;
         inner(self);
@@ -47,7 +48,7 @@ impl Lines {
         self.line(close);
     }
 
-    /// A blank line and what `inner` writes, if it writes anything.
+    /// Writes a blank line and what `inner` writes, if it writes anything.
     pub(crate) fn section(&mut self, inner: impl FnOnce(&mut Self)) {
         let start = self.text.len();
         self.line("");
@@ -93,12 +94,12 @@ fn header(name: &str, about: &[&str], parameters: &[Parameter], made_from: &str)
     text + "\n`default_nettype none\n\n"
 }
 
-/// The whole file of a module.
+/// The complete file of a module.
 pub(crate) fn file(name: &str, header_text: &str, body: &str) -> String {
     format!("{header_text}module {name} {body}\n`default_nettype wire\n")
 }
 
-/// Header of a file that is a part of other blocks: the table of parameters stands at their tops.
+/// Header of a file that is part of other blocks; the table of parameters is in their tops.
 pub(super) fn part_header(name: &str, about: &[&str]) -> String {
     header(name, about, &[], RUSTHDL)
 }
@@ -116,7 +117,7 @@ pub(super) fn top_header(name: &str, about: &[&str], header_data: &Header) -> St
     header(name, &paragraphs, &header_data.parameters, RUSTHDL)
 }
 
-/// Header of a file that is not made from a kernel: a register bank, a composition.
+/// Header of a file that is not written from a kernel: a register bank, a composition.
 pub(crate) fn data_header(name: &str, header_data: &Header, made_from: &str) -> String {
     header(name, &[header_data.about.as_str()], &header_data.parameters, made_from)
 }
@@ -253,7 +254,7 @@ pub(super) fn block(lines: &mut Lines, statements: &[Statement], scope: &Scope) 
     }
 }
 
-/// `if`, with a lone `if` in the other branch as `else if`.
+/// Writes `if`; an `if` alone in the other branch becomes `else if`.
 fn conditional(lines: &mut Lines, lead: &str, test: &str, then: &[Statement], otherwise: &[Statement], scope: &Scope) {
     lines.line(&format!("{lead}if ({test}) begin"));
     lines.depth += 1;
@@ -272,7 +273,7 @@ fn is_statement(statement: &Statement) -> bool {
     !matches!(statement, Statement::Comment(_))
 }
 
-/// A comment, after a blank line if a statement stands above it.
+/// Writes a comment, after a blank line if there is a statement above it.
 fn comment(lines: &mut Lines, text: &str, spaced: bool) {
     if spaced {
         lines.line("");
@@ -280,7 +281,7 @@ fn comment(lines: &mut Lines, text: &str, spaced: bool) {
     lines.line(&format!("// {text}"));
 }
 
-/// Reads what nothing else reads, under a name that lint tools take as meant.
+/// Reads bits that nothing else reads, with a name by which lint tools take it as intended.
 pub(super) fn unused(lines: &mut Lines, ranges: &[(NetId, u32, u32)], scope: &Scope) {
     if ranges.is_empty() {
         return;
@@ -288,7 +289,7 @@ pub(super) fn unused(lines: &mut Lines, ranges: &[(NetId, u32, u32)], scope: &Sc
     let bits = ranges
         .iter()
         .map(|(id, low, width)| scope.net(*id).select(*low, *width));
-    lines.line("// Bits that nothing reads.");
+    lines.line("// Bits that are never read.");
     lines.line(&format!(
         "wire {} = &{{1'b0, {}}};",
         super::scope::UNUSED,

@@ -1,4 +1,4 @@
-//! Every net of one module: its RustHDL name, its Verilog name, its type, and who may drive and read it.
+//! Every net of one module: its RustHDL name, its Verilog name, its type, and its possible drivers and readers.
 
 use super::collect::{Kind, Node};
 use super::error::{EmitCause, EmitError};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct NetId(pub(super) usize);
 
-/// What a net is to the module that it lives in. Numbers are indices into the node's children.
+/// Role of a net in its module. Numbers are indices into the node's children.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     Input,
@@ -19,34 +19,34 @@ pub(super) enum Role {
     Local,
     /// A constant or a value of an enum, with its bit pattern.
     Constant(u64),
-    /// `q` of a register: its present value.
+    /// Output `q` of a register: its present value.
     Register,
-    /// `d` of a register: its value after the next clock.
+    /// Input `d` of a register: its value after the next clock.
     Next,
-    /// `clock` of a register.
+    /// Input `clock` of a register.
     RegisterClock,
-    /// `rst` of a register.
+    /// Input `rst` of a register.
     RegisterReset,
-    /// Input of a sub-block, driven here.
+    /// Input of a sub-block, driven by this module.
     PinIn,
-    /// Clock input of a sub-block, driven here.
+    /// Clock input of a sub-block, driven by this module.
     ClockPin,
-    /// Output of a sub-block, read here.
+    /// Output of a sub-block, read by this module.
     PinOut,
 }
 
 impl Role {
-    /// Assigned by the kernel?
+    /// Whether the kernel assigns it.
     pub(super) fn is_driven(self) -> bool {
         self.is_input_below() || matches!(self, Self::Output | Self::Local)
     }
 
-    /// Input of a register or of a sub-block, assigned by the kernel?
+    /// Whether it is an input of a register or sub-block that the kernel assigns.
     pub(super) fn is_input_below(self) -> bool {
         matches!(self, Self::Next | Self::PinIn | Self::ClockPin)
     }
 
-    /// In plain words, for a net that the kernel may not assign.
+    /// Description in words of a net that the kernel must not assign.
     pub(super) fn describe(self) -> &'static str {
         match self {
             Self::Input => "an input",
@@ -69,7 +69,7 @@ pub(super) struct Net {
 }
 
 impl Net {
-    /// The net, or `width` bits of it from `low` on, without regard to sign.
+    /// The net, or `width` bits of it from `low` on, regardless of sign.
     pub(super) fn select(&self, low: u32, width: u32) -> String {
         match width {
             _ if width == self.ty.width => self.name.clone(),
@@ -85,7 +85,7 @@ pub(super) struct Register {
     pub(super) now: NetId,
     pub(super) next: NetId,
     pub(super) clock: NetId,
-    /// Reset and power-up value, and who wires it.
+    /// Reset and power-up value, and the wiring.
     pub(super) tag: RegisterTag,
 }
 
@@ -104,11 +104,11 @@ pub(super) struct Scope {
     pub(super) pins: Vec<Pins>,
     by_raw: BTreeMap<String, NetId>,
     taken: Taken,
-    /// Number of values per enum type, by the first part of a value's name.
+    /// Number of values per enum type, with the first part of a value's name as key.
     pub(super) enum_sizes: BTreeMap<String, usize>,
 }
 
-/// Name of the wire that reads what nothing else reads; lint tools know the word.
+/// Name of the wire that reads otherwise unused bits; lint tools recognise it.
 pub(super) const UNUSED: &str = "unused";
 
 impl Scope {
@@ -149,12 +149,12 @@ impl Scope {
         Ok(scope)
     }
 
-    /// The net of this id.
+    /// The net with this id.
     pub(super) fn net(&self, id: NetId) -> &Net {
         &self.nets[id.0]
     }
 
-    /// The net that RustHDL calls `raw`.
+    /// The net with RustHDL's name `raw`.
     pub(super) fn find(&self, raw: &str) -> Option<NetId> {
         self.by_raw.get(raw).copied()
     }
@@ -207,7 +207,7 @@ impl Scope {
 
     fn add_enums(&mut self, node: &Node) -> Result<(), EmitCause> {
         for (type_name, values) in &node.enums {
-            // As many bits as RustHDL's clog2 gives, which the signals of the type have.
+            // This is RustHDL's clog2, which determines the width of the type's signals.
             let width = values.len().max(2).next_power_of_two().trailing_zeros();
             self.enum_sizes.insert(type_name.clone(), values.len());
             for (number, raw) in values.iter().enumerate() {

@@ -1,17 +1,18 @@
-//! A kernel at any size, from the same kernel built at a few sizes.
+//! Makes a kernel of any size from the same kernel built at a few sizes.
 //!
-//! A size is a const generic of a kernel, so each size that is compiled is a Rust type of its own. The samples are nodes of one
-//! kernel, built for one configuration at sizes that differ. Where they differ is settled here, once, and the passes that
-//! follow see a node like any other:
+//! A size is a const generic of a kernel, so each compiled size is a Rust type of its own. The samples are nodes of
+//! one kernel, built for one configuration at different sizes. Their differences are resolved here, once, so that the
+//! following passes see a node like any other:
 //!
-//! - A width is a constant plus the sum of some of the sizes: `W + 18`, `A + T`. Which it is, all samples must agree on; with
-//!   one sample more than needed to tell, a width of another form is refused.
-//! - A value of a constant, or the reset value of a register, belongs to the configuration and is the same in all samples,
-//!   as far as their widths show it; it is cut to the width that is wanted, and loses nothing but copies of its highest bit.
-//!   A constant may also be a number of the form of a width.
-//! - All else must be equal: names, kinds, signs, statements, the text of leaves.
+//! - A width is a constant plus the sum of some of the sizes: `W + 18`, `A + T`. All samples must agree on the form;
+//!   with one sample more than needed to determine it, a width of another form is detected and refused.
+//! - A value of a constant, or the reset value of a register, belongs to the configuration and is the same in all
+//!   samples, as far as their widths show it; it is cut to the wanted width, and loses only copies of its highest
+//!   bit. A constant may also be a number with the form of a width.
+//! - Everything else must be equal: names, kinds, signs, statements, the text of leaves.
 //!
-//! Changes of the sizes from sample to sample must tell the sums apart: no two sets of sizes may change by the same sum.
+//! The changes of the sizes between samples must distinguish the sums: no two subsets of the sizes may change by the
+//! same sum.
 
 use super::collect::{Kind, Node};
 use super::error::{EmitCause, EmitError};
@@ -20,7 +21,7 @@ use super::types::{Type, mask};
 use rust_hdl_core::ast::{VerilogBlockOrConditional, VerilogExpression as Tree, VerilogStatement as Statement};
 use rust_hdl_core::prelude::Verilog;
 
-/// The kernel at the sizes `wanted`, from samples: sizes, in the order of `wanted`, and the node built at them.
+/// Makes the kernel at the sizes `wanted` from samples, each with its sizes, in the order of `wanted`, and its node.
 pub(super) fn resolve(samples: Vec<(Vec<u32>, Node)>, wanted: &[u32]) -> Result<Node, EmitError> {
     let (samples, mut nodes): (Vec<_>, Vec<_>) = samples.into_iter().unzip();
     if nodes.is_empty() || samples.iter().any(|sizes: &Vec<u32>| sizes.len() != wanted.len()) {
@@ -38,7 +39,7 @@ struct Sizes<'a> {
 }
 
 impl Sizes<'_> {
-    /// `node` at the wanted sizes; `others` are the same of the other samples.
+    /// Resolves `node` at the wanted sizes; `others` are the corresponding nodes of the other samples.
     fn node(&self, mut node: Node, others: &[&Node]) -> Result<Node, EmitError> {
         let at = |signal: &str| {
             let (path, signal) = (node.path.clone(), signal.replace('$', "."));
@@ -102,7 +103,7 @@ impl Sizes<'_> {
         Ok(node)
     }
 
-    /// A register's tag and its type; nothing for any other block.
+    /// A register's tag and its type; `None` for any other block.
     fn register(&self, node: &Node, others: &[&Node]) -> Result<Option<(RegisterTag, Type)>, EmitCause> {
         let mut found = (Vec::new(), Vec::new());
         let mut is_kept = false;
@@ -140,7 +141,7 @@ impl Sizes<'_> {
             let mut of_block = Vec::new();
             each_number(block, "", &mut |_, number| of_block.push(std::mem::take(number)));
             numbers.push(of_block);
-            // Without their numbers, equal trees read the same.
+            // With their numbers removed, equal trees have the same text.
             shapes.push(format!("{block:?}"));
         }
         if shapes.iter().any(|shape| *shape != shapes[0]) {
@@ -169,7 +170,8 @@ impl Sizes<'_> {
         })
     }
 
-    /// The number that is `found` in the samples: a constant plus the sum of some of the sizes.
+    /// The number for the wanted sizes, if `found` are those of the samples: a constant plus the sum of some of the
+    /// sizes.
     fn number(&self, found: &[i128]) -> Result<i128, EmitCause> {
         let sum = |set: u32, sizes: &[u32]| -> i128 {
             let members = sizes.iter().enumerate().filter(|(index, _)| set >> index & 1 == 1);
@@ -205,7 +207,7 @@ impl Sizes<'_> {
         if wanted.width > ty.width {
             return Err(EmitCause::SizeValue(format!("{pattern}, of {} bits", ty.width)));
         }
-        // What is cut off are copies of one bit; of a signed value they are copies of its sign.
+        // The bits that are cut off must be copies of one bit; for a signed value, of its sign.
         let from = if wanted.signed { wanted.width - 1 } else { wanted.width };
         let rest = mask(from, ty.width - from);
         match pattern & rest {
@@ -222,7 +224,7 @@ fn list(numbers: &[i128]) -> String {
     numbers.iter().map(i128::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// Calls `visit` for every number of `block` that can follow from a size, with the signal that is assigned there.
+/// Calls `visit` for every number of `block` that can depend on a size, with the signal that is assigned there.
 fn each_number(block: &mut [Statement], signal: &str, visit: &mut dyn FnMut(&str, &mut usize)) {
     for statement in block {
         match statement {

@@ -1,4 +1,5 @@
-//! Statements: a kernel's tree to the typed form of [`ir`](super::ir), loops unrolled, registers' wiring checked and dropped.
+//! Converts statements: a kernel's tree becomes the typed form of [`ir`](super::ir), with loops unrolled, and the
+//! wiring of registers checked and removed.
 
 use super::collect::literal_value;
 use super::error::{EmitCause, EmitError};
@@ -13,10 +14,10 @@ use rust_hdl_core::ast::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Turns of a loop that are unrolled at most.
+/// Largest number of turns of a loop that is unrolled.
 const MAXIMUM_TURNS: i128 = 1024;
 
-/// The kernel of the block at `path`, typed.
+/// The typed kernel of the block at `path`.
 pub(super) fn statements(kernel: &[VerilogStatement], path: &str, scope: &Scope) -> Result<Vec<Statement>, EmitError> {
     let mut reader = Reader {
         path,
@@ -38,7 +39,7 @@ pub(super) fn statements(kernel: &[VerilogStatement], path: &str, scope: &Scope)
     Ok(block)
 }
 
-/// The text of a `comment!`, however the compiler printed its tokens; nothing for other macros that end up as comments.
+/// The text of a `comment!`, however the compiler printed its tokens; `None` for other macros that become comments.
 pub(super) fn comment_text(raw: &str) -> Option<String> {
     let is_other = ["assert", "println"]
         .iter()
@@ -46,7 +47,7 @@ pub(super) fn comment_text(raw: &str) -> Option<String> {
     if is_other {
         return None;
     }
-    // RustHDL takes away `comment ! ("` and `")` where the compiler has printed the tokens in just that way.
+    // RustHDL removes `comment ! ("` and `")` only where the compiler has printed the tokens exactly like that.
     let text = raw.split_once('"').map_or(raw, |(_, rest)| rest).trim_end();
     let closed = text
         .strip_suffix(')')
@@ -60,7 +61,7 @@ struct Reader<'a> {
     path: &'a str,
     scope: &'a Scope,
     loops: Vec<(String, i128)>,
-    /// Clock inputs of the registers that are wired.
+    /// Clock inputs of the registers that the kernel wires.
     clocked: BTreeSet<NetId>,
 }
 
@@ -77,7 +78,7 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// Registers that keep their value unless the kernel says otherwise.
+    /// Registers that keep their value unless the kernel assigns another.
     fn kept_registers(&mut self) -> Result<Vec<Statement>, EmitError> {
         let mut block = Vec::new();
         for register in self.scope.registers.iter().filter(|register| register.tag.is_kept) {
@@ -98,7 +99,7 @@ impl Reader<'_> {
             VerilogStatement::Loop(turns) => self.unroll(turns, block)?,
             VerilogStatement::Macro(inner) => block.extend(self.block(inner)?),
             VerilogStatement::Comment(raw) => {
-                // Tags such as `@module` are for the emitter.
+                // Tags such as `@module` are meant for the emitter.
                 let text = comment_text(raw).filter(|text| !text.starts_with('@'));
                 block.extend(text.map(Statement::Comment));
             }
@@ -149,7 +150,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A register's `clock` and `rst` are this block's, whatever the kernel writes, so it may write nothing else.
+    /// A register's `clock` and `rst` must be this block's; the kernel may assign nothing else.
     fn wire_register(
         &self,
         raw: &str,

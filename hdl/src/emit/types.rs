@@ -1,13 +1,13 @@
-//! Width and sign of a signal, and sized literals that mean exactly one bit pattern.
+//! Width and sign of a signal, and sized literals that stand for exactly one bit pattern.
 
 use std::fmt;
 
-/// Type of a signal or expression: 1 to 64 bits, plain bits or two's complement.
+/// Type of a signal or expression: 1 to 64 bits, unsigned or two's complement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Type {
     /// Width in bits, 1..=64.
     pub width: u32,
-    /// Two's complement?
+    /// Whether it is two's complement.
     pub signed: bool,
 }
 
@@ -33,7 +33,7 @@ impl Type {
         mask(0, self.width)
     }
 
-    /// `value` as a bit pattern of this type; nothing where it does not fit.
+    /// `value` as a bit pattern of this type; `None` if it does not fit.
     pub(super) fn pattern(self, value: i128) -> Option<u64> {
         let (low, high) = if self.signed {
             (-(1i128 << (self.width - 1)), (1i128 << (self.width - 1)) - 1)
@@ -43,7 +43,7 @@ impl Type {
         (low..=high).contains(&value).then_some((value as u64) & self.mask())
     }
 
-    /// The number that a bit pattern of this type stands for.
+    /// The number that a bit pattern of this type represents.
     pub(super) fn value(self, pattern: u64) -> i128 {
         let sign_bit = 1u64 << (self.width - 1);
         let turn = if self.signed && pattern & sign_bit != 0 {
@@ -54,7 +54,7 @@ impl Type {
         i128::from(pattern) - turn
     }
 
-    /// `signed [7:0]`, or nothing for a single unsigned bit.
+    /// The declaration, such as `signed [7:0]`; empty for a single unsigned bit.
     pub(crate) fn declaration(self) -> String {
         let sign = if self.signed { "signed " } else { "" };
         let range = if self.width == 1 {
@@ -65,12 +65,13 @@ impl Type {
         format!("{sign}{range}").trim_end().to_owned()
     }
 
-    /// `pattern` as a sized literal: decimal, except the most negative value, whose magnitude has no decimal literal.
+    /// `pattern` as a sized literal: decimal, except for the most negative value, whose magnitude has no decimal
+    /// literal.
     pub(crate) fn literal(self, pattern: u64) -> String {
         let width = self.width;
         let sign_bit = 1u64 << (width - 1);
         match (self.signed, pattern & sign_bit != 0) {
-            // From here on a number is a mask rather than a count.
+            // Larger numbers are masks rather than counts.
             (false, _) if pattern > 0xffff_ffff => format!("{width}'h{pattern:x}"),
             (false, _) => format!("{width}'d{pattern}"),
             (true, false) => format!("{width}'sd{pattern}"),
@@ -80,7 +81,7 @@ impl Type {
     }
 }
 
-/// `width` ones from bit `low` on.
+/// A mask with `width` ones from bit `low` on.
 pub(super) fn mask(low: u32, width: u32) -> u64 {
     let ones = if width >= 64 { u64::MAX } else { (1u64 << width) - 1 };
     ones.checked_shl(low).unwrap_or(0)

@@ -1,7 +1,7 @@
-//! Typed values on their way to text: widths and signs change here, and only here.
+//! Typed values before they become text. Widths and signs change only here.
 //!
-//! A part of a net stays a part of a net until it is written, so that a slice of a slice of a cast needs no temporary. What
-//! is text already cannot change its width any more: Verilog has no part select of an expression.
+//! A part of a net stays a part of a net until it is written, so that a slice of a slice of a cast needs no
+//! temporary. Text can no longer change its width, because Verilog has no part select of an expression.
 
 use super::error::EmitCause;
 use super::ir::{Expression, Reads};
@@ -11,11 +11,11 @@ use super::types::{BIT, Type, mask};
 /// A typed value.
 #[derive(Debug, Clone)]
 pub(super) enum Value {
-    /// Bits `low ..` of a net, seen as `ty`.
+    /// Bits of a net from `low` on, with the type `ty`.
     Part { net: NetId, low: u32, ty: Type },
     /// A bit pattern.
     Literal { pattern: u64, ty: Type },
-    /// Text, and the operator that stands in it outside all parentheses, if there is one.
+    /// Text, with the operator that is outside all parentheses in it, if there is one.
     Text {
         text: String,
         ty: Type,
@@ -24,13 +24,13 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// Text with this operator outside all parentheses.
+    /// Makes text that has this operator outside all parentheses.
     pub(super) fn open(text: String, operator: &'static str, ty: Type) -> Self {
         let operator = Some(operator);
         Self::Text { text, ty, operator }
     }
 
-    /// Text that is an operand as it is.
+    /// Makes text that can be an operand as it is.
     pub(super) fn closed(text: String, ty: Type) -> Self {
         let operator = None;
         Self::Text { text, ty, operator }
@@ -43,7 +43,7 @@ impl Value {
     }
 }
 
-/// Turns values into text, and notes what they read.
+/// Converts values to text, and records what they read.
 pub(super) struct Values<'a> {
     pub(super) scope: &'a Scope,
     reads: Reads,
@@ -67,7 +67,7 @@ impl<'a> Values<'a> {
 
     // Changes of width and sign.
 
-    /// The same bits under the other sign.
+    /// The same bits with the other sign.
     pub(super) fn reinterpret(&self, value: Value, ty: Type) -> Value {
         match value {
             Value::Part { net, low, .. } => Value::Part { net, low, ty },
@@ -77,7 +77,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Truncates, or extends by the sign of the value's type.
+    /// Truncates a value, or extends it by the sign of its type.
     pub(super) fn resize(&mut self, value: Value, ty: Type) -> Result<Value, EmitCause> {
         let from = value.ty();
         if ty.width == from.width {
@@ -106,7 +106,7 @@ impl<'a> Values<'a> {
         Ok(Value::closed(text, ty))
     }
 
-    /// Bits `low ..` of `value` as `ty`; they must exist.
+    /// Bits of `value` from `low` on, with the type `ty`; they must exist.
     pub(super) fn part(&mut self, value: Value, low: u32, ty: Type) -> Result<Value, EmitCause> {
         if let Some(pattern) = self.constant(&value) {
             let pattern = pattern >> low & ty.mask();
@@ -121,7 +121,8 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// The bit of `value` that the signal `index` selects. Verilog-2001 selects from nets only, not from constants.
+    /// The bit of `value` that the signal `index` selects. Verilog-2001 can select only from nets, not from
+    /// constants.
     pub(super) fn bit(&mut self, value: &Value, index: &str) -> Result<Value, EmitCause> {
         match *value {
             Value::Part { net, low: 0, ty } if ty.width == self.scope.net(net).ty.width && !self.is_constant(net) => {
@@ -132,7 +133,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Bits `low ..`, `width` of them, exist in `value`?
+    /// Checks that `width` bits from `low` on exist in `value`.
     pub(super) fn check_range(&mut self, value: &Value, low: i128, width: usize) -> Result<u32, EmitCause> {
         let available = value.ty().width;
         let high = low.saturating_add(width as i128) - 1;
@@ -177,7 +178,7 @@ impl<'a> Values<'a> {
                     return ty.literal(pattern >> low & ty.mask());
                 }
                 let bits = self.select(*id, *low, ty.width);
-                // A part select is unsigned, whatever the net is.
+                // A part select is unsigned, even of a signed net.
                 match (ty.signed, ty.width == net.ty.width && net.ty.signed) {
                     (true, false) => format!("$signed({bits})"),
                     (false, true) => format!("$unsigned({bits})"),
@@ -187,7 +188,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Text of `value`, in parentheses where an operator beside it could take it apart.
+    /// Text of `value`, in parentheses where a neighbouring operator could bind into it.
     pub(super) fn operand(&mut self, value: &Value) -> String {
         let text = self.text(value);
         match value {
@@ -197,7 +198,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// As [`operand`](Self::operand), of an operator that may be `value`'s own: a chain of one bitwise or logical operator needs no
+    /// Text of `value` beside the operator `of`: a chain of the same bitwise or logical operator needs no
     /// parentheses.
     pub(super) fn link(&mut self, value: &Value, of: &str) -> String {
         match value {
@@ -206,7 +207,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// A net, or bits of it, without regard to sign; they count as read.
+    /// A net, or bits of it, regardless of sign; they count as read.
     fn select(&mut self, id: NetId, low: u32, width: u32) -> String {
         self.reads.push((id, mask(low, width)));
         self.scope.net(id).select(low, width)

@@ -1,6 +1,6 @@
-//! Long lines of Verilog: comments between words, code at its outermost operators and commas.
+//! Wraps long lines of Verilog: comments between words, code at its outermost operators and commas.
 
-/// Longest line that is not wrapped.
+/// Longest line that is not wrapped, in columns.
 const COLUMNS: usize = 100;
 
 /// `line`, or where it is too long several lines; those after the first are indented by four more, in an item of a list by two; in a comment as its
@@ -33,7 +33,7 @@ pub(super) fn wrapped(line: &str) -> String {
     lines.join("\n")
 }
 
-/// Where the last word begins that does not fit; nothing in tables and drawings, whose spaces have a meaning.
+/// Start of the first word that does not fit; `None` in tables and drawings, whose spaces matter.
 fn between_words(line: &str, lead: usize) -> Option<usize> {
     if line[lead..].trim_start().contains("  ") {
         return None;
@@ -42,7 +42,7 @@ fn between_words(line: &str, lead: usize) -> Option<usize> {
     line[lead..=fits].rfind(' ').map(|at| lead + at)
 }
 
-/// The last place that fits among those inside the fewest brackets: before an operator, after a comma.
+/// The last possible break among those inside the fewest brackets: before an operator, after a comma.
 fn at_an_operator(line: &str, lead: usize) -> Option<usize> {
     let (mut depth, mut quoted) = (0_u32, false);
     let mut best: Option<(u32, usize)> = None;
@@ -60,7 +60,7 @@ fn at_an_operator(line: &str, lead: usize) -> Option<usize> {
     best.map(|(_, at)| at)
 }
 
-/// May a line end before the space at `at`?
+/// Whether a line may be broken at the space `at`.
 fn may_break(line: &str, at: usize) -> bool {
     let operator = line[at + 1..].split(' ').next().unwrap_or_default();
     line[..at].ends_with(',') || matches!(operator, "|" | "||" | "&" | "&&" | "^" | "+" | "-" | "?" | ":")

@@ -1,4 +1,5 @@
-//! One sum of 64 bits; its upper half is the count, and the lowest two bits of that are A and B.
+//! The internal encoder: a sum of 64 bits, whose upper half is the count; the lowest two bits of the count give A and
+//! B.
 
 use crate::prelude::*;
 
@@ -40,7 +41,7 @@ impl Logic for EncoderGenerator {
         self.sum_bits.next = unsigned_cast(self.sum.q.val());
         self.next_bits.next = unsigned_cast(self.next_sum.val());
 
-        comment!("Periods since the index; beyond a turn: 0");
+        comment!("Periods since the index; 0 after the last one");
         self.index_periods.next = self.index_every.val().get_bits::<14>(2);
         self.down.next = self.rate.val().get_bit(31);
         self.passes_up.next = !self.down.val()
@@ -83,7 +84,7 @@ impl Logic for EncoderGenerator {
             self.moved.d.next = (self.next_a.val() ^ self.line_a.q.val()) | (self.next_b.val() ^ self.line_b.q.val());
         }
 
-        comment!("Pins or lines, which a reset clears at once");
+        comment!("Pins or lines; a reset clears the lines at once");
         self.generated_a.next = self.line_a.q.val() & !self.rst.val();
         self.generated_b.next = self.line_b.q.val() & !self.rst.val();
         self.generated_z.next = self.line_z.q.val() & !self.rst.val();

@@ -1,4 +1,4 @@
-//! The internal encoder in hardware: quadrature at a set rate, in the place of the pins.
+//! The internal encoder in hardware: quadrature at a set rate, in place of the pins.
 //!
 //! The datasheet is `docs/encoder_generator.md`, the reference `posicast_model::rtl::encoder_generator`.
 
@@ -13,7 +13,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The internal encoder in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(EncoderGenerator::default());
     Ok(Box::new(Simulated::new("encoder_generator", block, ports())?))
@@ -24,7 +24,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_encoder_generator`, or `encoder_generator` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: u32, meaning: &str| Parameter {
         name: name.to_owned(),
@@ -35,7 +35,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
         top: "encoder_generator".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Internal encoder: A, B and Z at a set rate, in the place of the pins while loop_back is high.\n\
+            about: "Internal encoder: A, B and Z at a set rate, in place of the pins while loop_back is high.\n\
                     The synchronisers of the pulse counter must follow."
                 .to_owned(),
             ports: port_notes(PORTS),

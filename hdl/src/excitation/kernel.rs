@@ -1,4 +1,4 @@
-//! The sum, and when there is a signal.
+//! The excitation: adds the signal to the reference, and controls its start and end.
 
 use super::wave::Wave;
 use crate::prelude::*;
@@ -31,7 +31,7 @@ impl Logic for Excitation {
     fn update(&mut self) {
         comment!("@module excitation");
 
-        comment!("The sum stays at the ends of its word");
+        comment!("The sum saturates at the ends of its word");
         self.wide_position.next = signed_bit_cast::<33, 32>(self.y_0.val());
         self.wide_value.next = signed_bit_cast::<33, 17>(self.wave.value.val());
         self.sum.next = self.wide_position.val() + self.wide_value.val();

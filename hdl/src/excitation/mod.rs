@@ -1,4 +1,4 @@
-//! The excitation in hardware: a test signal on the position reference, behind the shaper.
+//! The excitation in hardware: adds a test signal to the position reference, behind the shaper.
 //!
 //! The datasheet is `docs/excitation.md`, the reference `posicast_model::rtl::excitation`.
 
@@ -14,7 +14,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The excitation in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(Excitation::default());
     Ok(Box::new(Simulated::new("excitation", block, ports())?))
@@ -25,7 +25,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_excitation`, or `excitation` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: u32, meaning: &str| Parameter {
         name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! Angle, frequency and PRBS, and the amplitude times the wave: one sum per clock.
+//! Computes angle, frequency and PRBS, and the product of amplitude and wave, with one sum per clock.
 //!
 //! ```text
 //! valid     ‾‾‾\____________________________________
@@ -7,8 +7,9 @@
 //! value     ----- as before ---------------< 0 … >< new
 //! ```
 //!
-//! `turn` lasts as long as a period can be taken away. Every clock of `scale` halves the value plus the amplitude, or plus
-//! nothing, away from 0: the bits of the triangle come lowest first, and those of a square are all ones.
+//! `turn` lasts as long as a period can be subtracted. Every clock of `scale` halves the sum of the value and the
+//! amplitude, or of the value alone, rounding away from 0: the bits of the triangle come lowest first, and those of a
+//! square are all ones.
 
 use crate::prelude::*;
 
@@ -68,7 +69,7 @@ impl Logic for Wave {
         self.scales.next = self.phase.q.val() == self.scale_phase.val();
         self.too_fast.next = false;
 
-        comment!("Ahead: plus 256 frequencies, minus periods");
+        comment!("Behind by: plus 256 frequencies, minus periods");
         self.operand.next = bit_cast::<23, 18>(self.frequency.q.val().get_bits::<18>(4)) << 1;
         self.not_period.next = !self.period_ticks.val();
         if self.turns.val() {
@@ -78,7 +79,7 @@ impl Logic for Wave {
             ((bit_cast::<23, 21>(self.ahead.q.val()) << 1) | self.carry_in.val()) + self.operand.val();
         self.ahead_sum.next = self.with_carry.val().get_bits::<22>(1);
 
-        comment!("The frequency rises; above its word: an end");
+        comment!("The frequency rises; the signal ends at overflow");
         self.next_frequency.next = bit_cast::<23, 22>(self.frequency.q.val()) + bit_cast::<23, 16>(self.sweep.val());
         if self.advances.val() {
             self.ahead.d.next = self.ahead_sum.val().get_bits::<21>(0);
@@ -88,7 +89,7 @@ impl Logic for Wave {
             self.too_fast.next = self.chirp.val() & self.next_frequency.val().get_bit(22);
         }
 
-        comment!("A step of the angle, or none; a whole turn");
+        comment!("A step of the angle, if behind; a whole turn");
         self.next_angle.next = self.angle.q.val() + self.one_step.val();
         self.whole_turn.next = self.turns.val() & !self.ahead_sum.val().get_bit(21) & self.angle.q.val().all();
         if self.turns.val() {
@@ -167,7 +168,7 @@ impl Logic for Wave {
             self.clocks.d.next = self.no_clock.val();
         }
 
-        comment!("A tick; no signal: all as at the start");
+        comment!("A tick; without a signal all is as at the start");
         if self.valid.val() {
             self.phase.d.next = self.advance_phase.val();
         }

@@ -1,4 +1,4 @@
-//! Requests, registers and references around the pass of one bit per clock.
+//! Controls the bit-serial computation: requests, registers and references.
 
 use super::serial_ratio::SerialRatio;
 use crate::prelude::*;
@@ -33,7 +33,7 @@ impl Logic for LinearScale {
     fn update(&mut self) {
         comment!("@module linear_scale");
 
-        comment!("The loop's counter, and the one to be multiplied");
+        comment!("Counter of the loop, and counter to be multiplied");
         self.other_position.next = unsigned_cast(self.motor_position.val());
         self.operand_position.next = unsigned_cast(self.scale_position.val());
         if self.use_scale.val() {
@@ -42,7 +42,7 @@ impl Logic for LinearScale {
         }
         self.position_q.d.next = self.other_position.val();
 
-        comment!("The pass: without use_scale never on velocity");
+        comment!("Computation; on velocity only with use_scale");
         self.for_position.next = self.of_position.q.val() | !self.use_scale.val();
         self.serial.clk.next = self.clk.val();
         self.serial.rst.next = self.rst.val();
@@ -62,7 +62,7 @@ impl Logic for LinearScale {
         self.ends_position.next = self.serial.last.val() & self.for_position.val();
         self.ends_velocity.next = self.serial.last.val() & !self.for_position.val();
 
-        comment!("What waits; positions go first");
+        comment!("Waiting requests; positions come first");
         self.takes_positions.next = self.tick.val() & !self.positions_wait.q.val();
         self.takes_velocity.next = self.velocity_valid.val() & !(self.velocity_waits.q.val() & self.use_scale.val());
         self.positions_next.next =
@@ -90,8 +90,8 @@ impl Logic for LinearScale {
             self.entering.next = self.smallest.val();
         }
 
-        comment!("Deviation: shifted; low: loaded, or the largest;");
-        comment!("filled: at its end, or 0 by align");
+        comment!("Deviation: shifted; low: loaded or clamped;");
+        comment!("filled at its end, or with 0 by align");
         self.silent.next = self.asked_now.val() | self.aligning.q.val();
         self.saturates.next = self.ends_position.val() & self.serial.overflows.val() & !self.silent.val();
         self.fills_deviation.next = self.saturates.val()
@@ -119,7 +119,7 @@ impl Logic for LinearScale {
         }
         self.valid_q.d.next = self.ends_position.val();
 
-        comment!("So with the velocity");
+        comment!("The velocity likewise");
         self.fills_velocity.next = self.ends_velocity.val() & self.serial.overflows.val();
         self.low_velocity.next = self.takes_velocity.val() | (self.fills_velocity.val() & !self.serial.negative.val());
         self.velocity_filler.next = self.smallest.val();
@@ -139,7 +139,7 @@ impl Logic for LinearScale {
             }
         }
 
-        comment!("References turn round, or take what passes");
+        comment!("References rotate, or take the present position");
         self.operand_entering.next = self.operand_reference.q.val() << 31;
         self.other_entering.next = self.other_reference.q.val() << 31;
         if self.aligning.q.val() {

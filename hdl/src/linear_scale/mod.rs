@@ -1,4 +1,4 @@
-//! The counts of a motor's encoder against those of a linear scale, in hardware.
+//! The linear scale in hardware: relates the counts of a motor's encoder to those of a linear scale.
 //!
 //! The datasheet is `docs/linear_scale.md`, the reference `posicast_model::rtl::linear_scale`.
 
@@ -14,7 +14,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The linear scale in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(LinearScale::default());
     Ok(Box::new(Simulated::new("linear_scale", block, ports())?))
@@ -25,13 +25,14 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_linear_scale`, or `linear_scale` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: "linear_scale".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Motor against linear scale: deviation since align, position and velocity of the loop's counter.\n\
+            about: "Compares motor and linear scale: deviation since align, position and velocity of the loop's \
+                counter.\n\
                     One product of a bit per clock at a time, in the registers of deviation and velocity."
                 .to_owned(),
             ports: port_notes(PORTS),

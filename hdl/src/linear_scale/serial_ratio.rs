@@ -1,4 +1,4 @@
-//! The pass: differences, product, rounding and deviation, all lowest bit first, one bit per clock.
+//! Computes differences, product, rounding and deviation, all lowest bit first, one bit per clock.
 //!
 //! ```text
 //! phase           0 …            31 …                           63
@@ -8,8 +8,8 @@
 //! register        shifts down until its 32 bits are in           bits above must be like the highest
 //! ```
 //!
-//! With a sign that goes on, the product's 64 lowest bits need no correction for a negative operand: `partial` adds the mantissa
-//! or nothing, gives its lowest bit away and moves down.
+//! With the operand sign-extended, the product's 64 lowest bits need no correction for a negative operand: `partial`
+//! adds the mantissa or 0, outputs its lowest bit and shifts down.
 
 use crate::prelude::*;
 
@@ -67,7 +67,7 @@ impl Logic for SerialRatio {
         self.moving.next = !(self.phase.q.val().get_bit(5) & (self.at_shift.val() | self.ended_q.q.val()));
         self.ends.next = self.runs.val() & self.phase.q.val().all();
 
-        comment!("Operand less its reference, then its sign");
+        comment!("Operand minus its reference, then sign extension");
         self.operand_less.next = self.operand_reference_bit.val() & self.of_position.val();
         self.operand_bit_now.next = self.operand_bit.val() ^ self.operand_less.val() ^ self.operand_borrow.q.val();
         if self.phase.q.val().get_bit(5) {
@@ -84,10 +84,10 @@ impl Logic for SerialRatio {
         self.sum_bits.next = unsigned_cast(self.sum.val());
         self.product_bit.next = self.sum_bits.val().get_bit(0);
 
-        comment!("Half up: plus the bit below the result");
+        comment!("Round half up: add the bit below the result");
         self.rounded_bit.next = self.product_bit.val() ^ self.round_up.q.val();
 
-        comment!("The other one less its reference, then its sign");
+        comment!("The other position minus its reference, likewise");
         self.other_less.next = self.other_reference_bit.val() & self.of_position.val();
         self.other_now.next =
             (self.other_bit.val() & self.of_position.val()) ^ self.other_less.val() ^ self.other_borrow.q.val();
@@ -95,7 +95,7 @@ impl Logic for SerialRatio {
             self.other_now.next = self.held_other.q.val();
         }
 
-        comment!("Motor less scale");
+        comment!("Motor minus scale");
         self.minuend.next = self.other_now.val();
         self.subtrahend.next = self.rounded_bit.val();
         if self.use_scale.val() {
@@ -104,11 +104,11 @@ impl Logic for SerialRatio {
         }
         self.difference.next = self.minuend.val() ^ self.subtrahend.val() ^ self.borrow.q.val();
 
-        comment!("Beyond 32 bits: one above is unlike the highest");
+        comment!("Beyond 32 bits: a bit above differs from the top");
         self.beyond.next =
             self.overflow.q.val() | (!self.moving.val() & (self.difference.val() ^ self.highest.q.val()));
 
-        comment!("All from nothing at the start of a pass");
+        comment!("All are cleared at the start of a computation");
         self.phase.d.next = self.first_phase.val();
         self.partial.d.next = self.no_partial.val();
         self.operand_borrow.d.next = false;

@@ -1,10 +1,11 @@
-//! Register: takes `d` at the rising edge, or its reset value while `rst`; has the reset value at power-up.
+//! Register: takes `d` at the rising edge, or its reset value while `rst` is high; it has the reset value at
+//! power-up.
 
 use super::sized;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
-/// Register with synchronous reset.
+/// A register with synchronous reset.
 #[derive(LogicBlock, Clone, Debug)]
 pub(crate) struct Dff<T: Synth> {
     pub(crate) clock: Signal<In, Clock>,
@@ -15,14 +16,14 @@ pub(crate) struct Dff<T: Synth> {
     _is_kept: bool,
 }
 
-/// What `kernel!` asks of its registers, one or an array of them.
+/// Wiring of a register, or of an array of them, by `kernel!`.
 pub(crate) trait Keep {
-    /// Wires clock and reset; the register keeps its value unless the kernel says otherwise.
+    /// Wires clock and reset; the register keeps its value unless the kernel assigns `d`.
     fn keep(&mut self, clock: Clock, rst: Bit);
 }
 
 impl<T: Synth> Dff<T> {
-    /// A register that its kernel wires itself.
+    /// Makes a register that its kernel wires itself.
     pub(crate) fn new(reset_value: T) -> Self {
         Self {
             clock: Signal::default(),
@@ -34,7 +35,7 @@ impl<T: Synth> Dff<T> {
         }
     }
 
-    /// A register that `kernel!` wires.
+    /// Makes a register that `kernel!` wires.
     pub(crate) fn kept(reset_value: T) -> Self {
         Self {
             _is_kept: true,
@@ -76,7 +77,7 @@ impl<T: Synth> Logic for Dff<T> {
         }
     }
 
-    /// `#[hdl_gen]` claims `clock` and `d` for `dff_setup!`, and does not know that ours wires `rst` too.
+    /// `#[hdl_gen]` reserves `clock` and `d` for `dff_setup!`, and does not know that ours wires `rst` too.
     fn connect(&mut self) {
         self.q.connect();
         self.rst.connect();

@@ -1,13 +1,13 @@
-//! Fault latch: set by a raw line, without a clock; cleared by the clock, while the line is quiet.
+//! Fault latch: set asynchronously by a raw line, cleared by the clock while the line is inactive.
 //!
-//! The one leaf with an asynchronous set. It holds the opposite, `armed`: the register is then low at power-up and after
-//! reset, which is what flip-flops of every device can do, and low is the safe side. A pulse on the line that is too short
-//! for the clock is kept. A cycle simulation sees the line once per clock.
+//! It is the one leaf with an asynchronous set. It stores the complement `armed`: the register is then low at
+//! power-up and after reset, which flip-flops of every device can do, and low is the safe side. A pulse on the line
+//! that is too short for the clock is kept. A cycle-based simulation samples the line once per clock.
 
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
-/// `armed` falls with `trip_n`, at once; it rises in a clock with `clear`, if `trip_n` is high.
+/// `armed` falls with `trip_n` at once; it rises in a clock with `clear` if `trip_n` is high.
 #[derive(LogicBlock, Default)]
 pub(crate) struct FaultLatch {
     pub(crate) clk: Signal<In, Clock>,

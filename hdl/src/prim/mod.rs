@@ -1,7 +1,7 @@
-//! The leaves: blocks with Verilog of their own, each beside the Rust that simulates it.
+//! The leaves: blocks with hand-written Verilog, each with the Rust that simulates it.
 //!
-//! A leaf's first line of Verilog tells the emitter what it is: `// @dff INIT` for a flip-flop, which the emitter writes
-//! into the module that owns it, or `// @leaf NAME reg: PORTS` for a module of its own.
+//! The first line of a leaf's Verilog tells the emitter what it is: `// @dff INIT` for a flip-flop, which the emitter
+//! writes into the module that owns it, or `// @leaf NAME reg: PORTS` for a module of its own.
 
 mod dff;
 mod fault_latch;
@@ -21,7 +21,7 @@ pub(crate) use synchroniser::Synchroniser;
 
 use rust_hdl_core::prelude::*;
 
-/// `<width>'h<pattern>`: RustHDL prints enumerations and signed numbers without their width or with a sign.
+/// A literal `<width>'h<pattern>`; RustHDL prints enumerations and signed numbers without their width or with a sign.
 fn sized<T: Synth>(value: T) -> String {
     let text = format!("{:x}", value.verilog());
     let digits = text.split("'h").nth(1).unwrap_or_default();

@@ -1,13 +1,13 @@
-//! Pin register: one flip-flop in front of a synchroniser that stands in another block.
+//! Pin register: one flip-flop in front of a synchroniser that is in another block.
 //!
-//! It may go metastable; what it feeds must be a synchroniser and nothing else. It has no reset, because a pin that stays high
-//! through a reset must not look like an edge after it. A timing constraint belongs to it as to a synchroniser's first:
-//! `set_false_path -to [get_registers *|pin_register_q]`.
+//! It may become metastable, so it must feed only a synchroniser. It has no reset, because a pin that stays high
+//! through a reset must not look like an edge after it. It needs the same timing constraint as a synchroniser's first
+//! flip-flop: `set_false_path -to [get_registers *|pin_register_q]`.
 
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
-/// One line, one clock late; low at power-up.
+/// One line, delayed by one clock; low at power-up.
 #[derive(LogicBlock, Default)]
 pub(crate) struct PinRegister {
     pub(crate) clk: Signal<In, Clock>,

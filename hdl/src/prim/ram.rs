@@ -1,14 +1,14 @@
-//! Block RAM: one clock, one write port, one read port, read data one clock after the address.
+//! Block RAM with one clock, one write port and one read port; data are read one clock after the address.
 //!
-//! It has no reset, and nobody knows what it holds before it is written. A word that is read in the clock in which it is
-//! written is undefined: devices differ. The simulation gives arbitrary contents for the one and the complement of the
-//! written word for the other, so that a block that uses either differs from its model.
+//! It has no reset, and its contents are unknown before they are written. A word that is read in the clock in which
+//! it is written is undefined, because devices differ. The simulation returns arbitrary contents for the former and
+//! the complement of the written word for the latter, so that a block that uses either differs from its model.
 
 use crate::prelude::from_u64;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
-/// RAM of 2^N words.
+/// A RAM of 2^N words.
 #[derive(LogicBlock)]
 pub(crate) struct Ram<const D: usize, const N: usize> {
     pub(crate) clk: Signal<In, Clock>,
@@ -17,7 +17,7 @@ pub(crate) struct Ram<const D: usize, const N: usize> {
     pub(crate) write_data: Signal<In, Bits<D>>,
     pub(crate) read_address: Signal<In, Bits<N>>,
     pub(crate) read_data: Signal<Out, Bits<D>>,
-    /// Bit patterns; none before the first clock, so that a block that is only emitted takes no memory.
+    /// Bit patterns of the words; empty before the first clock, so that a block that is only emitted takes no memory.
     _words: Vec<u64>,
 }
 
@@ -35,7 +35,7 @@ impl<const D: usize, const N: usize> Default for Ram<D, N> {
     }
 }
 
-/// A word like any other (the multiplier is 2^64 over the golden ratio).
+/// An arbitrary word (the multiplier is 2^64 over the golden ratio).
 fn arbitrary(address: u64) -> u64 {
     (address + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 13
 }
@@ -85,8 +85,8 @@ end
 mod tests {
     use super::*;
 
-    /// Yosys takes the bare attribute, Quartus the value of `ramstyle`. Without it either builds logic around the memory for a word
-    /// that is read in the clock in which it is written, which no block does.
+    /// Yosys needs the bare attribute, Quartus the value of `ramstyle`. Without it either builds logic around the
+    /// memory for a word that is read in the clock in which it is written, which no block does.
     #[test]
     fn unit_both_synthesisers_are_told_that_no_word_is_read_while_it_is_written() {
         let Verilog::Custom(text) = Ram::<8, 4>::default().hdl() else {

@@ -1,20 +1,20 @@
-//! Block ROM: data one clock after the address.
+//! Block ROM; data are read one clock after the address.
 // @about A memory with contents and a registered read is what becomes block RAM; a `case` would become logic.
 //!
-//! Words above the last one given are undefined: a block must not use them.
+//! Words above the last one given are undefined, and a block must not use them.
 
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 use std::fmt::Write as _;
 
-/// A word of a [`Rom`], and what the Verilog says about it.
+/// A word of a [`Rom`], with its comment in the Verilog.
 #[derive(Clone, Debug)]
 pub(crate) struct RomWord {
     pub(crate) pattern: u64,
     pub(crate) meaning: String,
 }
 
-/// ROM of up to 2^N words.
+/// A ROM of up to 2^N words.
 #[derive(LogicBlock)]
 pub(crate) struct Rom<const D: usize, const N: usize> {
     pub(crate) clk: Signal<In, Clock>,
@@ -25,7 +25,7 @@ pub(crate) struct Rom<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Rom<D, N> {
-    /// `base_name` names the module, behind the machine's and axis's names: two ROMs of one block need two names.
+    /// `base_name` is the module's name after the machine's and axis's names: two ROMs of one block need two names.
     pub(crate) fn new(base_name: &str, words: Vec<RomWord>) -> Self {
         Self {
             clk: Signal::default(),

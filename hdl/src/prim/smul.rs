@@ -1,13 +1,13 @@
 //! Signed multiplier with registered inputs and output: one DSP block, product two clocks after the operands.
 //!
-//! It has no reset, because multiplier blocks do not have a synchronous one: what comes out in the first two clocks is
-//! unknown.
+//! It has no reset, because multiplier blocks do not have a synchronous one: its output is unknown in the first two
+//! clocks.
 
 use crate::prelude::{from_i64, to_i64};
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
-/// A × B bits, P = A + B ≤ 64 bits of product.
+/// Sizes: A × B bits of operands, P = A + B ≤ 64 bits of product.
 #[derive(LogicBlock, Default)]
 pub(crate) struct SMul<const A: usize, const B: usize, const P: usize> {
     pub(crate) clk: Signal<In, Clock>,

@@ -1,13 +1,14 @@
 //! Synchroniser: two flip-flops that bring an asynchronous input into the clock's domain.
 //!
-//! The first may go metastable; its output feeds the second alone. Attributes tell synthesisers to keep the two, to leave
-//! them out of shift registers and to place them side by side. A timing constraint belongs to the first only:
-//! `set_false_path -to [get_registers *|synchroniser_first]`. In simulation it is two clocks of delay.
+//! The first may become metastable, and feeds only the second. Attributes tell synthesisers to keep the two, not to
+//! merge them into shift registers, and to place them side by side. Only the first needs a timing constraint:
+//! `set_false_path -to [get_registers *|synchroniser_first]`. In simulation the synchroniser is a delay of two
+//! clocks.
 
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
-/// One line, two clocks late; low in reset and at power-up.
+/// One line, delayed by two clocks; low in reset and at power-up.
 #[derive(LogicBlock, Default)]
 pub(crate) struct Synchroniser {
     pub(crate) clk: Signal<In, Clock>,

@@ -1,7 +1,9 @@
-//! Levels of this clock and of the one before to steps: quadrature ×4 ×2 ×1, step and direction, up and down.
+//! Decodes the levels of this clock and of the one before into steps: quadrature ×4 ×2 ×1, step and direction, up and
+//! down.
 //!
-//! ×2 counts the edges of A, ×1 those while B is low: so the count is the same on the way there and on the way back.
-//! With one edge, A against B a clock before is the opposite of B against A: exchanging the lines turns the direction over.
+//! ×2 counts the edges of A, ×1 those while B is low, so that the count is the same in both directions. With one
+//! edge, A compared with B a clock before is the opposite of B compared with A: exchanging the lines reverses the
+//! direction.
 
 use crate::prelude::*;
 

@@ -1,6 +1,8 @@
-//! Takes a new level once it has stood for more than `filter_clocks` clocks; until `ready`, the level follows the input.
+//! Takes a new level once it has lasted for more than `filter_clocks` clocks; until `ready`, the level follows the
+//! input.
 //!
-//! Counts down from `filter_clocks`, which it takes over in every clock without a difference: a comparison with nothing.
+//! It counts down from `filter_clocks`, which it loads in every clock without a difference, so that it needs only a
+//! comparison with 0.
 
 use crate::prelude::*;
 

@@ -1,6 +1,7 @@
-//! Lines to steps, steps to the count, the index latch, and the velocity: all that the pulse counter shows.
+//! Joins the parts of the pulse counter: lines, decoder, count, index latch and velocity.
 //!
-//! An edge at a pin shows in the count `filter_clocks` + 4 clocks later: synchroniser 2, filter `filter_clocks` + 1, count 1.
+//! An edge at a pin appears in the count `filter_clocks` + 4 clocks later: 2 for the synchroniser, `filter_clocks` +
+//! 1 for the filter, 1 for the count.
 
 use super::decoder::Decoder;
 use super::glitch_filter::GlitchFilter;
@@ -58,7 +59,7 @@ impl Logic for PulseCounter {
         }
         self.ready.next = self.ready_q.q.val();
 
-        comment!("Lines, all delayed alike");
+        comment!("Lines, all with the same delay");
         self.line_a.clk.next = self.clk.val();
         self.line_a.rst.next = self.rst.val();
         self.line_a.pin.next = self.a.val();
@@ -106,7 +107,7 @@ impl Logic for PulseCounter {
         self.counted.next = self.count_q.q.val() + self.change.val();
         self.count_q.d.next = self.counted.val();
 
-        comment!("Flags, set over clear");
+        comment!("Flags; setting wins over clearing");
         if self.clear_flags.val() {
             self.disagreement_q.d.next = false;
         }
@@ -114,8 +115,8 @@ impl Logic for PulseCounter {
             self.disagreement_q.d.next = true;
         }
 
-        comment!("Illegal transitions, in two halves: so short a");
-        comment!("sum takes no carry chain");
+        comment!("Illegal transitions, in two halves: such a short");
+        comment!("sum needs no carry chain");
         self.low_full.next = self.illegal_low.q.val().all();
         self.counts_illegal.next =
             self.decoder.illegal.val() & !(self.low_full.val() & self.illegal_high.q.val().all());
@@ -155,7 +156,7 @@ impl Logic for PulseCounter {
         }
 
         comment!("Presets move the origin, not the count; a clock");
-        comment!("later: the count has the step of their clock");
+        comment!("later the count includes the step of their clock");
         self.presets.d.next = self.preset.val() | (self.index.val() & self.index_presets.val());
         if self.presets.q.val() {
             self.origin_q.d.next = self.count_q.q.val() - self.preset_value.val();

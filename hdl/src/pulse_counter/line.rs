@@ -1,5 +1,5 @@
-//! One line: pin and complement through a synchroniser each, then the filter. A pair whose two lines are equal says
-//! nothing, and the level stays.
+//! One line: pin and complement with a synchroniser each, then the filter. While the two lines of a pair are equal,
+//! which is invalid, the level stays.
 
 use super::glitch_filter::GlitchFilter;
 use crate::prelude::*;

@@ -1,4 +1,4 @@
-//! The pulse counter in hardware: encoder or scale signals to position, index and velocity.
+//! The pulse counter in hardware: turns encoder or scale signals into position, index and velocity.
 //!
 //! The datasheet is `docs/pulse_counter.md`, the reference `posicast_model::rtl::pulse_counter`.
 
@@ -18,7 +18,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The pulse counter in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(PulseCounter::default());
     Ok(Box::new(Simulated::new("pulse_counter", block, ports())?))
@@ -29,13 +29,13 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_pulse_counter`, or `pulse_counter` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: "pulse_counter".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Pulse counter: encoder or scale signals to position, index and velocity.\n\
+            about: "Pulse counter: turns encoder or scale signals into position, index and velocity.\n\
                     The count never jumps: a preset moves the origin, position = count - origin."
                 .to_owned(),
             ports: port_notes(PORTS),

@@ -1,4 +1,4 @@
-//! M/T: the steps of a tick over the time between the last edges before successive ticks.
+//! Velocity by M/T: the steps of a tick divided by the time between the last edges before successive ticks.
 //!
 //! ```text
 //! edges     |     |     |      |      |
@@ -6,12 +6,12 @@
 //!           ├───────────┤      at the second tick: 2 steps in this time, from the last edge before the first tick
 //! ```
 //!
-//! At a tick, `steps` and `elapsed` go out for the divider and stay until the next tick; the quotient comes back at any clock
-//! between. What it is, `job` tells: a tick without edge gives the velocity of one count since the last edge,
-//! which the velocity cannot exceed; without anything to measure, the velocity is 0.
+//! At a tick, `steps` and `elapsed` are given to the divider and stay until the next tick; the quotient may come at
+//! any clock between. `job` tells its meaning: a tick without an edge gives the velocity of one count since the last
+//! edge, which the velocity cannot exceed; without anything to measure, the velocity is 0.
 //!
-//! `smoothed` is Q16.19 and 3/8 LSB of Q16.16, so that cutting the extra bits rounds. The sum in `resolved` has one bit more
-//! at the bottom, whose one makes the shift round half up.
+//! `smoothed` is Q16.19 plus 3/8 LSB of Q16.16, so that truncating the extra bits rounds. The sum in `resolved` has
+//! one more bit at the bottom, which is one and makes the shift round half up.
 
 use crate::prelude::*;
 
@@ -110,8 +110,8 @@ impl Logic for Velocity {
             self.smoothed.d.next = self.rest.val();
         }
 
-        comment!("The last edge, less than 2^18 clocks ago: its");
-        comment!("high bits are those of the time, or one less");
+        comment!("The last edge was less than 2^18 clocks ago: its");
+        comment!("high bits are those of now, or one less");
         self.last_carry.next = self.no_carry.val();
         if self.last_low.q.val().get_bit(18) & !self.time_stamp.val().get_bit(18) {
             self.last_carry.next = self.one_carry.val();
@@ -128,8 +128,8 @@ impl Logic for Velocity {
         self.lost.next = !self.velocity_m.val() & (!self.known.q.val() | self.turned.q.val());
         self.rests.next = !self.velocity_m.val() & (!self.fresh.val() | self.turned.q.val());
 
-        comment!("Steps; 0 without an edge, where 1 or -1 is to be");
-        comment!("divided: a borrow at bit 0 makes all bits ones");
+        comment!("Steps; 0 without an edge, where 1 or -1 is");
+        comment!("divided: a borrow at bit 0 sets all bits to one");
         self.waits.next = !self.moved.q.val() & !self.velocity_m.val();
         self.borrow.next = self.no_borrow.val();
         if self.waits.val() & self.smoothed.q.val().get_bit(34) {
@@ -174,12 +174,12 @@ impl Logic for Velocity {
             self.steps_q.d.next = self.no_steps.val();
         }
 
-        comment!("Time of the last edge; after a tick without: now");
+        comment!("Time of the last edge, or now after a tick without");
         if self.step.val() | self.tick.val() | !self.moved.q.val() {
             self.last_low.d.next = self.time_stamp.val().get_bits::<19>(0);
         }
 
-        comment!("An edge; in the clock of a tick, of the next");
+        comment!("An edge; at a tick it belongs to the next one");
         if self.step.val() {
             self.last_up.d.next = self.up.val();
             self.moved.d.next = true;

@@ -1,17 +1,19 @@
-//! The carrier: the position in the period, the leads before its boundaries, and the phase to the time base.
+//! The carrier: the position in the period, the leads before its boundaries, and the phase relative to the time base.
 //!
-//! A boundary comes a fixed number of clocks after its lead: 32 after a valley's, at `period` − 32; 16 after a peak's, at half
-//! of that. The command counts them, and tells when the boundary is there. So one register serves both, and what the command
-//! computes is ready at the boundary. The strobes come with the pins, one clock after the position.
+//! A boundary comes a fixed number of clocks after its lead: 32 after a valley's, at `period` − 32; 16 after a
+//! peak's, at half of that. The command counts these clocks, and tells when the boundary is reached. So one register
+//! serves both, and the command's results are ready at the boundary. The strobes come with the pins, one clock after
+//! the position.
 //!
-//! While off, a carrier that a `sync` has found at another phase waits at `phase` for the next one: no position is loaded. So
-//! does one that has a time base and another period than before, and after reset one that is built for a time base.
+//! While off, a carrier that a `sync` has found at another phase waits at `phase` for the next one; no position is
+//! loaded. The same holds for a carrier that has a time base and another period than before, and after reset for one
+//! that is built for a time base.
 
 use crate::prelude::*;
 
 kernel! {
-    /// The shortest period after reset, so that the first one set soon comes into use. `on_time_base`: it waits for its first
-    /// `sync`.
+    /// After reset it has the shortest period, so that the first one set soon comes into use. `on_time_base`: it
+    /// waits for its first `sync`.
     pub(super) struct Carrier(on_time_base: bool);
 
     inputs {
@@ -59,8 +61,8 @@ impl Logic for Carrier {
         self.valley_lead.next = self.position.q.val() == self.lead.val();
         self.peak_lead.next = self.position.q.val() == (self.lead.val() >> 1);
 
-        comment!("Astray and off, it waits for a sync at its phase;");
-        comment!("with another period it is in phase by chance only");
+        comment!("Out of phase and off, it waits for a sync;");
+        comment!("with another period it is in phase only by chance");
         self.in_use.next = self.period_q.q.val().get_bits::<16>(0) == self.period.val();
         self.timed.d.next = self.timed.q.val() | self.sync.val();
         self.in_phase.next = self.position.q.val() == self.phase.val();

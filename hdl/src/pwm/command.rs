@@ -1,8 +1,9 @@
-//! From a duty to the pattern and the edges of a half period, with one adder.
+//! Computes the pattern and the edges of a half period from a duty, with one adder.
 //!
-//! The accumulator holds four times the clocks from the edge: it counts up in the half with the rise and down in the half with
-//! the fall, so that its sign is the level. In the 16 clocks before a boundary it computes instead; an edge that falls into
-//! them has been noted before. With U = twice the leg's duty, that is 2 |duty|, or `period` + duty when locked:
+//! The accumulator holds four times the number of clocks from the edge: it counts up in the half with the rising edge
+//! and down in the half with the falling edge, so that its sign is the level. In the 16 clocks before a boundary it
+//! computes instead; an edge in these clocks is noted before. With U = twice the leg's duty, which is 2 |duty|, or
+//! `period` + duty when locked:
 //!
 //! | step | | valley | peak |
 //! |---|---|---|---|
@@ -16,9 +17,9 @@
 //! | | | L < minimum pulse: too long | W < minimum pulse: too short |
 //! | | | A = − 4 rise | A = 2 W − 2, from the peak to the fall |
 //!
-//! At a peak that takes no command the accumulator counts on, and only 4 D is taken from it.
+//! At a peak that takes no command the accumulator continues to count, and only 4 D is subtracted from it.
 //!
-//! Each step after the first is a flip-flop, its token: what it selects needs no decoder.
+//! Each step after the first has a flip-flop, its token, so that its selections need no decoder.
 
 use crate::prelude::*;
 
@@ -81,7 +82,7 @@ impl Logic for Command {
         self.below_zero.next = self.duty_q.q.val().get_bit(16);
         self.one_sided.next = (self.mode_q.q.val() == 1) & self.below_zero.val();
 
-        comment!("To count: where nothing is computed");
+        comment!("Counts where nothing is computed");
         self.counts.next = !self.works.q.val()
             | (!self.takes.q.val()
                 & !(self.less_dead_first.q.val()
@@ -130,8 +131,8 @@ impl Logic for Command {
             | self.to_rise.q.val()
             | self.to_fall.q.val();
 
-        comment!("Duty or limit; dead time or pulse, doubled; both");
-        comment!("at once: the period. A choice of two bits a LUT");
+        comment!("Operand: 01 duty or limit, 10 twice dead time or");
+        comment!("pulse, 11 period; two bits select in one LUT");
         self.first_0.next = self.of_duty.val() | self.of_period.val();
         self.first_1.next = self.of_maximum.val() | self.of_period.val();
         self.second_0.next = self.of_dead.val() | self.of_period.val();
@@ -165,7 +166,7 @@ impl Logic for Command {
                 | (self.first.val() ^ self.second.val()));
         }
 
-        comment!("And small numbers, where it is none of these");
+        comment!("Small constants, if it is none of these");
         self.step_size.next = 0.into();
         if self.counts.val() {
             self.step_size.next = 4.into();
@@ -187,7 +188,7 @@ impl Logic for Command {
         self.under.next = self.sum.val().get_bit(18);
 
         if !self.waits.val() {
-            comment!("Counted from the lead on");
+            comment!("Steps count from the lead on");
             if self.step.q.val().any() | self.valley_lead.val() | self.peak_lead.val() {
                 self.step.d.next = self.step.q.val() + 1;
             }
@@ -228,7 +229,7 @@ impl Logic for Command {
             self.less_dead_first.d.next = self.plus_periods.q.val() | self.resumes.val();
             self.to_fall.d.next = self.shortness.q.val() & !self.rises.q.val();
 
-            comment!("The results");
+            comment!("Results");
             if self.writes.val() {
                 self.accumulator.d.next = self.sum.val();
             }
@@ -248,7 +249,7 @@ impl Logic for Command {
                 self.long_q.d.next = !self.under.val();
             }
 
-            comment!("The level: the sign, or the edge noted before");
+            comment!("Level: the sign, or the edge noted before");
             if self.begins.val() {
                 self.early.d.next = self.accumulator.q.val().get_bits::<4>(2);
                 if self.rises.q.val() {

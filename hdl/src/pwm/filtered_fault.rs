@@ -1,4 +1,5 @@
-//! One filtered fault: synchroniser, then active once the line has been low for more than `filter_clocks`.
+//! One filtered fault: a synchroniser, then a filter; the fault is active once the line has been low for more than
+//! `filter_clocks`.
 
 use crate::prelude::*;
 

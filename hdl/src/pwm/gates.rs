@@ -1,4 +1,4 @@
-//! The gates: the leg on the pins of its mode, a register each, and behind it the fault path without a clock.
+//! The gates: maps the leg to the pins of its mode, with a register each, followed by the asynchronous fault path.
 
 use crate::prelude::*;
 use posicast_model::rtl::pwm::PwmConfig;
@@ -54,12 +54,12 @@ impl Logic for Gates {
             }
         }
         if self.mode.val() == 3 {
-            comment!("Locked antiphase: the other leg is against it");
+            comment!("Locked antiphase: the other leg is in antiphase");
             self.b_high_gate.d.next = self.low_side.val();
             self.b_low_gate.d.next = self.high_side.val();
         }
 
-        comment!("Fault path and mask only ever add off");
+        comment!("Fault path and mask can only switch off");
         self.masked.d.next = self.mask_pins.val();
         self.on.next = self.armed.val() & !self.masked.q.val();
         self.a_high.next = (self.a_high_gate.q.val() & self.on.val()) ^ self.a_high_off.val();
@@ -67,7 +67,7 @@ impl Logic for Gates {
         self.b_high.next = (self.b_high_gate.q.val() & self.on.val()) ^ self.b_high_off.val();
         self.b_low.next = (self.b_low_gate.q.val() & self.on.val()) ^ self.b_low_off.val();
 
-        comment!("What the mask hides");
+        comment!("Gates before the mask");
         self.leg_a_high.next = self.no_gate.val().replace_bit(0, self.a_high_gate.q.val());
         self.leg_a.next = self.leg_a_high.val().replace_bit(1, self.a_low_gate.q.val());
         self.leg_b_high.next = self.leg_a.val().replace_bit(2, self.b_high_gate.q.val());

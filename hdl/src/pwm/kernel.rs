@@ -1,4 +1,4 @@
-//! The PWM: what is latched at a boundary, between carrier, command and leg.
+//! The PWM: joins carrier, command and leg, and latches settings at boundaries.
 
 use super::carrier::Carrier;
 use super::command::Command;
@@ -75,10 +75,10 @@ impl Logic for Pwm {
         self.guard.clear_trip.next = self.clear_trip.val();
 
         comment!("Off at once; on at a valley, with a command from");
-        comment!("registers that were settled all the time");
+        comment!("registers that have not changed meanwhile");
         self.settled.next = self.timing.settled.val() & self.carrier.settled.val();
         self.stable.d.next = self.settled.val() & (self.stable.q.val() | !self.command.computes.val());
-        comment!("Not where both sides last just the minimum:");
+        comment!("Not if both sides last exactly the minimum:");
         comment!("a leg that is late once would stay late");
         self.busy_clocks.next = (bit_cast::<16, 10>(self.timing.dead_time_used.val())
             + bit_cast::<16, 10>(self.timing.minimum_pulse_used.val()))
@@ -95,7 +95,7 @@ impl Logic for Pwm {
             & !self.no_slack.val();
         self.running_q.d.next = self.goes_on.val() | self.starts.val();
 
-        comment!("What is wanted of the leg at this position");
+        comment!("Command to the leg at this position");
         self.wanted.next = self.goes_on.val() & !self.off_q.q.val();
         self.wants_high.next = self.high_q.q.val() | (self.command.level.val() & !self.low_q.q.val());
         self.leg.clk.next = self.clk.val();
@@ -115,7 +115,7 @@ impl Logic for Pwm {
         self.pin_gates.high_side.next = self.leg.high_side.val();
         self.pin_gates.low_side.next = self.leg.low_side.val();
 
-        comment!("A direction turns with its first pulse, from low");
+        comment!("The direction changes with its first pulse");
         self.may_turn.next = !self.leg.awake.val() | self.leg.low_side.val();
         self.turns.next = ((self.command.new_mode.val() == 0) | (self.command.new_mode.val() == 2))
             & !self.command.too_short.val()
@@ -134,7 +134,7 @@ impl Logic for Pwm {
             }
         }
 
-        comment!("Flags, set over clear");
+        comment!("Flags; setting wins over clearing");
         if self.clear_flags.val() {
             self.saturated_q.d.next = false;
             self.refused_q.d.next = false;

@@ -1,9 +1,9 @@
-//! The leg: dead time and minimum pulse, whatever is wanted of it and from whatever state.
+//! The leg: keeps dead time and minimum pulse, for any command and from any state.
 //!
-//! The outputs are those of the next clock: the gates take them into registers.
+//! The outputs are those of the next clock: the gates register them.
 //!
-//! The timer counts up from 0 while off and from 1 in every new state, so that it needs no load, and compares with what it
-//! is to reach: of the two times only equality is asked. It stays there until something else is wanted.
+//! The timer counts up from 0 while off and from 1 in every new state, so that it needs no load; it is compared with
+//! the two times for equality only. It stays at its end until the other side is commanded.
 
 use crate::prelude::*;
 
@@ -32,7 +32,7 @@ impl Logic for Leg {
         self.lit_next.next = self.lit_q.q.val();
         self.high_next.next = self.high_q.q.val();
 
-        comment!("The timer counts up to what the state lasts");
+        comment!("The timer counts up to the state's duration");
         self.lasts.next = self.dead_time.val();
         if self.lit_q.q.val() {
             self.lasts.next = self.minimum_pulse.val();

@@ -1,4 +1,5 @@
-//! The PWM in hardware: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.
+//! The PWM in hardware: turns a duty into the gates of a bridge, with dead time, minimum pulse, fault path and
+//! watchdog.
 //!
 //! The datasheet is `docs/pwm.md`, the reference `posicast_model::rtl::pwm`.
 
@@ -20,13 +21,13 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The PWM in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &PwmConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(Pwm::new(config));
     Ok(Box::new(Simulated::new("pwm", block, ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(config: &PwmConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }
@@ -42,10 +43,10 @@ fn base_name(config: &PwmConfig) -> String {
 
 /// The PWM's Verilog, one module per file, the top last.
 ///
-/// The top is called as [`name`] says; all names are bare where `prefix` is empty.
+/// [`name`] gives the top's name; names have no prefix where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: String, meaning: &str| Parameter {
         name: name.to_owned(),
@@ -69,7 +70,8 @@ pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> 
         top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "PWM: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.\n\
+            about: "PWM: turns a duty into the gates of a bridge, with dead time, minimum pulse, fault path and \
+                watchdog.\n\
                     fault_n and pll_locked switch the pins off without a clock."
                 .to_owned(),
             ports: port_notes(PORTS),

@@ -1,6 +1,7 @@
-//! Dead time and minimum pulse: taken while off, and never below the floor.
+//! Dead time and minimum pulse: taken while off, and never below their lower limits.
 //!
-//! The floors are constants. Compared with them bit by bit, most bits cost nothing; a carry chain would have all ten.
+//! The lower limits are constants. With a bit-by-bit comparison most bits cost nothing; a carry chain would use all
+//! ten.
 
 use crate::prelude::*;
 use posicast_model::rtl::pwm::PwmConfig;
@@ -26,7 +27,7 @@ impl Logic for Timing {
     fn update(&mut self) {
         comment!("@module pwm_timing_${value dead_time_floor}x${value minimum_pulse_floor}");
 
-        comment!("Below: the floor has the highest bit that differs");
+        comment!("Below: the limit has the highest differing bit");
         self.dead_below.next = false;
         for i in 0..10 {
             if self.dead_time.val().get_bit(i) != self.dead_time_floor.val().get_bit(i) {

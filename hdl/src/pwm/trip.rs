@@ -1,4 +1,4 @@
-//! All that turns the outputs off: the fault latch, which needs no clock, and the causes that come with one.
+//! The sources that turn the outputs off: the asynchronous fault latch, and the clocked causes.
 
 use super::filtered_fault::FilteredFault;
 use crate::prelude::*;
@@ -39,14 +39,14 @@ impl Logic for Trip {
     fn update(&mut self) {
         comment!("@module pwm_trip");
 
-        comment!("Without a clock: the pins, and the latch");
+        comment!("Asynchronous: the pins and the latch");
         self.trip_n.next = self.fault_n.val() & self.pll_locked.val();
         self.fault_latch.clk.next = self.clk.val();
         self.fault_latch.rst.next = self.rst.val();
         self.fault_latch.trip_n.next = self.trip_n.val();
         self.armed.next = self.fault_latch.armed.val() & self.trip_n.val();
 
-        comment!("Cleared once off, and seen to be over");
+        comment!("Cleared once off and once the cause is over");
         self.armed_synchroniser.clk.next = self.clk.val();
         self.armed_synchroniser.rst.next = self.rst.val();
         self.armed_synchroniser.pin.next = self.fault_latch.armed.val();
@@ -61,7 +61,7 @@ impl Logic for Trip {
         self.fault_latch.clear.next =
             self.clear_trip.val() & !self.running.val() & self.latched.val() & self.over.val();
 
-        comment!("Filtered faults and PLL, set over clear");
+        comment!("Filtered faults and PLL; setting wins");
         self.fault_0.clk.next = self.clk.val();
         self.fault_0.rst.next = self.rst.val();
         self.fault_0.fault_n.next = self.filtered_fault_n.val().get_bit(0);

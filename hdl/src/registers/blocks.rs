@@ -1,11 +1,11 @@
-//! One clocked block per register, and what it needs around it.
+//! The clocked block of each register, with the declarations that it needs.
 
 use super::text::{bits, joined, part, type_of};
 use crate::emit::Type;
 use crate::emit::print::Lines;
 use posicast_model::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
 
-/// A flip-flop of the bank: type, name, reset value.
+/// A flip-flop of the bank, as type, name and reset value.
 pub(super) type Flop = (Type, String, u32);
 
 /// Declarations and the clocked block of one register.
@@ -113,7 +113,7 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
     }
 }
 
-/// Takes each byte of the bus that a write reaches. An enable per byte leaves a flip-flop without logic of its own.
+/// Writes each enabled byte of the bus. An enable per byte leaves a flip-flop without logic of its own.
 fn by_bytes(lines: &mut Lines, condition: &str, fields: &[Field], prefix: &str) {
     for byte in 0..4 {
         let in_byte = |field: &Field| {
@@ -153,7 +153,7 @@ pub(super) fn guarded(lines: &mut Lines, register: &Register, while_low: &str) {
         ));
     }
     let minima = register.fields.iter().filter(|field| field.minimum > 0).map(|field| {
-        // A concatenation is unsigned, whatever it holds.
+        // A concatenation is unsigned, even of signed values.
         let next = match field.is_signed() {
             true => format!("{{next_{}}}", field.name),
             false => format!("next_{}", field.name),
@@ -203,7 +203,7 @@ pub(super) fn flops(register: &Register) -> Vec<Flop> {
     }
 }
 
-/// Declares the flip-flops whose names begin so: those that are not outputs.
+/// Declares the flip-flops with this prefix, which are those that are not outputs.
 pub(super) fn declare(lines: &mut Lines, flops: &[Flop], prefix: &str) {
     for (ty, name, _) in flops.iter().filter(|(_, name, _)| name.starts_with(prefix)) {
         let declaration = ty.declaration();
@@ -212,7 +212,7 @@ pub(super) fn declare(lines: &mut Lines, flops: &[Flop], prefix: &str) {
     }
 }
 
-/// A clocked block that resets `flops`, and else does what `inner` writes under the condition `otherwise`.
+/// Writes a clocked block that resets `flops`, and else does what `inner` writes, under the condition `otherwise`.
 pub(super) fn clocked(lines: &mut Lines, flops: &[Flop], otherwise: &str, inner: impl FnOnce(&mut Lines)) {
     lines.nest(
         "always @(posedge clk) if (rst) begin",
@@ -226,7 +226,7 @@ pub(super) fn clocked(lines: &mut Lines, flops: &[Flop], otherwise: &str, inner:
     lines.nest_rest("end", inner);
 }
 
-/// The registers that have a shadow, with the shadow.
+/// The registers that have a shadow.
 fn shadowed(map: &RegisterMap) -> impl Iterator<Item = &Register> {
     map.registers()
         .iter()

@@ -1,10 +1,10 @@
-//! Register banks in hardware: an Avalon-MM agent written from its register map.
+//! Register banks in hardware: writes an Avalon-MM agent from its register map.
 //!
 //! The datasheet is `docs/registers.md`, the reference `posicast_model::rtl::registers`.
 //!
-//! A bank is not a RustHDL kernel: what a kernel could say of it are names, offsets and bits, which stand in the map
-//! already, and RustHDL's struct of ports would have to be written once more for every component. So the Verilog is
-//! written from the map, and the interpreter of the same map in the model holds it in lock step.
+//! A bank is not a RustHDL kernel: the kernel would contain only names, offsets and bits, which are in the map
+//! already, and RustHDL's struct of ports would have to be written again for every component. So the Verilog is
+//! written from the map, and lock step compares it with the model's interpreter of the same map.
 
 mod blocks;
 mod text;
@@ -14,10 +14,10 @@ use crate::emit::names::check_name;
 use crate::emit::{EmitError, Header, Module, Parameter, digest, print, shared_name};
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap};
 
-/// The bank's Verilog, called as [`name`] says.
+/// Verilog of the bank; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` or a port makes no Verilog name.
+/// [`EmitError`] where `prefix` or a port is not a valid Verilog name.
 pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     let body = verilog::body(map);
     let name = name_of(map, &body, prefix);
@@ -42,10 +42,10 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     })
 }
 
-/// The name of the bank's module: `posicast_MAP_registers_DIGEST`, or `registers` where `prefix` is empty.
+/// Name of the bank's module: `posicast_MAP_registers_DIGEST`, or `registers` where `prefix` is empty.
 ///
-/// A bank holds offsets, reset values and parameters of its build, far too many for a name. Their digest stands for them, so
-/// that two banks of one name are the same.
+/// A bank has offsets, reset values and parameters of its build, far too many for a name. Their digest identifies
+/// them, so that two banks with the same name are equal.
 pub fn name(map: &RegisterMap, prefix: &str) -> String {
     name_of(map, &verilog::body(map), prefix)
 }
@@ -53,12 +53,12 @@ pub fn name(map: &RegisterMap, prefix: &str) -> String {
 fn name_of(map: &RegisterMap, body: &str, prefix: &str) -> String {
     match prefix {
         "" => "registers".to_owned(),
-        // What the header says of the build stands in the body too, but for the meaning of a parameter.
+        // The body contains everything that the header says of the build, except the meanings of parameters.
         _ => shared_name(prefix, &format!("{}_registers_{:08x}", map.name(), digest(body))),
     }
 }
 
-/// The build's parameters, as a file's header tells them.
+/// The build's parameters for the header of a file.
 pub(crate) fn parameters(map: &RegisterMap) -> Vec<Parameter> {
     let is_parameter = |register: &&Register| register.access == Access::Constant && register.offset > 1;
     let fields = map

@@ -1,4 +1,4 @@
-//! Types, parts of words and lists as a bank's Verilog writes them.
+//! Types, parts of words and lists, as a bank's Verilog writes them.
 
 use crate::emit::Type;
 use crate::emit::print::Lines;
@@ -15,7 +15,7 @@ pub(super) fn type_of(field: &Field) -> Type {
     }
 }
 
-/// `name[7:0]` of a word, `name[3]`, or the whole.
+/// A part of a word: `name[7:0]`, `name[3]`, or the whole.
 pub(super) fn part(word: &str, field: &Field) -> String {
     match (field.low, field.width) {
         (0, 32) => word.to_owned(),
@@ -24,7 +24,7 @@ pub(super) fn part(word: &str, field: &Field) -> String {
     }
 }
 
-/// `begin`, then the terms with the operator between them, and `end`.
+/// Writes `begin`, then the terms with the operator between them, and `end`.
 pub(super) fn joined(lines: &mut Lines, begin: &str, terms: &[String], operator: &str, end: &str) {
     lines.line(&format!("{begin}{}{end}", terms.join(operator)));
 }

@@ -1,4 +1,4 @@
-//! The body of a bank: words of the window, what is written, one clocked block per register, what is read.
+//! The body of a bank: offsets of the window, decoding of writes, one clocked block per register, and reads.
 
 use super::blocks::{
     Flop, clocked, declare, flops, guarded, interrupt, register_block, shadow_flops, shadows, sticky_prefix,
@@ -44,7 +44,8 @@ pub(super) fn body(map: &RegisterMap) -> String {
     lines.text
 }
 
-/// The fields of a register and the gaps between them, from bit 31 down, each field as `name` calls it.
+/// The fields of a register and the gaps between them, from bit 31 down, each field with the name that `name` gives
+/// it.
 fn word(fields: &[Field], name: impl Fn(&Field) -> String) -> Vec<String> {
     let mut sorted: Vec<&Field> = fields.iter().collect();
     sorted.sort_by_key(|field| std::cmp::Reverse(field.low));
@@ -77,7 +78,7 @@ fn offsets(lines: &mut Lines, map: &RegisterMap) {
     }
 }
 
-/// Does a write do anything?
+/// Whether a write has an effect.
 fn is_writable(register: &Register) -> bool {
     !matches!(register.access, Access::Constant | Access::Live | Access::Shadow { .. })
 }
@@ -86,7 +87,7 @@ fn writables(map: &RegisterMap) -> impl Iterator<Item = &Register> {
     map.registers().iter().filter(|register| is_writable(register))
 }
 
-/// Does it look at the written word with the bytes that a write leaves out as 0?
+/// Whether it uses the written word with the disabled bytes as 0.
 fn is_masked(register: &Register) -> bool {
     matches!(
         register.access,
@@ -94,7 +95,7 @@ fn is_masked(register: &Register) -> bool {
     )
 }
 
-/// The bytes of a register that are written by themselves, a bit each: those that `by_bytes` takes.
+/// Mask of the bytes of a register that are written individually by `by_bytes`.
 fn bytes_alone(register: &Register) -> u32 {
     if !matches!(
         register.access,
@@ -153,7 +154,7 @@ fn writes(lines: &mut Lines, map: &RegisterMap) {
     });
 }
 
-/// Is there a flag that is set by this?
+/// Whether a flag has this source.
 fn is_flagged(map: &RegisterMap, source: FlagSource) -> bool {
     let flags = map.registers().iter().filter(|register| register.access.is_sticky());
     flags
@@ -195,13 +196,13 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
     }
 }
 
-/// Words that are read in a clock: with more of them the way through the decode is the longest of a stage.
+/// Number of words that are read in one group: with more, the decode is the longest path of a stage.
 const GROUP_WORDS: usize = 16;
 
-/// Registers that can be read, with the pieces of the word that each shows.
+/// Registers that can be read, each with the pieces of its word.
 type ReadGroup<'a> = Vec<(&'a Register, Vec<String>)>;
 
-/// All that can be read, in groups of about the same size.
+/// All readable registers, in groups of about the same size.
 fn read_groups(map: &RegisterMap) -> Vec<ReadGroup<'_>> {
     let readable = |register| read_value(map, register).map(|value| (register, value));
     let all: Vec<_> = map.registers().iter().filter_map(readable).collect();
@@ -210,7 +211,7 @@ fn read_groups(map: &RegisterMap) -> Vec<ReadGroup<'_>> {
     all.chunks(words).map(<[_]>::to_vec).collect()
 }
 
-/// The registers behind the decode, by the number of groups.
+/// The registers after the decode, for this number of groups.
 fn read_flops(groups: usize) -> Vec<Flop> {
     let name = |at: usize| match groups {
         1 => "avs_readdata".to_owned(),
@@ -275,7 +276,7 @@ fn power_up(lines: &mut Lines, map: &RegisterMap, data: &[Flop]) {
     });
 }
 
-/// Reads what nothing else reads, so that lint tools take it as meant.
+/// Reads unused bits, so that lint tools take them as intended.
 fn unused(lines: &mut Lines, map: &RegisterMap) {
     let fields_of = |holds: &dyn Fn(&Register) -> bool| {
         let registers = map.registers().iter().filter(|register| holds(register));
@@ -300,7 +301,7 @@ fn unused(lines: &mut Lines, map: &RegisterMap) {
         terms.push("avs_write".to_owned());
     }
     if !terms.is_empty() {
-        lines.line("// Bits that nothing reads.");
+        lines.line("// Bits that are never read.");
         joined(lines, "wire unused = &{1'b0, ", &terms, ", ", "};");
     }
 }

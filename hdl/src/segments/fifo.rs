@@ -1,4 +1,4 @@
-//! The entries that wait: 64 of 4 words in block RAM, and the pointers.
+//! The waiting entries: 64 of 4 words in block RAM, and the pointers.
 //!
 //! `pop` makes the oldest entry the one that plays: its slot, `head`, is read in every tick, and is free again at the next
 //! `pop` or once nothing plays. The slots after it wait, those after them are a batch in the making, and a word goes into the first one
@@ -87,7 +87,7 @@ impl Logic for CommandFifo {
         self.refused.next = self.write.val() & self.refuses.val();
         self.malformed.next = self.commits.val() & !self.well_formed.val();
 
-        comment!("Which words are there, and a jerk too wide");
+        comment!("Words written so far, and a jerk too wide");
         self.upper.next = self.data.val().get_bits::<25>(7);
         self.narrow.next = (self.upper.val() == self.no_upper.val()) | (self.upper.val() == self.all_upper.val());
         if self.takes.val() {
@@ -145,7 +145,7 @@ impl Logic for CommandFifo {
             self.too_wide.d.next = false;
         }
 
-        comment!("The entry that plays, a word at a time");
+        comment!("The entry being played, a word at a time");
         self.memory.read_address.next =
             (bit_cast::<8, 6>(self.head.q.val()) << 2) | bit_cast::<8, 2>(self.read_word.val());
         self.read_data.next = self.memory.read_data.val();

@@ -1,7 +1,7 @@
 //! `a += j; v += a; p += v`, a quick stop, a point, a cubic and an extrapolation, byte by byte on one adder.
 //!
-//! Each register turns past the adder, lowest byte first, as `passes` says; what is written is the sum. Outputs are rounded
-//! from the registers at rest.
+//! Each register rotates past the adder, lowest byte first, as `passes` controls; the sum is written back. Outputs
+//! are rounded from the registers when these are at rest.
 
 use super::passes::Passes;
 use crate::prelude::*;
@@ -86,7 +86,7 @@ impl Logic for Integrator {
         self.passes.moving.next = self.moving.q.val();
 
         comment!("A byte of the entry: half a word first, since");
-        comment!("what a memory shows comes late in its clock");
+        comment!("a memory's output comes late in its clock");
         self.entry_half.d.next = self.read_data.val().get_bits::<16>(0);
         if self.passes.read_byte_1.val() {
             self.entry_half.d.next = self.read_data.val().get_bits::<16>(16);
@@ -134,7 +134,7 @@ impl Logic for Integrator {
         self.sum.next = self.wide_sum.val().get_bits::<8>(1);
         self.backwards.next = self.exact_velocity.q.val().get_bit(47);
         comment!("In the last 32nd before an end of the word, and");
-        comment!("outwards; in the last 64th a stop stands at once");
+        comment!("outwards; in the last 64th a stop is immediate");
         self.below.next = self.exact_position.q.val().get_bit(55);
         self.outwards.next = (self.backwards.val() == self.below.val()) & !self.modulo.val();
         self.upper_bits.next = self.exact_position.q.val().get_bits::<6>(49);
@@ -151,7 +151,7 @@ impl Logic for Integrator {
                 self.passes.carry.val() | (self.brakes.val() & !self.backwards.val() & !self.stands.val());
         }
 
-        comment!("Beyond the end; a change of sign; any motion");
+        comment!("Beyond the end, a change of sign, any motion");
         self.turned_sign.next = self.sum.val().get_bit(7) != self.augend.val().get_bit(7);
         self.unfit.next = self.turned_sign.val() & (self.augend.val().get_bit(7) == self.addend.val().get_bit(7));
         if self.passes.judges_jerk.val() {
@@ -211,7 +211,7 @@ impl Logic for Integrator {
             self.exact_velocity.d.next = self.no_velocity.val();
         }
 
-        comment!("Position: what is above is never seen");
+        comment!("Position: bits above are never used");
         self.preset_word.next = unsigned_cast(self.preset_position.val());
         self.preset_bits.next = self.preset_word.val().get_bits::<24>(0);
         if self.passes.turn_position.val() {
@@ -224,7 +224,7 @@ impl Logic for Integrator {
             self.exact_position.d.next = self.no_position.val();
         }
 
-        comment!("Ticks of the entry: up to 0, from -ticks");
+        comment!("Ticks of the entry, counting from -ticks up to 0");
         if self.passes.turn_ticks.val() {
             self.ticks.d.next = (self.ticks.q.val() >> 8) | (bit_cast::<24, 8>(self.sum.val()) << 16);
         }
@@ -253,7 +253,7 @@ impl Logic for Integrator {
         self.velocity.next = signed_cast(self.velocity_sum.val().get_bits::<32>(1));
         self.acceleration.next = signed_cast(self.acceleration_sum.val().get_bits::<32>(1));
 
-        comment!("What comes of the tick");
+        comment!("Results of the tick");
         self.at_rest.next = !self.moving.q.val();
         self.overflowed.next = self.passes.failed.val();
         self.leaves.next = self.past_reach.val() & self.moving.q.val();

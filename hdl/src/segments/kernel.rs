@@ -1,4 +1,4 @@
-//! Ticks, states and flags; the FIFO and the integrator do the rest.
+//! Ticks, states and flags of the command FIFO; memory and integrator are parts of it.
 //!
 //! ```text
 //! phase 0            1 … 43          44               45 … 51
@@ -101,7 +101,7 @@ impl Logic for Segments {
             self.wants_restart.d.next = false;
             self.wants_preset.d.next = false;
             self.drops.next = self.flush_now.val();
-            comment!("A feed hold: at rest, nothing is played");
+            comment!("Feed hold: at rest, nothing is played");
             self.held_now.next = self.moves.val()
                 & self.rests_q.q.val()
                 & self.feed_hold.val()
@@ -125,7 +125,7 @@ impl Logic for Segments {
             }
         }
 
-        comment!("The sums, and the entry that they take");
+        comment!("The sums, and the entry that they use");
         self.held_q.d.next = self.held_now.val();
         self.plays.next = self.moves.val() & !self.held_now.val();
         self.points.next = self.plays.val() & self.point.q.val() & !self.extrapolates.q.val();
@@ -222,7 +222,7 @@ impl Logic for Segments {
             self.idle.d.next = true;
         }
 
-        comment!("Words of a host");
+        comment!("Words written by the host");
         self.fifo.write.next = self.write.val();
         self.fifo.word.next = self.word.val();
         self.fifo.data.next = self.data.val();

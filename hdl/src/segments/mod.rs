@@ -16,7 +16,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The command FIFO in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(Segments::default());
     Ok(Box::new(Simulated::new("segments", block, ports())?))
@@ -27,7 +27,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_segments`, or `segments` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: u32, meaning: &str| Parameter {
         name: name.to_owned(),
@@ -43,7 +43,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("entries", u32::from(ENTRIES_MAX), "with the one that plays"),
+                parameter("entries", u32::from(ENTRIES_MAX), "including the one being played"),
                 parameter("latency_clocks", LATENCY_CLOCKS, "from tick to valid"),
                 parameter("tick_clocks", TICK_CLOCKS, "from a tick until the next one is taken"),
             ],

@@ -1,4 +1,4 @@
-//! Which bytes are added in which clock of a tick: six passes of eight clocks, and one that reads.
+//! Controls which bytes are added in which clock of a tick: six passes of eight clocks, and one that reads.
 //!
 //! ```text
 //! phase    1…5       9…14     17…21            25…30       33…39       41…43    44      49…51
@@ -107,7 +107,7 @@ impl Logic for Passes {
         self.judges_jerk.next = self.phase.val() == self.jerk_phase.val();
         self.judges_speed.next = self.phase.val() == self.speed_phase.val();
 
-        comment!("Whole turns: 5, 6, 7 and 3 bytes");
+        comment!("Whole rotations: 5, 6, 7 and 3 bytes");
         self.turn_acceleration.next =
             !self.later.val() & self.any_slot.val() & !(self.slot_2.val() & self.slot_1.val());
         self.turn_velocity.next = (!self.later.val() | self.travels.val())
@@ -158,7 +158,7 @@ impl Logic for Passes {
         self.add_velocity.next = self.add_velocity_q.q.val();
         self.invert.next = self.invert_q.q.val();
 
-        comment!("Is there any motion left; the outputs");
+        comment!("Detect remaining motion; update the outputs");
         self.forgets_moving.next = self.corrects.val() & !self.any_slot.val();
         self.sees_moving.next =
             self.middle.val() & (self.turn_acceleration.val() | (self.odd.val() & self.turn_velocity.val()));

@@ -1,26 +1,30 @@
-//! Every channel's `saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, one channel after the other, shown together.
+//! Computes `saturate( (Σ coefficient · sample + 2^(F−1)) >> F )` of every channel, one after the other, and shows
+//! the results together.
 //!
-//! `begin_pass` is a strobe. Then a `boundary` comes before the first channel's products and one after each channel's: the
-//! product of that clock is nobody's, that of any other clock up to the last boundary is added. A boundary takes the sum
-//! and puts the half that rounds in its place. At the last one all outputs change in one clock, and `valid` shows it.
+//! `begin_pass` is a strobe. Then there is a `boundary` before the first channel's products and one after each
+//! channel's. The product in the clock of a boundary belongs to no channel; the products of all other clocks up to
+//! the last boundary are added. A boundary takes the sum and replaces it by the half for rounding. At the last
+//! boundary all outputs change in one clock, and `valid` shows it.
 //!
-//! A sample is that of `sample_channel`, or 0 where it was `blank` a clock before; its product stands four clocks after it.
+//! A sample is that of `sample_channel`, or 0 if it was `blank` a clock before; its product comes four clocks after
+//! it.
 //!
-//! The result fits its word if the bits of the accumulator from the word's sign bit up are equal. Else its place is cleared
-//! and tells at which end it is: clearing a register takes no logic.
+//! The result fits its word if the accumulator's bits from the word's sign bit up are equal. Otherwise its register
+//! is cleared and a flag tells at which end it is, because clearing a register takes no logic.
 //!
-//! A position that wraps gets differences to its newest word as samples: the accumulator begins with that word times 2^F,
-//! and the sum is taken modulo 2^W.
+//! A position that wraps gets differences from its newest word as samples: the accumulator begins with that word
+//! times 2^F, and the sum is taken modulo 2^W.
 //!
-//! 2 · 2^T + 1 products of W + 18 bits fit in ACC = W + 19 + T bits, the half included: the accumulator never overflows.
+//! 2 · 2^T + 1 products of W + 18 bits fit in ACC = W + 19 + T bits, including the half: the accumulator never
+//! overflows.
 
 use super::product::Product;
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 kernel! {
-    /// W word, P = W + 18 product, ACC = P + T + 1 accumulator bits, C channels, H = C − 1 results that wait for
-    /// the last.
+    /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T + 1 accumulator bits, C channels, H = C − 1 results
+    /// that wait for the last one.
     pub(super) struct ChannelSums<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: usize>
         (config: &ShaperConfig);
 
@@ -93,7 +97,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
             self.y_q[i].d.next = self.y_q[i].q.val();
         }
 
-        comment!("The channel's sample; 0 if there was none");
+        comment!("Sample of the channel; 0 if there was none");
         self.blank_read.d.next = self.blank.val();
         self.sample_q.d.next = self.sample[0].val();
         for i in 1..C {
@@ -105,7 +109,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
             self.sample_q.d.next = self.no_sample.val();
         }
 
-        comment!("A position that wraps: the way to the newest");
+        comment!("A wrapping position: difference from the newest");
         self.operand.next = self.sample_q.q.val();
         if self.modulo.val() & (self.sample_channel.val() == self.first_channel.val()) {
             self.operand.next = self.sample_q.q.val() - self.newest.val();
@@ -132,7 +136,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
             self.accumulator.d.next = signed_cast(self.position_scaled.val()) + self.half.val();
         }
 
-        comment!("Shift by F bits; what does not fit");
+        comment!("Shift by F bits; detect what does not fit");
         self.wraps.next = self.modulo.val() & (self.channel.q.val() == self.first_channel.val());
         self.accumulator_bits.next = unsigned_cast(self.accumulator.q.val());
         self.sign_bits.next = self.accumulator_bits.val() & self.sign_mask.val();
@@ -143,7 +147,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
         self.above.next = self.beyond.val() & !self.accumulator.q.val().get_bit(self.top_bit.val().index());
         self.result.next = self.accumulator_bits.val().get_bits::<W>(self.fraction.val().index());
 
-        comment!("Each channel's result, until the last is there");
+        comment!("Results of the channels, until the last is ready");
         self.cut_off.next = self.start.val() | self.begin_pass.val();
         self.shows.next = self.boundary.val() & (self.channel.q.val() == self.last_channel.val()) & !self.cut_off.val();
         for i in 0..H {
@@ -198,7 +202,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
             }
         }
 
-        comment!("A start or a new pass cuts off what runs");
+        comment!("A start or a new pass abandons a running one");
         if self.cut_off.val() {
             self.channel.d.next = self.no_channel.val();
             self.busy_q.d.next = self.begin_pass.val();

@@ -1,18 +1,19 @@
-//! When a swap takes effect, and how long two tables share the history.
+//! Decides when a swap takes effect, and how long two tables share the history.
 //!
-//! `take` lets the swap that waits take effect at this strobe: at once, or once the position has stood still for `reach`
-//! samples, the longest delay of both tables. In a handover `active` is high, and `since` counts the samples since the last
-//! one that the old table shaped alone; above `reach` it is over. `newest` is the position of the last sample.
+//! `take` lets the waiting swap take effect at this strobe: at once, or once the position has stood still for `reach`
+//! samples, the longest delay of both tables. In a handover `active` is high, and `since` counts the samples since
+//! the last one that the old table shaped alone; it ends above `reach`. `newest` is the position of the last sample.
 //!
-//! A tap goes through on its way from the tables to the rings: it comes two clocks after `old`, `correcting` and `of_position`
-//! told of it, and leaves a clock later. Of the old table a tap belongs to the increments of the command with delay ≥ `since`, of the new table to those
-//! below. Any other sees the sample that lies `since` back where it is of the position, and counts as zero elsewhere.
+//! A tap passes through on its way from the tables to the ring buffers: it comes two clocks after its `old`,
+//! `correcting` and `of_position`, and leaves one clock later. A tap of the old table applies to the increments of
+//! the command with delay ≥ `since`, a tap of the new table to those below. Any other tap uses the sample `since`
+//! back for the position, and counts as zero for other channels.
 
 use crate::prelude::*;
 use posicast_model::rtl::shaper::{ShaperConfig, swap_how};
 
 kernel! {
-    /// W word, A ring address bits.
+    /// Sizes: W word bits, A ring address bits.
     pub(super) struct Handover<const W: usize, const A: usize>(config: &ShaperConfig);
 
     inputs {
@@ -69,7 +70,7 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
             self.still.d.next = self.for_ever.val();
         }
 
-        comment!("Whether a swap takes effect at a strobe");
+        comment!("A swap may take effect at a strobe");
         if self.accepted.val() {
             self.how.d.next = self.swap_how.val();
         }
@@ -93,7 +94,7 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
             self.active_q.d.next = false;
         }
 
-        comment!("What it makes of a tap");
+        comment!("Tap during the handover");
         self.old_read.d.next = self.old.val();
         self.old_tap.d.next = self.old_read.q.val();
         self.correction_read.d.next = self.correcting.val();

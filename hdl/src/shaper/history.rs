@@ -1,20 +1,20 @@
-//! The samples since the last start, and before them its words: C rings that go together.
+//! The samples since the last start, and before it the start's words, in C ring buffers that move together.
 //!
-//! A ring of 2^A words in block RAM per channel, the newest word at `head`. A strobe writes `x` behind it, a start as well,
-//! and from then on `age` counts the strobes, so that the start's word lies that many words back. What `delay` asks for stands
-//! at `sample` one clock later: `ring[head − min(delay, age)]`, and so, of all before the start, the start's own word. Where that
-//! lies is kept in `origin`, so that difference and comparison go side by side.
+//! There is a ring buffer of 2^A words in block RAM per channel, with the newest word at `head`. A strobe appends
+//! `x`; so does a start, and from then on `age` counts the strobes, so that the start's word is that many words back.
+//! `sample` is one clock after `delay` the word `ring[head − min(delay, age)]`, so that everything before the start
+//! is the start's own word. Its address is kept in `origin`, so that difference and comparison run in parallel.
 //!
-//! After a reset `age` counts from the first strobe. What lies before that is 0, which no ring holds: `blank` tells of it, a
-//! clock before its sample. So no word is used that was not written since the reset.
+//! After a reset `age` counts from the first strobe. The samples before that are 0, which is not in a ring buffer:
+//! `blank` tells so, one clock before the sample. So no word is used that was not written since the reset.
 //!
-//! `delay` is at most 2^A − 2: the word read is never the one that is written.
+//! `delay` is at most 2^A − 2, so the word read is never the one being written.
 
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 kernel! {
-    /// W word, A ring address bits, C channels.
+    /// Sizes: W word bits, A ring address bits, C channels.
     pub(super) struct History<const W: usize, const A: usize, const C: usize>(config: &ShaperConfig);
 
     inputs { rst: Bit, strobe: Bit, start: Bit, x[C]: Signed<W>, delay: Bits<A> }
@@ -34,7 +34,7 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
     fn update(&mut self) {
         comment!("@module history_${width x$0}x${words delay}x${count x}");
 
-        comment!("A strobe adds x; a start too, and forgets");
+        comment!("A strobe adds x; a start also clears");
         self.writes.next = self.strobe.val() | self.start.val();
         self.next_head.next = self.head.q.val() + self.one_sample.val();
         if self.writes.val() {
@@ -52,7 +52,7 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
             self.origin.d.next = self.next_head.val();
         }
 
-        comment!("The sample that lies delay samples back");
+        comment!("The sample delay samples back");
         self.before_start.next = self.delay.val() > self.age.q.val();
         self.address.next = self.head.q.val() - self.delay.val();
         if self.before_start.val() {

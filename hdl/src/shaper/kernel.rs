@@ -1,4 +1,4 @@
-//! The pass over the taps, one per clock.
+//! Computes a sample over the taps, one tap per clock.
 //!
 //! ```text
 //! tap ─► tap_banks ─► delay ─────► history ─► sample ──────► weighted_sum ─────────────────► y
@@ -6,8 +6,8 @@
 //! running   stages[0] stages[1]              stages[2]     stages[3] to [5] done         valid
 //! ```
 //!
-//! A tap is in each place for one clock. So of N taps the last product is added in clock N + 6 after the strobe, `done`
-//! shows in clock N + 7, and `y` in clock N + 8.
+//! A tap is in each stage of the pipeline for one clock. With N taps the last product is added in clock N + 6 after
+//! the strobe, `done` shows in clock N + 7, and `y` in clock N + 8.
 
 use super::history::History;
 use super::tap_banks::TapBanks;
@@ -16,8 +16,8 @@ use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 kernel! {
-    /// W word, P = W + 18 product, ACC = P + T accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
-    /// WORD = 18 + A bits; U of [`super::product`].
+    /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T accumulator bits, A ring address bits, T index bits,
+    /// COUNT = T + 1, SUM = 18 + T and WORD = 18 + A bits; U as in [`super::product`].
     ///
     /// A shaper for `config`, whose sizes must not be above these.
     pub(super) struct Shaper<const W: usize, const P: usize, const ACC: usize, const A: usize, const T: usize,
@@ -58,7 +58,7 @@ impl<
     fn update(&mut self) {
         comment!("@module shaper");
 
-        comment!("The tables: the word of tap, two clocks later");
+        comment!("Tables: the word of tap comes two clocks later");
         self.banks.clk.next = self.clk.val();
         self.banks.rst.next = self.rst.val();
         self.banks.strobe.next = self.strobe.val();
@@ -74,13 +74,13 @@ impl<
         self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.tap.next = self.tap.q.val();
 
-        comment!("A swap has one way: all at the next strobe");
+        comment!("A swap takes effect at the next strobe");
         self.banks.known.next = true;
         self.banks.take.next = true;
         self.banks.locked.next = false;
         self.banks.old.next = false;
 
-        comment!("The samples: the one at delay, a clock later");
+        comment!("Samples: the one at delay comes a clock later");
         self.history.clk.next = self.clk.val();
         self.history.rst.next = self.rst.val();
         self.history.strobe.next = self.strobe.val();
@@ -88,7 +88,7 @@ impl<
         self.history.x[0].next = self.x.val();
         self.history.delay.next = self.banks.delay.val();
 
-        comment!("The sum: a pass that is cut off leaves y");
+        comment!("Sum: an abandoned pass leaves y unchanged");
         self.finish.next = self.done.q.val() & !self.start.val() & !self.strobe.val();
         self.sum.clk.next = self.clk.val();
         self.sum.rst.next = self.rst.val();
@@ -119,7 +119,7 @@ impl<
             self.busy_q.d.next = false;
         }
 
-        comment!("A start or a strobe cuts off what runs");
+        comment!("A start or a strobe abandons a running pass");
         if self.start.val() | self.strobe.val() {
             self.running.d.next = false;
             self.stages.d.next = self.no_stage.val();

@@ -2,10 +2,10 @@
 //!
 //! The datasheet is `docs/shaper.md`, the reference `posicast_model::rtl::shaper`.
 //!
-//! One kernel serves all sizes, and a second one all shapers for commands in motion: with channels, handover and modulo
-//! axes. Each is compiled at three sizes, from which the emitter writes any: see `compiled`. What changes the
-//! form of a kernel has a set of three of its own: one or two multipliers, one to three channels. Sizes are equal between the
-//! sets wherever they can be, so that the parts are compiled once.
+//! One kernel serves all sizes of the plain shaper, and a second one all motion shapers, with channels, handover and
+//! modulo axes. Each is compiled at three sizes, from which the emitter writes any: see `compiled`. Options that
+//! change the form of a kernel (one or two multipliers, one to three channels) have three sizes each. Sizes are equal
+//! between the forms wherever possible, so that the parts are compiled once.
 
 mod channel_sums;
 mod handover;
@@ -24,7 +24,7 @@ use motion::MotionShaper;
 use posicast_model::rtl::shaper::{ShaperConfig, moving, plain, ports};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
-/// The plain shaper with words of W bits, a ring of 2^A samples, tables of 2^T taps, and U of the [`Shaper`].
+/// The plain shaper with words of W bits, a ring buffer of 2^A samples, tables of 2^T taps, and U of the [`Shaper`].
 macro_rules! shaper {
     ($w:literal, $a:literal, $t:literal, $u:literal) => {
         Compiled {
@@ -46,7 +46,7 @@ macro_rules! shaper {
     };
 }
 
-/// The shaper for motion of C channels, else the same.
+/// The motion shaper with C channels, else the same.
 macro_rules! motion_shaper {
     ($w:literal, $a:literal, $t:literal, $c:literal) => {
         Compiled {
@@ -69,10 +69,10 @@ macro_rules! motion_shaper {
     };
 }
 
-/// The kernel that is compiled at three sizes, by its form.
+/// A kernel compiled at three sizes, for one form.
 type Sizes = [Compiled<ShaperConfig>; 3];
 
-/// Widest word that one multiplier takes.
+/// Width of the widest word for which one multiplier is enough.
 const ONE_MULTIPLIER_BITS: u32 = 17;
 const ONE_MULTIPLIER: Sizes = [shaper!(17, 14, 8, 0), shaper!(9, 15, 10, 0), shaper!(14, 11, 5, 0)];
 const TWO_MULTIPLIERS: Sizes = [shaper!(32, 14, 8, 1), shaper!(24, 15, 10, 1), shaper!(29, 11, 5, 1)];
@@ -92,7 +92,7 @@ const THREE_CHANNELS: Sizes = [
     motion_shaper!(29, 11, 5, 3),
 ];
 
-/// The kernel of the form that a shaper needs.
+/// The kernel with the form that a shaper needs.
 fn kernel(config: &ShaperConfig) -> &'static Sizes {
     match config.motion().map(|motion| motion.channels) {
         None if config.word_bits() <= ONE_MULTIPLIER_BITS => &ONE_MULTIPLIER,
@@ -103,18 +103,19 @@ fn kernel(config: &ShaperConfig) -> &'static Sizes {
     }
 }
 
-/// W, A and T.
+/// The sizes W, A and T.
 fn sizes(config: &ShaperConfig) -> [u32; 3] {
     [config.word_bits(), config.ring_address_bits(), config.tap_index_bits()]
 }
 
 /// The shaper in RustHDL's own simulator.
 ///
-/// It runs at a size that is compiled and holds this shaper, and whose outputs are the same: rings and tables are larger, and
+/// It runs at a compiled size that holds this shaper and has the same outputs: ring buffer and tables are larger, and
 /// words may be wider.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block, or where a position wraps at a width that is not compiled.
+/// [`SimulationError`] where RustHDL finds an error in the block, or where a position wraps at a width that is not
+/// compiled.
 pub fn simulate(config: &ShaperConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let holding = simulated(config).ok_or(SimulationError::Size {
         block: "shaper",
@@ -127,7 +128,7 @@ pub fn simulate(config: &ShaperConfig) -> Result<Box<dyn ClockedBlock>, Simulati
     )?))
 }
 
-/// The sizes at which [`simulate`] runs the shaper, in words, where they are not its own.
+/// The sizes at which [`simulate`] runs the shaper, in words, if they differ from its own.
 pub fn simulated_as(config: &ShaperConfig) -> Option<String> {
     match simulated(config)?.sizes {
         same if same == sizes(config) => None,
@@ -140,13 +141,13 @@ pub fn simulated_as(config: &ShaperConfig) -> Option<String> {
     }
 }
 
-/// The kernel that the simulation runs. The arithmetic of a position that wraps is that of its word's very width.
+/// The kernel that the simulation runs. A position that wraps needs a word of exactly its width.
 fn simulated(config: &ShaperConfig) -> Option<&'static Compiled<ShaperConfig>> {
     let wraps = config.motion().is_some_and(|motion| motion.modulo);
     compiled::holding(kernel(config), &sizes(config), wraps)
 }
 
-/// The name of the module that [`emit()`] writes last: it holds a machine's table.
+/// Name of the last module that [`emit()`] writes; it contains a machine's table.
 pub fn name(config: &ShaperConfig, prefix: &str) -> String {
     emit::own_name(prefix, &base_name(config))
 }
@@ -160,10 +161,10 @@ fn base_name(config: &ShaperConfig) -> String {
 
 /// The shaper's Verilog, one module per file, the top last.
 ///
-/// The top is called as [`name`] says; all names are bare where `prefix` is empty.
+/// [`name`] gives the top's name; names have no prefix where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: base_name(config),
@@ -250,7 +251,7 @@ mod tests {
         TapTable::new(9, [(0, -300), (1, 400), (60, 412)].map(tap).to_vec()).unwrap()
     }
 
-    /// One size for each form of the kernel, none of them among those that are compiled.
+    /// Each form of the kernel has one size here that is not among the compiled ones.
     #[test]
     fn unit_each_form_comes_out_as_if_its_size_were_compiled() {
         let direct: [Compiled<ShaperConfig>; 5] = [

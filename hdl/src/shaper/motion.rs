@@ -1,4 +1,4 @@
-//! The pass of a shaper for commands in motion: over every channel, and in a handover over both tables.
+//! Computes a sample of a motion shaper: over all channels, and in a handover over both tables.
 //!
 //! ```text
 //! for channel in 0 .. C                          one multiplier, one product per clock
@@ -7,15 +7,16 @@
 //!     in a handover, channel 0: −2^F · x[n0]
 //! ```
 //!
-//! A product takes the places of [`super::kernel`]; between the table and the ring stands [`super::handover`]. `since`
-//! is m; a tap of the old table belongs to the increments of delay d ≥ m, one of the new table to those of d < m. Of the
-//! position, any other tap sees `x[n − m]`; of velocity and acceleration it counts as zero.
+//! A product passes the same stages as in [`super::kernel`]; between the table and the ring buffers is
+//! [`super::handover`]. `since` is m; a tap of the old table applies to the increments with delay d ≥ m, one of the
+//! new table to those with d < m. Any other tap uses `x[n − m]` for the position, and counts as zero for velocity and
+//! acceleration.
 //!
-//! After a channel one clock asks for nothing: when its place comes to the accumulator, one sum is taken and the next begins.
-//! `lasts` carries it there; that of a strobe's own clock comes before the first channel.
+//! After a channel there is one clock without a tap: when its stage reaches the accumulator, one sum is taken and the
+//! next begins. `lasts` marks it on the way; that of a strobe's own clock comes before the first channel.
 //!
-//! So of N products `y` stands N + C + 9 clocks after the strobe. More than in the plain shaper are one clock for the handover,
-//! one for the way from the rings to the multiplier, and one between two channels.
+//! With N products `y` comes N + C + 9 clocks after the strobe. In addition to the plain shaper there are one clock
+//! for the handover, one from the ring buffers to the multiplier, and one between two channels.
 
 use super::channel_sums::ChannelSums;
 use super::handover::Handover;
@@ -25,8 +26,8 @@ use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 kernel! {
-    /// W word, P = W + 18 product, ACC = P + T + 1 accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
-    /// WORD = 18 + A bits, C channels, H = C − 1.
+    /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T + 1 accumulator bits, A ring address bits, T index
+    /// bits, COUNT = T + 1, SUM = 18 + T and WORD = 18 + A bits, C channels, H = C − 1.
     ///
     /// A shaper for `config`, whose sizes must not be above these, and whose word must be W bits if its position wraps.
     pub(super) struct MotionShaper<const W: usize, const P: usize, const ACC: usize, const A: usize, const T: usize,
@@ -80,7 +81,7 @@ impl<
     fn update(&mut self) {
         comment!("@module shaper");
 
-        comment!("The tables: the word of tap, two clocks later");
+        comment!("Tables: the word of tap comes two clocks later");
         self.of_position.next = self.channel.q.val() == self.first_channel.val();
         self.old.next = self.handover.active.val() & !self.second.q.val();
         self.banks.clk.next = self.clk.val();
@@ -102,7 +103,7 @@ impl<
         self.banks.old.next = self.old.val();
         self.banks.tap.next = self.tap.q.val();
 
-        comment!("When a swap takes effect");
+        comment!("Time at which a swap takes effect");
         self.handover.clk.next = self.clk.val();
         self.handover.rst.next = self.rst.val();
         self.handover.strobe.next = self.strobe.val();
@@ -113,14 +114,14 @@ impl<
         self.handover.swap_pending.next = self.banks.swap_pending.val();
         self.handover.reach.next = self.banks.reach.val();
 
-        comment!("What a handover makes of a tap");
+        comment!("Tap during a handover");
         self.handover.old.next = self.old.val();
         self.handover.correcting.next = self.correcting.q.val();
         self.handover.of_position.next = self.of_position.val();
         self.handover.tap_coefficient.next = self.banks.coefficient.val();
         self.handover.tap_delay.next = self.banks.delay.val();
 
-        comment!("The samples: those at delay, a clock later");
+        comment!("Samples: those at delay come a clock later");
         self.history.clk.next = self.clk.val();
         self.history.rst.next = self.rst.val();
         self.history.strobe.next = self.strobe.val();
@@ -132,7 +133,7 @@ impl<
             self.sums.x[i].next = self.x[i].val();
         }
 
-        comment!("The sums: one ends and the next begins");
+        comment!("Sums: one ends and the next begins");
         self.sums.clk.next = self.clk.val();
         self.sums.rst.next = self.rst.val();
         self.sums.begin_pass.next = self.strobe.val();
@@ -144,7 +145,7 @@ impl<
         self.sums.start.next = self.start.val();
         self.sums.clear_flags.next = self.clear_flags.val();
 
-        comment!("A product per clock; after a channel none");
+        comment!("A product per clock, and none after a channel");
         self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
         self.table_ends.next = self.tap_number.val() == self.banks.taps.val();
         self.ends.next = false;
@@ -178,7 +179,7 @@ impl<
             self.sample_channel.d.next = self.sample_channel.q.val() + self.one_channel.val();
         }
 
-        comment!("A start or a strobe cuts off what runs");
+        comment!("A start or a strobe abandons a running pass");
         self.begin_lasts.next = self.no_stage.val();
         if self.strobe.val() {
             self.begin_lasts.next = self.second_stage.val();

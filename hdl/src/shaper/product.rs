@@ -1,12 +1,12 @@
-//! Coefficient times sample, exactly, three clocks after both.
+//! Multiplies coefficient and sample exactly; the product comes three clocks after both.
 //!
-//! A word of more than 17 bits goes through two multipliers, its lower 17 bits and the rest, and one adder with a register
-//! before and after: in one clock both would be the longest path of the shaper.
+//! A word of more than 17 bits uses two multipliers, for its lower 17 bits and for the rest, and one adder with a
+//! register before and after: both in one clock would be the longest path of the shaper.
 
 use crate::prelude::*;
 
 kernel! {
-    /// W ≤ 32 word, P = W + 18 product bits; U = 1: two multipliers, 0: one for W ≤ 17.
+    /// Sizes: W ≤ 32 word bits, P = W + 18 product bits; U = 1: two multipliers, 0: one, for W ≤ 17.
     pub(super) struct Product<const W: usize, const P: usize, const U: usize>
         where W <= 32 && P == W + 18 && (U == 1 || (U == 0 && W <= 17));
 
@@ -29,7 +29,7 @@ impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> 
     fn update(&mut self) {
         comment!("@module product_${width sample}");
 
-        comment!("The lower 17 bits, or all of a short word");
+        comment!("Product of the lower 17 bits, or of a short word");
         self.word.next = signed_bit_cast::<32, W>(self.sample.val());
         self.word_bits.next = unsigned_cast(self.word.val());
         self.lower_part.next = self.word_bits.val().get_bits::<18>(0) & self.lower_mask.val();
@@ -38,7 +38,7 @@ impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> 
         self.lower.b.next = self.coefficient.val();
         self.wide_lower.next = signed_bit_cast::<P, 36>(self.lower.product.val());
 
-        comment!("The rest of a long one");
+        comment!("Product of the rest of a long word");
         self.wide_upper.next = self.no_product.val();
         for i in 0..U {
             self.upper[i].clk.next = self.clk.val();

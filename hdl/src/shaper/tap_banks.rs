@@ -1,27 +1,27 @@
-//! The three tap tables, how one is loaded, and when one becomes active.
+//! The three tap tables: how one is loaded and becomes active.
 //!
 //! Bank 0 is a ROM with the machine's table; banks 1 and 2 are the halves of one RAM. A word of either is
-//! `{delay, coefficient}`. The word of `tap` stands at `coefficient` and `delay` two clocks later: one is the memory's, and since
-//! block RAM is slow to show its word, it goes through a register before anything is made of it.
+//! `{delay, coefficient}`. The word of `tap` comes at `coefficient` and `delay` two clocks later: one clock is the
+//! memory's, and because the output of block RAM is slow, it passes a register before it is used.
 //!
-//! - A write with index 0 begins a table anew, one with the number of taps so far goes on. Each loadable bank keeps that
-//!   number and the sum of its coefficients.
-//! - Refused, with no effect but the flag: a write to bank 0 or 3 or to the active bank, out of sequence, with a delay of
-//!   all ones, while a swap is pending, or in the clock of a `swap`; a swap while one is pending, to bank 3, or to a
-//!   bank whose sum is not one.
-//! - A swap waits for the next strobe with `take`. So a table that does not sum to one never becomes active, and one that
-//!   is active or about to be never changes. One that is not `known` is refused.
-//! - For a handover, `old` reads the table that was active before; `locked` refuses writes and swaps as a swap that is
-//!   pending does; `reach` is the longest delay of both tables of the last swap.
-//! - A host reads any tap back. Its read takes the tables in the first clock in which no pass is `busy` and nothing is
-//!   written; a tap that is not loaded is 0. The word goes through `word` too, where no pass uses it.
+//! - A write with index 0 begins a new table; the index of each further write must be the number of taps so far. Each
+//!   loadable bank keeps that number and the sum of its coefficients.
+//! - These are refused, with no effect except the flag: a write to bank 0 or 3 or to the active bank, out of
+//!   sequence, with a delay of all ones, while a swap is pending, or in the clock of a `swap`; a swap while one is
+//!   pending, to bank 3, or to a bank whose sum is not one.
+//! - A swap waits for the next strobe with `take`. So a table whose sum is not one never becomes active, and one that
+//!   is active or about to be never changes. A swap that is not `known` is refused.
+//! - For a handover, `old` reads the table that was active before; `locked` refuses writes and swaps as a pending
+//!   swap does; `reach` is the longest delay of both tables of the last swap.
+//! - A host can read back any tap. Its read uses the tables in the first clock in which no pass is `busy` and nothing
+//!   is written; a tap that is not loaded reads as 0. The word passes `word` too, while no pass uses it.
 
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::taps::COEFFICIENT_BITS;
 
 kernel! {
-    /// A ring address, T index, COUNT = T + 1, SUM = 18 + T, WORD = 18 + A bits.
+    /// Sizes: A ring address bits, T index bits, COUNT = T + 1, SUM = 18 + T, WORD = 18 + A bits.
     pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const WORD: usize>
         (config: &ShaperConfig)
         where COUNT == T + 1 && SUM == 18 + T && WORD == 18 + A;
@@ -119,7 +119,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         self.machine_taps.clk.next = self.clk.val();
         self.loaded_taps.clk.next = self.clk.val();
 
-        comment!("Writing: how far the bank addressed is loaded");
+        comment!("Write: number of taps in the addressed bank");
         self.taps_so_far.next = self.taps_1.q.val();
         self.sum_so_far.next = self.sum_1.q.val();
         self.longest_so_far.next = self.longest_1.q.val();
@@ -136,7 +136,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.longest_so_far.next = self.no_delay.val();
         }
 
-        comment!("Taken in sequence, into a bank at rest");
+        comment!("Accepted in sequence, into an inactive bank");
         self.loadable.next = (self.tap_bank.val() == self.bank_1.val()) | (self.tap_bank.val() == self.bank_2.val());
         self.free.next = !(self.pending.q.val() | self.locked.val());
         self.at_rest.next = (self.tap_bank.val() != self.active.q.val()) & self.free.val() & !self.swap.val();
@@ -183,7 +183,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         self.served_tap.d.next =
             (self.tap_bank.val() != self.bank_none.val()) & (self.index.val() < self.host_taps.val());
 
-        comment!("Swapping: only to a table that sums to one");
+        comment!("Swap: only to a table whose sum is one");
         self.swap_taken.next = false;
         if self.swap_bank.val() == self.bank_rom.val() {
             self.swap_taken.next = self.swap.val() & self.free.val() & self.known.val();
@@ -204,7 +204,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.pending.d.next = true;
         }
 
-        comment!("How far back the tables of a swap reach");
+        comment!("Longest delay of a swap's tables");
         self.active_longest.next = self.longest_1.q.val();
         if self.active.q.val() == self.bank_2.val() {
             self.active_longest.next = self.longest_2.q.val();
@@ -226,7 +226,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             }
         }
 
-        comment!("Refusals, set over clear");
+        comment!("Refusals; setting wins over clearing");
         if self.clear_flags.val() {
             self.refused_q.d.next = false;
         }
@@ -234,7 +234,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.refused_q.d.next = true;
         }
 
-        comment!("Reading: the active table, or the old one");
+        comment!("Read: the active table, or the old one");
         self.read_bank.next = self.active.q.val();
         if self.old.val() {
             self.read_bank.next = self.previous.q.val();
@@ -252,7 +252,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.read_address.next = bit_cast::<COUNT, T>(self.tap.val());
         }
         self.read_tap.next = self.tap.val();
-        comment!("The host's place is that of a write");
+        comment!("The host reads at the address of a write");
         if self.serves.val() {
             self.read_address.next = self.write_address.val();
             self.read_tap.next = self.tap_index.val();

@@ -1,20 +1,20 @@
-//! `y = saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, exact up to the one rounding.
+//! Computes `y = saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, exactly except for the one rounding.
 //!
-//! `begin` puts the half that rounds into the accumulator. A coefficient comes one clock before its sample, its product
-//! stands three clocks after the sample; `add` marks the products that count. A sample that is `blank` counts as 0: told in
-//! the clock of its coefficient, that is 0 instead. `finish` comes in the clock after the last `add` and moves the result to
-//! `y`, which holds it. `start` sets `y` to `x`.
+//! `begin` loads the half for rounding into the accumulator. A coefficient comes one clock before its sample, and its
+//! product three clocks after the sample; `add` marks the products that are added. A sample that is `blank`, which is
+//! told in the clock of its coefficient, counts as 0. `finish` comes in the clock after the last `add` and moves the
+//! result to `y`, which holds it. `start` sets `y` to `x`.
 //!
-//! The result fits its word if the bits of the accumulator from the word's sign bit up are equal.
+//! The result fits its word if the accumulator's bits from the word's sign bit up are equal.
 //!
-//! 2^T products of W + 18 bits fit in ACC = W + 18 + T bits, the half included: the accumulator never overflows.
+//! 2^T products of W + 18 bits fit in ACC = W + 18 + T bits, including the half: the accumulator never overflows.
 
 use super::product::Product;
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 kernel! {
-    /// W word, P = W + 18 product, ACC = P + T accumulator bits; U of [`Product`].
+    /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T accumulator bits; U as in [`Product`].
     pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, const U: usize>
         (config: &ShaperConfig);
 

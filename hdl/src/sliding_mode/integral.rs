@@ -1,7 +1,8 @@
-//! ∫e, Q24.8: the word that holds the sum of it and e, at `settle`; frozen while e would push a command further that is cut
-//! already.
+//! The integral ∫e, Q24.8: at `settle` it takes the sum of itself and e; it is frozen while e would push a clamped
+//! command further.
 //!
-//! `open` is the clock before the sum begins. A clear after it, before the word is taken, wins: that tick's e is not added.
+//! `open` is the clock before the sum begins. A clear after it, before the sum is taken, wins: that tick's e is not
+//! added.
 
 use crate::prelude::*;
 
@@ -31,7 +32,7 @@ impl Logic for Integral {
     fn update(&mut self) {
         comment!("@module integral");
 
-        comment!("A clear wins over a sum under way");
+        comment!("A clear wins over a sum being computed");
         if self.clear_integral.val() {
             self.cleared.d.next = true;
         }

@@ -1,4 +1,4 @@
-//! The controller: what a step multiplies, and what becomes of its sum.
+//! The controller: selects the operand of each step, and the word that takes its sum.
 //!
 //! | step | operand | times | sum so far | taken by |
 //! |---|---|---|---|---|
@@ -73,7 +73,7 @@ kernel! {
     }
 }
 
-/// The bit of what can saturate.
+/// Flag bit of a value that can saturate.
 fn flag(what: Saturation) -> Bits<7> {
     from_u64(u64::from(what.bit()))
 }
@@ -104,7 +104,7 @@ impl Logic for SlidingMode {
         self.tracking.position.next = self.position.val();
         self.error_bits.next = unsigned_cast(self.tracking.tracking_error.val());
 
-        comment!("What a step multiplies, and by what");
+        comment!("Operand of a step, and its factor");
         self.operands.clk.next = self.clk.val();
         self.operands.rst.next = self.rst.val();
         self.operands.step.next = self.sequencer.step.val();
@@ -160,7 +160,7 @@ impl Logic for SlidingMode {
         self.limiter.cut.next = self.accumulator.cut.val();
         self.limiter.negative.next = self.accumulator.negative.val();
 
-        comment!("The integral works against the feedback's sign");
+        comment!("The integral's sign is opposite to the feedback's");
         if self.reads.val() & (self.sequencer.step.val() == self.on_rest.val()) {
             self.opposes.d.next = self.setting.val().get_bit(17);
         }
@@ -179,7 +179,7 @@ impl Logic for SlidingMode {
         self.integral.limited_high.next = self.limiter.limited_high.val();
         self.integral.limited_low.next = self.limiter.limited_low.val();
 
-        comment!("Who takes a word, and the flag of its cut");
+        comment!("Destination of a word, and its saturation flag");
         if self.settles.val() & (self.sequencer.step.val() == self.surface.val()) {
             self.sliding_q.d.next = self.accumulator.word.val();
         }

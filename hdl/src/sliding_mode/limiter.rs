@@ -1,5 +1,5 @@
-//! The word that is kept through a pass, de and then a; the command: a sum cut to ±limit, six clocks after `take`; and, at
-//! `count`, for how many ticks in a row it has been cut.
+//! Holds the word that is kept during a computation, de and then a; clamps the command, a sum, to ±limit, six clocks
+//! after `take`; and at `count` counts the consecutive ticks with a clamped command.
 //!
 //! ```text
 //! clock    0         1        2         3          4         5
@@ -8,10 +8,12 @@
 //!                    its complement                          if cut
 //! ```
 //!
-//! A negative sum `x` is below −limit if its complement `−x − 1` is not below limit: one comparison serves both sides.
+//! A negative sum `x` is below −limit if its complement `−x − 1` is not below limit, so one comparison serves both
+//! signs.
 //!
-//! One subtraction, `held − limit`, does all. The complement is `−(x − limit) − 1 − limit`: it needs no choice in front of
-//! the chain; and from 0 it makes the limit with either sign. `limit`, `cut` and `negative` hold still meanwhile.
+//! One subtraction, `held − limit`, is enough. The complement is `−(x − limit) − 1 − limit`, which needs no selection
+//! in front of the carry chain; starting from 0 it gives the limit with either sign. `limit`, `cut` and `negative` do
+//! not change meanwhile.
 
 use crate::prelude::*;
 
@@ -51,7 +53,7 @@ impl Logic for Limiter {
     fn update(&mut self) {
         comment!("@module limiter");
 
-        comment!("held - limit, less one for a positive word");
+        comment!("held - limit, minus one for a positive word");
         self.minuend.next = unsigned_cast(self.held_q.q.val());
         self.borrow.next = self.no_borrow.val();
         if !self.negative.val() {
@@ -65,14 +67,14 @@ impl Logic for Limiter {
         }
         self.part.next = self.margin.val().get_bits::<32>(1) ^ self.inverts.val();
 
-        comment!("Its turns, one a clock");
+        comment!("Its steps, one per clock");
         self.inverted.d.next = self.take.val();
         self.compares.d.next = self.inverted.q.val();
         self.returns.d.next = self.compares.q.val();
         self.cuts.d.next = self.returns.q.val();
         self.decides.d.next = self.cuts.q.val();
 
-        comment!("Twice less the limit, once inverted: its size");
+        comment!("Minus the limit twice, inverted once: magnitude");
         self.works.next = self.cuts.q.val() & self.over.q.val();
         if (self.take.val() | self.inverted.q.val()) & self.negative.val() {
             self.works.next = true;
@@ -95,7 +97,7 @@ impl Logic for Limiter {
             self.low_q.d.next = self.over.q.val() & self.negative.val();
         }
 
-        comment!("Ticks in a row");
+        comment!("Consecutive ticks with a clamped command");
         if self.count.val() & !self.ticks.q.val().all() {
             self.ticks.d.next = self.ticks.q.val() + self.one_tick.val();
         }

@@ -1,18 +1,19 @@
-//! The controller in hardware: reference and measurement to the drive's command, by sliding mode, PD or PID.
+//! The controller in hardware: computes the drive's command from reference and measurement, by sliding mode, PD or
+//! PID.
 //!
 //! The datasheet is `docs/sliding_mode.md`, the reference `posicast_model::rtl::sliding_mode`.
 //!
 //! | part | what it does |
 //! |---|---|
 //! | `sequencer` | 17 steps of up to 39 clocks |
-//! | `tracking` | e, saturated |
-//! | `operands` | what a step multiplies |
+//! | `tracking` | the error e, saturated |
+//! | `operands` | the operand of a step |
 //! | `scaled_product` | the one multiplier, and the shift after it |
-//! | `accumulator` | sums of products, cut to words |
-//! | `integral` | ∫e, and when it is frozen |
-//! | `limiter` | the word kept through a pass; the command, and for how long it is cut |
-//! | `sticky` | flags of one side |
-//! | `kernel` | what becomes of a sum |
+//! | `accumulator` | sums of products, saturated to words |
+//! | `integral` | the integral ∫e, and when it is frozen |
+//! | `limiter` | the word kept during a computation; the command, and for how long it is clamped |
+//! | `sticky` | the flags of one side |
+//! | `kernel` | the use of each sum |
 
 mod accumulator;
 mod integral;
@@ -33,7 +34,7 @@ use posicast_model::rtl::{ClockedBlock, port_notes};
 /// The controller in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(SlidingMode::default());
     Ok(Box::new(Simulated::new("sliding_mode", block, ports())?))
@@ -44,13 +45,14 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// The top is called `posicast_sliding_mode`, or `sliding_mode` where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: "sliding_mode".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Controller: reference and measurement to the drive's command, by sliding mode, PD or PID.\n\
+            about: "Controller: computes the drive's command from reference and measurement, by sliding mode, PD or \
+                PID.\n\
                     Each step reads its gain at setting_address: the word comes in the next clock, as from a block RAM."
                 .to_owned(),
             ports: port_notes(PORTS),

@@ -1,7 +1,7 @@
-//! What a step multiplies: one of eight words, chosen a clock before.
+//! The operand of a step: one of eight words, selected a clock before.
 //!
-//! One select for each word, and an OR of what they let through: two words per LUT. Which step takes which word is in the
-//! table of `kernel`.
+//! Each word has a select bit, and the selected words are combined by OR: two words per LUT. The table of `kernel`
+//! shows which step takes which word.
 
 use crate::prelude::*;
 
@@ -59,7 +59,7 @@ impl Logic for Operands {
     fn update(&mut self) {
         comment!("@module operands");
 
-        comment!("Whose turn it is");
+        comment!("Select bits of the words");
         self.takes_error.d.next = (self.step.val() == self.surface.val())
             | (self.step.val() == self.to_sum.val())
             | ((self.step.val() == self.on_error.val()) & self.linear.val());
@@ -80,7 +80,7 @@ impl Logic for Operands {
             | (self.step.val() == self.coulomb.val())
             | ((self.step.val() == self.on_rest.val()) & !self.linear.val());
 
-        comment!("One of them, or nothing");
+        comment!("The selected word, or 0");
         self.error_bits.next = unsigned_cast(self.tracking_error.val());
         self.from_error.next = self.nothing.val();
         if self.takes_error.q.val() {

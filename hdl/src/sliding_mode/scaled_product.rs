@@ -1,4 +1,4 @@
-//! operand · mantissa · 2^−shift, with one bit below the point that rounds.
+//! Computes operand · mantissa · 2^−shift, with one bit below the point for rounding.
 //!
 //! ```text
 //! clock    0      1       2    3    …       34
@@ -8,13 +8,14 @@
 //! scaled  ---------------------< shifting >< product
 //! ```
 //!
-//! With `unit` the mantissa is 1, −1 with `minus`, and the shift 8: words that are added as they are need no setting, and
-//! go on before the shift, but e.
+//! With `unit` the mantissa is 1, or −1 with `minus`, and the shift is 8: words that are added unscaled need no
+//! setting, and skip the shift, except for e.
 //!
-//! The multiplier is two, of 18 × 18 bits as the blocks of an FPGA are: the operand's lower 17 bits and its upper 15, and the
-//! sum of their products where the shifter loads it. In one clock with the multiplication that sum would be the longest path.
+//! There are two multipliers of 18 × 18 bits, as the blocks of an FPGA are: for the operand's lower 17 bits and its
+//! upper 15; their products are added where the shifter loads them. That sum would be the longest path if it were in
+//! one clock with the multiplication.
 //!
-//! The shift goes by one bit a clock: by four, and then by one, is a LUT more for each bit.
+//! The shift goes by one bit per clock: shifting by four and then by one would take one LUT more for each bit.
 
 use crate::prelude::*;
 
@@ -54,7 +55,7 @@ impl Logic for ScaledProduct {
     fn update(&mut self) {
         comment!("@module scaled_product");
 
-        comment!("Multiply by the gain, or by one or minus one");
+        comment!("Multiply by the gain, by one or by minus one");
         self.of_gain.next = self.gain.val().get_bits::<18>(0);
         self.of_unit.next = self.no_unit.val();
         self.distance.next = self.gain.val().get_bits::<5>(18);
@@ -83,7 +84,7 @@ impl Logic for ScaledProduct {
         self.last_bits.next = self.lower_bits.val().get_bits::<17>(0);
         self.product.next = (bit_cast::<50, 33>(self.upper_sum.val()) << 17) | bit_cast::<50, 17>(self.last_bits.val());
 
-        comment!("Shift by one, so often as the gain says");
+        comment!("Shift by one, as many times as the gain says");
         self.by_one.next = self.shifter.q.val().get_bits::<50>(1);
         if self.shift.val() & self.left.q.val().any() {
             self.shifter.d.next = signed_bit_cast::<51, 50>(self.by_one.val());

@@ -1,4 +1,5 @@
-//! The clocks of a pass: 17 steps of 39 phases, and the address of each step's setting. Five steps need fewer.
+//! The clocks of a computation: 17 steps of 39 phases, and the address of each step's setting. Five steps need fewer
+//! phases.
 //!
 //! ```text
 //! phase of a step   0         1         2         3      4 … 34    35    36        37        38
@@ -7,7 +8,8 @@
 //! strobe                      reads     empties   loads  shifts    adds  checks    settles   marks
 //! ```
 //!
-//! What is multiplied by one needs no shift: from `load` to `add` at once. e moves by eight to the integral's format.
+//! A product with one needs no shift: it goes from `load` to `add` at once. e is shifted by eight to the integral's
+//! format.
 
 use crate::prelude::*;
 
@@ -91,7 +93,7 @@ impl Logic for Sequencer {
     fn update(&mut self) {
         comment!("@module sequencer");
 
-        comment!("Steps of ones move nothing, but that of e");
+        comment!("A product with one is not shifted, except e");
         self.begins_pass.next = self.start.val() & !self.busy_q.q.val();
         self.last_phase.next = self.phase.q.val() == self.mark_phase.val();
         self.last_step.next = self.step_q.q.val() == self.of_duty.val();

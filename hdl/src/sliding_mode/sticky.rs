@@ -1,6 +1,6 @@
-//! Sticky flags of one side: seven bits, set wins over clear.
+//! Sticky flags of one side: seven bits; setting wins over clearing.
 //!
-//! e may be cut in any clock; everything else is one `what` at a time.
+//! e may saturate in any clock; all other values come one at a time, as `what`.
 
 use crate::prelude::*;
 use posicast_model::rtl::sliding_mode::Saturation;

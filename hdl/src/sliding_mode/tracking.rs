@@ -1,7 +1,7 @@
-//! e = r − x, taken at `capture` and saturated; the clock after tells whether it was cut.
+//! The error e = r − x, taken at `capture` and saturated; the clock after tells whether it saturated.
 //!
-//! The difference of positions is exact modulo 2^32 counts, as the pulse counter counts, or modulo 2^24 for a rotary axis,
-//! as its reference counts; then it saturates to Q16.8.
+//! The difference of positions is exact modulo 2^32 counts, as the pulse counter counts, or for a rotary axis modulo
+//! 2^24, as its reference counts; then it saturates to Q16.8.
 
 use crate::prelude::*;
 

@@ -1,12 +1,12 @@
-//! Strobes, rows and states; the trigger, the selection and the memory stand beside.
+//! Strobes, rows and states of the trace memory; trigger, selection and memory are parts of it.
 //!
 //! ```text
 //! phase  0        1                  2                    3 … 2 + signals
 //!        strobe   trigger's signal   compared; signal 0   a word stored; the next signal
 //! ```
 //!
-//! `rows` counts what is there, and stands still while the trigger is waited for: each row that is taken then drops one. So
-//! the trigger's row is always `pre_trigger`, and the trace is complete when the memory is full.
+//! `rows` counts the recorded rows, and stays constant while the block waits for the trigger, because each new row
+//! drops one. So the trigger's row is always `pre_trigger`, and the trace is complete when the memory is full.
 
 use super::memory::TraceMemory;
 use super::signal_select::SignalSelect;
@@ -15,7 +15,7 @@ use crate::prelude::*;
 use posicast_model::rtl::trace::TraceState;
 
 kernel! {
-    /// A address bits, R = A + 1 bits of a number of rows.
+    /// Sizes: A address bits, R = A + 1 bits of a number of rows.
     pub(super) struct Trace<const A: usize, const R: usize>;
     ports posicast_model::trace_ports;
 
@@ -66,7 +66,7 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
         self.memory.clk.next = self.clk.val();
         self.memory.rst.next = self.rst.val();
 
-        comment!("Where the trace is");
+        comment!("Progress of the trace");
         self.last_phase.next = self.fourth_phase.val();
         self.end_rows.next = self.rows_of_four.val();
         if self.signals_q.q.val() == self.one_signal.val() {
@@ -111,7 +111,7 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
             }
         }
 
-        comment!("Which signal the next clock takes");
+        comment!("Signal that the next clock takes");
         self.select.d.next = self.select_3.val();
         if self.ready.val() {
             self.select.d.next = self.trigger_select.val();
@@ -130,7 +130,7 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
             self.selector.signal[i].next = self.signal[i].val();
         }
 
-        comment!("The trigger, once the rows before it are there");
+        comment!("The trigger, once the rows before it are complete");
         self.watch.forget.next = self.arm.val();
         self.watch.compare.next = self.compares.val();
         self.watch.value.next = self.selector.chosen.val();
@@ -141,7 +141,7 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
             self.triggered.d.next = true;
         }
 
-        comment!("A word; the last one of a row ends it");
+        comment!("Store a word; the last one of a row ends it");
         self.memory.write.next = self.stores.val();
         self.memory.drops.next = self.waits.val();
         self.memory.word.next = self.selector.chosen.val();
@@ -152,7 +152,7 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
             }
         }
 
-        comment!("Arm: forget everything and begin");
+        comment!("Arm: discard everything and begin");
         self.last_row.next = self.last_of_four.val();
         if self.signals.val() == self.one_signal.val() {
             self.last_row.next = self.last_of_one.val();

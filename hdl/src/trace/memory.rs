@@ -1,13 +1,14 @@
-//! The words: a ring in block RAM from `oldest` to `pointer`, and reading in order of time.
+//! The recorded words: a ring buffer in block RAM from `oldest` to `pointer`, read in order of time.
 //!
-//! A write goes to `pointer`; with `drops` the oldest word goes. What lies between is valid, and all of it when `full`:
-//! pointer and oldest are equal then, as they are when there is nothing. Any other word reads as 0, and so does every word
-//! while `hidden`: then the RAM is being written, and what it gives for a word that is just written is unknown.
+//! A write goes to `pointer`; with `drops` the oldest word is dropped. The words between are valid, and all of them
+//! when `full`: pointer and oldest are then equal, as they are when the memory is empty. Any other word reads as 0,
+//! and so does every word while `hidden`, when the RAM is being written and a word that is just written reads as
+//! unknown.
 
 use crate::prelude::*;
 
 kernel! {
-    /// A address bits.
+    /// Sizes: A address bits.
     pub(super) struct TraceMemory<const A: usize>;
 
     inputs {
@@ -53,7 +54,7 @@ impl<const A: usize> Logic for TraceMemory<A> {
         }
 
         comment!("Only words of the trace are shown; full, the");
-        comment!("difference is 0, and the OR is a bit less logic");
+        comment!("difference is 0, and the OR saves logic");
         self.between.next = self.pointer.q.val() - self.oldest.q.val();
         self.words.next = bit_cast::<12, A>(self.between.val());
         if self.full.val() {

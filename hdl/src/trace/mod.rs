@@ -1,9 +1,9 @@
-//! The trace memory in hardware: up to four of 16 signals, row by row, around a trigger.
+//! The trace memory in hardware: records up to four of 16 signals, row by row, around a trigger.
 //!
 //! The datasheet is `docs/trace.md`, the reference `posicast_model::rtl::trace`.
 //!
-//! One kernel serves all sizes. A size is a type in RustHDL, so `block` lists the types and picks the one that a
-//! [`TraceConfig`] names.
+//! One kernel serves all sizes. A size is a type in RustHDL, so `block` lists the types and selects the one for a
+//! [`TraceConfig`].
 
 mod kernel;
 mod memory;
@@ -16,18 +16,18 @@ use kernel::Trace;
 use posicast_model::rtl::trace::{PORTS, TraceConfig, ports, row_clocks};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
-/// What the port `signals` says for a row of four, the longest.
+/// Value of the port `signals` for a row of four, the longest.
 const FOUR_SIGNALS: u8 = 2;
 
 /// The trace memory in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &TraceConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     Ok(Box::new(Simulated::new("trace", block(config), ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(config: &TraceConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }
@@ -38,10 +38,10 @@ fn base_name(config: &TraceConfig) -> String {
 
 /// The trace memory's Verilog, one module per file, the top last.
 ///
-/// The top is called as [`name`] says; all names are bare where `prefix` is empty.
+/// [`name`] gives the top's name; names have no prefix where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: u32, meaning: &str| Parameter {
         name: name.to_owned(),
@@ -52,7 +52,7 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
         top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Trace memory: up to four of 16 signals, row by row, around a trigger.\n\
+            about: "Trace memory: records up to four of 16 signals, row by row, around a trigger.\n\
                     arm begins; the words are read by address, in order of time, when it is over."
                 .to_owned(),
             ports: port_notes(PORTS),
@@ -69,7 +69,7 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
     emit::emit(block(config).as_ref(), &options)
 }
 
-/// The kernel of this size. The last arm is the largest: [`TraceConfig`] lets no other through.
+/// The kernel of this size. The last arm is the largest size; [`TraceConfig`] allows no other.
 fn block(config: &TraceConfig) -> Box<dyn Pins> {
     match config.address_bits() {
         8 => Box::<Trace<8, 9>>::default(),

@@ -1,9 +1,9 @@
-//! One of 16 signals, a clock after `select`.
+//! Selects one of 16 signals, a clock after `select`.
 //!
-//! The only multiplexer of the block, and more than half of its area: the trigger's signal and those of a row go through it
-//! one after the other. First one of each four, by the lower bits of `select`, into registers; behind them one of these
-//! four. So it takes ten LUTs per bit, which an optimiser that sees all 16 at once does not find, and the registers sit in
-//! elements whose LUTs are taken anyway.
+//! It is the only multiplexer of the block, and more than half of its area: the trigger's signal and those of a row
+//! pass it one after the other. First one of each four signals is selected by the lower bits of `select` into
+//! registers, then one of these four. So it takes ten LUTs per bit, which an optimiser that sees all 16 signals at
+//! once does not find, and the registers share elements with LUTs that are used anyway.
 
 use crate::prelude::*;
 
@@ -21,7 +21,7 @@ impl Logic for SignalSelect {
     fn update(&mut self) {
         comment!("@module signal_select");
 
-        comment!("One of each four");
+        comment!("Select one of each four");
         self.low_pair[0].next = self.signal[0].val();
         self.low_pair[1].next = self.signal[4].val();
         self.low_pair[2].next = self.signal[8].val();
@@ -52,7 +52,7 @@ impl Logic for SignalSelect {
         }
         self.upper.d.next = self.select.val().get_bits::<2>(2);
 
-        comment!("Of these, one");
+        comment!("Select one of these");
         self.lower_two.next = self.first.q.val();
         self.upper_two.next = self.third.q.val();
         if self.upper.q.val().get_bit(0) {

@@ -1,6 +1,6 @@
-//! The trigger: does it come with this row?
+//! The trigger: decides whether it comes with this row.
 //!
-//! `compare` is high in the clock in which `value` is that of the row; `comes` counts in that clock.
+//! `compare` is high in the clock in which `value` belongs to the row; `comes` is valid in that clock.
 
 use crate::prelude::*;
 
@@ -31,13 +31,13 @@ impl Logic for Trigger {
     fn update(&mut self) {
         comment!("@module trace_trigger");
 
-        comment!("At or above: what >= says, in less logic");
+        comment!("At or above: the result of >= with less logic");
         self.wide_value.next = signed_bit_cast::<33, 32>(self.value.val());
         self.wide_level.next = signed_bit_cast::<33, 32>(self.level.val());
         self.difference.next = self.wide_value.val() - self.wide_level.val();
         self.above.next = !self.difference.val().get_bit(32);
 
-        comment!("From row to row; the first has none before it");
+        comment!("From row to row; the first row has none before it");
         self.comes.next = true;
         if self.mode.val() == self.rising_mode.val() {
             self.comes.next = self.has_row.q.val() & self.above.val() & !self.was_above.q.val();
@@ -49,7 +49,7 @@ impl Logic for Trigger {
             self.comes.next = self.kept_event.q.val();
         }
 
-        comment!("An event of this clock is of the next row");
+        comment!("An event in this clock belongs to the next row");
         self.kept_event.d.next = self.happens.val() | (self.kept_event.q.val() & !self.compare.val());
         if self.compare.val() {
             self.has_row.d.next = true;

@@ -1,5 +1,6 @@
-//! The pitfalls of RustHDL's own generator, one kernel each: what the emitter writes for it means the same in RustHDL's
-//! simulation, Icarus, Verilator and after Yosys, or the emitter refuses it and the form that it asks for passes.
+//! The pitfalls of RustHDL's own generator, one kernel each: the emitter's output means the same in RustHDL's
+//! simulation, Icarus, Verilator and after Yosys, or the emitter refuses the kernel and the form that it suggests
+//! passes.
 //!
 //! P1 … P11 are the classes of docs/emitter.md.
 
@@ -105,7 +106,7 @@ kernel!(NotLiteral { a: Bits<8>, b: Bits<8> => y: Bit };
 kernel!(Precedence { a: Bits<8>, b: Bits<8> => y: Bit } { k: Constant<Bits<8>> = Constant::new(4.into()) };
     #[hdl_gen] fn update(&mut self) { self.y.next = self.a.val() & self.b.val() == self.k.val(); });
 
-// Right as they are.
+// These are correct as they are.
 kernel!(Concatenation { a: Bits<8>, b: Bits<8> => y: Bits<16> };
     #[hdl_gen] fn update(&mut self) { self.y.next = (bit_cast::<16, 8>(self.a.val()) << 8) | bit_cast::<16, 8>(self.b.val()); });
 kernel!(ReplaceBit { a: Bits<8>, b: Bits<8> => y: Bits<8>, top: Bits<8>, bottom: Bits<8> };
@@ -229,7 +230,7 @@ fn simulated() -> Vec<Row> {
         row::<K>(name, pairs(a, b))
     }
     let mut random = 1u64;
-    // Reset now and then, but not at first: the power-up value counts.
+    // A reset comes now and then, but not at first: the power-up value is tested.
     let mut clocked = move |mask: u64| -> Vec<Vec<u64>> {
         let mut next = || {
             random = random
@@ -287,7 +288,7 @@ fn crosssim_every_kernel_means_the_same_in_every_tool() {
     assert_eq!(tools::replay(&rows), Vec::<String>::new());
 }
 
-/// The bench itself must see a difference: one bit of one expectation is turned.
+/// The bench itself must detect a difference: one bit of one expectation is inverted.
 #[test]
 fn crosssim_bench_notices_one_wrong_bit() {
     let mut wrong = row::<SignedConstant>("wrong", pairs(16, 16));
@@ -317,7 +318,7 @@ fn unit_width_changes_inside_expressions_are_refused() {
     check::<CastShift>("a << 4");
 }
 
-/// P11: simulation sees the final value of a register's input, Verilog the value so far.
+/// P11: the simulation sees the final value of a register's input, Verilog the value so far.
 #[test]
 fn unit_reading_a_register_input_is_refused() {
     let error = emit_as::<ReadsNext>("dut").unwrap_err();

@@ -1,4 +1,4 @@
-//! The emitter, held to what RustHDL's own generator gets wrong, and to its own rules.
+//! Tests of the emitter: the errors of RustHDL's own generator, and the emitter's own rules.
 //!
 //! | file | what it shows |
 //! |---|---|

@@ -6,7 +6,7 @@ use posicast_hdl::emit::{EmitCause, EmitOptions, Header, Module, ModuleInstance,
 use posicast_model::rtl::{Direction, Port};
 use rust_hdl_core::prelude::*;
 
-/// Adds `STEP` per clock.
+/// A counter that adds `STEP` per clock.
 #[derive(LogicBlock)]
 struct Counter<const STEP: u64> {
     clk: Signal<In, Clock>,
@@ -38,7 +38,7 @@ impl<const STEP: u64> Logic for Counter<STEP> {
     }
 }
 
-/// Without a tag of its own.
+/// A block without a tag of its own.
 #[derive(LogicBlock, Default)]
 struct Inverter {
     a: Signal<In, Bits<8>>,
@@ -69,7 +69,7 @@ kernel!(Pair { rst: Bit => y: Bits<8>, high: Bits<4> } {
     self.high.next = self.sum.val().get_bits::<4>(4);
     self.y.next = self.by_three.count.val();
 });
-/// Adds `STEP`, and its name does not say so.
+/// A block that adds `STEP`, which its name does not show.
 #[derive(LogicBlock)]
 struct Sized<const STEP: u64> {
     a: Signal<In, Bits<8>>,
@@ -102,7 +102,7 @@ kernel!(Ambiguous { a: Bits<8> => y: Bits<8> } { one: Sized<1> = Sized::default(
     self.y.next = self.two.y.val();
 });
 
-/// A name with a number that the block does not have.
+/// A block with a number in its name that it does not have.
 #[derive(LogicBlock, Default)]
 struct WithoutNumber {
     a: Signal<In, Bits<8>>,
@@ -123,7 +123,7 @@ kernel!(Unnumbered { a: Bits<8> => y: Bits<8> } { inner: WithoutNumber = Without
     self.y.next = self.inner.y.val();
 });
 
-/// Every kind of number in a name.
+/// A block with every kind of number in its name.
 #[derive(LogicBlock)]
 struct Numbered {
     clk: Signal<In, Clock>,
@@ -257,7 +257,7 @@ fn unit_equal_modules_are_shared_and_named() {
     tools::lint(folder.path(), "posicast_pair");
 }
 
-/// A name stands for one content: what differs without saying so in its name is refused.
+/// A name identifies one content: a difference that the name does not show is refused.
 #[test]
 fn unit_different_modules_of_one_name_are_refused() {
     let error = emit(&Ambiguous::default(), &options("ambiguous", "")).unwrap_err();
@@ -379,7 +379,8 @@ fn unit_ports_are_told_without_the_clock() {
     assert!(top.clocked);
 }
 
-/// A register that nothing reads is an error, an unread input or bit is named, so that lint knows that it is meant.
+/// A register that is never read is an error; an unread input or bit is named, so that lint knows that it is
+/// intended.
 #[test]
 fn unit_unread_bits_are_named() {
     let text = text_of::<Pair>();

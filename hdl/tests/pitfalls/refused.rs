@@ -1,4 +1,4 @@
-//! What the emitter refuses: each kernel is legal RustHDL, and each error names block, signal and remedy.
+//! Kernels that the emitter refuses: each is valid RustHDL, and each error names block, signal and remedy.
 
 use crate::pitfalls::support::{Dff, Ram16x8, emit_as, emit_block, local, signed_bit_cast};
 use posicast_hdl::emit::{EmitCause, EmitOptions, Type, emit};
@@ -10,7 +10,7 @@ fn refused<K: Block + Default>(signal: &str, cause: EmitCause) {
     assert_eq!(error.block, "dut");
 }
 
-/// Refused for something that cannot be expressed; the message holds `words`.
+/// Expects a kernel to be refused as unsupported, with a message that contains `words`.
 fn unsupported<K: Block + Default>(words: &str) {
     let error = emit_as::<K>("refused").unwrap_err();
     assert!(

@@ -10,7 +10,7 @@ fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
     ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()
 }
 
-/// Of sizes that no machine file gives.
+/// Returns a configuration with sizes that no machine file gives.
 fn of_sizes(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {
     ShaperConfig::of_sizes(word_bits, ring, index, table(&mut Random(5), 9, 3, 9, 2)).unwrap()
 }

@@ -1,4 +1,4 @@
-//! Kernels at sizes that are not compiled: what follows from the sizes is resolved, and what does not is refused.
+//! Kernels at sizes that are not compiled: numbers that follow from the sizes are resolved, others are refused.
 
 use crate::pitfalls::support::Dff;
 use posicast_hdl::emit::{EmitCause, EmitError, EmitOptions, Module, emit, emit_sized};
@@ -12,9 +12,9 @@ fn options() -> EmitOptions {
     }
 }
 
-/// `sum` is `a` times four and `b`, with L low bits of it in `low` and a constant beside.
+/// `sum` is `a` times four plus `b`; its L low bits are in `low`, and there is a constant.
 ///
-/// SUM = A + B, and any other width is a defect that a test puts in.
+/// SUM = A + B; any other width is an error that a test inserts.
 #[derive(LogicBlock)]
 struct Widths<const A: usize, const B: usize, const SUM: usize, const L: usize> {
     a: Signal<In, Bits<A>>,
@@ -29,7 +29,7 @@ struct Widths<const A: usize, const B: usize, const SUM: usize, const L: usize> 
     shift: Constant<Bits<8>>,
 }
 
-/// What the constants and the reset value are: of the configuration, or, where a test wants it, of the size.
+/// Values of the constants and of the reset: taken from the configuration or, as an error, from the size.
 struct Values {
     mask: u64,
     shift: u64,
@@ -73,7 +73,7 @@ impl<const A: usize, const B: usize, const SUM: usize, const L: usize> Logic for
     }
 }
 
-/// Emitted at `wanted` from samples at the given sizes; `L` is a size of its own, for that a test can make it wrong.
+/// Emits at `wanted` from samples at the given sizes; `L` is a separate size, so that a test can make it wrong.
 macro_rules! at {
     ($wanted:expr; $([$a:literal, $b:literal, $sum:literal, $l:literal] $values:expr),+) => {{
         let blocks: Vec<(&[u32], Box<dyn Block>)> =
@@ -83,7 +83,7 @@ macro_rules! at {
     }};
 }
 
-/// The same, all values those of the configuration.
+/// Like `at!`, with all values taken from the configuration.
 macro_rules! widths {
     ($wanted:expr; $([$($size:literal),+])+) => { at!($wanted; $([$($size),+] &VALUES),+) };
 }
@@ -92,7 +92,7 @@ fn direct<const A: usize, const B: usize, const SUM: usize, const L: usize>() ->
     emit(&Widths::<A, B, SUM, L>::new(&VALUES), &options())
 }
 
-/// Refused at this signal, for this cause.
+/// Expects an error at this signal with this cause.
 fn refused(result: Result<Vec<Module>, EmitError>, signal: &str, cause: EmitCause) {
     let error = result.unwrap_err();
     assert_eq!(
@@ -114,16 +114,16 @@ fn unit_a_size_that_is_not_compiled_comes_out_as_if_it_were() {
 
 #[test]
 fn unit_a_width_that_is_no_sum_of_sizes_is_refused_at_its_signal() {
-    // A + B at two of three, and at the third one more.
+    // The width is A + B in two of three samples, and one more in the third.
     let result = widths!(&[9, 9]; [12, 9, 21, 7] [11, 12, 23, 10] [10, 4, 15, 2]);
     refused(result, "sum", EmitCause::SizeNumber("21, 23, 15".to_owned()));
-    // Twice a size.
+    // The width is twice a size.
     let result = widths!(&[9, 9]; [12, 9, 24, 7] [11, 12, 22, 10] [10, 4, 20, 2]);
     refused(result, "sum", EmitCause::SizeNumber("24, 22, 20".to_owned()));
-    // Two samples whose sizes change alike do not tell which it is.
+    // Two samples whose sizes change equally do not show which size it is.
     let result = widths!(&[9, 9]; [12, 9, 21, 7] [11, 8, 19, 6]);
     refused(result, "a", EmitCause::SizeNumber("12, 11".to_owned()));
-    // Wider than any signal may be.
+    // The width exceeds that of any signal.
     let result = widths!(&[60, 9]; [12, 9, 21, 7] [11, 12, 23, 10] [10, 4, 14, 2]);
     refused(result, "sum", EmitCause::Width(69));
 }
@@ -171,7 +171,7 @@ fn unit_a_value_that_the_wanted_width_does_not_hold_is_refused() {
     refused(at(&[6, 7]), "mask", EmitCause::Literal { value: 1 << 13, place });
 }
 
-/// A kernel with C inputs: of another form for each C.
+/// A kernel with C inputs, which has another form for each C.
 #[derive(LogicBlock)]
 struct Inputs<const A: usize, const C: usize> {
     x: [Signal<In, Bits<A>>; C],

@@ -1,9 +1,10 @@
-//! What the emitter's tests share: a short way to write a kernel, its simulation over vectors, and small leaves.
+//! Shared parts of the emitter's tests: a short way to write a kernel, its simulation over vectors, and small leaves.
 
 use posicast_hdl::emit::{EmitError, EmitOptions, Header, Module, emit};
 pub(crate) use rust_hdl_core::prelude::*;
 
-/// A block that a row of the table can drive: all inputs but the clock and all outputs as bit patterns, in port order.
+/// A block that a row of the table can drive: all inputs except the clock and all outputs as bit patterns, in port
+/// order.
 pub(crate) trait Kernel: Block + Default {
     fn set(&mut self, inputs: &[u64]);
     fn get(&self) -> Vec<u64>;
@@ -39,7 +40,7 @@ pub(crate) fn pattern<T: Synth>(value: T) -> u64 {
     u64::from_str_radix(text.split_once("'h").unwrap().1, 16).unwrap()
 }
 
-/// `signed_bit_cast` that survives the most negative value, which RustHDL's own does not.
+/// A `signed_bit_cast` that accepts the most negative value, which RustHDL's own does not.
 pub(crate) fn signed_bit_cast<const M: usize, const N: usize>(x: Signed<N>) -> Signed<M> {
     let bits = unsigned_cast(x);
     signed_cast(if x.sign_bit() {
@@ -89,12 +90,12 @@ macro_rules! kernel {
     };
 }
 
-/// A Local.
+/// Creates a Local.
 pub(crate) fn local<T: Synth>() -> Signal<Local, T> {
     Signal::default()
 }
 
-/// A kernel in use: its Verilog, and what the simulation answers to each stimulus.
+/// A kernel in use: its Verilog, and the outputs of the simulation for each stimulus.
 pub(crate) struct Row {
     pub(crate) name: String,
     pub(crate) modules: Result<Vec<Module>, EmitError>,
@@ -107,7 +108,7 @@ pub(crate) fn emit_as<K: Block + Default>(name: &str) -> Result<Vec<Module>, Emi
     emit_block(&K::default(), name)
 }
 
-/// Emits `block` as `NAME_dut`; all its modules bear the name, so that kernels do not meet.
+/// Emits `block` as `NAME_dut`; all its modules contain the name, so that kernels do not collide.
 pub(crate) fn emit_block<B: Block>(block: &B, name: &str) -> Result<Vec<Module>, EmitError> {
     let header = Header {
         ports: Vec::new(),
@@ -133,7 +134,7 @@ pub(crate) fn emit_block<B: Block>(block: &B, name: &str) -> Result<Vec<Module>,
     Ok(modules)
 }
 
-/// The text of the top module of `K`.
+/// Returns the text of the top module of `K`.
 pub(crate) fn text_of<K: Block + Default>() -> String {
     emit_as::<K>("of").unwrap().pop().unwrap().text
 }
@@ -159,7 +160,7 @@ pub(crate) fn row<K: Kernel>(name: &str, stimuli: Vec<Vec<u64>>) -> Row {
     }
 }
 
-/// Every pair of the corner values of two widths.
+/// Returns every pair of the corner values of two widths.
 pub(crate) fn pairs(a: u32, b: u32) -> Vec<Vec<u64>> {
     corners(a)
         .iter()
@@ -240,7 +241,7 @@ impl<T: Synth> Logic for Dff<T> {
     }
 }
 
-/// Wires clock, reset and the default of registers; the emitter knows the meaning from the name.
+/// Connects clock, reset and default value of registers; the emitter recognises the macro by its name.
 macro_rules! dff_setup {
     ($self:ident, $clk:ident, $($dff:ident),+) => {
         $($self.$dff.clock.next = $self.$clk.val();
@@ -249,12 +250,12 @@ macro_rules! dff_setup {
     };
 }
 
-/// RustHDL turns `comment!` into a comment, but ships no macro of that name.
+/// RustHDL turns `comment!` into a comment, but provides no macro of that name.
 macro_rules! comment {
     ($($text:tt)*) => {};
 }
 
-/// 16 x 8 bit block RAM.
+/// A block RAM of 16 x 8 bits.
 #[derive(LogicBlock, Clone, Debug, Default)]
 pub(crate) struct Ram16x8 {
     pub(crate) clk: Signal<In, Clock>,

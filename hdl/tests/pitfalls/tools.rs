@@ -1,4 +1,4 @@
-//! Icarus, Verilator and Yosys on emitted modules. A tool that is missing fails the test and says so.
+//! Runs Icarus, Verilator and Yosys on emitted modules. A missing tool fails the test with a message.
 
 use crate::pitfalls::support::Row;
 use posicast_hdl::emit::{Header, Module, ModuleInstance, compose};
@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs a tool in `folder` and gives all it says; it must succeed.
+/// Runs a tool in `folder` and returns its output; it must succeed.
 pub(crate) fn run(folder: &Path, program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).current_dir(folder).output();
     let output = output.unwrap_or_else(|error| panic!("{program} is needed for this test and cannot be run: {error}"));
@@ -20,7 +20,7 @@ pub(crate) fn run(folder: &Path, program: &str, arguments: &[&str]) -> String {
     said
 }
 
-/// One file per module, as a user gets them.
+/// Writes one file per module, as a user gets them.
 pub(crate) fn write(folder: &Path, modules: &[Module]) {
     for module in modules {
         std::fs::write(folder.join(format!("{}.v", module.name)), &module.text).unwrap();
@@ -55,7 +55,7 @@ pub(crate) fn lint(folder: &Path, top: &str) {
     yosys(folder, top, "check -assert");
 }
 
-/// Reads the design into Yosys, checks the hierarchy, and goes on with `script`.
+/// Reads the design into Yosys, checks the hierarchy, and continues with `script`.
 pub(crate) fn yosys(folder: &Path, top: &str, script: &str) -> String {
     let files: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
@@ -76,8 +76,8 @@ pub(crate) fn yosys(folder: &Path, top: &str, script: &str) -> String {
     said
 }
 
-/// Plays every row's vectors in one testbench, in Icarus, in Verilator, and in Icarus on what Yosys made of the design.
-/// Lists what differs.
+/// Plays every row's vectors in one testbench, in Icarus, in Verilator, and in Icarus on the netlist that Yosys made
+/// of the design. Lists the differences.
 pub(crate) fn replay(rows: &[Row]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let rtl = folder.path().join("rtl");
@@ -150,7 +150,7 @@ fn widths(instance: &ModuleInstance<'_>, direction: Direction) -> u32 {
         .sum()
 }
 
-/// One word per vector: inputs, then outputs, most significant first.
+/// Returns one word per vector: inputs, then outputs, most significant first.
 fn bits(row: &Row, instances: &[ModuleInstance<'_>]) -> String {
     let instance = instances.iter().find(|instance| instance.name == row.name).unwrap();
     let mut text = String::new();
@@ -202,7 +202,7 @@ fn bench(rows: &[Row], instances: &[ModuleInstance<'_>], top: &Module) -> String
         writeln!(text, "{}", task(row, instance)).unwrap();
     }
     text.push_str("initial begin\n");
-    // All share the clock; a row that is not in play sits in reset, which is the state after power-up.
+    // All instances share the clock; one that is not being tested stays in reset, which is the state after power-up.
     for port in top.ports.iter().filter(|port| port.direction == Direction::Input) {
         writeln!(text, "{} = {};", port.name, u32::from(port.name.ends_with("_rst"))).unwrap();
     }
@@ -213,7 +213,7 @@ fn bench(rows: &[Row], instances: &[ModuleInstance<'_>], top: &Module) -> String
     text
 }
 
-/// A task that plays one row.
+/// Returns a task that plays one row.
 fn task(row: &Row, instance: &ModuleInstance<'_>) -> String {
     let name = &row.name;
     let list = |direction: Direction| {

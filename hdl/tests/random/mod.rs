@@ -11,12 +11,12 @@ impl Random {
         word ^ (word >> 31)
     }
 
-    /// 0..bound.
+    /// Returns a number in 0..bound.
     pub(crate) fn below(&mut self, bound: u64) -> u64 {
         self.word() % bound
     }
 
-    /// True once in `n` calls.
+    /// Returns true once in `n` calls on average.
     pub(crate) fn once_in(&mut self, n: u64) -> bool {
         self.below(n) == 0
     }

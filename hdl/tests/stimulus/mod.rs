@@ -8,7 +8,8 @@ use crate::random;
 
 pub(crate) use random::Random;
 
-/// `taps` taps at delays up to `longest`, coefficients of either sign that sum to 2^fraction; `gain` is about Σ|c|/2^F.
+/// Returns `taps` taps at delays up to `longest`, with coefficients of either sign that sum to 2^fraction; `gain` is
+/// about Σ|c|/2^F.
 pub(crate) fn table(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
     let mut delays: Vec<u32> = (0..taps - 1)
         .map(|_| random.below(u64::from(longest.max(1))) as u32)
@@ -33,7 +34,7 @@ pub(crate) fn table(random: &mut Random, fraction: u32, taps: usize, longest: u3
     }
     match TapTable::new(fraction, list) {
         Ok(table) => table,
-        // The last coefficient was zero or did not fit: the next draw is another.
+        // The last coefficient was zero or did not fit: draw again.
         Err(_) => table_of_fewer(random, fraction, taps, longest, gain),
     }
 }
@@ -52,7 +53,7 @@ fn table_of_fewer(random: &mut Random, fraction: u32, taps: usize, longest: u32,
     table(random, fraction, taps - 1, longest, gain)
 }
 
-/// The writes that load `table` into `bank`, and the swap to it.
+/// Returns the writes that load `table` into `bank`, and the swap to it.
 pub(crate) fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
     let write = |(index, tap): (usize, &Tap)| Inputs {
         tap_write: true,
@@ -70,7 +71,7 @@ pub(crate) fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
     table.taps().iter().enumerate().map(write).chain([swap]).collect()
 }
 
-/// Inputs clock by clock, for ever: everything at any time, often enough in an order that makes sense.
+/// Endless inputs, clock by clock: everything at any time, often enough in a valid order.
 pub(crate) struct Anything {
     config: ShaperConfig,
     random: Random,
@@ -99,7 +100,7 @@ impl Anything {
         }
     }
 
-    /// What the host does next: a load (good, or with one clock of it spoiled), or something at random.
+    /// Plans what the host does next: a load (correct, or with one clock of it wrong), or something random.
     fn plan(&mut self) {
         let random = &mut self.random;
         let taps = 1 + random.below(u64::from(self.config.most_taps().min(24))) as usize;
@@ -142,14 +143,14 @@ impl Iterator for Anything {
         let mut inputs = self.host.pop_front()?;
         inputs.x = self.sample();
         inputs.rst = self.random.once_in(3000);
-        // A handover goes on for as many samples as a table is long: it is to end by itself more often than by a start.
+        // A handover lasts as many samples as a table is long: it should end by itself more often than by a start.
         inputs.start = self
             .random
             .once_in(if self.config.motion().is_some() { 4000 } else { 400 });
         inputs.x_rates = [self.sample(), self.sample()];
         inputs.swap_how = self.random.word() as u8;
         inputs.clear_flags = self.random.once_in(60);
-        // A host reads back, from a generator of its own: what is drawn else stays the same.
+        // A host reads back, from a generator of its own, so that the other random values stay the same.
         inputs.tap_read = self.read_back.once_in(20);
         if !inputs.tap_write {
             inputs.tap_bank = self.read_back.below(4) as u8;

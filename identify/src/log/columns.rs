@@ -1,16 +1,16 @@
-//! The columns of a log and their numbers.
+//! The columns of a log: meanings and numbers.
 
 use super::{LogError, Remark};
 use csv::{ByteRecord, ReaderBuilder, Trim};
 use std::borrow::Cow;
 
-/// What a column says.
+/// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     Time,
     Command,
     Response,
-    /// Of the motor against the scale.
+    /// Difference between motor and scale.
     Deviation,
     /// Command of a drive.
     Drive,
@@ -25,10 +25,10 @@ pub(super) struct Column {
     pub(super) values: Vec<f64>,
 }
 
-/// A log as it stands in its file, in SI units where its names say units.
+/// A log as it is in its file, in SI units where its names give units.
 pub(super) struct Table {
     pub(super) times_s: Vec<f64>,
-    /// Line of each row.
+    /// Line of each row in the file.
     pub(super) lines: Vec<u64>,
     pub(super) columns: Vec<Column>,
     /// What is to be said of columns that are not used.
@@ -43,7 +43,7 @@ struct Known {
     meaning: Meaning,
     names: &'static [&'static str],
     units: &'static [(&'static str, f64)],
-    /// Factor where the name says no unit.
+    /// Factor for a name without unit.
     plain: f64,
 }
 
@@ -211,7 +211,7 @@ pub(super) fn read(text: &[u8]) -> Result<Table, LogError> {
         .from_reader(text);
     let mut record = ByteRecord::new();
     let next = |reader: &mut csv::Reader<&[u8]>, record: &mut ByteRecord| {
-        // The reader is told to take any number of fields, and bytes: it cannot fail on a text in memory.
+        // The reader accepts any number of fields and any bytes, so it cannot fail on a text in memory.
         reader.read_byte_record(record).unwrap_or(false)
     };
     let (mut passed, mut lines) = (None, 0);
@@ -311,7 +311,7 @@ fn plain(name: &str) -> String {
     canonical(&words.collect::<Vec<_>>().join("_"))
 }
 
-/// A finite number, with a point or, between other separators, a comma.
+/// A finite number, with a decimal point, or with a decimal comma where commas do not separate fields.
 fn number(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?;
     let value: f64 = text.parse().or_else(|_| text.replace(',', ".").parse()).ok()?;
@@ -390,7 +390,7 @@ fn tabbed(text: &[u8]) -> Vec<u8> {
     lines.join(&b'\n')
 }
 
-/// A field that is used, the column it goes to (none: the time), and its factor.
+/// A field that is used, its column (`None`: the time), and its factor.
 type Use = (usize, Option<usize>, f64);
 
 fn uses(header: &[String], table: &mut Table) -> Result<Vec<Use>, LogError> {

@@ -1,14 +1,15 @@
-//! Reading a log: which columns it has, whether its time is uniform, and what of its samples cannot be believed.
+//! Reads a log: determines its columns, checks whether its time is uniform, and finds samples that are not credible.
 //!
-//! | columns | is |
+//! | columns | kind of log |
 //! |---|---|
 //! | `time`, `accel_x`, `accel_y`, `accel_z` (any of them) | an accelerometer log as 3D-printer firmware writes it: s and mm/s² |
-//! | `time`, `command`, `response` | a position log: what an axis was told, and what it did, in one unit |
+//! | `time`, `command`, `response` | a position log: command and response of an axis, in one unit |
 //! | `time`, `response` | a free decay |
 //! | `time`, `drive_command`, `position` | what a drive was told, and where its own motor went |
 //! | `time`, `captured_position`, `deviation` | a trace of the stage: motor, and motor against scale; the scale moves as the motor drives it |
 //!
-//! Names may carry a unit: `time_ms`, `command_mm`, `response_um`, `accel_x_m_s2`. A `#` before the first name is no part of it.
+//! Names may include a unit: `time_ms`, `command_mm`, `response_um`, `accel_x_m_s2`. A `#` before the first name is
+//! ignored.
 
 mod columns;
 mod time;
@@ -20,7 +21,7 @@ use thiserror::Error;
 /// A log that was read.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Log {
-    /// From an accelerometer.
+    /// Log of an accelerometer.
     Acceleration(AccelerationLog),
     /// Command and response of an axis.
     Position(PositionLog),
@@ -28,21 +29,21 @@ pub enum Log {
     Drive(DriveLog),
 }
 
-/// A log, and what is to be said of it.
+/// A log, with remarks about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     /// The log.
     pub log: Log,
-    /// Rows that it was made from.
+    /// Number of rows from which it was made.
     pub rows: usize,
-    /// What is wrong with it and was mended or left.
+    /// Defects of the log that were mended or left.
     pub remarks: Vec<Remark>,
 }
 
 /// Why a log cannot be read. Lines count from 1, the header included.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LogError {
-    /// Nothing is in it.
+    /// The log is empty.
     #[error("the log is empty: it needs a header with the names of its columns, and rows of numbers")]
     Empty,
     /// It has bytes that no text has.
@@ -50,10 +51,10 @@ pub enum LogError {
     Binary,
     /// The first line has numbers.
     #[error(
-        "line {line} is the first and has no names of columns: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
+        "line {line} is the first and has no column names: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
     )]
     NoHeader {
-        /// The line.
+        /// Number of the line.
         line: u64,
     },
     /// A column that is needed is not there.
@@ -62,121 +63,121 @@ pub enum LogError {
         .found.join(", ")
     )]
     Missing {
-        /// What is missing.
+        /// Name of the missing column.
         missing: &'static str,
-        /// What is there.
+        /// Names of the columns that were found.
         found: Vec<String>,
     },
-    /// Two columns mean the same.
+    /// Two columns have the same meaning.
     #[error("the columns `{0}` and `{1}` mean the same: leave one out")]
     Twice(String, String),
-    /// A row has another number of fields.
+    /// A row has a different number of fields than the header.
     #[error("line {line} has {found} fields, the header {expected}")]
     Fields {
-        /// The line.
+        /// Number of the line.
         line: u64,
-        /// Fields of the header.
+        /// Number of fields of the header.
         expected: usize,
-        /// Fields of the line.
+        /// Number of fields of the line.
         found: usize,
     },
-    /// A field that is no finite number.
+    /// A field is not a finite number.
     #[error(
-        "line {line}, column `{column}`: `{text}` is no finite number; cut the rows that the sensor did not deliver"
+        "line {line}, column `{column}`: `{text}` is not a finite number; cut the rows that the sensor did not deliver"
     )]
     Number {
-        /// The line.
+        /// Number of the line.
         line: u64,
-        /// The column.
+        /// Name of the column.
         column: String,
-        /// What stands there.
+        /// Text of the field.
         text: String,
     },
-    /// Time goes back or stands still.
+    /// The time does not increase.
     #[error(
         "line {line}: the time {time_s} s is not after {before_s} s of the line before; sort the rows by time, or cut the log where it starts anew"
     )]
     Unsorted {
-        /// The line.
+        /// Number of the line.
         line: u64,
         /// Its time in seconds.
         time_s: f64,
         /// The time before it in seconds.
         before_s: f64,
     },
-    /// Too few rows for anything.
+    /// There are too few rows.
     #[error("the log has {rows} rows: {least} are needed at least")]
     Rows {
-        /// Rows with numbers.
+        /// Number of rows.
         rows: usize,
-        /// Rows that are needed.
+        /// Smallest number of rows.
         least: usize,
     },
-    /// A column in which nothing happens.
+    /// A column is constant.
     #[error("column `{column}` has the value {value} in every row: the sensor is dead, or not connected")]
     Dead {
-        /// The column.
+        /// Name of the column.
         column: String,
         /// Its only value.
         value: f64,
     },
 }
 
-/// What is wrong with a log that can be read all the same.
+/// A defect of a log that can still be read.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Remark {
-    /// Rows are missing; the longest part without a gap was taken.
+    /// Rows are missing; the longest part without a gap was used.
     #[error(
         "rows are missing after line {line}: {gap_s:.4} s without a sample; the {kept} rows from line {from} to {to} were used, the longest part without a gap"
     )]
     Gap {
         /// Line before the first gap.
         line: u64,
-        /// Its length in seconds.
+        /// Length of the gap in seconds.
         gap_s: f64,
         /// First line that was used.
         from: u64,
         /// Last line that was used.
         to: u64,
-        /// Rows that were used.
+        /// Number of rows that were used.
         kept: usize,
     },
-    /// The samples are not equally far apart; they were interpolated.
-    #[error("the times of the samples are off a uniform grid by up to {:.0} % of a sample (line {line}): they were interpolated linearly, which weakens what is near half the rate of {rate_hz:.0} samples per second", 100.0 * .worst)]
+    /// The samples are not equally spaced; they were interpolated.
+    #[error("the times of the samples are off a uniform grid by up to {:.0} % of a sample (line {line}): they were interpolated linearly, which weakens frequencies near half the rate of {rate_hz:.0} samples per second", 100.0 * .worst)]
     Irregular {
-        /// Line that is off most.
+        /// Line with the largest deviation.
         line: u64,
-        /// By how many samples.
+        /// Largest deviation in samples.
         worst: f64,
         /// Rate of the grid in Hz.
         rate_hz: f64,
     },
-    /// A column stands at its largest or smallest value again and again.
+    /// A column stays at its largest or smallest value again and again.
     #[error(
         "column `{column}` stands at {value} in {samples} samples, first in line {line}: the sensor is saturated there, and damping and participation come out wrong; use a larger range or less acceleration"
     )]
     Saturated {
-        /// The column.
+        /// Name of the column.
         column: String,
         /// The value.
         value: f64,
-        /// Samples at it.
+        /// Number of samples with this value.
         samples: usize,
-        /// First line of them.
+        /// First line with it.
         line: u64,
     },
-    /// A direction of an accelerometer in which nothing happens.
+    /// A direction of an accelerometer is constant.
     #[error(
         "column `{column}` has the value {value} in every row and was left out: this direction of the sensor is dead, or not connected"
     )]
     DeadDirection {
-        /// The column.
+        /// Name of the column.
         column: String,
         /// Its only value.
         value: f64,
     },
-    /// A column that nothing is known of.
-    #[error("column `{0}` was not used: its name says nothing to posicast")]
+    /// The meaning of a column is not known.
+    #[error("column `{0}` was not used: posicast does not know its name")]
     Unknown(String),
     /// A column of another kind of log.
     #[error(
@@ -190,13 +191,13 @@ pub enum Remark {
     },
 }
 
-/// Least rows of a log.
+/// Smallest number of rows of a log.
 const LEAST_ROWS: usize = 32;
 
 /// Reads a log from the text of its file.
 ///
 /// # Errors
-/// [`LogError`], with the line and the column.
+/// [`LogError`] with the line and the column.
 pub fn read(text: &[u8]) -> Result<Reading, LogError> {
     let table = columns::read(text)?;
     if table.times_s.len() < LEAST_ROWS {
@@ -280,7 +281,7 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<Log, LogError> {
         }
     }
     if let Some(deviation) = deviation {
-        // The motor was measured, not commanded: between samples it goes on moving.
+        // The motor's position was measured, not commanded: it continues to move between samples.
         log.between = Between::Straight;
         log.command = std::mem::take(&mut log.response);
         log.response = log
@@ -306,16 +307,16 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<Log, LogError> {
     })
 }
 
-/// The only value of a column that has one.
+/// The only value of a column that has only one.
 fn dead(values: &[f64]) -> Option<f64> {
     let first = *values.first()?;
     values.iter().all(|value| *value == first).then_some(first)
 }
 
-/// Samples in a row at an extreme that are no chance.
+/// Number of consecutive samples at an extreme that is not a coincidence.
 const ROW_AT_EXTREME: usize = 4;
 
-/// Runs at the largest or smallest value of a response, far from where it rests.
+/// Runs of a response at its largest or smallest value, far from where it rests.
 fn saturated(column: &Column, lines: &[u64]) -> Option<Remark> {
     if matches!(column.meaning, Meaning::Command | Meaning::Drive) || dead(&column.values).is_some() {
         return None;
@@ -325,7 +326,8 @@ fn saturated(column: &Column, lines: &[u64]) -> Option<Remark> {
     let (low, high) = values
         .iter()
         .fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
-    // A response that rests at its extreme, as before a step, is not saturated: a clipped one leaves and comes back.
+    // A response that rests at its extreme, as before a step, is not saturated; a clipped one leaves the extreme and
+    // comes back.
     let extremes = [high, low].map(|value| (value, runs(values, value)));
     let (value, runs) = extremes
         .into_iter()
@@ -340,7 +342,7 @@ fn saturated(column: &Column, lines: &[u64]) -> Option<Remark> {
     })
 }
 
-/// Begin and length of each run of a value.
+/// Start and length of each run of a value.
 fn runs(values: &[f64], value: f64) -> Vec<(usize, usize)> {
     let mut runs = Vec::new();
     let mut length = 0;

@@ -1,19 +1,20 @@
-//! A uniform grid of time from the times of the rows.
+//! Makes a uniform time grid of the times of the rows.
 
 use super::columns::Table;
 use super::{LogError, Remark};
 use std::ops::Range;
 
-/// Steps longer than so many are a gap.
+/// A step longer than this many samples is a gap.
 const GAP: f64 = 1.5;
-/// Samples that are off by less than so many of them stay where they are.
+/// Samples that deviate by less than this, in samples, are kept where they are.
 const REGULAR: f64 = 0.1;
 
-/// Rows that are used, and where on a uniform grid they are.
+/// The rows that are used, and their position on a uniform grid.
 pub(super) struct Grid {
     pub(super) sample_s: f64,
     range: Range<usize>,
-    /// Where they are not regular: for each sample of the grid the row before it, and how far it is on the way to the next.
+    /// For irregular rows: for each sample of the grid the row before it, and the fraction of the way to the next
+    /// row.
     between: Option<Vec<(usize, f64)>>,
 }
 
@@ -23,7 +24,7 @@ impl Grid {
         self.range.clone()
     }
 
-    /// Values of all rows on the grid.
+    /// Interpolates values of all rows to the grid.
     pub(super) fn of(&self, values: &[f64]) -> Vec<f64> {
         let values = &values[self.range.clone()];
         match &self.between {
@@ -36,7 +37,7 @@ impl Grid {
     }
 }
 
-/// The grid of a log; what was mended goes to `remarks`.
+/// The grid of a log; defects that were mended are added to `remarks`.
 pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, LogError> {
     let times = &table.times_s;
     for row in 1..times.len() {
@@ -92,7 +93,7 @@ fn without_gaps(table: &Table, remarks: &mut Vec<Remark>) -> Range<usize> {
     let gaps: Vec<usize> = (1..times.len())
         .filter(|&row| times[row] - times[row - 1] > GAP * usual)
         .collect();
-    // Gaps in every other step are no gaps: the log is irregular all through.
+    // Gaps in a large part of the steps are not gaps: the whole log is irregular.
     if gaps.is_empty() || gaps.len() > times.len() / 20 {
         return 0..times.len();
     }

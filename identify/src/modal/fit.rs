@@ -1,28 +1,28 @@
-//! The separable least-squares fit of poles to points.
+//! Separable least-squares fit of poles to points.
 
 use super::ResponsePoint;
 use crate::separable::{self, Effort, Separable};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// A pole pair in the making.
+/// A pole pair that is being fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pole {
     pub(crate) frequency_hz: f64,
     pub(crate) damping: f64,
 }
 
-/// What is known of the phase.
+/// Knowledge of the phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Phase {
-    /// Nothing: every coefficient is complex.
+    /// Nothing is known: every coefficient is complex.
     Free,
-    /// All coefficients are real behind about this lateness.
+    /// All coefficients are real, apart from about this lateness.
     Late(Lateness),
 }
 
-/// How late a response is: `delay_s` at all frequencies, and by `bend_s` more for each multiple of the highest frequency, since a clock
-/// that is off is off the more, the later in a sweep a frequency comes.
+/// Lateness of a response: `delay_s` at all frequencies, plus `bend_s` for each multiple of the highest frequency,
+/// because the error of a clock grows with the time at which a frequency comes in a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Lateness {
     pub(crate) delay_s: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Lateness {
 }
 
 impl Lateness {
-    /// `e^{−j2πf(delay + bend·f/top)}`.
+    /// The phase factor `e^{−j2πf(delay + bend·f/top)}`.
     pub(crate) fn turn(&self, frequency_hz: f64, top_hz: f64) -> Complex<f64> {
         let late_s = self.delay_s + self.bend_s * frequency_hz / top_hz;
         Complex::from_polar(1.0, -TAU * frequency_hz * late_s)
@@ -38,7 +38,7 @@ impl Lateness {
 }
 
 impl Phase {
-    /// The lateness, none where nothing is known.
+    /// The lateness; zero where nothing is known.
     pub(crate) fn lateness(self) -> Lateness {
         match self {
             Self::Free => Lateness::default(),
@@ -47,32 +47,32 @@ impl Phase {
     }
 }
 
-/// Range of damping ratios that a fit walks in.
+/// Range of damping ratios of a fit.
 const DAMPING: (f64, f64) = (2e-4, 2.0);
-/// Terms of the complex polynomial that stands for all but the modes.
+/// Number of terms of the complex polynomial that represents everything except the modes.
 const FREE_TERMS: i32 = 5;
 
-/// Poles that fit the points, and how well.
+/// Poles fitted to the points, with the quality of the fit.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
     pub(crate) poles: Vec<Pole>,
     pub(crate) phase: Phase,
-    /// Of each pole: static share, and its standard deviation.
+    /// Static share of each pole, and its standard deviation.
     pub(crate) shares: Vec<(f64, f64)>,
-    /// Of each pole: standard deviations of frequency in Hz and of damping.
+    /// Standard deviations of each pole's frequency in Hz and damping ratio.
     pub(crate) deviations: Vec<(f64, f64)>,
     /// Standard deviation of the bend of the lateness in seconds; infinite where nothing is known of the phase.
     pub(crate) bend_deviation_s: f64,
-    /// Sum of squares of the residuals over their standard deviations.
+    /// Sum of squares of the residuals divided by their standard deviations.
     pub(crate) square: f64,
-    /// Values less unknowns.
+    /// Degrees of freedom: number of values minus unknowns.
     pub(crate) freedoms: f64,
     /// The fitted values.
     pub(crate) values: Vec<Complex<f64>>,
 }
 
 impl Fit {
-    /// Square per degree of freedom: 1 where noise alone is left.
+    /// Sum of squares per degree of freedom: 1 where only noise is left.
     pub(crate) fn reduced_square(&self) -> f64 {
         self.square / self.freedoms.max(1.0)
     }
@@ -80,7 +80,7 @@ impl Fit {
 
 const I: Complex<f64> = Complex::new(0.0, 1.0);
 
-/// Denominator of a mode and the frequency over its own.
+/// Denominator of a mode, and the frequency relative to its own.
 fn denominator(pole: &Pole, frequency_hz: f64) -> (Complex<f64>, f64) {
     let ratio = frequency_hz / pole.frequency_hz;
     (Complex::new(1.0 - ratio * ratio, 2.0 * pole.damping * ratio), ratio)
@@ -106,7 +106,7 @@ fn columns(poles: &[Pole], phase: Phase, frequency_hz: f64, top_hz: f64, row: &m
     }
 }
 
-/// How many linear unknowns there are.
+/// Number of linear unknowns.
 fn width(poles: &[Pole], phase: Phase) -> usize {
     match phase {
         Phase::Late(_) => 2 * poles.len() + 2,
@@ -114,8 +114,8 @@ fn width(poles: &[Pole], phase: Phase) -> usize {
     }
 }
 
-/// A row of values for each point, over its standard deviation; real parts before imaginary parts. `fill` writes the row of a
-/// frequency in Hz.
+/// A row of values for each point, divided by its standard deviation; real parts come before imaginary parts. `fill`
+/// writes the row of a frequency in Hz.
 fn stacked(points: &[ResponsePoint], width: usize, mut fill: impl FnMut(f64, &mut Vec<Complex<f64>>)) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(2 * points.len(), width);
     let mut row = Vec::with_capacity(width);
@@ -132,7 +132,7 @@ fn stacked(points: &[ResponsePoint], width: usize, mut fill: impl FnMut(f64, &mu
     matrix
 }
 
-/// Measured values over their standard deviations, real parts before imaginary parts.
+/// Measured values divided by their standard deviations; real parts come before imaginary parts.
 fn weighted(points: &[ResponsePoint]) -> DVector<f64> {
     DVector::from_fn(2 * points.len(), |row, _| {
         let point = &points[row % points.len()];
@@ -145,12 +145,13 @@ fn weighted(points: &[ResponsePoint]) -> DVector<f64> {
     })
 }
 
-/// The highest frequency.
+/// The highest frequency in Hz.
 fn top_hz(points: &[ResponsePoint]) -> f64 {
     points.last().map_or(1.0, |point| point.frequency_hz)
 }
 
-/// Poles behind points. Unknowns: `ln f` and `ln ζ` of each pole, and delay and bend where the phase is known.
+/// The fit of poles to points. The unknowns are `ln f` and `ln ζ` of each pole, and delay and bend where the phase is
+/// known.
 struct Poles<'a> {
     points: &'a [ResponsePoint],
     measured: DVector<f64>,
@@ -193,7 +194,7 @@ impl<'a> Poles<'a> {
         (poles.collect(), phase)
     }
 
-    /// Complex coefficients of a pole: still, and with the velocity.
+    /// Complex coefficients of a pole: of its displacement, and of its velocity.
     fn of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> (Complex<f64>, Complex<f64>) {
         let half = coefficients.len() / 2;
         let at = |column: usize| match self.is_free {
@@ -265,18 +266,18 @@ impl Separable for Poles<'_> {
     }
 }
 
-/// What is left of the points with exactly these poles and this phase: the square of the residuals over their deviations.
+/// Sum of squares of the residuals, divided by their deviations, at exactly these poles and this phase.
 pub(crate) fn square(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> Option<f64> {
     let problem = Poles::new(points, phase);
     separable::square(&problem, &problem.unknowns(poles, phase))
 }
 
-/// The best fit near the given poles. `None` where the points do not fix the unknowns.
+/// The best fit near the given poles. `None` where the points do not determine the unknowns.
 pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, effort: Effort) -> Option<Fit> {
     let problem = Poles::new(points, phase);
     let solution = separable::refine(&problem, &problem.unknowns(poles, phase), effort)?;
     let (poles, phase) = problem.poles(&solution.unknowns);
-    // What the noise of the points does not explain is taken as more noise.
+    // A remainder that the noise of the points does not explain counts as more noise.
     let row = solution.reduced_square().max(1.0).sqrt();
     let deviations = poles.iter().enumerate().map(|(k, pole)| {
         (
@@ -303,7 +304,7 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
     })
 }
 
-/// How much the square of the residuals falls at least if a pole is added to a fit.
+/// Lower bounds of the decrease of the sum of squares when a pole is added to a fit.
 pub(super) struct Gains<'a> {
     points: Vec<&'a ResponsePoint>,
     residual: Vec<Complex<f64>>,
@@ -312,7 +313,7 @@ pub(super) struct Gains<'a> {
 }
 
 impl<'a> Gains<'a> {
-    /// Gains over a fit, judged from every `stride`-th point.
+    /// Gains over a fit, computed from every `stride`-th point.
     pub(super) fn new(points: &'a [ResponsePoint], fit: &Fit, stride: usize) -> Self {
         let chosen: Vec<usize> = (0..points.len()).step_by(stride).collect();
         let (late, top) = (fit.phase.lateness(), top_hz(points));
@@ -332,7 +333,7 @@ impl<'a> Gains<'a> {
 
     /// The gain of a pole with both its coefficients.
     pub(super) fn of(&self, pole: &Pole) -> f64 {
-        // Two columns `c` and `r`, their products and those with the residual.
+        // These are the products of the two columns `c` and `r`, and those with the residual.
         let (mut cc, mut rr, mut cr) = (0.0, 0.0, Complex::new(0.0, 0.0));
         let (mut c_rest, mut r_rest) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
         for ((point, rest), turn) in self.points.iter().zip(&self.residual).zip(&self.turns) {

@@ -1,15 +1,16 @@
-//! Several modes in one measured transfer function.
+//! Fits several modes to one measured transfer function.
 //!
 //! ```text
 //! H(f) = e^{−j2πfτ} · ( D + E·f² + Σ_k (a_k + j·b_k·r_k) / (1 − r_k² + 2jζ_k·r_k) ),     r_k = f/f_k
 //! ```
 //!
-//! `a_k` is the share of mode `k` in the static displacement, `D` and `E` are what the axis itself and modes above the band do,
-//! `τ` is the time by which the response is later than was assumed; it may grow with the frequency, since clocks drift. Weighted least squares, separable: for given frequencies,
+//! `a_k` is the share of mode `k` in the static displacement, `D` and `E` are the contributions of the axis itself
+//! and of modes above the band, and `τ` is the time by which the response is later than was assumed; it may grow with
+//! the frequency, because clocks drift. The fit is a weighted, separable least-squares fit: for given frequencies,
 //! damping ratios and `τ` the other unknowns follow linearly (Golub and Pereyra 1973, in the form of Kaufman 1975).
 //!
-//! Where the phase is not known the coefficients are complex and the rest is a polynomial with complex coefficients: the poles are then found
-//! whatever the phase of the excitation.
+//! Where the phase is not known, the coefficients are complex and the rest is a polynomial with complex coefficients:
+//! the poles are then found whatever the phase of the excitation is.
 
 mod fit;
 mod select;
@@ -19,27 +20,28 @@ pub(crate) use select::{grown, pruned, select};
 
 use nalgebra::Complex;
 
-/// A measured value of a transfer function: its mean over a little of the frequencies.
+/// A measured value of a transfer function, averaged over a small range of frequencies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResponsePoint {
     /// Mean frequency in Hz.
     pub frequency_hz: f64,
-    /// Standard deviation of the frequencies in Hz over which the value is a mean.
+    /// Standard deviation in Hz of the frequencies that were averaged.
     pub spread_hz: f64,
-    /// The value.
+    /// Value of the transfer function.
     pub value: Complex<f64>,
     /// Standard deviation of the real part, and of the imaginary part.
     pub deviation: f64,
 }
 
 impl ResponsePoint {
-    /// Two frequencies in Hz, the mean over which is that over the point's up to the third power of their spread.
+    /// Two frequencies in Hz whose mean equals that over the point's frequencies up to the third power of their
+    /// spread.
     fn nodes_hz(&self) -> [f64; 2] {
         [self.frequency_hz - self.spread_hz, self.frequency_hz + self.spread_hz]
     }
 }
 
-/// The same values on fewer points: each the mean of `joined` neighbours.
+/// The values on fewer points, each the mean of `joined` neighbours.
 pub(crate) fn thinned(points: &[ResponsePoint], joined: usize) -> Vec<ResponsePoint> {
     let mean = |group: &[ResponsePoint]| {
         let weight = |point: &ResponsePoint| point.deviation.powi(-2);

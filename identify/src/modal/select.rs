@@ -1,33 +1,34 @@
-//! How many modes there are: one more as long as it explains more than noise would.
+//! Determines the number of modes: one more is added as long as it explains more than noise would.
 
 use super::ResponsePoint;
 use super::fit::{Fit, Gains, Phase, Pole, refine};
 use crate::separable::Effort;
 
-/// Most poles that are looked for.
+/// Largest number of poles that are searched.
 const MOST: usize = 8;
-/// Damping ratios at which a further pole is looked for.
+/// Damping ratios at which a further pole is searched.
 const TRIED_DAMPING: [f64; 3] = [0.01, 0.04, 0.15];
-/// Distance of the frequencies at which it is looked for.
+/// Ratio of neighbouring frequencies at which it is searched.
 const TRIED_STEP: f64 = 1.015;
-/// Every how many points the search looks at.
+/// The search uses every point with this stride.
 const STRIDE: usize = 3;
-/// Poles closer than this may be one that has to be split.
+/// Relative distance below which poles may represent one pole that has to be split.
 const NEAR: f64 = 0.2;
-/// Square that a further pole must explain, in variances of the noise: far above what six unknowns explain by chance.
+/// Sum of squares that a further pole must explain, in variances of the noise: far above what six unknowns explain by
+/// chance.
 const LEAST_GAIN: f64 = 80.0;
 
-/// Poles that explain the points, one after the other. `None` where there are too few points for any.
+/// Adds poles that explain the points, one after the other. `None` where there are too few points for a pole.
 pub(crate) fn select(points: &[ResponsePoint], phase: Phase) -> Option<Fit> {
     Some(grown(points, refine(points, &[], phase, Effort::Rough)?))
 }
 
-/// A fit with the further poles that the points ask for.
+/// A fit with the further poles that the points need.
 pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
     let (mut kept, mut fit, mut idle) = (fit.clone(), fit, 0);
     while fit.poles.len() < MOST && idle < 2 {
         let Some(next) = with_one_more(points, &fit) else { break };
-        // A pole that explains little may open the way for the next, which explains much.
+        // A pole that explains little may enable the next, which explains much.
         let better = kept.square - next.square
             > LEAST_GAIN * next.reduced_square().max(1.0) * (next.poles.len() - kept.poles.len()) as f64;
         fit = next;
@@ -41,7 +42,7 @@ pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
     kept
 }
 
-/// A fit without the poles that it can do without: what one of them explains beside the others, noise might explain as well.
+/// A fit without unnecessary poles: those that explain, beside the others, no more than noise might.
 pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
     let mut kept = fit;
     loop {
@@ -60,7 +61,7 @@ pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
 
 fn with_one_more(points: &[ResponsePoint], fit: &Fit) -> Option<Fit> {
     let (gain, found) = strongest(points, fit)?;
-    // The gain is what the pole explains at least: it may be a few times that.
+    // The gain is a lower bound of what the pole explains, which may be a few times as much.
     if gain * (STRIDE as f64) < 0.25 * LEAST_GAIN * fit.reduced_square().max(1.0) {
         return None;
     }
@@ -89,7 +90,7 @@ fn added(poles: &[Pole], pole: Pole) -> Vec<Pole> {
     poles
 }
 
-/// The pole that explains most of what a fit leaves.
+/// The pole that explains most of a fit's residual.
 fn strongest(points: &[ResponsePoint], fit: &Fit) -> Option<(f64, Pole)> {
     let gains = Gains::new(points, fit, STRIDE);
     let (low, high) = (points.first()?.frequency_hz, points.last()?.frequency_hz);

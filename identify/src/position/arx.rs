@@ -5,9 +5,9 @@
 //! p = root of z^n + a_1·z^(n−1) + … + a_n,    s = ln(p)/T,    ω = |s|,    ζ = −Re s/|s|
 //! ```
 //!
-//! Least squares are exact without noise and biased by noise of the sensor: the more so the more samples there are in a period.
-//! Instruments take the bias away: commands and responses that the model itself predicts, filtered by `1/A` (Young's refined
-//! method).
+//! Least squares are exact without noise, and biased by noise of the sensor: the more samples there are in a period,
+//! the larger is the bias. Instrumental variables remove it: commands and responses that the model itself predicts,
+//! filtered by `1/A` (Young's refined method).
 
 use crate::separable::Gram;
 use crate::signal::PositionLog;
@@ -16,7 +16,7 @@ use posicast_model::mode::Mode;
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// A model with its denominator `a` and numerator `b`.
+/// A model with the coefficients of its denominator `a` and numerator `b`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArxModel {
     /// Coefficients `a_1 … a_n`.
@@ -27,41 +27,41 @@ pub struct ArxModel {
     pub sample_s: f64,
 }
 
-/// Why there is no model.
+/// Why a model cannot be determined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum ArxError {
-    /// Too few samples for the order.
+    /// There are too few samples for the order.
     #[error("{samples} samples do not fix a model of order {order}")]
     Short {
-        /// Samples.
+        /// Number of samples.
         samples: usize,
-        /// Order.
+        /// Order of the model.
         order: usize,
     },
-    /// The command does not excite as many coefficients.
+    /// The command does not excite enough coefficients.
     #[error("the command does not fix a model of order {order}: it does not move enough")]
     Excitation {
-        /// Order.
+        /// Order of the model.
         order: usize,
     },
 }
 
-/// Rounds of the refined method.
+/// Largest number of rounds of the refined method.
 const ROUNDS: usize = 12;
 
-/// The model that explains a log best, least squares on its equation.
+/// The model that explains a log best, by least squares on its equation.
 ///
 /// # Errors
-/// [`ArxError`].
+/// [`ArxError`] where the log does not determine the model.
 pub fn least_squares(log: &PositionLog, order: usize) -> Result<ArxModel, ArxError> {
     let rows = rows(&log.command, &log.response, order);
     solve(log, order, &rows, &rows, &log.response)
 }
 
-/// The model by instruments, from least squares on.
+/// The model by instrumental variables, starting from least squares.
 ///
 /// # Errors
-/// [`ArxError`].
+/// [`ArxError`] where the log does not determine the model.
 pub fn with_instruments(log: &PositionLog, order: usize) -> Result<ArxModel, ArxError> {
     let mut model = least_squares(log, order)?;
     for _ in 0..ROUNDS {
@@ -83,7 +83,8 @@ pub fn with_instruments(log: &PositionLog, order: usize) -> Result<ArxModel, Arx
     Ok(model)
 }
 
-/// The log with 4 to 15 samples in a period of `frequency_hz`, where it has more: means over as many, of command and response.
+/// The log reduced to 4 to 15 samples per period of `frequency_hz`, where it has more: means of as many samples, of
+/// command and response.
 pub fn decimated(log: &PositionLog, frequency_hz: f64) -> PositionLog {
     const SAMPLES_PER_PERIOD: f64 = 10.0;
     let joined = ((1.0 / (frequency_hz * log.sample_s * SAMPLES_PER_PERIOD)) as usize).max(1);
@@ -125,7 +126,8 @@ fn solve(
         });
     }
     let right = DVector::from_column_slice(&response[order..order + instruments.nrows()]);
-    // The instruments of the model itself make the products nearly symmetric, not quite: no Cholesky.
+    // With the model's own instruments the products are nearly symmetric, but not exactly, so Cholesky's method
+    // cannot be used.
     Gram::of(instruments).ok_or(ArxError::Excitation { order })?;
     let found = instruments.tr_mul(regressors).lu().solve(&instruments.tr_mul(&right));
     let found = found.ok_or(ArxError::Excitation { order })?;
@@ -140,7 +142,7 @@ fn solve(
 }
 
 impl ArxModel {
-    /// What the model makes of a command from rest.
+    /// Response of the model to a command, from rest.
     pub fn simulated(&self, command: &[f64]) -> Vec<f64> {
         let order = self.a.len();
         let mut response: Vec<f64> = Vec::with_capacity(command.len());
@@ -151,7 +153,7 @@ impl ArxModel {
         response
     }
 
-    /// A signal through `1/A`.
+    /// Filters a signal by `1/A`.
     fn autoregressed(&self, signal: &[f64]) -> Vec<f64> {
         let order = self.a.len();
         let mut out: Vec<f64> = Vec::with_capacity(signal.len());
@@ -176,7 +178,7 @@ impl ArxModel {
         self.poles().iter().all(|pole| pole.norm() < 1.0)
     }
 
-    /// Its modes in continuous time: the poles that are complex and decay, by frequency.
+    /// Its modes in continuous time, sorted by frequency: the complex poles that decay.
     pub fn modes(&self) -> Vec<Mode> {
         let oscillating = self
             .poles()

@@ -19,7 +19,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use posicast_model::mode::Mode;
 use std::ops::Range;
 
-/// A log on the way to its modes. Unknowns: `ln f` and `ln ζ` of each mode.
+/// A log prepared for the fit of its modes. The unknowns are `ln f` and `ln ζ` of each mode.
 #[derive(Debug, Clone)]
 pub(super) struct HeldModes<'a> {
     command: Option<&'a [f64]>,
@@ -27,9 +27,9 @@ pub(super) struct HeldModes<'a> {
     sample_s: f64,
     decimation: usize,
     measured: DVector<f64>,
-    /// Of the noise, which rows and columns are without.
+    /// Memory of the noise, which has been removed from rows and columns.
     memory: Option<NoiseMemory>,
-    /// Rows that do not count, where there are any: zero in all columns.
+    /// Rows that are ignored: they are zero in all columns. Empty where all rows count.
     clipped: Vec<bool>,
     body: Option<RigidBody>,
 }
@@ -85,13 +85,14 @@ fn decay_integral_twice(rate: f64, time_s: f64) -> f64 {
     (time_s - decay_integral(rate, time_s)) / rate
 }
 
-/// Range of damping ratios that a fit walks in.
+/// Range of damping ratios of a fit.
 const DAMPING: (f64, f64) = (1e-5, 0.98);
 /// Relative step of the derivatives.
 const STEP: f64 = 1e-6;
 
 impl<'a> HeldModes<'a> {
-    /// The samples of a log in `range`, in rows of `decimation`. The command is left out where it does not move in it.
+    /// The samples of a log in `range`, in rows of `decimation` samples. The command is left out where it does not
+    /// change in the range.
     pub(super) fn new(log: &'a PositionLog, range: Range<usize>, decimation: usize) -> Self {
         let response = &log.response[range.clone()];
         let command = log.command.get(range).filter(|command| moves(command));
@@ -110,7 +111,7 @@ impl<'a> HeldModes<'a> {
         this
     }
 
-    /// The rows that hold none of the samples that `clipped` names; the modes move on beneath them.
+    /// Ignores the rows that contain a sample that `clipped` marks; the modes continue to move during them.
     pub(super) fn without(mut self, clipped: &[bool]) -> Self {
         if clipped.contains(&true) {
             let rows = clipped.chunks_exact(self.decimation).map(|row| row.contains(&true));
@@ -144,13 +145,13 @@ impl<'a> HeldModes<'a> {
         }
     }
 
-    /// Share of the rows that count.
+    /// Fraction of the rows that are used.
     pub(super) fn counted(&self) -> f64 {
         let clipped = self.clipped.iter().filter(|clipped| **clipped).count();
         1.0 - clipped as f64 / self.len().max(1) as f64
     }
 
-    /// The same rows without what the past of the noise tells of them.
+    /// The rows without what the past of the noise predicts.
     pub(super) fn whitened(&self, memory: NoiseMemory) -> Self {
         Self {
             measured: DVector::from_vec(memory.whitened(self.measured.as_slice())),
@@ -159,7 +160,7 @@ impl<'a> HeldModes<'a> {
         }
     }
 
-    /// These rows beside the same noise as those of another problem.
+    /// The rows with the noise model of another problem.
     pub(super) fn with_memory_of(self, other: &HeldModes<'_>) -> Self {
         match &other.memory {
             Some(memory) => self.whitened(memory.clone()),
@@ -167,7 +168,7 @@ impl<'a> HeldModes<'a> {
         }
     }
 
-    /// Columns of rows, each without what the past of the noise tells.
+    /// Makes columns of rows, each without what the past of the noise predicts.
     fn columns(&self, mut columns: Vec<f64>) -> DMatrix<f64> {
         let rows = self.len();
         self.zero_clipped(&mut columns);
@@ -191,17 +192,17 @@ impl<'a> HeldModes<'a> {
         self.sample_s * self.decimation as f64
     }
 
-    /// Samples in a row.
+    /// Number of samples in a row.
     pub(super) fn decimation(&self) -> usize {
         self.decimation
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub(super) fn len(&self) -> usize {
         self.measured.len()
     }
 
-    /// Coefficients of a mode: two of the forced motion, where there is one, and two of the free motion.
+    /// Number of coefficients of a mode: two of the forced motion, where there is one, and two of the free motion.
     pub(super) fn per_mode(&self) -> usize {
         if self.is_forced() { 4 } else { 2 }
     }
@@ -241,7 +242,7 @@ impl<'a> HeldModes<'a> {
             let first = command[0];
             let mut state = Complex::new(0.0, 0.0);
             let mut states = Vec::with_capacity(self.samples());
-            // About the first command: what it has done before the log is in the free motion.
+            // Commands count relative to the first: the effect of commands before the log is in the free motion.
             for (n, now) in command[..self.samples()].iter().enumerate() {
                 states.push(state);
                 let next = command.get(n + 1).unwrap_or(now);
@@ -263,7 +264,7 @@ impl<'a> HeldModes<'a> {
         self.columns(columns)
     }
 
-    /// The columns of all but the modes.
+    /// The columns of everything except the modes.
     fn rest_columns(&self) -> DMatrix<f64> {
         let mut columns = Vec::new();
         if let (Some(command), Some(body)) = (self.command, self.body) {
@@ -311,7 +312,7 @@ impl<'a> HeldModes<'a> {
         }
     }
 
-    /// Modes of unknowns.
+    /// The modes for given unknowns.
     pub(super) fn modes(unknowns: &[f64]) -> Vec<Mode> {
         let (pairs, _) = unknowns.as_chunks::<2>();
         let mode = |[frequency, damping]: &[f64; 2]| Mode {
@@ -321,7 +322,7 @@ impl<'a> HeldModes<'a> {
         pairs.iter().map(mode).collect()
     }
 
-    /// Unknowns of modes.
+    /// The unknowns for given modes.
     pub(super) fn unknowns(modes: &[Mode]) -> Vec<f64> {
         let pair = |mode: &Mode| [mode.frequency_hz.ln(), mode.damping.max(DAMPING.0).ln()];
         modes.iter().flat_map(pair).collect()
@@ -367,7 +368,7 @@ impl Separable for HeldModes<'_> {
     }
 }
 
-/// Whether a command changes.
+/// Returns whether a command changes.
 pub(super) fn moves(command: &[f64]) -> bool {
     command.windows(2).any(|pair| pair[0] != pair[1])
 }

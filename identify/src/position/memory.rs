@@ -1,12 +1,14 @@
-//! Noise with a memory: friction, a fan, a quantised sensor, a disturbance that the machine itself filters.
+//! Noise with a memory, for example from friction, a fan, a quantised sensor, or a disturbance that the machine
+//! itself filters.
 //!
 //! ```text
 //! n(k) = −a_1·n(k−1) − … − a_p·n(k−p) + e(k)     e without a memory
 //! ```
 //!
-//! Such noise looks like a mode to a fit that takes its rows for independent, and a true mode looks surer than it is. The fit is
-//! therefore made on rows through `1 + a_1·z⁻¹ + … + a_p·z⁻ᵖ` (generalised least squares), and every mode is to explain more than
-//! noise with a memory of its own would. Coefficients by Burg's method, the order by Schwarz's criterion.
+//! A fit that takes its rows as independent confuses such noise with a mode, and finds too small an uncertainty for a
+//! true one. The fit is therefore made on rows filtered by `1 + a_1·z⁻¹ + … + a_p·z⁻ᵖ` (generalised least squares),
+//! and every mode must explain more than noise with its own memory would. The coefficients are found by Burg's
+//! method, the order by Schwarz's criterion.
 
 use super::held::HeldModes;
 use super::search::{Found, LEAST_GAIN, ROUNDING, search};
@@ -16,23 +18,23 @@ use posicast_model::mode::Mode;
 /// An autoregressive model of noise.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NoiseMemory {
-    /// Coefficients of the orders from 0 on: the first rows have a shorter past.
+    /// Coefficients for the orders from 0 on; the first rows have a shorter past.
     predictors: Vec<Vec<f64>>,
-    /// Variance of what each order leaves.
+    /// Variance of the prediction error of each order.
     variances: Vec<f64>,
 }
 
-/// Longest memory in rows beside a command.
+/// Longest memory, in rows, for a forced response.
 const LONGEST_FORCED: usize = 8;
-/// Longest memory in rows where nothing is forced: a longer one explains a decay as well as a mode does.
+/// Longest memory, in rows, for a free response: a longer one would explain a decay as well as a mode does.
 const LONGEST_FREE: usize = 4;
-/// Rows for each coefficient.
+/// Number of rows needed per coefficient.
 const ROWS_PER_COEFFICIENT: usize = 12;
-/// Likelihood, as twice its logarithm, from which noise is taken to have a memory at all.
+/// Twice the logarithm of the likelihood ratio above which noise is taken to have a memory.
 const HAS_MEMORY: f64 = 20.0;
 
 impl NoiseMemory {
-    /// The model of the order at most `longest` that suits the noise best.
+    /// The model of order at most `longest` that fits the noise best.
     pub(super) fn of(noise: &[f64], longest: usize) -> Self {
         let rows = noise.len();
         let longest = longest.min(rows / ROWS_PER_COEFFICIENT);
@@ -45,7 +47,7 @@ impl NoiseMemory {
             let cross: f64 = pairs().map(|(f, b)| f * b).sum();
             let power: f64 = pairs().map(|(f, b)| f * f + b * b).sum();
             let reflection = -2.0 * cross / power;
-            // Not so of silence, where it is no number.
+            // For a signal of zeros the reflection is NaN.
             if reflection.is_nan() || reflection.abs() >= 1.0 {
                 break;
             }
@@ -68,18 +70,18 @@ impl NoiseMemory {
         Self { predictors, variances }
     }
 
-    /// Variance of what the model leaves.
+    /// Variance of the model's prediction error.
     fn variance(&self) -> f64 {
         self.variances.last().copied().unwrap_or(0.0)
     }
 
-    /// Whether so many rows of noise are more than chance away from independent ones.
+    /// Whether this many rows of noise differ from independent ones by more than chance.
     fn is_certain(&self, rows: usize) -> bool {
         let first = self.variances.first().copied().unwrap_or(0.0);
         rows as f64 * (first / self.variance()).ln() > HAS_MEMORY
     }
 
-    /// A signal without what the past of the noise tells, its rows of one variance.
+    /// A signal without what the past of the noise predicts, with rows of equal variance.
     pub(super) fn whitened(&self, signal: &[f64]) -> Vec<f64> {
         let longest = self.predictors.len() - 1;
         let row = |k: usize| {
@@ -92,14 +94,14 @@ impl NoiseMemory {
     }
 }
 
-/// Modes, and the noise beside them.
+/// Modes together with the noise beside them.
 struct Level {
     modes: Vec<Mode>,
     memory: NoiseMemory,
 }
 
 impl Level {
-    /// Modes and noise that suit each other.
+    /// Modes and noise that fit each other.
     fn of(problem: &HeldModes<'_>, modes: &[Mode]) -> Option<Self> {
         let longest = longest(problem);
         let plain = refine(problem, &HeldModes::unknowns(modes), Effort::Rough)?;
@@ -113,7 +115,7 @@ impl Level {
         })
     }
 
-    /// With as many of the modes of a fit as explain more than noise does, the strongest first.
+    /// As many modes of a fit as explain more than noise does, the strongest first.
     fn with_the_strongest(problem: &HeldModes<'_>, found: &Found) -> Option<Self> {
         let width = problem.per_mode();
         let strength = |k: usize| {
@@ -134,12 +136,13 @@ impl Level {
         Some(level)
     }
 
-    /// What this leaves less than another does, in variances of the noise.
+    /// Amount by which this leaves less than another, in variances of the noise.
     fn explained_beyond(&self, other: &Self, problem: &HeldModes<'_>) -> f64 {
         problem.len() as f64 * (other.memory.variance() / self.memory.variance()).ln()
     }
 
-    /// Without one of the modes, that which is missed least; and by how much, in variances of the noise.
+    /// The level without the mode that is missed least, and the amount by which it is missed, in variances of the
+    /// noise.
     fn with_one_less(&self, problem: &HeldModes<'_>) -> Option<(f64, Self)> {
         let levels = (0..self.modes.len()).filter_map(|left_out| {
             let mut modes = self.modes.clone();
@@ -159,7 +162,8 @@ fn longest(problem: &HeldModes<'_>) -> usize {
     }
 }
 
-/// The fit of modes beside noise with a memory, and the problem that it solves; the rows as they are where they have none.
+/// Fits modes beside noise with a memory, and returns the fit with the problem that it solves; where the noise has no
+/// memory the rows are unchanged.
 pub(super) fn beside_noise<'a>(problem: HeldModes<'a>, modes: &[Mode]) -> Option<(HeldModes<'a>, Found)> {
     let solution = refine(&problem, &HeldModes::unknowns(modes), Effort::Full)?;
     let power = problem.measured().variance() * problem.len() as f64;
@@ -176,7 +180,7 @@ pub(super) fn beside_noise<'a>(problem: HeldModes<'a>, modes: &[Mode]) -> Option
             solution,
         },
     )?;
-    // What is left of the modes are those that noise cannot explain; others may come out where its memory is taken away.
+    // The remaining modes are those that noise cannot explain; others may appear once its memory is removed.
     let found = search(&problem.whitened(level.memory), &level.modes)?;
     let mut level = Level::of(&problem, &found.modes)?;
     while let Some((missed, less)) = level.with_one_less(&problem) {

@@ -1,8 +1,8 @@
-//! Modes from a position log: time, command, response; or the free decay of a response.
+//! Finds modes in a position log (time, command, response), or in the free decay of a response.
 //!
-//! The output error of modes under a held command is made as small as it can be: unbiased under noise of the
-//! sensor, exact without it, for steps, decays, pseudo-random commands and chirps alike. [`arx`] has the models of equations (2-1) to
-//! (2-4) of the XY stage: what they find is set beside it.
+//! The method minimises the output error of modes under a held command. It is unbiased under sensor noise and exact
+//! without it, for steps, decays, pseudo-random commands and chirps. [`arx`] has the models of equations (2-1) to
+//! (2-4) of the XY stage; their result is compared with it.
 
 pub mod arx;
 mod held;
@@ -22,64 +22,65 @@ use rigid::{clipped, is_tone, onset, rigid_delay};
 use search::{Found, LEAST_GAIN, search};
 use thiserror::Error;
 
-/// What a position log tells.
+/// Result for a position log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundInPosition {
-    /// The modes, by frequency.
+    /// The modes, sorted by frequency.
     pub modes: Vec<FoundMode>,
-    /// Whether the command drove them; else they decay.
+    /// Whether the command drove the modes; else they decay freely.
     pub is_forced: bool,
-    /// Samples in a row of the fit: the fastest mode has 4 to 15 rows per period, where the log has so many samples.
+    /// Number of samples in a row of the fit: the fastest mode has 4 to 15 rows per period, where the log has that
+    /// many samples.
     pub decimation: usize,
-    /// Time of the first row in seconds from the first sample, and between rows.
+    /// Time in seconds from the first sample to the first row, and from row to row.
     pub row_s: f64,
     /// The rows of the response.
     pub response: Vec<f64>,
-    /// What modes and command make of them.
+    /// The rows that modes and command explain.
     pub fitted: Vec<f64>,
-    /// Root mean square of what is left.
+    /// Root mean square of the residuals.
     pub noise: f64,
-    /// What the log cannot tell.
+    /// What the log does not determine.
     pub remarks: Vec<PositionRemark>,
 }
 
-/// Why a position log cannot be looked at.
+/// Why a position log cannot be analysed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PositionError {
-    /// Too few samples.
+    /// There are too few samples.
     #[error("the log has {0} samples: modes need {LEAST_SAMPLES} at least")]
     Short(usize),
-    /// Command and response of different lengths, or values that are no numbers.
+    /// Command and response have different lengths, or contain values that are not finite.
     #[error(
-        "the log has {commands} commands and {responses} responses: there must be as many, all finite, or no commands at all"
+        "the log has {commands} commands and {responses} responses: their numbers must be equal, and all values finite; or leave the commands out"
     )]
     Uneven {
-        /// Commands.
+        /// Number of commands.
         commands: usize,
-        /// Responses.
+        /// Number of responses.
         responses: usize,
     },
-    /// The response never changes.
+    /// The response is constant.
     #[error(
         "the response is {value:e} in all {samples} samples: the sensor is dead, not connected, or coarser than the motion"
     )]
     Dead {
-        /// The value.
+        /// Its only value.
         value: f64,
-        /// Samples.
+        /// Number of samples.
         samples: usize,
     },
-    /// The time between samples is none.
+    /// The time between samples is not positive and finite.
     #[error("{0} s between samples is not possible")]
     Sample(f64),
 }
 
-/// What a position log cannot tell, and why.
+/// What a position log does not determine, and why.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PositionRemark {
-    /// The command stands still, and nothing decays.
+    /// The command does not move, and nothing decays.
     #[error(
-        "the command does not move and the response does not ring: nothing excited a mode; log a step, a pseudo-random command, or a stop"
+        "the command does not move and the response does not ring: no mode was excited; log a step, a pseudo-random command, or a stop"
     )]
     NoExcitation,
     /// The command moves, and the response follows without ringing.
@@ -87,18 +88,18 @@ pub enum PositionRemark {
         "the response follows the command without a mode that could be told from noise of {noise:.3e} (root mean square, in the unit of the response): a smooth move excites little, so log a step, a pseudo-random command or a sudden stop"
     )]
     NoRinging {
-        /// Root mean square of what is left.
+        /// Root mean square of the residuals.
         noise: f64,
     },
-    /// The command moves, and the response follows as a whole, some samples late.
+    /// The command moves, and the response follows rigidly, some samples late.
     #[error(
-        "the response is the command, {samples} samples late: the axis is rigid, or the response is not measured behind what rings"
+        "the response is the command, {samples} samples late: the axis is rigid, or the response is not measured at the part that rings"
     )]
     Late {
-        /// Samples of delay.
+        /// Delay in samples.
         samples: usize,
     },
-    /// Too little of a mode is in the log to tell it.
+    /// The log contains too little of a mode to determine it.
     #[error(
         "the log is {seconds:.4} s long and shows {periods:.2} periods of something at about {frequency_hz:.4} Hz: log {:.4} s at least, three periods",
         3.0 / frequency_hz
@@ -106,44 +107,44 @@ pub enum PositionRemark {
     TooShort {
         /// Length of the log in seconds.
         seconds: f64,
-        /// Periods in it.
+        /// Number of periods in it.
         periods: f64,
-        /// Its frequency in Hz, roughly.
+        /// Frequency in Hz, approximately.
         frequency_hz: f64,
     },
-    /// What rings does not decay.
+    /// The ringing does not decay.
     #[error(
         "the response has a tone of {frequency_hz:.4} Hz that does not decay in the log: something drives it, and a mode that rings as long cannot be told from it"
     )]
     Tone {
-        /// Its frequency in Hz.
+        /// Frequency of the tone in Hz.
         frequency_hz: f64,
     },
-    /// Samples before the ring were left out.
+    /// Samples before the ringing were left out.
     #[error("the first {samples} samples, before the response begins to ring, are left out")]
     Onset {
-        /// Samples left out.
+        /// Number of samples left out.
         samples: usize,
     },
-    /// Little of a mode is in the log.
+    /// The log contains few periods of a mode.
     #[error("the log shows {periods:.1} periods of the mode at {frequency_hz:.4} Hz: log three at least")]
     FewPeriods {
-        /// The mode's frequency in Hz.
+        /// Frequency of the mode in Hz.
         frequency_hz: f64,
-        /// Periods in the log.
+        /// Number of periods in the log.
         periods: f64,
     },
-    /// A mode has few samples in a period.
+    /// A mode has few samples per period.
     #[error(
         "the mode at {frequency_hz:.4} Hz has {samples:.1} samples in a period: one above half the rate of the samples would look the same"
     )]
     FewSamples {
-        /// The mode's frequency in Hz.
+        /// Frequency of the mode in Hz.
         frequency_hz: f64,
-        /// Samples per period.
+        /// Number of samples per period.
         samples: f64,
     },
-    /// The command decays without forcing: shares are those of the decay.
+    /// The response decays without forcing, so the shares are those of the decay.
     #[error("the command does not move in this log: the shares are those of the amplitudes at its first sample")]
     Free,
     /// A drive whose command does not move.
@@ -181,12 +182,12 @@ pub enum PositionRemark {
         "least squares with instruments (ARX) finds {frequency_hz:.4} Hz and a damping ratio of {damping:.3} instead: the log does not fix this mode"
     )]
     Differs {
-        /// Its frequency in Hz.
+        /// Frequency that it found, in Hz.
         frequency_hz: f64,
-        /// Its damping ratio.
+        /// Damping ratio that it found.
         damping: f64,
     },
-    /// The mode moved during the log.
+    /// The mode changed during the log.
     #[error(
         "the frequency moves from {from_hz:.4} to {to_hz:.4} Hz during the log: one mode for all of it is an average; log where the machine works, or a part at a time"
     )]
@@ -198,32 +199,32 @@ pub enum PositionRemark {
     },
 }
 
-/// Least samples of a log.
+/// Smallest number of samples of a log.
 pub const LEAST_SAMPLES: usize = 24;
-/// Rows in which modes are looked for.
+/// Number of rows in which modes are searched.
 const SEARCH_ROWS: usize = 3000;
-/// Rows per period of the fastest mode in the last fit, where the log has so many.
+/// Rows per period of the fastest mode in the last fit, where the log has that many samples.
 const ROWS_PER_PERIOD: f64 = 8.0;
-/// Most rows of the last fit.
+/// Largest number of rows of the last fit.
 const MOST_ROWS: usize = 30_000;
-/// Damping ratio from which a pole is no vibration.
+/// Damping ratio from which on a pole does not count as a vibration.
 const NO_VIBRATION: f64 = 0.6;
-/// Share of the displacement below which a mode is not told.
+/// Share of the displacement below which a mode is not reported.
 const LEAST_SHARE: f64 = 0.05;
-/// Standard deviation of a mode's damping and of its frequency, relative to them, beyond which the log does not fix it.
+/// Relative standard deviations of a mode's damping and frequency above which the log does not determine it.
 const VAGUE_DAMPING: f64 = 0.4;
 const VAGUE_FREQUENCY: f64 = 0.03;
-/// Periods of a mode in a log that tells it.
+/// Number of periods of a mode that a log needs to determine it.
 const ONE_PERIOD: f64 = 1.0;
-/// Stretches of a log that tell how much the memory of its noise adds to the variance: so many times as long as a mode rings, which
-/// noise may do likewise, and in such numbers.
+/// Length of the intervals of a log that show how much the noise's memory adds to the variance, as a multiple of the
+/// time for which a mode rings (noise may ring as long), and the number of such intervals.
 const MEMORY: f64 = 4.0;
 const STRETCHES: (f64, f64) = (6.0, 40.0);
 
 /// Finds the modes of a log.
 ///
 /// # Errors
-/// [`PositionError`].
+/// [`PositionError`] for a log that cannot be analysed.
 pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     check(log)?;
     let (response_unit, command_unit) = (largest(&log.response), largest(&log.command));
@@ -249,13 +250,13 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     })
 }
 
-/// The largest value of a signal; 1 where there is none.
+/// The largest magnitude of a signal; 1 where that is 0.
 fn largest(values: &[f64]) -> f64 {
     let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// The modes of a log whose largest command and response are 1: its squares are numbers, whatever its units.
+/// The modes of a log whose largest command and response are 1, so that its squares are finite whatever its units.
 fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let begin = match held::moves(&log.command) {
         true => 0,
@@ -278,7 +279,7 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     };
     let mut found = search(&problem(0..samples, coarse), &[]);
     if coarse > 1 {
-        // What is too fast for the rows of the whole log is looked for where the command first moves.
+        // A mode that is too fast for the rows of the whole log is searched where the command first moves.
         let first = log.command.windows(2).position(|pair| pair[0] != pair[1]).unwrap_or(0);
         let begin = first.min(samples - SEARCH_ROWS);
         let fast = search(&problem(begin..begin + SEARCH_ROWS, 1), &[]);
@@ -405,9 +406,9 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     modes
 }
 
-/// Why what a fit found is no mode.
+/// Reasons why a fit's results are not modes.
 fn not_told(problem: &HeldModes<'_>, found: &Found) -> Vec<PositionRemark> {
-    /// Periods that are more than a drift.
+    /// Number of periods above which a motion is more than a drift.
     const SOME_OF_A_PERIOD: f64 = 0.3;
     let seconds = problem.row_s() * problem.len() as f64;
     let mut remarks: Vec<PositionRemark> = Vec::new();
@@ -461,14 +462,14 @@ fn remarks(
         }
     }
     remarks.extend(moved(log, problem, modes));
-    // The models of the stage know held commands only.
+    // The models of the stage assume held commands.
     if let ([only], Between::Held) = (modes, log.between) {
         remarks.extend(beside(log, &only.mode));
     }
     remarks
 }
 
-/// Whether the strongest mode is another in the first half of a log than in the second.
+/// Whether the strongest mode differs between the first and the second half of a log.
 fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Option<PositionRemark> {
     const DEVIATIONS: f64 = 5.0;
     const LEAST: f64 = 0.005;
@@ -496,7 +497,7 @@ fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Opt
     is_certain.then_some(PositionRemark::Moves { from_hz, to_hz })
 }
 
-/// What the models of the XY stage say of a log with one mode, where it is something else.
+/// Result of the XY stage's models for a log with one mode, where it differs.
 fn beside(log: &PositionLog, mode: &Mode) -> Option<PositionRemark> {
     const FREQUENCY: f64 = 0.05;
     const DAMPING: f64 = 0.5;

@@ -1,4 +1,4 @@
-//! Recursive least squares with forgetting: a mode that moves, sample by sample.
+//! Recursive least squares with forgetting, for a mode that changes, sample by sample.
 //!
 //! ```text
 //! K = Pφ/(λ + φᵀPφ)     θ ← θ + K(y − φᵀθ)     P ← (P − KφᵀP)/λ
@@ -8,7 +8,7 @@ use super::arx::ArxModel;
 use nalgebra::{DMatrix, DVector};
 use posicast_model::mode::Mode;
 
-/// A model of an order that is brought up to date with every sample. It looks back over about `1/(1 − forgetting)` samples.
+/// A model that is updated with every sample. Its memory is about `1/(1 − forgetting)` samples.
 #[derive(Debug, Clone)]
 pub struct RecursiveArx {
     order: usize,
@@ -16,16 +16,16 @@ pub struct RecursiveArx {
     forgetting: f64,
     parameters: DVector<f64>,
     covariance: DMatrix<f64>,
-    /// The last commands and responses, the newest first.
+    /// The last commands and responses; the newest come first.
     commands: Vec<f64>,
     responses: Vec<f64>,
 }
 
-/// Variance of parameters of which nothing is known.
+/// Initial variance of parameters of which nothing is known.
 const UNKNOWN: f64 = 1e5;
 
 impl RecursiveArx {
-    /// A model of `order` that forgets with the factor `forgetting`, above 0 and at most 1.
+    /// A model of `order` with the forgetting factor `forgetting`, above 0 and at most 1.
     pub fn new(order: usize, sample_s: f64, forgetting: f64) -> Self {
         Self {
             order,
@@ -38,7 +38,7 @@ impl RecursiveArx {
         }
     }
 
-    /// Takes the next sample: the response, before the command beside it acts.
+    /// Takes the next sample: the response as it is before the command of the same sample acts.
     pub fn take(&mut self, command: f64, response: f64) {
         if self.responses.len() == self.order {
             let past = self.responses.iter().map(|y| -y).chain(self.commands.iter().copied());
@@ -47,7 +47,7 @@ impl RecursiveArx {
             let gain = &spread / (self.forgetting + regressor.dot(&spread));
             self.parameters += &gain * (response - regressor.dot(&self.parameters));
             let next = (&self.covariance - gain * spread.transpose()) / self.forgetting;
-            // Rounding must not make it lopsided: what it then grows into is no covariance.
+            // Rounding must not make the covariance asymmetric, because it then grows into an invalid one.
             self.covariance = (&next + next.transpose()) * 0.5;
         }
         self.responses.insert(0, response);
@@ -56,7 +56,7 @@ impl RecursiveArx {
         self.commands.truncate(self.order);
     }
 
-    /// The model as of the last sample.
+    /// The model after the last sample.
     pub fn model(&self) -> ArxModel {
         ArxModel {
             a: self.parameters.rows(0, self.order).iter().copied().collect(),
@@ -65,7 +65,7 @@ impl RecursiveArx {
         }
     }
 
-    /// Its modes.
+    /// Its modes after the last sample.
     pub fn modes(&self) -> Vec<Mode> {
         self.model().modes()
     }

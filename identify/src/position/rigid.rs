@@ -1,5 +1,5 @@
-//! Logs without a mode that look as if they had one: a rigid axis behind a delay, a tone that does not decay; and the quiet rows
-//! before a blow, and the flat tops of a sensor at its end.
+//! Logs that seem to contain a mode but do not: a rigid axis with a delay, or a tone that does not decay. Also finds
+//! the rows at rest before an impact, and the flat tops of a saturated sensor.
 
 use super::held::HeldModes;
 use super::search::{Found, LEAST_GAIN};
@@ -8,16 +8,16 @@ use crate::signal::PositionLog;
 use nalgebra::DVector;
 use posicast_model::mode::Mode;
 
-/// Longest delay in samples that is tried.
+/// Longest delay that is tried, in samples.
 const LONGEST_DELAY: usize = 64;
 
-/// The delay in samples of an axis that follows its command as a whole, where that explains a log as well as modes do.
+/// Delay in samples of an axis that follows its command rigidly, if that explains a log as well as modes do.
 ///
 /// ```text
 /// y(k) = g·u(k−delay) + h·u(k−delay−1) + offset
 /// ```
 ///
-/// The first rows, whose command is before the log, count neither here nor there.
+/// The first rows, whose command lies before the log, are ignored in both cases.
 pub(super) fn rigid_delay(
     log: &PositionLog,
     decimation: usize,
@@ -52,12 +52,13 @@ pub(super) fn rigid_delay(
     is_rigid.then_some(delay)
 }
 
-/// The sample at which a response that was quiet before begins to ring: 0 where it rings from the first on.
+/// Sample at which a response that was at rest begins to ring; 0 if it rings from the start.
 pub(super) fn onset(response: &[f64]) -> usize {
-    /// Share of the largest distance from the first samples that is a beginning, and that is quiet.
+    /// Fractions of the largest distance from the first samples: above the first the ringing begins, below the second
+    /// the response is at rest.
     const BEGINS: f64 = 0.3;
     const IS_QUIET: f64 = 0.06;
-    /// Quiet samples by which a beginning is told, and most of the log that they may be.
+    /// Number of samples at rest needed to find a beginning, and largest fraction of the log that they may be.
     const QUIET: usize = 16;
     const MOST: f64 = 0.75;
     let Some(first) = response.get(..QUIET) else {
@@ -76,7 +77,7 @@ pub(super) fn onset(response: &[f64]) -> usize {
     if !is_quiet {
         return 0;
     }
-    // From the first turn on the machine is left to itself.
+    // From its first reversal on the machine moves freely.
     let way = (response[begin] - level).signum();
     let turn = response[begin..]
         .windows(2)
@@ -84,10 +85,12 @@ pub(super) fn onset(response: &[f64]) -> usize {
     begin + turn.unwrap_or(0)
 }
 
-/// The samples of a response that stand at its extremes again and again: what was beyond is not in the log. None where there are
-/// no such samples, or where they are most of the log, as with an axis that goes back and forth between two places.
+/// Marks the samples of a response that are at its extremes again and again, where the true value is beyond them.
+/// Empty where there are no such samples, or where they are most of the log, as for an axis that moves back and forth
+/// between two positions.
 pub(super) fn clipped(response: &[f64]) -> Vec<bool> {
-    /// Samples in a row that are no chance, such rows, and the share of a log that they may be.
+    /// Number of consecutive samples that is not a coincidence, number of such runs, and largest fraction of a log
+    /// that they may be.
     const LEAST: usize = 4;
     const RUNS: usize = 3;
     const MOST: f64 = 0.6;
@@ -108,9 +111,9 @@ pub(super) fn clipped(response: &[f64]) -> Vec<bool> {
     }
 }
 
-/// Whether a mode of a fit is a tone: it keeps its amplitude, where nothing drives it, or has no damping at all.
+/// Whether a mode of a fit is a tone: it keeps its amplitude where nothing drives it, or has no damping at all.
 pub(super) fn is_tone(mode: &Mode, is_forced: bool, seconds: f64) -> bool {
-    /// Damping ratio that no machine has, and decrease of the amplitude in a log that tells a decay.
+    /// Damping ratio that no machine has, and decrease of the amplitude during a log that shows a decay.
     const UNDAMPED: f64 = 1e-4;
     const DECREASE: f64 = 0.1;
     match is_forced {

@@ -1,11 +1,11 @@
-//! How many modes a log has: one more as long as it explains more than noise would.
+//! Determines the number of modes in a log: one more is added as long as it explains more than noise would.
 
 use super::held::HeldModes;
 use crate::separable::{Effort, Gram, Separable, Solution, refine};
 use nalgebra::{DMatrix, DVector};
 use posicast_model::mode::Mode;
 
-/// Most modes that are looked for.
+/// Largest number of modes that are searched.
 const MOST: usize = 6;
 /// Damping ratios at which a further mode is looked for; the last only beside a motor, whose modes a drive damps.
 const TRIED_DAMPING: [f64; 3] = [0.015, 0.08, 0.3];
@@ -14,20 +14,22 @@ const LEAST_PERIODS: f64 = 2.0;
 const LEAST_PERIODS_OF_MOTOR: f64 = 4.0;
 /// Distance of the frequencies at which it is looked for.
 const TRIED_STEP: f64 = 1.03;
-/// Modes closer than this may be one that has to be split.
+/// Relative distance below which modes may represent one mode that has to be split.
 const NEAR: f64 = 0.2;
-/// Square that a further mode must explain, in variances of the noise: far above what its six unknowns explain by chance.
+/// Sum of squares that a further mode must explain, in variances of the noise: far above what its six unknowns
+/// explain by chance.
 pub(super) const LEAST_GAIN: f64 = 60.0;
-/// Share of the response's power below which what is left is rounding.
+/// Fraction of the response's power below which a remainder is rounding error.
 pub(super) const ROUNDING: f64 = 1e-20;
 
-/// Modes and the fit that they are from.
+/// Modes with the fit that gave them.
 pub(super) struct Found {
     pub(super) modes: Vec<Mode>,
     pub(super) solution: Solution,
 }
 
-/// Modes that explain the rows, one after the other, beside those that are known. `None` where there are too few rows for any.
+/// Adds modes that explain the rows, one after the other, to those that are known. `None` where there are too few
+/// rows for a mode.
 pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
     let mut kept = refine(problem, &HeldModes::unknowns(known), Effort::Rough)?;
     let mut now = kept.clone();
@@ -55,7 +57,7 @@ pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
 
 fn with_one_more(problem: &HeldModes<'_>, fit: &Solution) -> Option<Solution> {
     let (gain, found) = strongest(problem, fit)?;
-    // The gain is that of the best of those that were tried: in its place the mode may explain some times as much.
+    // The gain is that of the best mode that was tried; at its optimum the mode may explain several times as much.
     if gain < 0.25 * LEAST_GAIN * fit.reduced_square() {
         return None;
     }
@@ -79,7 +81,7 @@ fn with_one_more(problem: &HeldModes<'_>, fit: &Solution) -> Option<Solution> {
     fits.min_by(|a, b| a.square.total_cmp(&b.square))
 }
 
-/// The mode that explains most of what a fit leaves, what the fit's columns take over left out.
+/// The mode that explains most of a fit's residual, without the part that the fit's columns absorb.
 fn strongest(problem: &HeldModes<'_>, fit: &Solution) -> Option<(f64, Mode)> {
     let basis = problem.basis(&fit.unknowns);
     let gram = Gram::of(&basis)?;

@@ -1,4 +1,4 @@
-//! The acceleration that a firmware's resonance test puts on an axis, as far as its description goes.
+//! The acceleration of an axis in a firmware's resonance test, as far as its description determines it.
 //!
 //! ```text
 //!  +a ┌─┐     ┌───┐     ┌─        half periods of two quarters each: + −, then − +, then + − …
@@ -6,9 +6,9 @@
 //!  −a   └─────┘   └─────┘         a = acceleration_per_hz · f
 //! ```
 //!
-//! It is constant between switching times, so that samples, means and integrals of it are exact.
+//! It is constant between switching times, so that its samples, means and integrals are exact.
 
-/// A resonance test whose frequency rises.
+/// A resonance test with rising frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sweep {
     /// First frequency in Hz, above 0.
@@ -22,7 +22,7 @@ pub struct Sweep {
 }
 
 impl Default for Sweep {
-    /// The test of common 3D-printer firmware: 5 to 135 Hz at 1 Hz/s, 60 mm/s² per Hz.
+    /// The test of common 3D-printer firmware: 5 to 135 Hz at 1 Hz/s with 60 mm/s² per Hz.
     fn default() -> Self {
         Self {
             start_hz: 5.0,
@@ -33,10 +33,10 @@ impl Default for Sweep {
     }
 }
 
-/// In which order the quarter periods push and pull.
+/// Order of acceleration and deceleration in the quarter periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QuarterOrder {
-    /// `+ − − +`: there and back in one period, as the firmware moves.
+    /// `+ − − +`: forth and back in one period, as the firmware moves.
     Mirrored,
     /// `+ − + −`: always in one direction, twice as fast.
     Alternating,
@@ -58,7 +58,7 @@ impl QuarterOrder {
     }
 }
 
-/// When the frequency of a sweep rises.
+/// Way in which the frequency of a sweep rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rise {
     /// With every half period, as the firmware does it.
@@ -76,16 +76,16 @@ impl Rise {
     pub const ALL: [Self; 4] = [Self::HalfPeriod, Self::QuarterPeriod, Self::Period, Self::Continuous];
 }
 
-/// A stretch of constant acceleration.
+/// An interval of constant acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stretch {
     begin_s: f64,
     acceleration: f64,
-    /// Velocity at its begin: the integral of the acceleration.
+    /// Velocity at its start, which is the integral of the acceleration.
     velocity: f64,
 }
 
-/// The acceleration over time, from the start of the sweep.
+/// The acceleration over time, from the start of the sweep on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweptAcceleration {
     stretches: Vec<Stretch>,
@@ -100,7 +100,7 @@ impl SweptAcceleration {
         for quarter in 0.. {
             let quarter_s = match rise {
                 Rise::Continuous => {
-                    // The phase start·t + rate·t²/2 grows by a quarter: the root that does not cancel.
+                    // The phase start·t + rate·t²/2 grows by a quarter; this form of the root does not cancel.
                     frequency = sweep.start_hz + sweep.rate_hz_per_s * time_s;
                     0.5 / (frequency + (frequency * frequency + 0.5 * sweep.rate_hz_per_s).sqrt())
                 }
@@ -138,7 +138,8 @@ impl SweptAcceleration {
         self.end_s
     }
 
-    /// Pieces of constant acceleration, as the time in seconds at which each begins and its m/s²; the last begins the rest.
+    /// Intervals of constant acceleration, each as its start time in seconds and its acceleration in m/s²; the last
+    /// is the rest after the sweep.
     pub fn pieces(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let moving = self
             .stretches
@@ -158,7 +159,8 @@ impl SweptAcceleration {
             .collect()
     }
 
-    /// Its means over the sample around each of these instants, which hold next to nothing of what the samples fold into the band.
+    /// Means of the acceleration over the sample around each of these instants, which contain hardly anything of what
+    /// the samples alias into the band.
     pub fn means(&self, start_s: f64, sample_s: f64, samples: usize) -> Vec<f64> {
         let mut walk = Walk {
             excitation: self,
@@ -175,14 +177,14 @@ impl SweptAcceleration {
     }
 }
 
-/// A place in an excitation that only moves forward.
+/// A position in an excitation that only moves forward.
 struct Walk<'a> {
     excitation: &'a SweptAcceleration,
     index: usize,
 }
 
 impl Walk<'_> {
-    /// The stretch of a time within the sweep.
+    /// The interval that contains a time of the sweep.
     fn stretch(&mut self, time_s: f64) -> Option<&Stretch> {
         let stretches = &self.excitation.stretches;
         if time_s < 0.0 || time_s >= self.excitation.end_s {
@@ -217,7 +219,7 @@ mod tests {
     fn unit_the_firmwares_sweep_rises_by_its_rate() {
         let sweep = Sweep::default();
         let excitation = SweptAcceleration::new(&sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
-        // 130 Hz at 1 Hz/s, and the last period.
+        // The duration is 130 Hz at 1 Hz/s, plus the last period.
         assert!(
             (excitation.duration_s() - 130.0).abs() < 0.05,
             "{}",
@@ -226,7 +228,7 @@ mod tests {
         let firsts: Vec<f64> = excitation.stretches.iter().take(5).map(|s| s.acceleration).collect();
         assert_eq!(firsts[..4], [0.3, -0.3, -0.06 * 5.1, 0.06 * 5.1]);
         assert!(firsts[4] > 0.06 * 5.1);
-        // It comes back to rest after every half period.
+        // The velocity returns to zero after every half period.
         for stretch in excitation.stretches.iter().step_by(2) {
             assert!(stretch.velocity.abs() < 1e-12);
         }
@@ -244,7 +246,7 @@ mod tests {
             let coarse = excitation.means(-0.01 + 0.5e-5 * 99.0, 1e-3, 900);
             for (n, mean) in coarse.iter().enumerate() {
                 let direct: f64 = fine[n * 100..(n + 1) * 100].iter().sum::<f64>() / 100.0;
-                // An edge lies up to half a fine sample beside its place.
+                // An edge may be up to half a fine sample away from its place.
                 assert!(
                     (direct - mean).abs() < 0.02 * sweep.end_hz * 0.06,
                     "{rise:?} {n} {direct} {mean}"

@@ -1,7 +1,7 @@
-//! Modes from an accelerometer log of a resonance test.
+//! Finds modes in an accelerometer log of a resonance test.
 //!
-//! The log does not say what moved the axis. It is known by its description ([`Sweep`]): what of it is not told, the time at which it
-//! began and the order of its quarter periods, is found by trying.
+//! The log does not contain the excitation. It is known by its description ([`Sweep`]); what the description leaves
+//! open, the time at which it began and the order of its quarter periods, is found by trying.
 
 mod excitation;
 mod transfer;
@@ -18,67 +18,68 @@ use posicast_model::mode::Mode;
 use thiserror::Error;
 use transfer::{Analyser, Lines};
 
-/// What an accelerometer log tells.
+/// Result for an accelerometer log of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundInSweep {
-    /// The modes, by frequency.
+    /// The modes, sorted by frequency.
     pub modes: Vec<FoundMode>,
-    /// Name of the direction of the sensor that was used.
+    /// Name of the sensor direction that was used.
     pub direction: String,
-    /// Time of the first sample at which the sweep begins, in seconds; negative where the log begins later.
+    /// Time from the first sample to the start of the sweep, in seconds; negative where the log begins later.
     pub start_s: f64,
-    /// By how much the log's clock runs faster than that of the sweep, relative: 1e-4 is 10 ms in 100 s. 0 where it was taken as it is.
+    /// Relative amount by which the log's clock runs faster than that of the sweep: 1e-4 is 10 ms in 100 s. 0 where
+    /// it was not corrected.
     pub clock_error: f64,
     /// Order of the quarter periods that fits the log.
     pub order: QuarterOrder,
-    /// Way of rising that fits the log.
+    /// Way in which the frequency rises that fits the log.
     pub rise: Rise,
     /// The measured transfer function.
     pub transfer: Transfer,
-    /// The fitted one, at the same points.
+    /// The fitted transfer function, at the same points.
     pub fitted: Vec<Complex<f64>>,
-    /// Square of what the fit leaves over the noise's, 1 where noise alone is left.
+    /// Sum of squares of the residuals relative to the noise: 1 where only noise is left.
     pub reduced_square: f64,
 }
 
-/// Why a log tells no modes by a sweep.
+/// Why the sweep gives no modes of a log.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
-    /// Too few samples.
+    /// There are too few samples.
     #[error("the log has {samples} samples, {seconds:.2} s: a sweep needs 2 s at least")]
     Short {
-        /// Samples.
+        /// Number of samples.
         samples: usize,
-        /// Their time in seconds.
+        /// Duration in seconds.
         seconds: f64,
     },
-    /// The description of the sweep is none.
+    /// The description of the sweep is invalid.
     #[error("a sweep from {} to {} Hz at {} Hz/s with {} m/s² per Hz is not possible: all must be finite and above 0, the second frequency above the first and below half the rate of the samples", .0.start_hz, .0.end_hz, .0.rate_hz_per_s, .0.acceleration_per_hz)]
     Description(Sweep),
     /// No direction follows the sweep.
     #[error("no direction of the sensor follows the sweep: it explains {:.1} % of the log at most", 100.0 * .0)]
     Unrelated(f64),
-    /// The log follows the sweep in a way that no modes do.
+    /// The log follows the sweep in a way that modes do not explain.
     #[error("modes tell {:.0} % of how the sensor follows this sweep: it was another one, or the machine is far from linear", 100.0 * .0)]
     Unlike(f64),
-    /// A transfer function that fixes no mode.
+    /// The transfer function does not determine a mode.
     #[error("the log fixes no transfer function in the band of the sweep")]
     Empty,
 }
 
-/// Margin of the band beside the sweep's own, relative.
+/// Margin of the band beyond the sweep's frequencies, relative.
 const MARGIN: f64 = 0.02;
-/// Least share of the power that the sweep must explain.
+/// Smallest fraction of the power that the sweep must explain.
 const LEAST_EXPLAINED: f64 = 0.2;
-/// Least share of the transfer function's power that the modes must explain.
+/// Smallest fraction of the transfer function's power that the modes must explain.
 const LEAST_TOLD: f64 = 0.8;
-/// Sharpness of the impulse response below which the order of the quarters is doubted.
+/// Sharpness of the impulse response below which other orders of the quarters are tried.
 const SHARP: f64 = 30.0;
 
-/// Finds the modes that the sweep shows.
+/// Finds the modes that the sweep excited.
 ///
 /// # Errors
-/// [`SweepError`].
+/// [`SweepError`] where there are none that can be determined.
 pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, SweepError> {
     let samples = log.directions.iter().map(|(_, record)| record.len()).min().unwrap_or(0);
     let seconds = samples as f64 * log.sample_s;
@@ -99,35 +100,35 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
             }
         }
     }
-    // It does not settle: so nothing says that the clock is off.
+    // The clock's error does not converge, so nothing shows that the clock is wrong.
     match followed(log, sweep, samples, log.sample_s, Look::Nowhere)? {
         Pass::Ended(found) => Ok(*found),
         Pass::Drifts(_) => Err(SweepError::Empty),
     }
 }
 
-/// Most times that a log is followed, each with its clock set anew, and the bend in seconds from which that is done: the fit makes good
-/// what is less.
+/// Largest number of times that a log is followed with a corrected clock, and the bend in seconds above which that is
+/// done: the fit compensates a smaller one.
 const PASSES: usize = 4;
 const BEND_S: f64 = 3e-3;
 
-/// Standard deviations by which a bend must be there.
+/// Number of standard deviations by which a bend must exceed zero.
 const CERTAIN: f64 = 6.0;
 
-/// Where an error of the clock is looked for.
+/// Range in which an error of the clock is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Look {
     /// Up to a tenth of a percent.
     Everywhere,
-    /// As far as the fit goes by itself.
+    /// Only as far as the fit moves by itself.
     Near,
-    /// The clock is taken as it is.
+    /// The clock is not corrected.
     Nowhere,
 }
 
-/// A log followed with one clock.
+/// Result of following a log with one clock.
 enum Pass {
-    /// Its clock is off by so much, relative.
+    /// Its clock has this relative error.
     Drifts(f64),
     Ended(Box<FoundInSweep>),
 }
@@ -144,8 +145,8 @@ fn followed(
         low_hz: sweep.start_hz * (1.0 + MARGIN),
         high_hz: sweep.end_hz * (1.0 - MARGIN),
     };
-    // A clock that is fast by ε sees f by ε·f/rate late, and takes it for f/(1 + ε), which was due as much earlier: together the group
-    // delay, which is twice the bend.
+    // A clock that is fast by ε sees f later by ε·f/rate, and takes it for f/(1 + ε), which was due earlier by as
+    // much: together this is the group delay, which is twice the bend.
     let error = |bend_s: f64| bend_s * sweep.rate_hz_per_s / band.high_hz;
     let mut analyser = Analyser::new(samples, sample_s, band);
     let (direction, response) = strongest(log, &mut analyser).ok_or(SweepError::Empty)?;
@@ -167,12 +168,12 @@ fn followed(
     if bends && look != Look::Nowhere {
         return Ok(Pass::Drifts(error(late.bend_s)));
     }
-    // What folds is known only once the begin is known to less than a sample.
+    // The aliased part is known only once the start is known to less than a sample.
     let start_s = begun.start_s + late.delay_s;
     let smooth = placed(&mut analyser, &begun, start_s, seconds);
     let sampled = analyser.sampled(&begun.excitation, start_s);
-    // A real axis is pushed when the sweep says; a simulated one often only from the next sample on, and is pushed by all that
-    // the samples fold.
+    // A real axis is excited at the time of the sweep; a simulated one often only from the next sample on, by all
+    // that the samples alias.
     let between = transfer::transfer(&response, &smooth, Some(&sampled.beside(&smooth)));
     let on_samples = transfer::transfer(&response, &sampled, None);
     let transfer = match on_samples.explained > between.explained {
@@ -212,7 +213,7 @@ fn check(sweep: &Sweep, sample_s: f64) -> Result<(), SweepError> {
     let possible = values.iter().all(|value| value.is_finite() && *value > 0.0)
         && sweep.end_hz > sweep.start_hz
         && sweep.end_hz < 0.5 / sample_s;
-    // A sweep of more periods than this is a slip, and would fill the memory.
+    // A sweep with more periods than this is a mistake, and would fill the memory.
     let periods = (sweep.end_hz + sweep.start_hz) / 2.0 * (sweep.end_hz - sweep.start_hz) / sweep.rate_hz_per_s;
     if possible && periods < 1e7 {
         Ok(())
@@ -229,10 +230,10 @@ fn strongest(log: &AccelerationLog, analyser: &mut Analyser) -> Option<(String, 
         .max_by(|a, b| a.1.power().total_cmp(&b.1.power()))
 }
 
-/// A sweep whose begin is known to a few milliseconds.
+/// A sweep whose start is known to a few milliseconds.
 struct Begun {
     excitation: SweptAcceleration,
-    /// Lines of the excitation begun at the first sample.
+    /// Lines of the excitation when it begins at the first sample.
     lines: Lines,
     order: QuarterOrder,
     rise: Rise,
@@ -264,7 +265,7 @@ fn begin(analyser: &mut Analyser, response: &Lines, sweep: &Sweep) -> Option<Beg
     best.map(|(_, begun)| begun)
 }
 
-/// Lines of the sweep begun at `start_s`, in a log of so many seconds.
+/// Lines of the sweep that begins at `start_s`, in a log of this many seconds.
 fn placed(analyser: &mut Analyser, begun: &Begun, start_s: f64, seconds: f64) -> Lines {
     if start_s >= 0.0 && start_s + begun.excitation.duration_s() <= seconds {
         analyser.later(&begun.lines, start_s)
@@ -273,11 +274,11 @@ fn placed(analyser: &mut Analyser, begun: &Begun, start_s: f64, seconds: f64) ->
     }
 }
 
-/// Poles without a word about the phase, then the lateness that goes with them.
+/// Fits poles without knowledge of the phase, then finds the lateness that matches them.
 fn timed(transfer: &Transfer) -> Option<Fit> {
     const TRIED_S: f64 = 0.25e-3;
     const TRIED: i32 = 60;
-    // Start values are looked for: a third of the points says as much in a third of the time.
+    // For start values a third of the points is as good, and takes a third of the time.
     let points = &modal::thinned(&transfer.points, 3);
     let free = modal::select(points, Phase::Free)?;
     let delays = (-TRIED..=TRIED).map(|n| Lateness {
@@ -296,7 +297,7 @@ fn best(points: &[ResponsePoint], free: &Fit, tried: impl Iterator<Item = Latene
     squares.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, phase)| phase)
 }
 
-/// Share of the transfer function's power, over its noise's, that a fit explains.
+/// Fraction of the transfer function's power, above its noise's, that a fit explains.
 fn told(transfer: &Transfer, fit: &Fit) -> f64 {
     let weighted = |value: Complex<f64>, deviation: f64| (value / deviation).norm_sqr();
     let points = || transfer.points.iter().zip(&fit.values);
@@ -307,11 +308,11 @@ fn told(transfer: &Transfer, fit: &Fit) -> f64 {
     1.0 - left / whole
 }
 
-/// Damping ratio from which a pole is no vibration but a slope of the transfer function.
+/// Damping ratio from which on a pole does not count as a vibration, but as a slope of the transfer function.
 const NO_VIBRATION: f64 = 0.5;
-/// Share of the displacement below which a mode is not told.
+/// Share of the displacement below which a mode is not reported.
 const LEAST_SHARE: f64 = 0.05;
-/// Deviations by which a share must exceed zero.
+/// Number of standard deviations by which a share must exceed zero.
 const SIGNIFICANT: f64 = 6.0;
 
 fn modes(fit: &Fit, band: &Band) -> Vec<FoundMode> {

@@ -1,11 +1,11 @@
-//! The transfer function from the acceleration of an axis to that of the sensor, measured over a whole sweep.
+//! Measures the transfer function from the acceleration of an axis to that of the sensor over a whole sweep.
 //!
-//! The machine rests at both ends of a log, so that the transforms of the whole record divide without leakage: `H = Y/U` on lines
-//! `1/T` apart. Neighbouring lines are joined to [`ResponsePoint`]s by a local straight line through `H`, least squares with weights
-//! `|U|²`; what is left of the lines is the noise.
+//! The machine is at rest at both ends of a log, so the transforms of the whole record can be divided without
+//! leakage: `H = Y/U` on lines `1/T` apart. Neighbouring lines are joined to [`ResponsePoint`]s by a local straight
+//! line through `H`, by least squares with the weights `|U|²`; the residuals of the lines are the noise.
 //!
-//! A sensor that samples without a filter folds the edges of the excitation into the band. That part is known too, and taken away:
-//! it is what the samples of the excitation have beside its means.
+//! A sensor that samples without a filter aliases the edges of the excitation into the band. That part is known too,
+//! and is subtracted: it is the difference between the samples of the excitation and its means.
 
 use super::excitation::SweptAcceleration;
 use crate::modal::{Lateness, ResponsePoint};
@@ -20,7 +20,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// What these lines have beside others of the same band.
+    /// Difference of these lines and others of the same band.
     pub(super) fn beside(&self, other: &Self) -> Self {
         let values = self.values.iter().zip(&other.values).map(|(line, other)| line - other);
         Self {
@@ -39,7 +39,7 @@ impl Lines {
     }
 }
 
-/// The band of frequencies that is looked at, in Hz.
+/// A band of frequencies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// Lower end.
@@ -48,7 +48,7 @@ pub struct Band {
     pub high_hz: f64,
 }
 
-/// What turns records into lines of one band.
+/// Converts records to lines of one band.
 pub(super) struct Analyser {
     transform: Transform,
     sample_s: f64,
@@ -69,7 +69,7 @@ impl Analyser {
         }
     }
 
-    /// Lines of a record; the mean of the record is taken away first.
+    /// Lines of a record, whose mean is subtracted first.
     pub(super) fn lines(&mut self, record: &[f64]) -> Lines {
         let mean = record.iter().sum::<f64>() / record.len().max(1) as f64;
         let centred: Vec<f64> = record.iter().map(|x| x - mean).collect();
@@ -84,12 +84,13 @@ impl Analyser {
         }
     }
 
-    /// Lines of an excitation that begins at `start_s` after the first sample, without what its samples fold into the band.
+    /// Lines of an excitation that begins `start_s` after the first sample, without what its samples alias into the
+    /// band.
     pub(super) fn excitation(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
         let means = excitation.means(-start_s, self.sample_s, self.samples);
         let mut lines = self.lines(&means);
         for line in 0..lines.values.len() {
-            // A mean over a sample lowers a line by sinc(f·T).
+            // The mean over a sample attenuates a line by sinc(f·T).
             let angle = std::f64::consts::PI * lines.frequency_hz(line) * self.sample_s;
             if angle > 0.0 {
                 lines.values[line] *= angle / angle.sin();
@@ -98,13 +99,14 @@ impl Analyser {
         lines
     }
 
-    /// Lines of the samples of an excitation, with all that they fold into the band.
+    /// Lines of the samples of an excitation, with everything that they alias into the band.
     pub(super) fn sampled(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
         let samples = excitation.samples(-start_s, self.sample_s, self.samples);
         self.lines(&samples)
     }
 
-    /// Lines of an excitation from those of one that began `delay_s` earlier. Right where the log holds the whole of both.
+    /// Lines of an excitation, from those of one that began `delay_s` earlier. This is exact if the log contains both
+    /// completely.
     pub(super) fn later(&self, lines: &Lines, delay_s: f64) -> Lines {
         let late = Lateness { delay_s, bend_s: 0.0 };
         let turned = lines.values.iter().enumerate();
@@ -116,14 +118,14 @@ impl Analyser {
     }
 }
 
-/// Lines that have an excitation of this share of the mean say something.
+/// Lines whose excitation is below this fraction of the mean are not used.
 const EXCITED: f64 = 1e-3;
 
-/// How late the response is in seconds, and how sharply it says so: the largest value of the impulse response over its root
-/// mean square. The record is taken as a ring.
+/// Delay of the response in seconds, and its sharpness: the largest value of the impulse response over its root mean
+/// square. The record is treated as periodic.
 pub(super) fn delay(response: &Lines, excitation: &Lines) -> (f64, f64) {
     let mean = excitation.values.iter().map(Complex::norm_sqr).sum::<f64>() / excitation.values.len().max(1) as f64;
-    // Only the phase counts: a resonance would outweigh the rest, and is late by itself.
+    // Only the phase is used: a resonance would outweigh the rest, and has a delay of its own.
     let phases = response.values.iter().zip(&excitation.values).map(|(y, u)| {
         let cross = y * u.conj();
         if u.norm_sqr() < EXCITED * mean || cross.norm() == 0.0 {
@@ -153,10 +155,10 @@ pub(super) fn delay(response: &Lines, excitation: &Lines) -> (f64, f64) {
     (late_s, largest.1 / square.sqrt().max(f64::MIN_POSITIVE))
 }
 
-/// How much later each multiple of the highest frequency is, in seconds: what a clock that drifts against that of the sweep does. The
-/// delay is known to be about right for the middle of the band.
+/// Additional delay in seconds for each multiple of the highest frequency, as a clock causes that drifts against that
+/// of the sweep. The delay must be about right for the middle of the band.
 pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
-    /// Distance of the frequencies that are looked at, and of the bends.
+    /// Spacing of the frequencies, and of the bends, that are tried.
     const RESOLUTION_HZ: f64 = 0.25;
     const STEP_S: f64 = 0.4e-3;
     const STEPS: i32 = 240;
@@ -189,7 +191,7 @@ pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
     let best = tried
         .map(|bend_s| (sharpness(bend_s), bend_s))
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    // A little sharper is chance, and modes are not quite straight.
+    // A slightly sharper result is chance, and modes are not quite straight.
     best.filter(|(sharpest, _)| *sharpest > 1.15 * straight)
         .map_or(0.0, |(_, bend_s)| bend_s)
 }
@@ -199,22 +201,23 @@ pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
 pub struct Transfer {
     /// Points in order of frequency.
     pub points: Vec<ResponsePoint>,
-    /// Share of the response's power in the band that the excitation explains, 0 to 1.
+    /// Fraction of the response's power in the band that the excitation explains, 0 to 1.
     pub explained: f64,
-    /// Share of the folded edges that the sensor shows: 1 where it samples without a filter, 0 with a perfect one.
+    /// Fraction of the aliased edges that the sensor shows: 1 where it samples without a filter, 0 with an ideal
+    /// filter.
     pub folded: f64,
 }
 
 /// Width of a point relative to its frequency: a tenth of the width of a mode with 1 % damping.
 const RELATIVE_WIDTH: f64 = 0.002;
-/// Least lines in a point: two fix the straight line, the others say how noisy it is.
+/// Smallest number of lines in a point: two determine the straight line, the others its noise.
 const LEAST_LINES: usize = 5;
-/// Neighbours on either side whose noise is taken together.
+/// Number of neighbours on either side whose noise is averaged.
 const NOISE_NEIGHBOURS: usize = 10;
 
 /// The transfer function of lines of one band.
 ///
-/// `folded` is what the samples of the excitation fold into the band, where that is known.
+/// `folded` is what the samples of the excitation alias into the band, where that is known.
 pub(super) fn transfer(response: &Lines, excitation: &Lines, folded: Option<&Lines>) -> Transfer {
     let groups = groups(response);
     let (mut clean, mut share) = (response.values.clone(), 0.0);
@@ -239,7 +242,7 @@ pub(super) fn transfer(response: &Lines, excitation: &Lines, folded: Option<&Lin
     }
     let points = (0..fits.len()).map(|n| {
         let near = &fits[n.saturating_sub(NOISE_NEIGHBOURS)..(n + NOISE_NEIGHBOURS + 1).min(fits.len())];
-        // The median: a line of a fan or of the mains is in few points.
+        // The median is used, because a line of a fan or of the mains affects few points.
         let mut variances: Vec<f64> = near.iter().map(|(_, rest, freedoms)| rest / freedoms).collect();
         variances.sort_by(f64::total_cmp);
         let variance = variances[variances.len() / 2].max(fits[n].1 / fits[n].2 * 0.1);
@@ -260,7 +263,7 @@ pub(super) fn transfer(response: &Lines, excitation: &Lines, folded: Option<&Lin
     }
 }
 
-/// The share of the folded part that a response has.
+/// The fraction of the aliased part that a response contains.
 fn shown(groups: &[std::ops::Range<usize>], response: &Lines, excitation: &Lines, folded: &Lines) -> f64 {
     let (mut shared, mut square) = (Complex::new(0.0, 0.0), 0.0);
     for group in groups {
@@ -274,7 +277,7 @@ fn shown(groups: &[std::ops::Range<usize>], response: &Lines, excitation: &Lines
     if square > 0.0 { shared.re / square } else { 0.0 }
 }
 
-/// Ranges of lines, each a point.
+/// Ranges of lines, each for a point.
 fn groups(lines: &Lines) -> Vec<std::ops::Range<usize>> {
     let mut groups = Vec::new();
     let mut begin = 0;

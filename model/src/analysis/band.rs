@@ -1,20 +1,20 @@
-//! The residual over a band: the worst of it, and its map over frequency and damping.
+//! The residual vibration over a band of frequencies: its largest value, and its map over frequency and damping.
 
 use super::residual::{last_time_s, residual_vibration};
 use crate::impulse::Impulse;
 use crate::mode::Mode;
 
-/// Looks at the residual in the time in which two impulses turn once against each other.
+/// Evaluations of the residual in the ratio step in which two impulses turn once against each other.
 const LOOKS_PER_TURN: f64 = 24.0;
-/// Fewest and most looks at a band.
+/// Smallest and largest number of evaluations in a band.
 const LOOKS: (f64, f64) = (64.0, 2e5);
-/// Rounds of the golden section: its width shrinks to 0.618 in each, to rounding in 40.
+/// Rounds of the golden section search: each shrinks the interval to 0.618, and 40 shrink it to rounding.
 const ROUNDS: usize = 40;
 
-/// Largest residual vibration while the mode's frequency is off by at most `band` (0.1: ±10 %) in either direction, damping
-/// fixed. A band that reaches below 0 Hz ends there.
+/// Largest residual vibration while the mode's frequency is off by at most `band` (0.1: ±10 %) in either direction,
+/// with the damping fixed. A band that reaches below 0 Hz ends there.
 ///
-/// The residual is looked at far more often than it can turn, and the highest look is narrowed to rounding.
+/// The residual is evaluated far more often than it can oscillate, and the highest value is refined to rounding.
 pub fn worst_residual(impulses: &[Impulse], mode: &Mode, band: f64) -> f64 {
     let at = |ratio: f64| residual_vibration(impulses, &mode.scaled(ratio));
     let (low, high) = ((1.0 - band).max(0.0), 1.0 + band);
@@ -42,14 +42,14 @@ pub fn worst_residual(impulses: &[Impulse], mode: &Mode, band: f64) -> f64 {
     most.max(at(f64::midpoint(from, to)))
 }
 
-/// Residual vibration over frequency and damping.
+/// Map of the residual vibration over frequency and damping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensitivityGrid {
-    /// Frequency ratios `f/f_0`, the columns.
+    /// Frequency ratios `f/f_0` of the columns.
     pub ratios: Vec<f64>,
-    /// Damping ratios, the rows.
+    /// Damping ratios of the rows.
     pub dampings: Vec<f64>,
-    /// `residual[row][column]`.
+    /// Residual vibration as `residual[row][column]`.
     pub residual: Vec<Vec<f64>>,
 }
 
@@ -105,7 +105,7 @@ mod tests {
         let zv = impulses(&[(0.0, 0.5), (1.0 / 6.0, 0.5)]);
         let edge = (std::f64::consts::FRAC_PI_2 * 0.1).sin();
         assert!((worst_residual(&zv, &MODE, 0.1) - edge).abs() < 1e-14);
-        // Down to standstill nothing is shaped; a band of 100 % or more reaches it.
+        // At 0 Hz nothing is shaped; a band of 100 % or more reaches it.
         assert!((worst_residual(&zv, &MODE, 3.0) - 1.0).abs() < 1e-12);
     }
 

@@ -1,31 +1,33 @@
-//! Peak and root mean square of a command: what a shaper asks of the drive.
+//! Peak and root mean square of a command, which say what a shaper asks of the drive.
 //!
-//! Both are taken from the first jump of the command to the last, of the position or one of its derivatives. Of a shaped
-//! unit step the peak is the largest partial sum, in size; negative shapers reach beyond 1.
+//! Both are taken from the first jump of the command to the last, for the position or one of its derivatives. For a
+//! shaped unit step the peak is the magnitude of the largest partial sum; that of negative shapers exceeds 1.
 
 use crate::motion::{Cubic, Trajectory};
 
-/// What of a command is meant.
+/// The quantity of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// Position.
+    /// Position, in the unit of the command.
     Position,
-    /// Velocity, per second.
+    /// Velocity, in the unit of the command per second.
     Velocity,
-    /// Acceleration, per second².
+    /// Acceleration, in the unit of the command per second².
     Acceleration,
 }
 
-/// Size of a command between its first and last jump.
+/// Peak and rms of a command between its first and last jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandFigures {
     /// Largest magnitude, the value at the end included.
     pub peak: f64,
-    /// `√(1/T · ∫ q² dt)` over the `T` seconds from the first jump to the last; the magnitude itself where `T` is 0.
+    /// Root mean square `√(1/T · ∫ q² dt)` over the `T` seconds from the first jump to the last; the magnitude itself
+    /// where `T` is 0.
     pub rms: f64,
 }
 
-/// Nodes and weights of Gauss and Legendre on [−1, 1]: exact to degree 7, the square of a cubic has 6.
+/// Nodes and weights of Gauss–Legendre quadrature on [−1, 1], which is exact to degree 7; the square of a cubic has
+/// degree 6.
 const GAUSS: [(f64, f64); 4] = [
     (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
     (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
@@ -33,7 +35,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// Peak and rms of a command, exact.
+/// Peak and rms of a command, computed exactly.
 ///
 /// ```
 /// use posicast_model::analysis::{Quantity, command_figures};
@@ -82,7 +84,7 @@ fn value(cubic: &Cubic, quantity: Quantity) -> f64 {
     }
 }
 
-/// Times at which the quantity is stationary: roots of `b + c·t + d·t²/2`. NaN where there is none.
+/// Times at which the quantity is stationary: roots of `b + c·t + d·t²/2`. NaN where there is no such time.
 fn stationary(cubic: &Cubic, quantity: Quantity) -> [f64; 2] {
     let (b, c, d) = match quantity {
         Quantity::Position => (cubic.velocity, cubic.acceleration, cubic.jerk),

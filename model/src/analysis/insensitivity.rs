@@ -1,19 +1,20 @@
-//! Insensitivity: how far a mode's frequency may be off.
+//! Insensitivity: by how much a mode's frequency may differ from the modelled one.
 //!
-//! The connected interval of `r = f/f_0` round 1 on which `V(r) ≤ tolerance · (1 + 1e-6)`, for the impulses of the whole
-//! axis, with the damping and the other modes as they are. The factor lets the humps of an EI shaper, which touch the
-//! tolerance, count as inside.
+//! It is the connected interval of `r = f/f_0` round 1 on which `V(r) ≤ tolerance · (1 + 1e-6)`, for the impulses of
+//! the whole axis, with the damping and the other modes fixed. The factor lets the humps of an EI shaper, which touch
+//! the tolerance, count as inside.
 //!
-//! A fixed grid would step over a narrow crossing, or take minutes not to. So each step is one that *cannot* cross: with
-//! `P = V²` and `|P''| ≤ M` on the next stretch,
+//! A fixed grid would step over a narrow crossing, or take minutes to avoid that. So each step is chosen such that it
+//! *cannot* cross: with `P = V²` and `|P''| ≤ M` on the next stretch,
 //!
 //! ```text
 //! P(r + s) ≤ P(r) + P'(r)·s + M·s²/2        step to the s at which this bound meets the limit
 //! ```
 //!
-//! which is Newton's method from the safe side: it closes in on a crossing quadratically and never passes one. The bound
-//! comes from the sequence itself: with `q_i = σ(t_i − t_n) + jω_d(t_i − t_n/2)` and `B_k = Σ |A_i| |q_i|^k`,
-//! `M = 2(B_0 B_2 + B_1²)` (decay factors included). Shifting `t_i` by `t_n/2` turns the phase of the sum and nothing else.
+//! which is Newton's method from the safe side: it converges to a crossing quadratically and never passes one. The
+//! bound comes from the sequence itself: with `q_i = σ(t_i − t_n) + jω_d(t_i − t_n/2)` and `B_k = Σ |A_i| |q_i|^k`,
+//! `M = 2(B_0 B_2 + B_1²)` (decay factors included). Shifting `t_i` by `t_n/2` changes nothing but the phase of the
+//! sum.
 
 use nalgebra::Complex;
 
@@ -21,29 +22,30 @@ use super::residual::last_time_s;
 use crate::impulse::Impulse;
 use crate::mode::Mode;
 
-/// Up to this multiple of the mode's frequency the upper end is searched.
+/// Frequency ratio up to which the upper end is searched.
 pub const INSENSITIVITY_LIMIT: f64 = 10.0;
 
-/// Longest step in `r`; the decay that tightens `M` holds on it.
+/// Longest step in `r`; the decay that tightens `M` is valid over it.
 const LONGEST_STEP: f64 = 0.05;
-/// A step below this is the crossing.
+/// Step in `r` below which the crossing counts as found.
 const RESOLUTION: f64 = 1e-13;
-/// Evaluations of one impulse after which a side ends at what is proven until then: about a second.
+/// Number of evaluations of one impulse after which a side ends where the tolerance is proven to hold: about a
+/// second.
 const BUDGET: usize = 10_000_000;
 
 /// Interval of `f/f_0` round 1 on which the residual stays within the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Insensitivity {
-    /// Lower end, in [0, 1].
+    /// Lower end, a frequency ratio in [0, 1].
     pub low: f64,
-    /// Upper end; `None` if still open at [`INSENSITIVITY_LIMIT`].
+    /// Upper end, a frequency ratio; `None` if still within the tolerance at [`INSENSITIVITY_LIMIT`].
     pub high: Option<f64>,
 }
 
 /// Insensitivity of `impulses` at `mode` for `tolerance`; `None` if the residual at the mode itself exceeds it.
 ///
-/// Where a sequence lasts so long against the mode that the search would not end in a second or so, an end is the ratio
-/// up to which the tolerance is proven to hold: never too wide an interval, at worst too narrow a one.
+/// Where a sequence is so long against the mode's period that the search would take more than a second or so, an end
+/// is the ratio up to which the tolerance is proven to hold: the interval is never too wide, at worst too narrow.
 pub fn insensitivity(impulses: &[Impulse], mode: &Mode, tolerance: f64) -> Option<Insensitivity> {
     let search = Search::new(impulses, mode, tolerance * (1.0 + 1e-6));
     if search.is_inside(1.0) {
@@ -57,7 +59,7 @@ pub fn insensitivity(impulses: &[Impulse], mode: &Mode, tolerance: f64) -> Optio
     }
 }
 
-/// One impulse, with its exponent per unit of `r`.
+/// One impulse with its exponent per unit of `r`.
 struct Term {
     amplitude: f64,
     exponent: Complex<f64>,
@@ -101,7 +103,7 @@ impl Search {
         self.power(ratio).0 <= self.limit_squared
     }
 
-    /// Bound of `|P''|` at every ratio from `lowest` on: the decay factors only fall with `r`.
+    /// Bound of `|P''|` at every ratio from `lowest` on; the decay factors only fall with `r`.
     fn curvature(&self, lowest: f64) -> f64 {
         let mut moments = [0.0; 3];
         for term in &self.terms {
@@ -114,7 +116,7 @@ impl Search {
         2.0 * (moments[0] * moments[2] + moments[1] * moments[1])
     }
 
-    /// Walks from a ratio inside towards `end`; returns where the tolerance is met for the last time, or `end`.
+    /// Walks from a ratio inside towards `end`; returns the last ratio up to which the tolerance is met, or `end`.
     fn walk(&self, start: f64, end: f64) -> f64 {
         let direction = if end < start { -1.0 } else { 1.0 };
         let mut ratio = start;
@@ -139,7 +141,7 @@ impl Search {
     }
 }
 
-/// The `s ≥ 0` at which `slope·s + curvature·s²/2` reaches `gap`; written so that nothing cancels.
+/// The `s ≥ 0` at which `slope·s + curvature·s²/2` reaches `gap`, in a form without cancellation.
 fn safe_step(gap: f64, slope: f64, curvature: f64) -> f64 {
     if gap <= 0.0 {
         return 0.0;
@@ -192,7 +194,7 @@ mod tests {
     #[test]
     fn unit_none_above_the_tolerance_and_open_ends() {
         assert_eq!(insensitivity(&impulses(&[(0.0, 1.0)]), &ONE_HZ, 0.05), None);
-        // A tolerance above every residual: open on both sides.
+        // The tolerance is above every residual, so both sides are open.
         let zv = impulses(&[(0.0, 0.5), (0.5, 0.5)]);
         let open = insensitivity(&zv, &ONE_HZ, 1.5).unwrap();
         assert_eq!((open.low, open.high), (0.0, None));

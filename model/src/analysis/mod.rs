@@ -1,9 +1,9 @@
-//! What a shaper does at a mode (residual vibration, insensitivity, sensitivity curves and maps) and to a command (peak,
-//! rms).
+//! The effect of a shaper at a mode (residual vibration, insensitivity, sensitivity curves and maps) and on a command
+//! (peak, rms).
 //!
-//! Everything here takes plain impulses, so that the same code judges a design ([`crate::impulse`]), its digitised taps
-//! and the integer table that the hardware computes with ([`tap_impulses`]). The figure that is guaranteed is that of the
-//! integer table; the others explain it.
+//! Everything here takes plain impulses, so that the same code judges a design ([`crate::impulse`]), its digitised
+//! taps and the integer table that the hardware computes with ([`tap_impulses`]). The figure that is guaranteed is
+//! that of the integer table; the others explain it.
 
 mod band;
 mod command;

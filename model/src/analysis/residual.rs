@@ -1,10 +1,11 @@
 //! Residual vibration `V(ω, ζ) = e^{−ζω t_n} · |Σ A_i e^{(ζω + jω_d) t_i}|`.
 //!
-//! In words: the amplitude that rings on after the last impulse, as a fraction of what the same command would have left
-//! unshaped, measured at its own start (Singer and Seering 1990). 0 means that the mode stands still; 1 that the shaper
-//! did nothing. Exact for impulses and for steps.
+//! In words: the amplitude that remains after the last impulse, as a fraction of what the same command would have
+//! left unshaped, measured at its own start (Singer and Seering 1990). 0 means that the mode is at rest, 1 that the
+//! shaper had no effect. It is exact for impulses and for steps.
 //!
-//! `e^{ζω t_n}` overflows for long sequences, so the decay is factored into the sum: every exponent is at most 0.
+//! `e^{ζω t_n}` overflows for long sequences. The decay is therefore factored into the sum, where every exponent is
+//! at most 0.
 
 use nalgebra::Complex;
 
@@ -12,7 +13,7 @@ use crate::impulse::Impulse;
 use crate::mode::Mode;
 use crate::taps::TapTable;
 
-/// The pole sum referred to a time: `Σ A_i e^{ζω(t_i − reference) + jω_d t_i}`, for impulses in any order.
+/// The pole sum referred to a time, `Σ A_i e^{ζω(t_i − reference) + jω_d t_i}`, for impulses in any order.
 pub fn pole_sum(impulses: &[Impulse], mode: &Mode, reference_s: f64) -> Complex<f64> {
     let (decay, omega_damped) = (mode.decay(), mode.omega_damped());
     impulses
@@ -26,25 +27,26 @@ pub fn pole_sum(impulses: &[Impulse], mode: &Mode, reference_s: f64) -> Complex<
         .sum()
 }
 
-/// `e^{decay · time}`, with the undamped case exactly 1 even where the time is out of all proportion.
+/// `e^{decay · time}`; without damping exactly 1, even for a time out of all proportion.
 fn growth(decay: f64, time_s: f64) -> f64 {
     if decay == 0.0 { 1.0 } else { (decay * time_s).exp() }
 }
 
-/// Residual vibration at a mode, as a fraction of the unshaped vibration: 0 for a perfect shaper, 1 for none.
+/// Residual vibration at a mode, as a fraction of the unshaped vibration: 0 for a perfect shaper, 1 for one without
+/// effect.
 ///
-/// `t_n` is the time of the last impulse that is not zero. Without impulses the result is 0: nothing moves.
+/// `t_n` is the time of the last impulse that is not zero. Without impulses the result is 0, because nothing moves.
 pub fn residual_vibration(impulses: &[Impulse], mode: &Mode) -> f64 {
     residual_vibration_at(impulses, mode, last_time_s(impulses))
 }
 
-/// Residual vibration as it is at `reference_s` instead of at the last impulse: to compare two tables of which one ends
-/// earlier because a coefficient rounded to zero.
+/// Residual vibration referred to `reference_s` instead of the last impulse. It serves to compare two tables of which
+/// one ends earlier because a coefficient was rounded to zero.
 pub fn residual_vibration_at(impulses: &[Impulse], mode: &Mode, reference_s: f64) -> f64 {
     pole_sum(impulses, mode, reference_s).norm()
 }
 
-/// Time of the last impulse that is not zero.
+/// Time of the last impulse that is not zero, in seconds.
 pub(super) fn last_time_s(impulses: &[Impulse]) -> f64 {
     let nonzero = impulses.iter().filter(|i| i.amplitude != 0.0);
     nonzero.map(|i| i.time_s).fold(0.0, f64::max)
@@ -98,7 +100,7 @@ mod tests {
             frequency_hz: 1e6,
             damping: 0.5,
         };
-        // ζω t_n is 3e9: e to that power has no place in f64. Only the last impulse still rings.
+        // ζω t_n is 3e9, and e to that power is beyond f64. Only the last impulse still rings.
         let residual = residual_vibration(&impulses(&[(0.0, 0.75), (1000.0, 0.25)]), &mode);
         assert_eq!(residual, 0.25);
     }

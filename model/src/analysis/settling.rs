@@ -1,6 +1,6 @@
-//! When a deviation has come to rest.
+//! Settling: when a deviation has come to rest.
 
-/// The first sample from which on every deviation stays within ± `band`; `None` where the last does not.
+/// Index of the first sample from which on every deviation stays within ± `band`; `None` where the last one does not.
 ///
 /// ```
 /// use posicast_model::analysis::settled_from;

@@ -1,4 +1,5 @@
-//! Shapers on a contour: each kind, with the axes' own delays and with equal ones, on machines whose modes are off.
+//! Compares shapers on a contour: each kind, with the axes' own delays and with equal ones, on machines whose modes
+//! differ from the file.
 
 use super::ContourError;
 use super::follow::{FollowedContour, follow};
@@ -9,9 +10,9 @@ use crate::design::kind::ShaperKind;
 use crate::machine_file::{AxisSection, Machine, StageSection};
 use crate::plant::axis::ErrorFigures;
 
-/// Frequencies of the machine's modes, as parts of those that the shapers are designed for.
+/// Frequencies of the machine's modes, as multiples of those that the shapers are designed for.
 pub const FREQUENCY_FACTORS: [f64; 5] = [0.8, 0.9, 1.0, 1.1, 1.2];
-/// Place of the factor 1.
+/// Index of the factor 1.
 const NOMINAL: usize = 2;
 /// Kinds that are compared with the machine's own.
 const KINDS: [ShaperKind; 4] = [ShaperKind::None, ShaperKind::Zv, ShaperKind::Zvd, ShaperKind::Ei];
@@ -19,22 +20,23 @@ const KINDS: [ShaperKind; 4] = [ShaperKind::None, ShaperKind::Zv, ShaperKind::Zv
 /// A shaper on a contour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContourRow {
-    /// Its kind, on all axes; of the machine's own the kinds of the axes, joined by a comma where they differ.
+    /// Kind of the shaper on all axes; for the machine's own, the kinds of the axes, joined by a comma where they
+    /// differ.
     pub kind: String,
-    /// Whether it is what the machine file says.
+    /// Whether the row is the shaper of the machine file.
     pub in_file: bool,
     /// Whether the axes have equal delays.
     pub matched: bool,
-    /// Distance from the path, by [`FREQUENCY_FACTORS`]; or why the axes have no such tables.
+    /// Distance from the path at each of [`FREQUENCY_FACTORS`]; the error says why the axes have no such tables.
     pub errors: Result<[ErrorFigures; 5], String>,
-    /// How the machine goes whose modes are where they should be.
+    /// The followed contour of the machine whose modes are as in the file.
     pub nominal: Option<FollowedContour>,
 }
 
-/// Compares the machine's own shapers with others.
+/// Compares the machine's own shapers with other kinds.
 ///
 /// # Errors
-/// [`ContourError`] where the machine cannot drive the contour at all.
+/// [`ContourError`] where the machine cannot follow the contour at all.
 pub fn compare(machine: &Machine, contour: &Contour) -> Result<Vec<ContourRow>, ContourError> {
     let own: Vec<String> = machine.axes.iter().take(2).map(AxisSection::kind_name).collect();
     let own_kind = if own.iter().all(|kind| *kind == own[0]) {

@@ -1,66 +1,66 @@
-//! Why a contour cannot be driven.
+//! Errors of contours.
 
 use thiserror::Error;
 
-/// Why a contour cannot be driven.
+/// Why a machine cannot follow a contour.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ContourError {
-    /// Something on a line of a program or of a list of points.
+    /// A line of a program or of a list of points is invalid.
     #[error("line {line}: {found}")]
     Line {
         /// Number of the line, from 1.
         line: usize,
-        /// What is there.
+        /// What was found there.
         found: String,
         /// What to do about it.
         remedy: String,
     },
-    /// Nothing to drive.
+    /// There is no path.
     #[error("no path: {0}")]
     Empty(String),
-    /// A machine without a plane.
+    /// The machine has no plane of two axes.
     #[error("a contour takes two axes that move along lengths, and {0}")]
     Axes(String),
-    /// A place that an axis does not reach.
+    /// The path leaves the travel of an axis.
     #[error("axis {axis} would go to {found}; its travel is {low} to {high}")]
     Travel {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Where.
+        /// Coordinate that the path reaches.
         found: String,
-        /// The lower end of its travel.
+        /// Lower end of the axis's travel.
         low: String,
-        /// The upper end.
+        /// Upper end of the axis's travel.
         high: String,
     },
-    /// A speed that an axis does not have.
+    /// The speed exceeds the limit of an axis.
     #[error("a speed of {found}: the slower axis has {most}")]
     Speed {
-        /// The speed that is asked for.
+        /// The speed that was asked for.
         found: String,
-        /// The largest.
+        /// The largest speed.
         most: String,
     },
-    /// A radius, a side or a speed that is not a positive number.
+    /// A radius, a side or a speed is not a positive number.
     #[error("{what} is {found}: it must be above 0")]
     Size {
-        /// What.
+        /// Name of the quantity.
         what: &'static str,
-        /// The number.
+        /// Value that was found.
         found: f64,
     },
-    /// More samples than are simulated.
+    /// The contour has more samples than are simulated.
     #[error("the contour lasts {seconds:.1} s, more than {most} samples; drive a part of it, or faster")]
     TooLong {
         /// Its duration.
         seconds: f64,
-        /// Samples at most.
+        /// Largest number of samples.
         most: usize,
     },
 }
 
 impl ContourError {
-    /// What to do about it, where the message alone does not say.
+    /// What to do about the error, where the message does not say so itself.
     pub fn remedy(&self) -> Option<&str> {
         match self {
             Self::Line { remedy, .. } => Some(remedy),

@@ -1,4 +1,4 @@
-//! A machine under a contour: its tap tables, its modes, and how far its load is from the path.
+//! Simulates a machine on a contour: its tap tables, its modes, and the distance of its load from the path.
 
 use super::ContourError;
 use super::plan::{Contour, ContourSample, plane};
@@ -10,28 +10,28 @@ use crate::plant::axis::ErrorFigures;
 use crate::plant::{Plant, SampledPlant};
 use crate::taps::TapTable;
 
-/// Longest time in which a machine is watched after its command has come to its end, s.
+/// Longest time for which a machine is simulated after the end of its command, s.
 const LONGEST_SETTLE_S: f64 = 2.0;
-/// Part of the largest speed from which on the path counts as driven at speed.
+/// Fraction of the largest speed from which on the path counts as driven at full speed.
 const AT_SPEED: f64 = 0.999;
 
-/// A machine that has followed a contour.
+/// Result of a machine following a contour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FollowedContour {
-    /// Distance of the load from the path, along its normal, over the whole way and the settling after it: m.
+    /// Distance of the load from the path, along its normal, over the whole path and the settling after it, in m.
     pub error: ErrorFigures,
-    /// The same while the path is driven at its full speed, for as long as the shapers and modes take to settle before.
+    /// Distance while the path is driven at full speed, counted once the shapers and modes have settled to it.
     pub steady: Option<ErrorFigures>,
-    /// The load in each sample.
+    /// Position of the load in each sample.
     pub load: Vec<PlanePoint>,
-    /// Its distance from the path in each sample: positive to the left of the direction of travel.
+    /// Distance of the load from the path in each sample: positive to the left of the direction of travel.
     pub distance: Vec<f64>,
 }
 
-/// The command of a contour for a machine: with time to settle after it.
+/// The command of a contour for a machine, with time to settle after it.
 ///
 /// # Errors
-/// [`ContourError::TooLong`].
+/// [`ContourError::TooLong`] for more samples than are simulated.
 pub fn command(
     machine: &Machine,
     design: &MachineDesign,
@@ -40,7 +40,7 @@ pub fn command(
     contour.samples(machine.clock.sample_period_s(), settling_s(machine, design))
 }
 
-/// What shapers and modes of the plane take to settle.
+/// Time that shapers and modes of the plane take to settle, in s.
 fn settling_s(machine: &Machine, design: &MachineDesign) -> f64 {
     let longest = design
         .axes
@@ -52,10 +52,10 @@ fn settling_s(machine: &Machine, design: &MachineDesign) -> f64 {
     settle_s(shaper_s, modes.map(|mode| mode.mode)).min(shaper_s + LONGEST_SETTLE_S)
 }
 
-/// The first two axes of a machine whose modes are at `frequency_factor` times their frequencies, each through its table,
-/// under a command that settles at its end.
+/// Simulates the first two axes of a machine whose modes are at `frequency_factor` times their frequencies. Each
+/// passes the command, which settles at its end, through its table.
 ///
-/// # Errors
+/// [`ContourError::Axes`] where the machine has no such plane or its modes have no participation.
 /// [`ContourError::Axes`] where the machine has no such plane or its modes have no shares.
 pub fn follow(
     machine: &Machine,
@@ -80,7 +80,8 @@ pub fn follow(
     Ok(judged(machine, design, contour, &samples, load))
 }
 
-/// How far a load went from a contour whose command in each sample is `samples`, and the load `load`.
+/// Distance of a load from the path of a contour; `samples` has the command and `load` the load's position in each
+/// sample.
 pub fn judged(
     machine: &Machine,
     design: &MachineDesign,
@@ -88,7 +89,8 @@ pub fn judged(
     samples: &[ContourSample],
     load: Vec<PlanePoint>,
 ) -> FollowedContour {
-    // The load is behind the command by the shapers and the modes; what is farther back along the path is not what it is at.
+    // The load lags the command by the shapers and the modes. Parts of the path further back are not compared with
+    // it.
     let settling = (settling_s(machine, design) * machine.clock.sample_hz).ceil() as usize;
     let distances = load.iter().zip(samples).enumerate().map(|(sample, (place, now))| {
         let back = samples[sample.saturating_sub(settling)].along;
@@ -116,7 +118,7 @@ pub fn judged(
     }
 }
 
-/// A command through a tap table; before its beginning it stood where it begins.
+/// Passes a command through a tap table; before its start it had its first value.
 fn through(table: &TapTable, command: &[f64]) -> Vec<f64> {
     let one = f64::from(table.coefficient_fraction()).exp2();
     let taps: Vec<(usize, f64)> = table

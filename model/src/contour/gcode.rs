@@ -1,4 +1,4 @@
-//! The strokes of a G-code program: lines and arcs of the XY plane.
+//! Reads the strokes of a G-code program: lines and arcs of the XY plane.
 //!
 //! | read | meaning |
 //! |---|---|
@@ -9,7 +9,7 @@
 //! | `G4` | the path stops |
 //! | `G17`, `G40`, `G49`, `G54`, `G61`, `G64`, `G80`, `G94`, M, T, S, N, Z, E, P | ignored: they do not change the path in the plane |
 //!
-//! Every other G code is refused: what it does to the path is not known. A program begins at `(0, 0)`.
+//! Every other G code is refused, because its effect on the path is not known. A program begins at `(0, 0)`.
 
 use gcode::{Argument, Block, Code, Value, WordAddress};
 
@@ -19,9 +19,10 @@ use super::stroke::{PlanePoint, Shape, Stroke, minus};
 
 /// G codes that do not change a path in the plane.
 const IGNORED: [u32; 8] = [17, 40, 49, 54, 61, 64, 80, 94];
-/// Words that do not either.
+/// Letters of words that do not change it either.
 const IGNORED_WORDS: &str = "ZESPKTNQ";
-/// How far the end of an arc may be off its circle: as a part of the radius, and in m, what the digits of programs leave.
+/// Largest distance of an arc's end from its circle, as the digits of programs leave it: as a fraction of the radius,
+/// and in m.
 const OFF_CIRCLE: (f64, f64) = (1e-3, 5e-6);
 const MILLIMETRE: f64 = 1e-3;
 const INCH: f64 = 25.4e-3;
@@ -30,7 +31,8 @@ const MINUTE_S: f64 = 60.0;
 /// The strokes of a program, in m.
 ///
 /// # Errors
-/// [`ContourError::Line`] with the line that cannot be driven; [`ContourError::Empty`] for a program that moves nothing.
+/// [`ContourError::Line`] with the line that cannot be driven; [`ContourError::Empty`] for a program that moves
+/// neither X nor Y.
 pub fn strokes(program: &str) -> Result<Vec<Stroke>, ContourError> {
     let parsed = gcode::parse(program).map_err(|problems| {
         let first = problems.iter().next();
@@ -65,14 +67,14 @@ struct Reader<'a> {
     unit: f64,
     relative: bool,
     motion: Option<u32>,
-    /// F, in m/s.
+    /// Feed F in m/s.
     speed: Option<f64>,
-    /// Whether the program stopped after the last stroke.
+    /// Whether the path stops after the last stroke.
     stopped: bool,
     strokes: Vec<Stroke>,
 }
 
-/// The words of a block that matter.
+/// The words of a block that are used.
 #[derive(Default)]
 struct Words {
     x: Option<f64>,
@@ -149,7 +151,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A number by its text: the parser's own has seven digits.
+    /// Reads a number from its text, because the parser's own number has only seven digits.
     fn word(
         &self,
         letter: char,

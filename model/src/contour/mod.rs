@@ -1,4 +1,4 @@
-//! Contours of two axes: where a machine goes beside the path that it is told, and by how much.
+//! Contours of two axes: where and by how much a machine leaves its commanded path.
 //!
 //! ```text
 //! circle, square, points, G-code ─► Stroke ─► Contour ─► Plan ─► tap tables ─► modes ─► distance from the path
@@ -7,10 +7,10 @@
 //!                                             stop
 //! ```
 //!
-//! - [`Stroke`]: a line or an arc, with the speed that it is asked for;
+//! - [`Stroke`]: a line or an arc, with its speed;
 //! - [`shapes`] and [`gcode`]: strokes of a circle, a square, a list of points, a program;
 //! - [`Contour`]: the strokes as runs between stops, within the limits of both axes;
-//! - [`follow`]: the machine under it, and its error; [`compare`]: that of each kind of shaper.
+//! - [`follow`]: a simulated machine on the contour, and its error; [`compare`]: the error of each kind of shaper.
 //!
 //! Lengths are in m, or rad, of the first two axes; times in s.
 

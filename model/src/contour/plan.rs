@@ -1,7 +1,7 @@
-//! Strokes as runs between stops, and where the command is in each sample.
+//! Plans strokes as runs between stops, with the command in each sample.
 //!
-//! The path stops at a corner of more than 10 degrees, where the feed changes, and where a program says so. In between, a run has one
-//! jerk-limited profile along the path, with
+//! The path stops at a corner of more than 10 degrees, where the feed changes, and where a program says so. In
+//! between, a run has one jerk-limited profile along the path, with
 //!
 //! ```text
 //! v ≤ feed,   v² κ ≤ a/√2,   v³ κ² ≤ j/√8       κ: the largest curvature of its arcs
@@ -9,37 +9,38 @@
 //! a_t ≤ min(a/√2, j/(3√2 v κ)),   j_t ≤ j/√8      along the path
 //! ```
 //!
-//! so that acceleration and jerk of the path, along and across it together, stay within `a` and `j`, those of the weaker axis. Where an arc
-//! begins or ends at a line the acceleration across the path steps by `v² κ`, and at a bend the velocity by what the axis gains in a sample.
+//! so that acceleration and jerk of the path, along and across it together, stay within `a` and `j` of the weaker
+//! axis. Where an arc begins or ends at a line, the acceleration across the path steps by `v² κ`; at a bend, the
+//! velocity steps by what the axis gains in a sample.
 
 use super::ContourError;
 use super::stroke::{PlanePoint, Shape, Stroke, minus};
 use crate::machine_file::{AxisSection, Machine};
 use crate::motion::{Profile, SAMPLES_MAX, motion_limits};
 
-/// The path goes through a bend of up to this angle, in radians, and stops at a sharper one.
+/// Largest angle, in radians, of a bend that the path passes without a stop.
 const BEND: f64 = 10.0 / 180.0 * std::f64::consts::PI;
-/// A bend below this is none: what the digits of programs leave.
+/// Angle in radians below which a bend counts as straight, as the digits of programs leave it.
 const STRAIGHT: f64 = 1e-4;
-/// Feeds that are the same: inches and millimetres round differently.
+/// Relative difference below which two feeds are equal: inches and millimetres round differently.
 const SAME: f64 = 1e-9;
 
 /// Limits of both axes together, in m and s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContourLimits {
-    /// Of the slower axis.
+    /// Velocity of the slower axis.
     pub velocity: f64,
-    /// Of the weaker axis.
+    /// Acceleration of the weaker axis.
     pub acceleration: f64,
-    /// Of the weaker axis.
+    /// Jerk of the weaker axis.
     pub jerk: f64,
 }
 
 impl ContourLimits {
-    /// The first two axes of a machine.
+    /// Limits of the first two axes of a machine.
     ///
     /// # Errors
-    /// [`ContourError::Axes`] where they span no plane of lengths.
+    /// [`ContourError::Axes`] where they do not span a plane of lengths.
     pub fn of_machine(machine: &Machine) -> Result<Self, ContourError> {
         let [x, y] = plane(machine)?;
         let of = |axis: &AxisSection| motion_limits(axis.limits.as_ref());
@@ -53,7 +54,7 @@ impl ContourLimits {
     }
 }
 
-/// The two axes of the plane.
+/// The first two axes of a machine, which span the plane.
 pub(super) fn plane(machine: &Machine) -> Result<[&AxisSection; 2], ContourError> {
     let [x, y, ..] = machine.axes.as_slice() else {
         return Err(ContourError::Axes("the machine has one axis".to_owned()));
@@ -76,36 +77,37 @@ pub(super) fn plane(machine: &Machine) -> Result<[&AxisSection; 2], ContourError
 /// The command in a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContourSample {
-    /// How far along the path, m.
+    /// Distance along the path, m.
     pub along: f64,
     /// Speed along the path, m/s.
     pub speed: f64,
-    /// Where.
+    /// Position in the plane, m.
     pub at: PlanePoint,
 }
 
-/// A path between stops.
+/// A part of the path between two stops.
 #[derive(Debug, Clone, PartialEq)]
 struct Run {
-    /// Where it begins along the path.
+    /// Distance along the path at which it begins, m.
     begin: f64,
     profile: Profile,
 }
 
-/// A path, and how it is gone.
+/// A path with its motion in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contour {
-    /// Each stroke, and how far along the path it begins.
+    /// The strokes, each with the distance along the path at which it begins.
     strokes: Vec<(f64, Shape)>,
     runs: Vec<Run>,
     length: f64,
 }
 
 impl Contour {
-    /// The path of these strokes, of which each begins where the last one ends, on a machine that takes a sample every `sample_s` seconds.
+    /// Plans the path of these strokes, each of which begins where the last one ends, for a machine with the sample
+    /// period `sample_s` in seconds.
     ///
     /// # Errors
-    /// [`ContourError::Empty`] without strokes.
+    /// [`ContourError::Empty`] without strokes or with a path of no length.
     pub fn new(strokes: &[Stroke], limits: &ContourLimits, sample_s: f64) -> Result<Self, ContourError> {
         let empty = || ContourError::Empty("it has no length".to_owned());
         let mut placed = Vec::with_capacity(strokes.len());
@@ -137,7 +139,7 @@ impl Contour {
         }
     }
 
-    /// Where the path begins.
+    /// Start of the path.
     pub fn begin(&self) -> PlanePoint {
         self.strokes.first().map_or([0.0, 0.0], |(_, shape)| shape.at(0.0))
     }
@@ -147,21 +149,21 @@ impl Contour {
         self.length
     }
 
-    /// How long the command takes, s.
+    /// Duration of the command, s.
     pub fn duration_s(&self) -> f64 {
         self.runs.iter().map(|run| run.profile.duration_s()).sum()
     }
 
-    /// Places at which the path stops on its way.
+    /// Number of stops on the way.
     pub fn stops(&self) -> usize {
         self.runs.len().saturating_sub(1)
     }
 
-    /// The largest coordinates that the path reaches, by axis: `[low, high]`.
+    /// Smallest and largest coordinate that the path reaches, `[low, high]` for each axis.
     pub fn extent(&self) -> [[f64; 2]; 2] {
         let places = self.strokes.iter().flat_map(|(_, shape)| {
             let ends = [0.0, shape.length()];
-            // An arc is widest where it goes along an axis.
+            // An arc is widest where its direction is parallel to an axis.
             let widest = match shape {
                 Shape::Arc {
                     centre: [x, y], radius, ..
@@ -186,10 +188,10 @@ impl Contour {
         extent
     }
 
-    /// Whether both axes reach all of the path.
+    /// Checks that the travel of both axes covers the whole path.
     ///
     /// # Errors
-    /// [`ContourError::Travel`] with the axis that does not.
+    /// [`ContourError::Travel`] with the axis whose travel is too short.
     pub fn check_travel(&self, machine: &Machine) -> Result<(), ContourError> {
         for (axis, [least, most]) in plane(machine)?.into_iter().zip(self.extent()) {
             let Some([low, high]) = axis.limits.and_then(|limits| limits.travel) else {
@@ -245,8 +247,8 @@ impl Contour {
         Ok(samples)
     }
 
-    /// How far a place is from the path between two places along it: positive to the left of the direction of travel. With the place on the
-    /// path that is nearest, and the normal there.
+    /// Distance of a point from the part of the path between `low` and `high`: positive to the left of the direction
+    /// of travel. Also returns the nearest point of the path and the normal there.
     pub fn distance(&self, point: PlanePoint, low: f64, high: f64) -> f64 {
         let first = self
             .strokes
@@ -263,7 +265,7 @@ impl Contour {
     }
 }
 
-/// A run, and what limits its speed.
+/// A run with the limits of its speed.
 struct Limited {
     begin: f64,
     length: f64,
@@ -291,7 +293,7 @@ impl Limited {
         }
     }
 
-    /// Nothing where its length or a limit is no positive number.
+    /// Plans the run; `None` where its length or a limit is not a positive number.
     fn planned(&self, limits: &ContourLimits, sample_s: f64) -> Option<Run> {
         let (across, jerk) = (limits.acceleration / 2f64.sqrt(), limits.jerk / 8f64.sqrt());
         let mut speed = self.feed.min(limits.velocity);

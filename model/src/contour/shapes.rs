@@ -1,4 +1,4 @@
-//! A circle, a square, and lines through points.
+//! Strokes of a circle, of a square, and of lines through points.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,10 +6,10 @@ use super::ContourError;
 use super::stroke::{PlanePoint, Shape, Stroke, minus};
 use crate::unit::AxisUnit;
 
-/// A circle counter-clockwise from `(0, 0)`, its right end, and back to it.
+/// A circle counter-clockwise from `(0, 0)`, which is its right end, and back to it.
 ///
 /// # Errors
-/// [`ContourError::Size`] where radius or speed are not positive.
+/// [`ContourError::Size`] where radius or speed is not positive.
 pub fn circle(radius: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
     positive("the radius", radius)?;
     positive("the speed", speed)?;
@@ -26,10 +26,10 @@ pub fn circle(radius: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
     }])
 }
 
-/// A square counter-clockwise from `(0, 0)`, its corner of the smallest coordinates, and back to it.
+/// A square counter-clockwise from `(0, 0)`, its corner with the smallest coordinates, and back to it.
 ///
 /// # Errors
-/// [`ContourError::Size`] where side or speed are not positive.
+/// [`ContourError::Size`] where side or speed is not positive.
 pub fn square(side: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
     positive("the side", side)?;
     polyline(&[[0.0, 0.0], [side, 0.0], [side, side], [0.0, side], [0.0, 0.0]], speed)
@@ -38,7 +38,8 @@ pub fn square(side: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
 /// Straight lines from point to point; a point that repeats the last one is left out.
 ///
 /// # Errors
-/// [`ContourError::Empty`] for less than two places, [`ContourError::Size`] for a speed that is not positive.
+/// [`ContourError::Empty`] for fewer than two distinct points, [`ContourError::Size`] for a speed that is not
+/// positive.
 pub fn polyline(points: &[PlanePoint], speed: f64) -> Result<Vec<Stroke>, ContourError> {
     positive("the speed", speed)?;
     let lines = points.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| Stroke {
@@ -56,7 +57,7 @@ pub fn polyline(points: &[PlanePoint], speed: f64) -> Result<Vec<Stroke>, Contou
     }
 }
 
-/// The line from `(0, 0)` to where a path begins, as fast as the axes go; the path stops after it.
+/// The line from `(0, 0)` to the start of a path, at the largest speed of the axes; the path stops after it.
 pub fn approach(begin: PlanePoint) -> Stroke {
     Stroke {
         shape: Shape::Line {
@@ -68,7 +69,7 @@ pub fn approach(begin: PlanePoint) -> Stroke {
     }
 }
 
-/// The same strokes elsewhere.
+/// The strokes moved by a vector.
 pub fn moved(strokes: &[Stroke], [x, y]: PlanePoint) -> Vec<Stroke> {
     let to = |[at_x, at_y]: PlanePoint| [at_x + x, at_y + y];
     let moved = strokes.iter().map(|stroke| Stroke {
@@ -94,10 +95,12 @@ pub fn moved(strokes: &[Stroke], [x, y]: PlanePoint) -> Vec<Stroke> {
     moved.collect()
 }
 
-/// Points of a text with a row `x,y` for each, in the units of the axes; a first row of words is a heading, `#` begins a comment.
+/// Reads points from a text with a row `x,y` for each, in the units of the axes. A first row of words is a heading,
+/// and `#` begins a comment.
 ///
 /// # Errors
-/// [`ContourError::Line`] for a row that is not two finite numbers, [`ContourError::Empty`] without any.
+/// [`ContourError::Line`] for a row that is not two finite numbers, [`ContourError::Empty`] for a text without
+/// points.
 pub fn points(text: &str, units: [AxisUnit; 2]) -> Result<Vec<PlanePoint>, ContourError> {
     let mut points = Vec::new();
     let mut heading = true;
@@ -130,7 +133,7 @@ pub fn points(text: &str, units: [AxisUnit; 2]) -> Result<Vec<PlanePoint>, Conto
     }
 }
 
-/// An arc between two places about a centre; a whole turn where they are the same.
+/// An arc between two points about a centre; a whole turn where the points are equal.
 pub(super) fn arc(from: PlanePoint, to: PlanePoint, centre: PlanePoint, clockwise: bool) -> Shape {
     let angle = |of: PlanePoint| {
         let [x, y] = minus(of, centre);
@@ -153,13 +156,13 @@ pub(super) fn arc(from: PlanePoint, to: PlanePoint, centre: PlanePoint, clockwis
     }
 }
 
-/// The centre of the arc of this radius between two places, of the one that turns by more than half where `long`; nothing where the places
-/// are farther apart than its diameter, or the same.
+/// Centre of the arc of this radius between two points; `long` selects the arc that turns by more than half. `None`
+/// where the points are equal, or further apart than the diameter.
 pub(super) fn centre(from: PlanePoint, to: PlanePoint, radius: f64, clockwise: bool, long: bool) -> Option<PlanePoint> {
     let [x, y] = minus(to, from);
     let chord = x.hypot(y);
     let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
-    // A half turn may be off by what the digits of the radius leave.
+    // A half turn may be off by the rounding of the radius's digits.
     if chord == 0.0 || chord / 2.0 > radius * (1.0 + 1e-6) {
         return None;
     }

@@ -2,50 +2,50 @@
 
 use std::f64::consts::TAU;
 
-/// A place `[x, y]`.
+/// A point `[x, y]` of the plane.
 pub type PlanePoint = [f64; 2];
 
 /// A line or an arc of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// Straight on.
+    /// A straight line.
     Line {
-        /// Its beginning.
+        /// Start of the line.
         from: PlanePoint,
-        /// Its end.
+        /// End of the line.
         to: PlanePoint,
     },
-    /// Along a circle.
+    /// A part of a circle.
     Arc {
-        /// Its centre.
+        /// Centre of the circle.
         centre: PlanePoint,
-        /// Its radius.
+        /// Radius of the circle.
         radius: f64,
-        /// Direction from the centre to the beginning, in radians from the x axis, counter-clockwise.
+        /// Direction from the centre to the start, in radians from the x axis, counter-clockwise.
         begin: f64,
-        /// Angle that it turns by, in radians: positive counter-clockwise.
+        /// Angle by which the arc turns, in radians: positive counter-clockwise.
         sweep: f64,
     },
 }
 
-/// A shape, and the speed that it is asked for.
+/// A shape with its commanded speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// What is drawn.
+    /// The line or arc.
     pub shape: Shape,
-    /// Speed along it, per s; infinite where the axes' own is asked for.
+    /// Speed along it, per s; infinite for the largest speed of the axes.
     pub speed: f64,
-    /// Whether the path stops before it, also where it goes straight on.
+    /// Whether the path stops before it even where it continues straight on.
     pub after_stop: bool,
 }
 
-/// The difference of two places.
+/// The difference `a − b` of two points.
 pub(super) fn minus(a: PlanePoint, b: PlanePoint) -> PlanePoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 
 impl Shape {
-    /// Its length.
+    /// Length of the line or arc.
     pub fn length(&self) -> f64 {
         match self {
             Self::Line { from, to } => {
@@ -56,7 +56,7 @@ impl Shape {
         }
     }
 
-    /// The place `along` it, from 0 to its length.
+    /// The point at the distance `along` from the start, from 0 to the length.
     pub fn at(&self, along: f64) -> PlanePoint {
         match self {
             Self::Line { from, to } => {
@@ -77,7 +77,7 @@ impl Shape {
         }
     }
 
-    /// The direction of travel `along` it: a unit vector.
+    /// The direction of travel at the distance `along` from the start, as a unit vector.
     pub fn direction(&self, along: f64) -> PlanePoint {
         match self {
             Self::Line { from, to } => {
@@ -94,7 +94,7 @@ impl Shape {
         }
     }
 
-    /// One over its radius; 0 of a line.
+    /// Curvature: one over the radius; 0 for a line.
     pub fn curvature(&self) -> f64 {
         match self {
             Self::Line { .. } => 0.0,
@@ -102,7 +102,7 @@ impl Shape {
         }
     }
 
-    /// How far along it the place nearest to `point` is.
+    /// Distance from the start of its point that is nearest to `point`.
     pub fn nearest(&self, point: PlanePoint) -> f64 {
         let length = self.length();
         match self {
@@ -118,7 +118,8 @@ impl Shape {
                 sweep,
             } => {
                 let [x, y] = minus(point, *centre);
-                // From the beginning in the direction of travel; what is beyond the end is nearer to the end or to the beginning.
+                // The angle counts from the start in the direction of travel; beyond the end the nearest point is the
+                // end or the start.
                 let turned = ((y.atan2(x) - begin) * sweep.signum()).rem_euclid(TAU);
                 let sweep = sweep.abs();
                 let beyond = turned - sweep;

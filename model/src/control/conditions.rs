@@ -1,4 +1,5 @@
-//! Conditions under which the laws do what they promise (the notes on the XY stage, 8.2 and 8.4), as warnings.
+//! Checks the conditions under which the control laws keep their promises (the notes on the XY stage, 8.2 and 8.4),
+//! and warns where one does not hold.
 
 use super::law::Gains;
 use super::linear::{FACTORS, has_modes};
@@ -7,57 +8,58 @@ use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMod
 use crate::rtl::sliding_mode::{SettingRow, Settings};
 use crate::unit::{AxisUnit, show_seconds};
 
-/// The largest product of gains and lag.
+/// Largest product of gains and lag.
 const GAIN_LAG_MAX: f64 = 0.5;
-/// Relative error of a gain that is not worth a word.
+/// Relative error of a gain above which it is reported.
 const COARSE: f64 = 1e-3;
-/// Largest reference velocity in counts/T, and acceleration in counts/T².
+/// Largest reference velocity in counts/T and acceleration in counts/T² that the words hold.
 const WORD_MAX: [f64; 2] = [32_768.0, 128.0];
 
-/// A condition that does not hold. Everything is in m (or rad) and s; `unit` is that of the file, which the text has.
+/// A condition that does not hold. Fields are in m (or rad) and s; the text is in `unit`, the axis's unit in the
+/// file.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ControlWarning {
-    /// The switching term does not overcome friction.
+    /// The switching term is too small to overcome friction.
     #[error(
         "epsilon = {} does not overcome friction, which decelerates by {}: raise epsilon",
         .unit.as_in_file(*.epsilon, "/s²"), .unit.as_in_file(*.disturbance, "/s²")
     )]
     WeakSwitching {
-        /// Of the axis.
+        /// Unit of the axis.
         unit: AxisUnit,
-        /// ε.
+        /// Strength ε of the switching term, m/s².
         epsilon: f64,
-        /// Coulomb friction over mass.
+        /// Deceleration by Coulomb friction, m/s².
         disturbance: f64,
     },
-    /// The switching term alone is more than the drive gives.
+    /// The switching term alone needs more than the current limit.
     #[error(
         "epsilon = {} alone takes {needed_a:.3} A of {limit_a} A: the command saturates; lower epsilon",
         .unit.as_in_file(*.epsilon, "/s²")
     )]
     SwitchingSaturates {
-        /// Of the axis.
+        /// Unit of the axis.
         unit: AxisUnit,
-        /// ε.
+        /// Strength ε of the switching term, m/s².
         epsilon: f64,
-        /// Current that it takes.
+        /// Current in A that it needs.
         needed_a: f64,
-        /// Largest current.
+        /// Current limit in A.
         limit_a: f64,
     },
-    /// Gains too high for the lag of the loop.
+    /// The gains are too high for the lag of the loop.
     #[error("{what}·lag = {found:.3} with a lag of {}, and must not exceed {allowed}: lower the gains or the lag", show_seconds(*.lag_s, 3))]
     GainTimesLag {
-        /// The gains that count.
+        /// The gains in the product.
         what: &'static str,
-        /// The product.
+        /// Product of gains and lag.
         found: f64,
-        /// Lag in s.
+        /// Lag of the loop in s.
         lag_s: f64,
-        /// Largest product.
+        /// Largest product that is allowed.
         allowed: f64,
     },
-    /// A stable loop that is close to instability.
+    /// The loop is stable, but close to instability.
     #[error(
         "the loop's margins on the machine of this file are thin: gain margin {gain_margin_db:.1} dB, phase margin \
          {phase_margin_deg:.0}°, modulus margin {modulus_margin:.2}, and a sound loop has 6 dB, 30° and 0.5: lower {gains}, or \
@@ -66,75 +68,75 @@ pub enum ControlWarning {
     ThinMargin {
         /// Smallest distance of the open loop from −1.
         modulus_margin: f64,
-        /// dB.
+        /// Gain margin in dB.
         gain_margin_db: f64,
-        /// Degrees.
+        /// Phase margin in degrees.
         phase_margin_deg: f64,
-        /// The keys that make it so.
+        /// Keys of the gains to lower.
         gains: &'static str,
     },
-    /// A loop that is stable on the machine of the file, and not on one that is a little different.
+    /// The loop is stable on the machine of the file, but not on one whose frequencies differ a little.
     #[error(
         "the loop is unstable on a machine whose modes are at {percent} % of their frequencies: lower the gains, or leave them \
          out: the defaults hold from 80 to 120 %"
     )]
     UnstableNearby {
-        /// Frequencies in percent of those in the file.
+        /// Frequencies of that machine, in percent of those in the file.
         percent: f64,
     },
-    /// The acceleration limit asks for more than the drive gives.
+    /// The acceleration limit needs more than the current limit.
     #[error(
         "an acceleration of {} takes {needed_a:.3} A of {limit_a} A: lower the limit of the acceleration",
         .unit.as_in_file(*.acceleration, "/s²")
     )]
     Acceleration {
-        /// Of the axis.
+        /// Unit of the axis.
         unit: AxisUnit,
-        /// Of [axis.limits].
+        /// Acceleration limit in m/s².
         acceleration: f64,
-        /// Current with friction.
+        /// Current in A that it needs, with friction.
         needed_a: f64,
-        /// Largest current.
+        /// Current limit in A.
         limit_a: f64,
     },
-    /// The velocity limit is more than full scale.
+    /// The velocity limit exceeds full scale of the drive.
     #[error(
         "a velocity limit of {} exceeds the drive's full scale of {}: lower one, or raise the other",
         .unit.as_in_file(*.velocity, "/s"), .unit.as_in_file(*.full_scale, "/s")
     )]
     Velocity {
-        /// Of the axis.
+        /// Unit of the axis.
         unit: AxisUnit,
-        /// Of [axis.limits].
+        /// Velocity limit in m/s.
         velocity: f64,
-        /// Of the drive.
+        /// Full scale of the drive in m/s.
         full_scale: f64,
     },
-    /// A reference that its word does not hold.
+    /// A motion limit exceeds the word of its reference.
     #[error(
         "the limit of the {what} is {found} counts per tick or tick², its word holds {largest}: raise sample_hz, or use coarser counts"
     )]
     Word {
         /// `velocity` or `acceleration`.
         what: &'static str,
-        /// In counts and ticks.
+        /// The limit in counts per tick, or tick².
         found: f64,
-        /// Largest.
+        /// Largest value that the word holds.
         largest: f64,
     },
-    /// A gain whose mantissa has few bits.
+    /// The mantissa of a gain has so few bits that the gain is inaccurate.
     #[error("the gain of row {row:?} is {actual:.4e} instead of {wanted:.4e}: its mantissa has few bits")]
     CoarseGain {
-        /// The row.
+        /// Row of the gain.
         row: SettingRow,
-        /// As derived.
+        /// Gain as derived.
         wanted: f64,
-        /// As quantised.
+        /// Gain as quantised.
         actual: f64,
     },
 }
 
-/// What the conditions are about.
+/// The figures of a loop that the conditions use.
 pub(super) struct Loop<'a> {
     pub(super) unit: AxisUnit,
     pub(super) controller: &'a Controller,
@@ -143,13 +145,13 @@ pub(super) struct Loop<'a> {
     pub(super) linear_poles: f64,
     pub(super) lag_s: f64,
     pub(super) tick_s: f64,
-    /// m per count.
+    /// Length of a count, m.
     pub(super) count: f64,
     pub(super) limits: Option<&'a LimitsSection>,
 }
 
 impl Loop<'_> {
-    /// Every condition that does not hold.
+    /// All conditions that do not hold.
     pub(super) fn warnings(&self) -> Vec<ControlWarning> {
         let mut warnings = self.law();
         warnings.extend(self.reach());
@@ -227,7 +229,7 @@ impl Loop<'_> {
         weak.into_iter().chain(saturates).collect()
     }
 
-    /// Limits of the axis that the drive does not reach.
+    /// Conditions on the limits of the axis that the drive does not reach.
     fn reach(&self) -> Option<ControlWarning> {
         let limits = self.limits?;
         match self.drive.mode {
@@ -258,8 +260,8 @@ impl Loop<'_> {
         }
     }
 
-    /// Reference velocity at which the Coulomb term is whole: that of the largest acceleration after one lag, so that the
-    /// term does not change faster than the loop follows.
+    /// Reference velocity at which the Coulomb term reaches its full value: the velocity that the largest
+    /// acceleration gains in one lag, so that the term does not change faster than the loop follows.
     pub(super) fn fade_counts_per_tick(&self) -> f64 {
         let by_drive = match self.drive.mode {
             DriveMode::Torque {
@@ -274,7 +276,8 @@ impl Loop<'_> {
         acceleration * self.lag_s * self.tick_s / self.count
     }
 
-    /// Error in m that Coulomb friction leaves: `d/(c·(k + ε/φ))` within the boundary layer, `d/P` of a PD, 0 of a PID.
+    /// Position error in m that Coulomb friction leaves: `d/(c·(k + ε/φ))` within the boundary layer, `d/P` for a PD,
+    /// 0 for a PID.
     pub(super) fn steady_error(&self, proportional: &f64) -> f64 {
         let disturbance = match self.drive.mode {
             DriveMode::Torque { equivalent_mass, .. } => self.drive.coulomb / equivalent_mass,
@@ -293,7 +296,7 @@ impl Loop<'_> {
     }
 }
 
-/// The first frequency between 80 and 120 % at which a loop that has the modes in it is unstable.
+/// The first frequency factor between 80 and 120 % at which the loop is unstable, for a loop that contains the modes.
 pub(super) fn unstable_nearby(
     axis: &AxisSection,
     clock: ClockSection,
@@ -314,7 +317,7 @@ pub(super) fn unstable_nearby(
     })
 }
 
-/// The key of the machine file that an unstable loop comes from.
+/// Key of the machine file that is to blame for an unstable loop.
 pub(super) fn gain_key(controller: &Controller) -> &'static str {
     match controller {
         Controller::SlidingMode { .. } => "axis.controller.c",
@@ -338,7 +341,7 @@ pub(super) fn gain_key(controller: &Controller) -> &'static str {
     }
 }
 
-/// The gains of a law.
+/// Names of a law's gains, for messages.
 pub(super) fn gain_names(controller: &Controller) -> &'static str {
     match controller {
         Controller::SlidingMode { .. } => "c, k or epsilon",
@@ -347,7 +350,7 @@ pub(super) fn gain_names(controller: &Controller) -> &'static str {
     }
 }
 
-/// Gains that lost more than a thousandth to their mantissa.
+/// Warnings for gains that lost more than a thousandth to their mantissa.
 pub(super) fn coarse_gains(gains: &Gains, settings: &Settings) -> Vec<ControlWarning> {
     let actual = Gains::of_settings(settings);
     let coarse = SettingRow::ALL.into_iter().filter_map(|row| {

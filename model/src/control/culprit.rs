@@ -1,7 +1,7 @@
-//! Which number of the machine file is to blame for a gain that the hardware does not hold.
+//! Finds the number of the machine file that is to blame for a gain that the hardware cannot represent.
 //!
-//! A gain is a product of powers of a few numbers of the file. It fails by decades, so the number to blame is the one that
-//! is most decades away from what machines have.
+//! A gain is a product of powers of a few numbers of the file. It misses its range by decades, so the number to blame
+//! is the one that is most decades away from what machines have.
 
 use std::fmt;
 
@@ -15,12 +15,12 @@ pub struct Culprit {
     pub key: &'static str,
     /// Its value in the file.
     pub found: f64,
-    /// What machines have, as to the order of magnitude.
+    /// Typical value of machines, to the order of magnitude.
     pub usual: f64,
 }
 
 impl Culprit {
-    /// Distance from what is usual, in decades.
+    /// Distance from the typical value, in decades.
     fn decades(&self) -> f64 {
         (self.found.log10() - self.usual.log10()).abs()
     }
@@ -36,14 +36,14 @@ impl fmt::Display for Culprit {
     }
 }
 
-/// What the gains of an axis are made of.
+/// The numbers of the machine file of which an axis's gains are made.
 pub(super) struct Numbers<'a> {
     pub(super) axis: &'a AxisSection,
     pub(super) clock: ClockSection,
 }
 
 impl Numbers<'_> {
-    /// The number to blame for the gain of `row`.
+    /// Finds the number to blame for the gain of `row`.
     pub(super) fn culprit(&self, row: SettingRow) -> Culprit {
         let sample = Culprit {
             key: "clock.sample_hz",
@@ -62,7 +62,7 @@ impl Numbers<'_> {
         self.in_file(worst)
     }
 
-    /// The same in the file's unit.
+    /// Converts the figures to the file's unit.
     fn in_file(&self, culprit: Culprit) -> Culprit {
         let unit = self.axis.unit;
         let of_file = |figure| match culprit.key {
@@ -80,7 +80,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Keys, values and usual values that the gain of `row` is made of.
+    /// Keys, values and typical values of the numbers in the gain of `row`.
     fn made_of(&self, row: SettingRow) -> Vec<(&'static str, Option<f64>, f64)> {
         let key = match self.axis.scale {
             Some(scale) if scale.usage == ScaleUse::Position => "axis.scale.counts_per_unit",
@@ -107,7 +107,7 @@ impl Numbers<'_> {
             let acceleration = self.axis.limits.as_ref().and_then(|limits| limits.acceleration);
             numbers.push(("axis.limits.acceleration", acceleration, 1.0));
         }
-        // The scale of the feedback is in these rows too.
+        // These rows contain the scale of the feedback too.
         if !matches!(row, SettingRow::Surface | SettingRow::Boundary) {
             numbers.extend(self.drive(row));
         }

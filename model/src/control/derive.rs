@@ -1,4 +1,4 @@
-//! Gains of an axis from its machine file.
+//! Derives the gains of an axis from its machine file.
 
 use std::f64::consts::TAU;
 
@@ -11,42 +11,42 @@ use super::sampled::{LinearLaw, Margins, SampledLoop};
 use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode};
 use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, SettingRow, Settings};
 
-/// Command units per unit of the drive: mA per A, mm/s per m/s.
+/// Command units per unit of the drive: mA per A, or mm/s per m/s.
 const COMMAND_UNITS: f64 = 1000.0;
-/// The feedback's word holds ±2^7.
+/// Range of the feedback's word: ±2^7.
 const FEEDBACK_RANGE: f64 = 128.0;
-/// The feedback reaches so many times the limit before its word saturates.
+/// Ratio of the feedback's range to the command limit.
 const FEEDBACK_HEADROOM: f64 = 4.0;
-/// A modulus margin below this is worth a word: a gain margin of 6 dB and a phase margin of 29° may not be there.
+/// Modulus margin below which a warning is given: 0.5 guarantees a gain margin of 6 dB and a phase margin of 29°.
 const THIN: f64 = 0.5;
-/// What the rounding of a default may take from it.
+/// Tolerance by which rounding may lower the margin of default gains.
 const ROUNDED: f64 = 1e-6;
-/// The steepest fade: over this part of a count per tick.
+/// Smallest fade velocity in counts per tick: a fade can be no steeper.
 const LEAST_FADE: f64 = 1.0 / 128.0;
 
-/// What follows for an axis.
+/// The controller of an axis with its figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derived {
-    /// The law of the machine file: the reset value of the register.
+    /// Control law of the machine file, which is the reset value of the register.
     pub law: Law,
-    /// Gains as wanted, in counts, ticks and command units.
+    /// Gains before quantising, in counts, ticks and command units.
     pub gains: Gains,
-    /// Gains and limit as the hardware has them.
+    /// Gains and command limit as the hardware holds them.
     pub settings: Settings,
-    /// Conditions that do not hold.
+    /// The conditions that do not hold.
     pub warnings: Vec<ControlWarning>,
-    /// Error in m (rad) that a constant Coulomb friction leaves, without what is fed forward against it.
+    /// Position error in m (rad) that a constant Coulomb friction leaves, without the feed-forward against it.
     pub steady_error: f64,
-    /// The law as the loop has it near its reference, in m and s; of the sliding mode within the boundary layer.
+    /// The linear law near the reference, in m and s; for the sliding mode that within the boundary layer.
     pub linear: LinearLaw,
-    /// Stability of the sampled loop on the machine of the file, with its modes.
+    /// Stability of the sampled loop on the machine of the file, modes included.
     pub margins: Margins,
-    /// The loop that they are of.
+    /// The sampled loop to which the margins belong.
     pub sampled: SampledLoop,
 }
 
-/// Lag of a loop: the schedule's delay from the capture of the position to the new duty, and the drive's own.
-/// A velocity that is measured over a tick adds half a tick to the delay.
+/// Lag of a loop in s: the delay from the capture of the position to the new duty, plus the drive's own lag. A
+/// velocity that is measured over a tick adds half a tick to the delay.
 pub fn loop_lag_s(drive: &Drive, schedule_delay_s: f64) -> f64 {
     schedule_delay_s
         + drive
@@ -54,18 +54,19 @@ pub fn loop_lag_s(drive: &Drive, schedule_delay_s: f64) -> f64 {
             .map_or(0.0, |bandwidth_hz| 1.0 / (TAU * bandwidth_hz))
 }
 
-/// The numbers that turn m and s into counts and ticks.
+/// Factors that convert m and s to counts and ticks.
 struct Units {
-    /// T in s.
+    /// Tick T in s.
     tick_s: f64,
-    /// q: m per count of the loop.
+    /// Length q of a count of the loop, in m.
     count: f64,
 }
 
 /// Derives gains, settings and warnings of an axis.
 ///
-/// `lag_s` is the whole lag of the loop, see [`loop_lag_s`]. Gains that the file leaves out follow from it and from the modes
-/// that are in the loop, with `lag` the smallest time, not below `lag_s`, that leaves the margin of [`crate::control::DEFAULT_MARGIN`]:
+/// `lag_s` is the whole lag of the loop, see [`loop_lag_s`]. Gains that the file leaves out are computed from it and
+/// from the modes in the loop. In the table `lag` is the smallest time, at least `lag_s`, that leaves the margin
+/// [`crate::control::DEFAULT_MARGIN`]:
 ///
 /// | drive | law | rule | reason |
 /// |---|---|---|---|
@@ -74,11 +75,12 @@ struct Units {
 /// | velocity | PD | P = 1/(4·lag), D = 0 | `lag·s² + s + P` has a double real pole |
 /// | velocity | PID | P = 1/(3·lag), I = 1/(27·lag²), D = 0 | `lag·s³ + s² + P·s + I` has a triple real pole |
 ///
-/// The laws that the file does not choose get their gains by the same rules, for a change of law at run time; the sliding
-/// mode of a torque drive then is one without switching, c = k = D/2, which equals the default PD.
+/// The laws that the file does not choose get their gains by the same rules, so that the law can be changed at run
+/// time. The sliding mode of a torque drive then has no switching term and c = k = D/2, which equals the default PD.
 ///
 /// # Errors
-/// [`ControlError`] where a table or the bandwidth is missing, a gain does not fit, or the loop is unstable on the machine.
+/// [`ControlError`] where a table or the bandwidth is missing, a gain does not fit, or the loop is unstable on the
+/// machine of the file.
 pub fn gains(axis: &AxisSection, clock: ClockSection, lag_s: f64) -> Result<Derived, ControlError> {
     let missing = |table| ControlError::Missing {
         axis: axis.name.clone(),
@@ -177,7 +179,7 @@ pub fn gains(axis: &AxisSection, clock: ClockSection, lag_s: f64) -> Result<Deri
     })
 }
 
-/// The first row that the law reads, that is not 0, and that is 0 in mantissa and shift.
+/// The first row that the law uses whose gain is not 0 but is quantised to 0.
 fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<SettingRow> {
     let actual = Gains::of_settings(settings);
     let is_read = |row: &SettingRow| match row {
@@ -188,7 +190,7 @@ fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<SettingRow> {
         | SettingRow::Switching => law == Law::SlidingMode,
         SettingRow::Derivative | SettingRow::Proportional => law != Law::SlidingMode,
         SettingRow::Integral => law == Law::Pid,
-        // Nothing fades where there is no friction.
+        // The fade is not used where there is no friction.
         SettingRow::Fade => gains.get(SettingRow::Coulomb) != 0.0,
         _ => true,
     };
@@ -196,10 +198,11 @@ fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<SettingRow> {
     SettingRow::ALL.into_iter().find(|row| is_read(row) && is_lost(row))
 }
 
-/// The rows of the laws: acceleration in counts/T² of a torque drive and of the sliding mode, velocity in counts/T else.
+/// Sets the rows of the feedback: an acceleration in counts/T² for a torque drive and for the sliding mode, else a
+/// velocity in counts/T.
 fn feedback(gains: &mut Gains, controller: &Controller, linear: &Linear, mode: &DriveMode, units: &Units) {
     let tick_s = units.tick_s;
-    // Of a velocity drive the command is one order lower.
+    // The command of a velocity drive is one order of time lower.
     let order = match mode {
         DriveMode::Torque { .. } => tick_s,
         DriveMode::Velocity { .. } => 1.0,
@@ -226,7 +229,7 @@ fn feedback(gains: &mut Gains, controller: &Controller, linear: &Linear, mode: &
     ]);
 }
 
-/// The rows from motion to command.
+/// Sets the rows that turn motion into a command.
 fn command(gains: &mut Gains, law: Law, drive: &Drive, units: &Units) {
     let Units { tick_s, count } = *units;
     match drive.mode {
@@ -278,7 +281,8 @@ pub(super) fn full_scale(mode: &DriveMode) -> f64 {
         }
 }
 
-/// Scales the feedback by a power of two: its word then holds just so much as the drive can follow, as finely as it can.
+/// Scales the feedback by a power of two, so that its word just covers what the drive can follow, with the finest
+/// resolution.
 fn scale_feedback(gains: &mut Gains) {
     let reach = FEEDBACK_HEADROOM * gains.get(SettingRow::Limit) / gains.get(SettingRow::Feedback);
     let exponent = (FEEDBACK_RANGE / reach).log2().floor();
@@ -290,7 +294,7 @@ fn scale_feedback(gains: &mut Gains) {
         SettingRow::Proportional,
         SettingRow::Integral,
     ];
-    // A gain without room for its mantissa would be lost: the finest scale at which all fit.
+    // A gain whose mantissa has no room would be lost, so this is the finest scale at which all gains fit.
     let fits = |row: &SettingRow, scale: f64| {
         gains.get(*row) * scale <= f64::from(MANTISSA_MAX) * f64::from(row.exponent()).exp2()
     };

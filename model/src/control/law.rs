@@ -1,19 +1,19 @@
-//! The laws in floating point: what the fixed-point controller approximates.
+//! The control laws in floating point, which the fixed-point controller approximates.
 //!
-//! Quantities are in counts and ticks, gains as [`Gains`] holds them. Nothing saturates here but the boundary layer, the
-//! Coulomb term and the command: the words of the hardware are wide enough, or it raises a flag.
+//! Quantities are in counts and ticks, gains as [`Gains`] holds them. Only the boundary layer, the Coulomb term and
+//! the command saturate here: the words of the hardware are wide enough, or it raises a flag.
 
 use crate::rtl::sliding_mode::{Gain, GainError, Law, SETTINGS, SettingRow, Settings};
 
 /// Fraction bits of a command.
 pub const COMMAND_FRACTION: u32 = 12;
 
-/// The gains of all laws by [`SettingRow`], and the largest command: in counts, ticks and command units.
+/// The gains of all laws by [`SettingRow`], and the command limit, in counts, ticks and command units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Gains([f64; SETTINGS]);
 
 impl Gains {
-    /// The gain of a row; of [`SettingRow::Limit`] the largest command.
+    /// The gain of a row; for [`SettingRow::Limit`] the command limit.
     pub fn get(&self, row: SettingRow) -> f64 {
         self.0[row as usize]
     }
@@ -23,7 +23,7 @@ impl Gains {
         self.0[row as usize] = value;
     }
 
-    /// With other gains of some rows.
+    /// Returns the gains with some rows replaced.
     pub fn with(mut self, gains: &[(SettingRow, f64)]) -> Self {
         for (row, value) in gains {
             self.set(*row, *value);
@@ -31,10 +31,10 @@ impl Gains {
         self
     }
 
-    /// As mantissas and shifts; the limit in its own word, rounded to an LSB.
+    /// Quantises the gains to mantissas and shifts, and the limit to its own word, rounded to an LSB.
     ///
     /// # Errors
-    /// [`GainError`] for a gain that does not fit its row, or a limit that is no positive number of 31 bits.
+    /// [`GainError`] for a gain that does not fit its row, or a limit that is not a positive number of 31 bits.
     pub fn quantise(&self) -> Result<Settings, GainError> {
         let mut settings = Settings::default();
         for row in SettingRow::ALL {
@@ -46,7 +46,7 @@ impl Gains {
         Ok(settings)
     }
 
-    /// What settings are worth.
+    /// The gains that quantised settings stand for.
     pub fn of_settings(settings: &Settings) -> Self {
         let one = f64::from(1u32 << COMMAND_FRACTION);
         Self(SettingRow::ALL.map(|row| match row {
@@ -70,42 +70,42 @@ fn limit_word(limit: f64) -> Result<u32, GainError> {
     }
 }
 
-/// What a tick is about, in counts and ticks.
+/// Inputs of the controller in a tick, in counts and ticks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tracking {
-    /// e = r − x.
+    /// Position error e = r − x.
     pub error: f64,
-    /// de = dr − v.
+    /// Rate of the error de = dr − v.
     pub error_rate: f64,
-    /// dr.
+    /// Reference velocity dr.
     pub velocity_reference: f64,
-    /// ddr.
+    /// Reference acceleration ddr.
     pub acceleration_reference: f64,
     /// Measured velocity v.
     pub velocity: f64,
 }
 
-/// What comes out of a tick.
+/// Outputs of the controller in a tick.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Response {
-    /// s.
+    /// Sliding variable s.
     pub sliding: f64,
     /// Command, within ±limit.
     pub command: f64,
     /// Duty in clocks of the PWM period.
     pub duty: f64,
-    /// Whether the command was cut: 1 above, −1 below.
+    /// 1 where the command was clamped above, −1 below, else 0.
     pub limited: i8,
 }
 
-/// A controller with its integral.
+/// A controller with its integral term.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FloatController {
     integral: f64,
 }
 
 impl FloatController {
-    /// One tick.
+    /// Computes one tick.
     pub fn control(&mut self, law: Law, gains: &Gains, motion: &Tracking) -> Response {
         let gain = |row| gains.get(row);
         let Tracking { error, error_rate, .. } = *motion;
@@ -131,7 +131,7 @@ impl FloatController {
             + gain(SettingRow::Coulomb) * coulomb;
         let limit = gain(SettingRow::Limit);
         let limited = i8::from(wanted > limit) - i8::from(wanted < -limit);
-        // Frozen while clamped in that direction.
+        // The integral is frozen while the command is clamped in its direction.
         let opposes = (gain(SettingRow::Integral) < 0.0) != (gain(SettingRow::Feedback) < 0.0);
         let lowers = (error < 0.0) != opposes;
         let frozen = if lowers { limited < 0 } else { limited > 0 };
@@ -153,7 +153,7 @@ impl FloatController {
     }
 }
 
-/// Linear between −1 and 1.
+/// Clamps to −1 … 1.
 fn saturation(value: f64) -> f64 {
     value.clamp(-1.0, 1.0)
 }

@@ -1,23 +1,24 @@
-//! The feedback in m and s: what the file says, what follows where it says nothing, and the law as the loop has it.
+//! The feedback in m and s: the gains of the file, defaults for those that it leaves out, and the linear law of the
+//! loop.
 
 use std::f64::consts::TAU;
 
 use super::sampled::{LinearLaw, SampledLoop};
 use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode, ScaleUse};
 
-/// The modulus margin that default gains leave on the machine of the file, and with its frequencies 10 % and 20 % off: a gain
-/// margin of at least 6 dB, and a phase margin of at least 29°.
+/// Modulus margin that default gains keep on the machine of the file, and with its frequencies 10 % and 20 % off: a
+/// gain margin of at least 6 dB, and a phase margin of at least 29°.
 pub const DEFAULT_MARGIN: f64 = 0.5;
-/// Frequencies at which the default gains hold that margin, as parts of those in the file. The last two are the ends.
+/// Frequency factors at which the default gains keep that margin. The last two are the ends.
 pub(super) const FACTORS: [f64; 5] = [1.0, 0.9, 1.1, 0.8, 1.2];
-/// Of the largest gain × lag that the notes allow (0.5): what a default takes.
+/// Product of gain and lag of the default gains; the notes allow 0.5.
 const TORQUE_SHARE: f64 = 0.4;
-/// Steps of the search for slower gains, their ratio, and the bisections of the last one.
+/// Number of steps of the search for slower gains, their ratio, and the number of bisections of the last one.
 const STEPS: i32 = 60;
 const STEP: f64 = 1.25;
 const BISECTIONS: u32 = 6;
 
-/// Feedback gains in m and s: PD and PID.
+/// Gains of PD and PID in m and s.
 #[derive(Clone, Copy)]
 pub(super) struct Linear {
     pub(super) proportional: f64,
@@ -25,7 +26,7 @@ pub(super) struct Linear {
     pub(super) integral: f64,
 }
 
-/// Gains of PD and PID: those of the file; what it leaves out follows from this lag.
+/// Gains of PD and PID: those of the file, and the rest computed from this lag.
 fn of_lag(controller: &Controller, mode: &DriveMode, lag_s: f64) -> Linear {
     let (proportional, derivative, integral, with_integral) = match *controller {
         Controller::SlidingMode { .. } => (None, None, None, false),
@@ -55,14 +56,15 @@ fn of_lag(controller: &Controller, mode: &DriveMode, lag_s: f64) -> Linear {
     }
 }
 
-/// Whether the loop has the modes in it: that of a torque drive, and that on a scale at the load.
+/// Whether the modes are inside the loop, as with a torque drive or with a scale at the load.
 pub(super) fn has_modes(axis: &AxisSection, drive: &Drive) -> bool {
     let on_scale = axis.scale.is_some_and(|scale| scale.usage == ScaleUse::Position);
     !axis.modes.is_empty() && (on_scale || matches!(drive.mode, DriveMode::Torque { .. }))
 }
 
-/// Gains of PD and PID: those of the file, or the defaults, which are as fast as the lag and the modes allow. Where no speed
-/// leaves the margin, which may be because of the gains in the file, they follow from the lag alone.
+/// Gains of PD and PID: those of the file, or defaults that are as fast as the lag and the modes allow. Where no
+/// speed keeps the margin, which may be because of the gains in the file, the defaults are computed from the lag
+/// alone.
 pub(super) fn default_linear(
     axis: &AxisSection,
     clock: ClockSection,
@@ -117,7 +119,7 @@ pub(super) fn default_linear(
     at(found)
 }
 
-/// PD and PID with what they feed forward.
+/// The linear laws of PD and PID, with their feed-forward.
 fn pd_pid(linear: &Linear, drive: &Drive) -> LinearLaw {
     let feedback = LinearLaw {
         proportional: linear.proportional,
@@ -138,7 +140,7 @@ fn pd_pid(linear: &Linear, drive: &Drive) -> LinearLaw {
     }
 }
 
-/// The law near its reference; the sliding mode within its boundary layer, where it is linear.
+/// The linear law near the reference; the sliding mode is linear within its boundary layer.
 pub(super) fn linear_law(controller: &Controller, linear: &Linear, drive: &Drive) -> LinearLaw {
     let Controller::SlidingMode {
         c,

@@ -1,4 +1,4 @@
-//! The controller's laws in floating point, and its gains from the machine file.
+//! The control laws in floating point, and the gains of the controller from the machine file.
 //!
 //! ```text
 //! [axis.drive], [axis.controller], counts per unit q, tick T, loop lag
@@ -6,8 +6,8 @@
 //!     └─► ControlWarning where a condition of the notes does not hold
 //! ```
 //!
-//! A command unit is a thousandth of the drive's unit: mA of a torque drive, mm/s (mrad/s) of a velocity drive. Unit
-//! conversions are in the gains, so that the hardware counts in counts and ticks.
+//! A command unit is a thousandth of the drive's unit: mA for a torque drive, mm/s (mrad/s) for a velocity drive. The
+//! gains contain the unit conversions, so that the hardware computes in counts and ticks.
 //!
 //! | drive | command | law |
 //! |---|---|---|
@@ -15,8 +15,8 @@
 //! | velocity, PD and PID | u | u = dr + feedback, m/s |
 //! | velocity, sliding mode | `v + a/ω_b` | a = ddr + feedback; the drive is `v' = ω_b (u − v)` |
 //!
-//! [`gains`] does it all for an axis; [`supervision`] does the same for the words of its supervisor. [`FloatController`] is the law that the fixed-point controller
-//! ([`crate::rtl::sliding_mode`]) approximates.
+//! [`gains`] derives the whole controller of an axis; [`supervision`] does the same for the words of its supervisor.
+//! [`FloatController`] is the law that the fixed-point controller ([`crate::rtl::sliding_mode`]) approximates.
 
 mod conditions;
 mod culprit;
@@ -41,80 +41,80 @@ pub use supervision_error::SupervisionError;
 
 use crate::rtl::sliding_mode::{GainError, SettingRow};
 
-/// Why an axis has no gains.
+/// Why an axis has no valid gains.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ControlError {
-    /// A table is missing.
+    /// A table of the axis is missing.
     #[error(
         "axis {axis} has no [axis.{table}]: a controller needs [axis.drive], [axis.controller] and [axis.pwm]; add it"
     )]
     Missing {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The table.
+        /// Name of the missing table.
         table: &'static str,
     },
-    /// A velocity drive whose dynamics the sliding-mode law must know.
+    /// The sliding-mode law needs the bandwidth of a velocity drive.
     #[error(
         "axis {axis}: the sliding-mode law gives an acceleration, and a velocity drive follows it by its bandwidth: \
          give bandwidth_hz in [axis.drive], or choose kind = \"pd\" or \"pid\""
     )]
     Bandwidth {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
     },
-    /// An invalid lag.
+    /// The lag of the loop is not a finite time above 0.
     #[error(
         "a loop lag of {0:e} s: it must be a finite time above 0, the schedule's delay and the drive's 1/(2π·bandwidth)"
     )]
     Lag(f64),
-    /// A loop that is unstable on the machine of the file.
+    /// The loop is unstable on the machine of the file.
     #[error(
         "axis {axis}: the loop is unstable on the machine of this file{}",
         remedy(*.gain_margin_db, *.largest_factor, .gains)
     )]
     Unstable {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The key of the machine file.
+        /// Key of the machine file to blame.
         key: &'static str,
-        /// By how many dB the gains are too high, as a negative number; none where lower gains do not make it stable.
+        /// Gain margin in dB, which is negative; `None` where lower gains do not make the loop stable.
         gain_margin_db: Option<f64>,
-        /// The same as a factor on all gains.
+        /// The same margin as a factor on all gains.
         largest_factor: Option<f64>,
-        /// The gains of the law.
+        /// Names of the law's gains.
         gains: &'static str,
     },
-    /// A gain that the hardware does not hold.
+    /// The hardware cannot represent a gain.
     #[error("axis {axis}: {source}; {culprit}")]
     Gain {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// What does not fit.
+        /// Why the gain does not fit.
         source: GainError,
-        /// The number of the file that it comes from.
+        /// The number of the file that is to blame.
         culprit: Culprit,
     },
-    /// A gain that is not 0 and would be in the hardware.
+    /// A gain that is not 0 would be 0 in the hardware.
     #[error(
         "axis {axis}: the gain {row:?} is {found:.3e}, and its smallest in the hardware is {smallest:.3e}: it would be 0; \
          {culprit}"
     )]
     Lost {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The gain.
+        /// Row of the gain.
         row: SettingRow,
-        /// As derived.
+        /// Gain as derived.
         found: f64,
-        /// The smallest that is not 0.
+        /// Smallest gain of the row that is not 0.
         smallest: f64,
-        /// The number of the file that it comes from.
+        /// The number of the file that is to blame.
         culprit: Culprit,
     },
 }
 
-/// What to do about an unstable loop.
+/// Tells what to do about an unstable loop.
 fn remedy(gain_margin_db: Option<f64>, largest_factor: Option<f64>, gains: &str) -> String {
     match (gain_margin_db, largest_factor) {
         (Some(margin), Some(factor)) => format!(
@@ -129,7 +129,7 @@ fn remedy(gain_margin_db: Option<f64>, largest_factor: Option<f64>, gains: &str)
 }
 
 impl ControlError {
-    /// The key of the machine file that is to blame, dotted: `axis.drive.bandwidth_hz`, for example.
+    /// The key of the machine file that is to blame, dotted, such as `axis.drive.bandwidth_hz`.
     pub fn key(&self) -> String {
         match self {
             Self::Missing { .. } => "axis.controller".to_owned(),

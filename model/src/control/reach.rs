@@ -1,8 +1,8 @@
-//! Where the position word ends.
+//! Range of the position word.
 //!
-//! Commands are Q24.8 counts, and 0 is where the axis stands at reset: an encoder that only counts does not know better. So
-//! either end of the travel may be a whole travel away from 0, and the shaped command further by the shaper's overshoot and by
-//! a quick stop that begins at the end.
+//! Commands are Q24.8 counts, and 0 is where the axis stands at reset, because an encoder that only counts knows no
+//! other origin. So either end of the travel may be a whole travel away from 0. The shaped command goes further by
+//! the shaper's overshoot, and by a quick stop that begins at the end.
 
 use super::supervision_error::SupervisionError;
 use crate::design::TableFamily;
@@ -11,12 +11,12 @@ use crate::rtl::segments::REACH_COUNTS;
 use crate::taps::TapTable;
 use crate::unit::AxisUnit;
 
-/// What the words of a supervisor depend on in a shaper's table.
+/// Bounds of a shaper's table on which the words of a supervisor depend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableBounds {
-    /// Its longest delay, in samples.
+    /// Longest delay of the table, in samples.
     pub longest_delay_samples: u32,
-    /// How far a step of 1 goes: above 1 where it overshoots, or above 1 by how far it first goes the other way.
+    /// Largest distance that a unit step covers: above 1 where it overshoots, or where it first moves the other way.
     pub farthest: f64,
 }
 
@@ -36,7 +36,7 @@ impl From<&TapTable> for TableBounds {
 }
 
 impl TableBounds {
-    /// What holds for every table that an axis uses: its own, and those of its family.
+    /// The bounds that hold for every table of an axis: its own, and those of its family.
     pub fn of_axis(own: &TapTable, family: Option<&TableFamily>) -> Self {
         let members = family.iter().flat_map(|family| &family.members);
         let members = members.map(|member| Self::from(&member.tables.table));
@@ -47,7 +47,7 @@ impl TableBounds {
     }
 }
 
-/// An axis whose file does not say how far it goes, and the position word's end that it may then meet.
+/// An axis whose file does not state its travel, with the end of the position word that it may reach.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "no travel in [axis.limits]: the position word reaches {} to either side of where the axis stands at reset; a \
@@ -55,13 +55,13 @@ impl TableBounds {
     .unit.as_in_file(*.reach, "")
 )]
 pub struct NoTravel {
-    /// Of the axis.
+    /// Unit of the axis.
     pub unit: AxisUnit,
-    /// How far the word reaches, in m or rad.
+    /// Range of the word to either side, in m or rad.
     pub reach: f64,
 }
 
-/// A warning, where neither `travel` bounds the axis nor `modulo` lets it turn for ever.
+/// Returns a warning where neither `travel` bounds the axis nor `modulo` lets its position wrap.
 pub fn no_travel(axis: &AxisSection) -> Option<NoTravel> {
     let bounded = axis.modulo || axis.limits.is_some_and(|limits| limits.travel.is_some());
     (!bounded).then(|| NoTravel {
@@ -70,15 +70,15 @@ pub fn no_travel(axis: &AxisSection) -> Option<NoTravel> {
     })
 }
 
-/// How far the command goes from where the axis stands at reset.
+/// Range of the command to either side of where the axis stands at reset.
 fn reach(axis: &AxisSection) -> f64 {
     f64::from(REACH_COUNTS) / axis.loop_counts_per_unit()
 }
 
-/// Checks that the travel fits the position word, wherever the axis stands at reset.
+/// Checks that the travel fits the position word, wherever in it the axis stands at reset.
 ///
 /// # Errors
-/// [`SupervisionError::Reach`] with what it takes and what there is.
+/// [`SupervisionError::Reach`] with the range that is needed and the range of the word.
 pub(super) fn check_travel(axis: &AxisSection, table: &TableBounds) -> Result<(), SupervisionError> {
     let limits = axis.limits.unwrap_or_default();
     let Some([low, high]) = limits.travel.filter(|_| !axis.modulo) else {

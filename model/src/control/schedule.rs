@@ -1,4 +1,4 @@
-//! What the hardware does within a tick, how many clocks that takes, and how long it is from the position to the pins.
+//! The timing of the hardware within a tick: its steps, their clocks, and the delay from the position to the pins.
 //!
 //! ```text
 //! tick ─► capture ─► divide ─► shape ─► control ─► new duty at the next boundary of the PWM
@@ -10,11 +10,11 @@ use crate::machine_file::{ClockSection, PwmSection};
 use crate::rtl::divider::DIVISION_CLOCKS;
 use crate::rtl::sliding_mode::CONTROL_CLOCKS;
 
-/// Clocks of a tick that belong to no pass: position and time are latched, the quotient is taken as the velocity, and
-/// shaper and controller take their samples a clock late each.
+/// Clocks of a tick that belong to none of the steps: position and time are latched, the quotient is taken as the
+/// velocity, and shaper and controller each take their samples a clock late.
 pub const CAPTURE_CLOCKS: u32 = 4;
 
-/// The passes of one axis in a tick, one after the other, in clocks. What an axis does not have takes 0.
+/// The steps of one axis in a tick, one after the other, in clocks. A step that an axis does not have takes 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ControlSchedule {
     capture: u32,
@@ -23,18 +23,18 @@ pub struct ControlSchedule {
     control: u32,
 }
 
-/// A schedule that does not end before the next tick.
+/// The schedule takes longer than a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a tick takes {schedule}, a sample lasts {available} and must last longer than that")]
 pub struct ScheduleError {
-    /// What does not fit.
+    /// The schedule.
     pub schedule: ControlSchedule,
     /// Clocks from sample to sample.
     pub available: u32,
 }
 
 impl ControlSchedule {
-    /// Of an axis whose position is measured, and not controlled.
+    /// Schedule of an axis whose position is measured but not controlled.
     pub const fn measuring() -> Self {
         Self {
             capture: CAPTURE_CLOCKS,
@@ -44,7 +44,7 @@ impl ControlSchedule {
         }
     }
 
-    /// Of an axis with a controller, whose shaper takes `shape_clocks` for its longest pass.
+    /// Schedule of an axis with a controller. `shape_clocks` is the longest time that its shaper takes for a sample.
     pub const fn controlling(shape_clocks: u32) -> Self {
         Self {
             shape: shape_clocks,
@@ -60,7 +60,7 @@ impl ControlSchedule {
             .fold(0, u32::saturating_add)
     }
 
-    /// Whether it ends before the next tick.
+    /// Checks that the schedule ends before the next tick.
     ///
     /// # Errors
     /// [`ScheduleError`] where a sample of `available` clocks is not longer than the schedule.
@@ -74,8 +74,8 @@ impl ControlSchedule {
         }
     }
 
-    /// The largest sample rate in Hz at which it fits: a sample is a whole number of `step_clocks`, which is the period of
-    /// the PWM, or 1.
+    /// The largest sample rate in Hz at which the schedule fits. A sample is a whole number of `step_clocks`, the
+    /// period of the PWM or 1.
     pub fn largest_sample_hz(&self, clock_hz: f64, step_clocks: u64) -> f64 {
         let step_clocks = step_clocks.max(1);
         let steps = u64::from(self.clocks()) / step_clocks + 1;
@@ -93,13 +93,13 @@ impl fmt::Display for ControlSchedule {
     }
 }
 
-/// Delay in s from the position that is captured at a tick to the duty that it leads to, as the loop feels it, if that takes
-/// `schedule_clocks`.
+/// Delay in s, as it counts in the loop, from the position that is captured at a tick to the duty computed from it,
+/// for a schedule of `schedule_clocks`.
 ///
 /// | part | why |
 /// |---|---|
-/// | one PWM period, or as many as the schedule needs | a tick is a boundary of the PWM; what is computed after it shows at the next boundary after its end |
-/// | half a tick | the duty stands for a tick, on average half of it too late |
+/// | one PWM period, or as many as the schedule needs | a tick is a boundary of the PWM; a new duty takes effect at the next boundary after it is computed |
+/// | half a tick | the duty is held for a tick, and so is late by half of it on average |
 /// | half a tick | the velocity is measured over a tick |
 ///
 /// ```
@@ -137,7 +137,7 @@ mod tests {
         assert!(error.contains(sum), "{error}");
         assert_eq!(ControlSchedule::measuring().clocks(), 106);
         assert!(!ControlSchedule::measuring().to_string().contains("control"));
-        // No overflow, whatever a pass takes.
+        // There is no overflow, however long a step is.
         assert!(ControlSchedule::controlling(u32::MAX).fits(u32::MAX).is_err());
     }
 

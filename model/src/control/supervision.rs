@@ -1,26 +1,26 @@
-//! The words of an axis's supervisor, and of the quick stop, from the machine file.
+//! Computes the words of an axis's supervisor, and of the quick stop, from the machine file.
 //!
-//! | key of `[axis.limits]` | word | unit of its LSB | rounded | left out |
+//! | key of `[axis.limits]` | word | unit of its LSB | rounded | absent |
 //! |---|---|---|---|---|
-//! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: none |
-//! | `soft_limits_after_homing` | 1 bit | | | 0: at once |
-//! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not watched |
-//! | `deviation` | u32 | counts | down, at least 1 | 0: not watched |
-//! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not watched |
+//! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: no soft limits |
+//! | `soft_limits_after_homing` | 1 bit | | | 0: they act at once |
+//! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not checked |
+//! | `deviation` | u32 | counts | down, at least 1 | 0: not checked |
+//! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not checked |
 //! | `encoder_lost_command` | u32 | 2^−12 command units | down | 0.5 of full scale; 0 without `encoder_lost_s` |
 //! | `brake_release_s`, `brake_apply_s` | u16 | ticks | up | 0 |
 //! | `line_filter_s` | 6 bits | clocks | up | 0 |
-//! | `stop_deceleration` | 31 bits | 2^−24 counts per tick² | down, at least 1 | `acceleration`; without it 0: at once |
+//! | `stop_deceleration` | 31 bits | 2^−24 counts per tick² | down, at least 1 | `acceleration`; without it 0: the axis stops at once |
 //! | `direct_duty` | u16 | clocks of the PWM | down | 0.1 of the period |
 //! | `direct_hold_s` | u16 | ticks | down, at least 1 | 0.2 s, or what fits |
 //! | `excitation` | u16 | 2^−8 counts | down, at least 1 | 4 counts |
 //!
-//! `watches_direction` is 1 where a motion against the command for `encoder_lost_s` can only come of a wrong sign
-//! ([`LostSign`]).
+//! `watches_direction` is 1 where a motion against the command for `encoder_lost_s` can only be caused by a wrong
+//! sign ([`LostSign`]).
 //!
-//! So no limit is looser than the file asks for, no brake gets less time, and no filter lets more through. What a word does
-//! not hold, above or below, is an error: nothing is clamped. "Counts" are those
-//! that the loop runs on, [`AxisSection::loop_counts_per_unit`].
+//! So no limit is looser than the file asks for, no brake gets less time, and no filter passes shorter pulses. A
+//! value that is too large or too small for its word is an error: nothing is clamped. "Counts" are those of the loop,
+//! [`AxisSection::loop_counts_per_unit`].
 
 use super::reach::{TableBounds, check_travel};
 use super::supervision_error::SupervisionError;
@@ -31,58 +31,59 @@ use crate::rtl::segments::{ACCELERATION_FRACTION, POSITION_FRACTION};
 
 /// Fraction bits of the controller's error e.
 const ERROR_FRACTION: u32 = 16;
-/// Largest limit that a signed word of 32 bits can pass on both sides, whose sizes are x and −x − 1.
+/// Largest limit that a signed word of 32 bits can exceed in both directions; the magnitudes of x and −x − 1 differ
+/// by one.
 const SIZE_MAX: u32 = (1 << 31) - 2;
 /// Largest deceleration: 31 bits.
 const DECELERATION_MAX: u32 = (1 << 31) - 1;
 /// Longest filter of a line, in clocks.
 const FILTER_CLOCKS_MAX: u32 = 63;
-/// How long a manual duty stands, where the file does not say.
+/// Default time for which a manual duty stays applied.
 const DEFAULT_DIRECT_HOLD_S: f64 = 0.2;
-/// Largest amplitude of test signals where the file does not say, in counts.
+/// Default of the largest amplitude of test signals, in counts.
 const DEFAULT_EXCITATION_COUNTS: u16 = 4;
-/// Relative rounding of decimals such as `0.3`, which binary fractions only come near.
+/// Relative rounding of decimals such as `0.3`, which binary fractions only approximate.
 const DECIMALS: f64 = 1e-9;
 
-/// What the supervisor (`rtl::axis`), the quick stop of `rtl::segments` and the bring-up of an axis start with: register
-/// values, or constants where nothing is to be changed. Names and formats are those of the ports.
+/// Initial words of the supervisor (`rtl::axis`), of the quick stop of `rtl::segments` and of an axis's bring-up:
+/// reset values of registers, or constants where there is no register. Names and formats are those of the ports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Supervision {
-    /// Per cause: 1 outputs off, 0 quick stop.
+    /// One bit per cause: 1 switches the outputs off, 0 leads to a quick stop.
     pub off_causes: u16,
-    /// Ticks from HOLD until the brake is open.
+    /// Ticks from entering HOLD until the brake is open.
     pub brake_release_ticks: u16,
     /// Ticks from applying the brake until it holds.
     pub brake_apply_ticks: u16,
-    /// Ticks from the command's standstill to that of the shaped command.
+    /// Ticks from the command's standstill to the standstill of the shaped command.
     pub settle_ticks: u16,
-    /// Q24.8 counts. Both 0: no soft limits.
+    /// Upper soft limit in Q24.8 counts. With both limits 0 there are no soft limits.
     pub soft_limit_plus: i32,
-    /// Q24.8 counts.
+    /// Lower soft limit in Q24.8 counts.
     pub soft_limit_minus: i32,
-    /// No soft limits until the axis is homed.
+    /// Whether the soft limits act only once the axis is homed.
     pub limits_after_homing: bool,
-    /// Q16.16 counts; 0: not watched.
+    /// Largest following error in Q16.16 counts; 0 disables the check.
     pub following_error_limit: u32,
-    /// Counts of the loop; 0: not watched.
+    /// Largest deviation from the scale in counts of the loop; 0 disables the check.
     pub deviation_limit: u32,
-    /// Ticks in a row; 0: not watched.
+    /// Consecutive ticks for which the command may be clamped; 0 disables the check.
     pub saturation_ticks: u16,
-    /// Q20.12 command units.
+    /// Command in Q20.12 command units above which the encoder must count.
     pub lost_command: u32,
-    /// Ticks without a count; 0: not watched.
+    /// Ticks for which the encoder may stand still under such a command; 0 disables the check.
     pub lost_ticks: u16,
-    /// A motion against the command is as none: see [`LostSign`].
+    /// Whether a motion against the command counts as standstill: see [`LostSign`].
     pub watches_direction: bool,
-    /// Ticks without a kick; 0: no watchdog.
+    /// Ticks within which the host must kick the watchdog; 0 disables it.
     pub watchdog_ticks: u16,
-    /// Pulses of up to so many clocks on a line are ignored, 0 to 63.
+    /// Pulses of up to this many clocks on a line are ignored, 0 to 63.
     pub filter_clocks: u8,
-    /// Q7.24 counts per tick²; 0: at once.
+    /// Deceleration of a quick stop in Q7.24 counts per tick²; 0: the axis stops at once.
     pub stop_deceleration: u32,
     /// Largest manual duty, in clocks of the PWM's period.
     pub direct_limit: u16,
-    /// Ticks that a manual duty stands.
+    /// Ticks for which a manual duty stays applied.
     pub direct_hold_ticks: u16,
     /// Largest amplitude of test signals, Q8.8 counts.
     pub excitation_limit: u16,
@@ -115,10 +116,10 @@ impl Supervision {
     }
 }
 
-/// The words of the supervisor of an axis with a controller and this table of its shaper.
+/// Computes the supervisor's words of an axis with a controller, whose shaper has this table.
 ///
 /// # Errors
-/// [`SupervisionError`] names the first value that its word does not hold, with the range that it does.
+/// [`SupervisionError`] names the first value that its word does not hold, with the allowed range.
 pub fn supervision(
     axis: &AxisSection,
     clock: &ClockSection,
@@ -165,30 +166,32 @@ pub fn supervision(
     })
 }
 
-/// Is a feedback of the wrong sign seen by the watch of the encoder?
+/// Whether the encoder monitor detects a feedback of the wrong sign.
 ///
-/// With a wrong sign the axis goes against its command, and ever faster. So the watch may count a motion against the command
-/// as none, where no sound axis goes on so for `encoder_lost_s`. A velocity drive does not. A torque slows down what it goes
-/// against: from `velocity` a command of more than `encoder_lost_command`, and so an acceleration of more than `a`, takes less
-/// than `velocity`/`a`, however fast the command itself slows down. Friction makes it shorter.
+/// With a wrong sign the axis moves against its command, faster and faster. The monitor may therefore count a motion
+/// against the command as standstill, if no sound axis moves so for `encoder_lost_s`. An axis with a velocity drive
+/// does not. A torque slows down the motion that it opposes: a command of more than `encoder_lost_command`, and so an
+/// acceleration of more than `a`, stops a motion of `velocity` in less than `velocity`/`a`, however fast the command
+/// itself slows down. Friction makes that shorter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LostSign {
-    /// It is: within `encoder_lost_s` of a command above `encoder_lost_command` to one side.
+    /// It is detected within `encoder_lost_s` of a command above `encoder_lost_command` in one direction.
     Watched,
-    /// It is not: a sound axis takes longer than `encoder_lost_s` to slow down.
+    /// It is not detected, because a sound axis takes longer than `encoder_lost_s` to slow down.
     TooShort {
-        /// The shortest `encoder_lost_s` with which it is, in s.
+        /// Shortest `encoder_lost_s` with which it would be detected, in s.
         least_s: f64,
     },
-    /// It is not: without `velocity` or `encoder_lost_s`, or with a threshold of 0, nothing says how long an axis may take.
+    /// It is not detected, because without `velocity` or `encoder_lost_s`, or with a threshold of 0, it is not known
+    /// how long an axis may take to slow down.
     Unknown,
 }
 
-/// Time to slow down that a sound axis may need, against that of an ideal one: for weight, shaped commands that overshoot, and
-/// the motion of a few counts by which the watch knows the way back.
+/// Ratio of the time that a sound axis may need to slow down to that of an ideal one. It allows for weight, for
+/// shaped commands that overshoot, and for the motion of a few counts by which the monitor detects a reversal.
 const SLOWER: f64 = 1.2;
 
-/// Whether the words of [`supervision`] let the watch of the encoder see a wrong sign.
+/// Whether the words of [`supervision`] let the encoder monitor detect a wrong sign.
 pub fn lost_sign(axis: &AxisSection) -> LostSign {
     let limits = axis.limits.unwrap_or_default();
     let Some(drive) = axis.drive.as_ref().filter(|_| limits.encoder_lost_s > 0.0) else {
@@ -216,7 +219,7 @@ pub fn lost_sign(axis: &AxisSection) -> LostSign {
     }
 }
 
-/// What the words are made of.
+/// The figures from which the words are computed.
 struct Words<'a> {
     axis: &'a AxisSection,
     clock: &'a ClockSection,
@@ -225,20 +228,20 @@ struct Words<'a> {
     drive: &'a Drive,
 }
 
-/// A value of the file on its way into a word.
+/// A value of the file that becomes a word.
 struct Value {
     key: &'static str,
     found: f64,
     unit: String,
-    /// LSB per unit.
+    /// LSB of the word per unit of the value.
     scale: f64,
 }
 
 impl Words<'_> {
-    /// `word` as an integer if it lies in the range, else the error that says so in the file's unit.
+    /// Returns `word` as an integer if it lies in the range; the error gives the range in the file's unit.
     fn fitting(&self, value: Value, word: f64, range: [u32; 2], reason: &'static str) -> Result<u32, SupervisionError> {
         let [smallest, largest] = range.map(f64::from);
-        // NaN and the infinities are in no range.
+        // NaN and infinity are outside every range.
         if (smallest..=largest).contains(&word) {
             return Ok(word as u32);
         }
@@ -268,7 +271,7 @@ impl Words<'_> {
         }
     }
 
-    /// A figure in m (or rad), or that per s²: it is shown in the file's unit.
+    /// A figure in m (or rad), or in that per s², which messages show in the file's unit.
     fn quantity(&self, key: &'static str, found: f64, per: &str, scale: f64) -> Value {
         let unit = self.axis.unit;
         Value {
@@ -279,14 +282,14 @@ impl Words<'_> {
         }
     }
 
-    /// Ticks that last at least so long.
+    /// The smallest number of ticks that lasts at least this long.
     fn ticks_up(&self, key: &'static str, seconds: f64) -> Result<u16, SupervisionError> {
         let value = self.seconds(key, seconds);
         let ticks = up(seconds * value.scale);
         self.ticks(value, ticks, 0)
     }
 
-    /// Ticks that last at most so long: one or more, or 0 for 0.
+    /// The largest number of ticks that lasts at most this long, but at least one; 0 for 0.
     fn ticks_down(&self, key: &'static str, seconds: f64) -> Result<u16, SupervisionError> {
         if seconds == 0.0 {
             return Ok(0);
@@ -306,7 +309,7 @@ impl Words<'_> {
         self.ticks(value, f64::from(longest_delay_samples), 0)
     }
 
-    /// Lower and upper, rounded inwards.
+    /// Upper and lower soft limit, rounded inwards.
     fn soft_limits(&self) -> Result<[i32; 2], SupervisionError> {
         let Some([low, high]) = self.limits.travel.filter(|_| !self.axis.modulo) else {
             return Ok([0, 0]);
@@ -417,7 +420,7 @@ impl Words<'_> {
 
     fn direct_limit(&self) -> u16 {
         let period = f64::from(self.pwm.period_clocks(self.clock));
-        // At most a whole period of 65536 clocks, of which the word misses one.
+        // The largest period has 65536 clocks, one more than the word holds.
         down(self.limits.direct_duty * period).clamp(0.0, f64::from(u16::MAX)) as u16
     }
 
@@ -438,17 +441,18 @@ impl Words<'_> {
     }
 }
 
-/// The largest whole number up to `value`, but for the rounding of decimals.
+/// The largest whole number up to `value`, with allowance for the rounding of decimals.
 fn down(value: f64) -> f64 {
     (value + DECIMALS * value.abs()).floor()
 }
 
-/// The smallest whole number from `value` on, but for the rounding of decimals.
+/// The smallest whole number from `value` on, with allowance for the rounding of decimals.
 fn up(value: f64) -> f64 {
     (value - DECIMALS * value.abs()).ceil()
 }
 
-/// Six digits of an end of a range, rounded into the range by `whole`; but for the last digits of a binary fraction.
+/// An end of a range with six digits, rounded into the range by `whole`, with allowance for the last digits of a
+/// binary fraction.
 fn readable(end: f64, whole: fn(f64) -> f64) -> f64 {
     let digits = 10f64.powf(5.0 - end.abs().log10().floor());
     let (scaled, nearest) = (end * digits, (end * digits).round());

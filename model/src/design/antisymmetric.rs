@@ -1,9 +1,9 @@
-//! `antisymmetric`: one shaper for all modes that stand mirrored at the same instant.
+//! `antisymmetric`: one shaper for all modes of an axis that are inverted after the same time, a common antiperiod.
 //!
-//! Modes whose damped frequencies are odd multiples `m_i` of one `f_c` have the antiperiod `T_a = 1/(2 f_c)` in common
-//! (Singh and Heppler 1993; [`ratios`] finds it). Two impulses then do for all of them what otherwise takes two per mode,
-//! multiplied. Modes without a common antiperiod are split into the fewest sets with one each; the sets' shapers are
-//! convolved. With the decay rates `σ_i = ζ_i ω_i`:
+//! Modes whose damped frequencies are odd multiples `m_i` of one `f_c` have the antiperiod `T_a = 1/(2 f_c)` in
+//! common (Singh and Heppler 1993; [`ratios`] finds it). Two impulses then suffice for all of them, where a
+//! convolution takes two per mode, multiplied. Modes without a common antiperiod are split into the fewest sets that
+//! have one each, and the sets' shapers are convolved. With the decay rates `σ_i = ζ_i ω_i`:
 //!
 //! ```text
 //! exact           Π_j [1, K_j]/(1 + K_j) at 0, T_a,  K_j = e^{−σ_j T_a}, over the distinct decay rates: no residual
@@ -13,11 +13,12 @@
 //!                 out at [`three_impulse`]), solved for two amplitudes and two times
 //! ```
 //!
-//! `A_i` is the participation. Undamped, two impulses are `[½, ½]` and three `[¼, ½, ¼]` at multiples of `T_a`. The two
-//! damped solutions of the paper bring the *sum* of the modes to rest, not each mode: with unequal decay rates they leave
-//! a residual, which is reported. `exact` is this project's replacement and the default.
+//! `A_i` is the modal participation. Without damping the two impulses are `[½, ½]` and the three `[¼, ½, ¼]`, at
+//! multiples of `T_a`. The two damped solutions of the paper bring the *sum* of the modes to rest, not each mode:
+//! with unequal decay rates they leave a residual, which is reported. `exact` is this project's replacement and the
+//! default.
 //!
-//! Limits: a relative error `e` of the frequencies acts on mode `i` as `m_i·e`; high multiples are fragile.
+//! Limits: a relative error `e` of the frequencies acts on mode `i` as `m_i·e`, so high multiples are sensitive.
 
 use std::f64::consts::PI;
 
@@ -30,7 +31,7 @@ use super::{DesignError, newton};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// How the impulses of a set of modes are found.
+/// Method by which the impulses of a set of modes are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AntisymmetricMethod {
     /// Product over the distinct decay rates: no residual at any mode.
@@ -54,33 +55,33 @@ impl AntisymmetricMethod {
     }
 }
 
-/// A mode with its share in the response.
+/// A mode with its modal participation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Participant {
     /// The mode.
     pub mode: Mode,
-    /// `A_i`; only ratios count.
+    /// Modal participation `A_i`; only ratios count.
     pub participation: f64,
 }
 
 /// An antisymmetric shaper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Antisymmetric {
-    /// Impulses of the whole.
+    /// Impulses of the whole shaper.
     pub impulses: ImpulseSequence,
-    /// The sets of modes that share an antiperiod, by position; frequencies in Hz.
+    /// The sets of modes that share an antiperiod, as indices of the modes; frequencies in Hz.
     pub classes: Vec<Class>,
 }
 
-/// Designs a shaper for all modes; `ratio_tolerance` is the relative error at which a frequency counts as an odd multiple,
-/// 0 for the frequencies as they are.
+/// Designs a shaper for all modes. `ratio_tolerance` is the relative error at which a frequency counts as an odd
+/// multiple; 0 takes the frequencies as they are.
 ///
-/// With a tolerance all modes form one set; without, as few sets as there can be.
+/// With a tolerance all modes form one set; without, they form as few sets as possible.
 ///
 /// # Errors
-/// [`JointError::NoCommonDivisor`] without a usable antiperiod, [`JointError::NoAntisymmetry`] where no two of several
-/// modes share one, [`JointError::ThreeImpulse`] where the paper's equations have no solution; [`DesignError`] for an
-/// invalid mode.
+/// [`JointError::NoCommonDivisor`] without a usable antiperiod; [`JointError::NoAntisymmetry`] where there are
+/// several modes and no two share one; [`JointError::ThreeImpulse`] where the paper's equations have no solution;
+/// [`DesignError`] for an invalid mode.
 pub fn design(
     participants: &[Participant],
     method: AntisymmetricMethod,
@@ -112,7 +113,7 @@ pub fn design(
     Ok(Antisymmetric { impulses, classes })
 }
 
-/// The smallest partition, if it is worth one: some set of several modes must have two at least.
+/// The smallest partition. With several modes, at least one set must have two members: else the kind gains nothing.
 fn antisymmetric_classes(damped_hz: &[f64]) -> Result<Vec<Class>, JointError> {
     let classes = ratios::partition(damped_hz)?;
     if classes.len() > 1 && classes.len() == damped_hz.len() {
@@ -137,7 +138,7 @@ fn class_impulses(
         most: MULTIPLE_MAX,
     })?;
     let decays: Vec<f64> = members.iter().map(|p| p.mode.decay()).collect();
-    // Modes that all participate with 0 count alike: they still must come to rest.
+    // Modes whose participations are all 0 count alike: they must come to rest too.
     let none = members.iter().all(|p| p.participation == 0.0);
     let swings = members
         .iter()
@@ -155,9 +156,10 @@ fn class_impulses(
     }
 }
 
-/// The product form: zero residual at every mode with one of these decay rates (in 1/s) and the antiperiod.
+/// Impulses of the product form, with zero residual at every mode that has this antiperiod and one of these decay
+/// rates in 1/s.
 ///
-/// Rates that differ by rounding only are one. One impulse more than there are distinct rates.
+/// Rates that differ by rounding only count as one. There is one impulse more than there are distinct rates.
 pub fn exact(antiperiod_s: f64, decays: &[f64]) -> Vec<Impulse> {
     const SAME: f64 = 1e-12;
     let mut sorted = decays.to_vec();
@@ -182,18 +184,18 @@ pub fn exact(antiperiod_s: f64, decays: &[f64]) -> Vec<Impulse> {
         .collect()
 }
 
-/// A mode in the units of the antiperiod.
+/// A mode with times in antiperiods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
     /// Participation `A_i`.
     pub amplitude: f64,
-    /// Odd multiple `m_i`.
+    /// Odd multiple `m_i` of the common divisor.
     pub multiple: f64,
-    /// Decay `σ_i T_a` in one antiperiod.
+    /// Decay `σ_i T_a` during one antiperiod.
     pub decay: f64,
 }
 
-/// The paper's two impulses: the sum of the modes has no velocity after the second.
+/// The paper's two impulses: after the second, the sum of the modes has no velocity.
 pub fn two_impulse(antiperiod_s: f64, swings: &[Swing]) -> Vec<Impulse> {
     let now: f64 = swings.iter().map(|s| s.amplitude * s.multiple).sum();
     let later: f64 = swings.iter().map(|s| s.amplitude * s.multiple * (-s.decay).exp()).sum();
@@ -203,7 +205,7 @@ pub fn two_impulse(antiperiod_s: f64, swings: &[Swing]) -> Vec<Impulse> {
         .to_vec()
 }
 
-/// The paper's three impulses, by Newton's method from the closed form at `T_a`, `2T_a`.
+/// The paper's three impulses, found by Newton's method from the closed form with times at `T_a` and `2T_a`.
 ///
 /// With `m_i` odd, `sin(m_i x) = U_i(x) sin x`, `U_i(x) = 1 + 2 Σ_j cos(2 j x)`, `j = 1 … (m_i − 1)/2`: all modes together are
 /// one oscillation at the common divisor. With `x_k = π(t_3 − t_k)/T_a`, `f_i = σ_i T_a/(π m_i)` and `I_3 = 1` the equations are
@@ -214,12 +216,12 @@ pub fn two_impulse(antiperiod_s: f64, swings: &[Swing]) -> Vec<Impulse> {
 /// 38, 37   Re, Im of Σ_k I_k x_k R'(x_k) = 0       (a common error of the frequencies)
 /// ```
 ///
-/// 36 is the displacement of the sum and 37 its derivative; 35 is *not* the velocity, which it equals only at multiples of
-/// `T_a`, where `U_i = m_i`. The form is inferred from solutions known to 16 digits, which satisfy all four to rounding, not
-/// read from the paper.
+/// Equation 36 is the displacement of the sum and 37 its derivative; 35 is *not* the velocity, which it equals only
+/// at multiples of `T_a`, where `U_i = m_i`. The equations were not read from the paper but inferred from solutions
+/// known to 16 digits, which satisfy all four to rounding.
 ///
 /// # Errors
-/// [`JointError::ThreeImpulse`] where there is no solution with positive amplitudes in order of time near there.
+/// [`JointError::ThreeImpulse`] where no solution near the start has positive amplitudes and ordered times.
 pub fn three_impulse(antiperiod_s: f64, swings: &[Swing]) -> Result<Vec<Impulse>, JointError> {
     let none = || JointError::ThreeImpulse { antiperiod_s };
     let response = Response(swings);
@@ -250,11 +252,13 @@ pub fn three_impulse(antiperiod_s: f64, swings: &[Swing]) -> Result<Vec<Impulse>
     Ok(impulses.collect())
 }
 
-/// The sum of the modes after one impulse, as an oscillation at the common divisor whose amplitude varies.
+/// Response of the sum of the modes to one impulse, written as an oscillation at the common divisor whose amplitude
+/// varies.
 struct Response<'a>(&'a [Swing]);
 
 impl Response<'_> {
-    /// `R(τ)` of [`three_impulse`], `time` antiperiods after the impulse, and its derivative with respect to `π·time`.
+    /// `R(τ)` of [`three_impulse`] with `time` in antiperiods after the impulse, and its derivative with respect to
+    /// `π·time`.
     fn at(&self, time: f64) -> [Complex<f64>; 2] {
         let angle = PI * time;
         let carrier = Complex::cis(angle);

@@ -1,8 +1,9 @@
-//! Bias-point extra insensitive: `zv-ei`, `zv-ei-2`, `zvd-ei`, `multi-ei`, `chebyshev-ei`, in closed form with damping.
+//! Bias-point extra-insensitive shapers: `zv-ei`, `zv-ei-2`, `zvd-ei`, `multi-ei`, `chebyshev-ei`, in closed form
+//! with damping.
 //!
-//! Impulses at whole half periods, and pairs of zeros spread round the mode so that the residual ripples between them up
-//! to the tolerance (Zhang and Li 2010, equations 7, 20 to 27; equal ripple of any order: Dolph 1946). With `T = π/ω_d`
-//! and `K = e^{−ζπ/√(1−ζ²)}` a pair of zeros with cosine `c` is
+//! The impulses stand at whole half periods. Pairs of zeros are spread round the mode so that the residual ripples
+//! between them up to the tolerance (Zhang and Li 2010, equations 7, 20 to 27; equal ripple of any order: Dolph
+//! 1946). With `T = π/ω_d` and `K = e^{−ζπ/√(1−ζ²)}` a pair of zeros with cosine `c` is
 //!
 //! ```text
 //! [1, −2cK, K²] / (1 − 2cK + K²)  at 0, T, 2T
@@ -20,17 +21,17 @@
 //! | `multi-ei` (undamped: the three-hump `ei`) | 2 | 1 |
 //! | `chebyshev-ei` | the order, 1 to 5 | 1 |
 //!
-//! **Damping** weighs the impulses of an undamped design for `V′` by `K^k`, with the `V′` for which the residual at the
-//! mode is the tolerance. That `V′` needs no search: of one factor in series the residual is the ratio of two values of the
-//! ripple polynomial `T_n`,
+//! **Damping** weighs the impulses of an undamped design for `V′` by `K^k`, with the `V′` for which the residual at
+//! the mode is the tolerance. No search is needed for `V′`: the residual of one factor in series is the ratio of two
+//! values of the ripple polynomial `T_n`,
 //!
 //! ```text
 //! V = K^{2n} V′ / Σ A_k(V′) K^k = K^n / T_n(z),     z = (2x + 1 − x_e)/(1 + x_e),   x = (K + 1/K)/2
 //! V = tolerance:  z = cosh(acosh(K^n/tolerance) / n),   x_e = (2x + 1 − z)/(1 + z)
 //! ```
 //!
-//! `V` falls as `z` grows, and `z` as `x_e`, so there is one solution or none: `V′ < 1` needs `z > x`, which is
-//! `tolerance < 2K^{2n}/(1 + K^{2n})`. All amplitudes are positive, at every tolerance and order.
+//! `V` falls as `z` grows, and `z` falls as `x_e` does, so there is one solution or none: `V′ < 1` needs `z > x`,
+//! which is `tolerance < 2K^{2n}/(1 + K^{2n})`. All amplitudes are positive, at every tolerance and order.
 
 use std::f64::consts::PI;
 
@@ -45,18 +46,21 @@ pub const ORDER_MAX: u32 = 5;
 /// An undamped bias-point shaper, impulses at `k·π/ω_sys`: what `periodic` repeats over its modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BiasPoint {
-    /// Amplitudes, symmetric, sum 1; the spacing is `π/ω_sys`.
+    /// Amplitudes, symmetric and with sum 1; the impulses are `π/ω_sys` apart.
     pub amplitudes: Vec<f64>,
     /// One-sided relative tolerance: the largest `λ` with `V ≤ tolerance` on `[1 − λ, 1 + λ]·ω_sys`.
     pub lambda: f64,
-    /// Angles `ω·π/ω_sys` in (0, π) of the zeros below `ω_sys`, each as often as it is one; those above lie as far above.
+    /// Angles `ω·π/ω_sys` in (0, π) of the zeros below `ω_sys`, repeated by multiplicity; the zeros above are their
+    /// mirror images.
     pub zeros_theta: Vec<f64>,
 }
 
-/// Designs the undamped base of `kind`; `order` counts the pairs of `chebyshev-ei` and is ignored by the others.
+/// Designs the undamped base of `kind`; `order` is the number of zero pairs of `chebyshev-ei` and ignored by other
+/// kinds.
 ///
 /// # Errors
-/// [`DesignError::BiasPoint`] for a tolerance outside (0, 1), an order outside 1..=[`ORDER_MAX`], a kind of another family.
+/// [`DesignError::BiasPoint`] for a tolerance outside (0, 1), an order outside 1..=[`ORDER_MAX`], or a kind of
+/// another family.
 pub fn undamped(kind: ShaperKind, order: u32, tolerance: f64) -> Result<BiasPoint, DesignError> {
     let ripple = Ripple::of(kind, order, tolerance)?;
     let edge = (ripple.factor_tolerance.recip().acosh() / f64::from(ripple.pairs)).cosh();
@@ -93,7 +97,7 @@ pub fn design(kind: ShaperKind, order: u32, mode: &Mode, tolerance: f64) -> Resu
     ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::no_sequence(kind, mode, cause))
 }
 
-/// What a kind consists of: `series` times the same equal ripple of `pairs` pairs of zeros.
+/// What a kind consists of: `series` factors with the same equal ripple of `pairs` pairs of zeros.
 #[derive(Debug, Clone, Copy)]
 struct Ripple {
     pairs: u32,
@@ -122,16 +126,16 @@ impl Ripple {
         }
     }
 
-    /// Cosine of the edge for which the damped residual is the tolerance, where there is one.
+    /// Cosine of the edge at which the damped residual is the tolerance; `None` where there is none.
     fn damped_edge(&self, ratio: f64) -> Option<f64> {
         let pairs = f64::from(self.pairs);
         let pole = f64::midpoint(ratio, ratio.recip());
         let image = ((ratio.powf(pairs) / self.factor_tolerance).acosh() / pairs).cosh();
-        // Not a number where the tolerance exceeds what K^n alone leaves: no solution either.
+        // The image is NaN where the tolerance exceeds what K^n alone leaves: then there is no solution either.
         (image > pole && image.is_finite()).then(|| (2.0 * pole + 1.0 - image) / (1.0 + image))
     }
 
-    /// Cosines of the zeros' angles, those of all factors.
+    /// Cosines of the zeros' angles, of all factors together.
     fn cosines(&self, edge_cosine: f64) -> Vec<f64> {
         let one = (1..=self.pairs).map(|k| {
             let ripple = (f64::from(2 * k - 1) * PI / f64::from(2 * self.pairs)).cos();
@@ -141,7 +145,7 @@ impl Ripple {
         one.repeat(self.series as usize)
     }
 
-    /// Amplitudes of the pairs in series; `ratio` is `K`.
+    /// Amplitudes of the pairs convolved; `ratio` is `K`.
     fn amplitudes(&self, cosines: &[f64], ratio: f64) -> Vec<f64> {
         let mut amplitudes = vec![1.0];
         for cosine in cosines {
@@ -158,14 +162,15 @@ impl Ripple {
         amplitudes
     }
 
-    /// Damping up to which the tolerance can be left: `K^{2n} = tolerance/(2 − tolerance)` for one factor.
+    /// Largest damping ratio at which the tolerance can be reached: `K^{2n} = tolerance/(2 − tolerance)` for one
+    /// factor.
     fn largest_damping(&self) -> f64 {
         let power = self.factor_tolerance / (2.0 - self.factor_tolerance);
         let decrement = -power.ln() / f64::from(2 * self.pairs) / PI;
         decrement / (1.0 + decrement * decrement).sqrt()
     }
 
-    /// Tolerance up to which the damping has a solution.
+    /// Largest tolerance for which a solution exists at this damping.
     fn largest_tolerance(&self, ratio: f64) -> f64 {
         let power = ratio.powi(2 * self.pairs as i32);
         (2.0 * power / (1.0 + power)).powi(self.series as i32)
@@ -275,7 +280,7 @@ mod tests {
                 Err(DesignError::BiasPoint { .. })
             ));
         }
-        // Damping at which K, or a tolerance at which 1/V, has no place in f64.
+        // Damping ratios at which K, or tolerances at which 1/V, cannot be represented in f64.
         assert!(design(ShaperKind::ZvEi, 1, &mode(1.0 - 1e-16), 0.05).is_err());
         assert!(design(ShaperKind::ChebyshevEi, 5, &mode(0.9), 1e-300).is_ok());
     }

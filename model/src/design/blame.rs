@@ -1,7 +1,8 @@
-//! Which key of the machine file an impossible design comes from, and which change makes it possible.
+//! Finds the key of the machine file behind an impossible design, and the change that makes it possible.
 //!
-//! A shaper that is too long, or has too many taps, is designed again with one thing changed at a time: a lower sample rate,
-//! a kind of shaper that is shorter, a lower order, another way of digitising. What then fits is proposed, with its figure.
+//! A shaper that is too long, or has too many taps, is designed again with one thing changed at a time: a lower
+//! sample rate, a shorter kind of shaper, a lower order, another way of digitising. Changes that fit are proposed,
+//! with their number of taps.
 
 use super::{DesignError, JointError, design_axis, optimal};
 use crate::design::kind::ShaperKind;
@@ -13,27 +14,28 @@ use posicast_optimal::OptimalError;
 
 /// A mode below this is most likely given in kHz.
 const UNLIKELY_HZ: f64 = 1.0;
-/// Sample rates above so many times the fastest mode are proposed: below, its ringing is hardly sampled.
+/// Only sample rates of at least this many samples per period of the fastest mode are proposed: below, its ringing is
+/// hardly sampled.
 const SAMPLES_PER_PERIOD: f64 = 8.0;
-/// Sample rates that are tried, at most: each is a design.
+/// Largest number of sample rates that are tried; each is a design.
 const MOST_RATES: usize = 24;
-/// Kinds that are tried in the place of a longer one, the least sensitive first.
+/// Kinds that are tried in place of a longer one, the most insensitive first.
 const SHORTER_KINDS: [ShaperKind; 4] = [ShaperKind::TwoHumpEi, ShaperKind::Zvd, ShaperKind::Ei, ShaperKind::Zv];
 
-/// What to blame for a design that cannot be.
+/// The key to blame for a design that is impossible.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DesignBlame {
     /// Index of the axis, from 0.
     pub axis: usize,
-    /// Index of its mode, from 0, where it is one's key.
+    /// Index of the mode, from 0, where the key belongs to a mode.
     pub mode: Option<usize>,
     /// The dotted key.
     pub key: String,
-    /// What makes it possible, where that was found.
+    /// A change that makes the design possible, where one was found.
     pub remedy: Option<String>,
 }
 
-/// The key that an error of this machine's design comes from; nothing where no axis of it is concerned.
+/// The key that a design error of this machine comes from; `None` where the error is not about an axis of it.
 pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
     let of_axis = |name: &str| machine.axes.iter().position(|axis| axis.name == name);
     let shaper = |axis: usize| DesignBlame {
@@ -168,7 +170,8 @@ fn place_of(machine: &Machine, mode: &Mode) -> Option<(usize, usize)> {
     places.next()
 }
 
-/// A shaper that lasts longer than any ring buffer: that of a mode far too slow, or of too many samples.
+/// Blames a shaper that lasts longer than any ring buffer on a mode that is far too slow, or on too high a sample
+/// rate.
 fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
     let section = &machine.axes[axis];
     let slowest = section.modes.iter().enumerate();
@@ -196,7 +199,7 @@ fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
     })
 }
 
-/// The changes with which an axis of too many taps fits a table, each alone.
+/// The changes with each of which alone an axis of too many taps fits a table.
 fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
     let section = &machine.axes[axis];
     let mut found: Vec<String> = rate_that_fits(machine, axis)
@@ -221,7 +224,7 @@ fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
     (!found.is_empty()).then(|| format!("each of these fits a table of {TAPS_MAX}: {}", found.join("; ")))
 }
 
-/// The largest lower sample rate, in whole hertz, at which an axis has a table, with its taps.
+/// The largest lower sample rate, in whole hertz, at which an axis has a table, with its number of taps.
 fn rate_that_fits(machine: &Machine, axis: usize) -> Option<(String, usize)> {
     let section = &machine.axes[axis];
     let fastest_hz = section
@@ -249,7 +252,7 @@ fn rate_that_fits(machine: &Machine, axis: usize) -> Option<(String, usize)> {
     })
 }
 
-/// The largest lower order that fits, of the axis's shaper.
+/// The largest lower order of the axis's shaper that fits, with its number of taps.
 fn lower_order(machine: &Machine, section: &AxisSection) -> Option<(u32, usize)> {
     let order = section.modes.iter().map(|mode| section.order_of(mode)).max()?;
     (1..order).rev().find_map(|order| {
@@ -260,7 +263,7 @@ fn lower_order(machine: &Machine, section: &AxisSection) -> Option<(u32, usize)>
     })
 }
 
-/// The axis with one kind for all its modes; nothing where it has that, or no modes.
+/// The axis with one kind for all its modes; `None` where it has that already, or has no modes.
 fn with_kind(section: &AxisSection, kind: ShaperKind) -> Option<AxisSection> {
     let is_new = section.modes.iter().any(|mode| section.kind_of(mode) != kind);
     let mut changed = section.clone();
@@ -269,7 +272,7 @@ fn with_kind(section: &AxisSection, kind: ShaperKind) -> Option<AxisSection> {
     is_new.then_some(changed)
 }
 
-/// Taps of an axis at a machine's sample rate, if a table holds them.
+/// Number of taps of an axis at the machine's sample rate, if a table holds them.
 fn taps(section: &AxisSection, how: Digitise, machine: &Machine) -> Option<usize> {
     let design = design_axis(section, machine.clock.sample_hz).ok()?;
     let digitised = digitise(&design, how, machine.clock.sample_hz).ok()?;

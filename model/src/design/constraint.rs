@@ -1,11 +1,11 @@
-//! What is asked of a simultaneous shaper.
+//! Constraints of a simultaneous shaper.
 
-/// Amplitudes of the impulses.
+/// Sequence of amplitudes of the impulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amplitudes {
-    /// 1, −2, 2, …: partial sums −1 and 1.
+    /// Amplitudes 1, −2, 2, …, with partial sums between −1 and 1.
     PartialSum,
-    /// 1, −1, 1, …: partial sums 0 and 1.
+    /// Amplitudes 1, −1, 1, …, with partial sums 0 and 1.
     UnitMagnitude,
 }
 
@@ -30,9 +30,9 @@ impl Amplitudes {
 /// What must be zero at a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Constraint {
-    /// The residual.
+    /// The residual is zero.
     Zv,
-    /// The residual and its derivatives for frequency and damping.
+    /// The residual and its derivatives with respect to frequency and damping are zero.
     Zvd,
 }
 

@@ -1,11 +1,12 @@
-//! What becomes of shapers that are good alone, once they are convolved.
+//! What convolution does to the bounds of shapers that keep them alone.
 //!
-//! Pole sums multiply: at mode `j` the axis leaves `V_j = Π_i g_ij`, with `g_ij` the residual of mode `i`'s shaper at mode
-//! `j`, its *cross gain*. Positive shapers have `g ≤ 1`, so a tolerance can only get better. Negative ones reach 3 and more:
-//! the 5 % that an EI leaves at its own mode become 17 % (negative-impulse paper, table 5 and its notes). Partial sums
-//! multiply as well: two shapers within −1 … 1 make one within −3 … 5, and the drive is asked for five times the step.
+//! Pole sums multiply: at mode `j` the axis leaves `V_j = Π_i g_ij`, with `g_ij` the residual of mode `i`'s shaper at
+//! mode `j`, its *cross gain*. Positive shapers have `g ≤ 1`, so a tolerance can only get better. Negative ones reach
+//! 3 and more: the 5 % that an EI leaves at its own mode become 17 % (negative-impulse paper, table 5 and its notes).
+//! Partial sums multiply as well: two shapers within −1 … 1 make one within −3 … 5, which asks the drive for five
+//! times the step.
 //!
-//! Both are warned of, with what to do; neither is an error, for a machine may have the room.
+//! Both cause a warning that says what to do. Neither is an error, because the machine may have the room.
 
 use std::fmt;
 
@@ -16,7 +17,7 @@ use crate::impulse::PartialSums;
 use crate::machine_file::AxisSection;
 use crate::mode::Mode;
 
-/// A sum or residual beyond its bound by less than this share is rounding.
+/// A partial sum or residual that exceeds its bound by less than this fraction is a rounding error.
 const ROUNDING: f64 = 1e-6;
 
 /// An axis's shaper as the convolution of its modes' shapers.
@@ -24,57 +25,57 @@ const ROUNDING: f64 = 1e-6;
 pub struct ConvolutionFigures {
     /// Range of the shaped unit step.
     pub partial_sums: PartialSums,
-    /// Largest magnitude of a partial sum: what the drive is asked for, in steps.
+    /// Largest magnitude of a partial sum, in steps: the peak that the drive is asked for.
     pub peak_command: f64,
-    /// What each mode's shaper does at every other mode; empty for a shaper that treats all modes together.
+    /// Residual of each mode's shaper at every other mode; empty for a shaper that treats all modes together.
     pub cross_gains: Vec<CrossGain>,
-    /// What the convolution spoils.
+    /// Bounds that the convolution breaks.
     pub warnings: Vec<ConvolutionWarning>,
 }
 
-/// What the shaper of one mode does at another mode.
+/// Residual of one mode's shaper at another mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossGain {
-    /// Mode that the shaper is for, as a position in the file, from 0.
+    /// Index, from 0 in the order of the file, of the mode that the shaper is designed for.
     pub shaper: usize,
     /// Kind of that shaper.
     pub kind: ShaperKind,
-    /// Mode at which its residual vibration is taken, as a position in the file, from 0.
+    /// Index, from 0 in the order of the file, of the mode at which the residual is taken.
     pub at: usize,
-    /// Residual vibration there: factor by which it scales what the other shapers leave.
+    /// Residual vibration there, by which what the other shapers leave is multiplied.
     pub gain: f64,
 }
 
-/// What a convolution spoils, and what to do about it: the text is for the user.
+/// A bound that a convolution breaks, with what to do about it: the text is for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ConvolutionWarning {
-    /// A shaped step moves beyond −1 … 1.
+    /// The shaped step leaves the range −1 … 1.
     PartialSums {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The kinds that are convolved.
+        /// The kinds that are convolved, joined by `+`.
         kind: String,
         /// Range of the shaped unit step.
         sums: PartialSums,
     },
-    /// Other modes' shapers lift what a mode's own shaper leaves above the tolerance.
+    /// The shapers of other modes raise the residual of a mode's own shaper above its tolerance.
     Tolerance {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The mode.
+        /// The mode whose tolerance is exceeded.
         mode: Mode,
-        /// Its kind.
+        /// Kind of its shaper.
         kind: ShaperKind,
-        /// Residual of the whole axis there.
+        /// Residual of the whole axis at the mode.
         residual: f64,
         /// Its tolerance.
         tolerance: f64,
-        /// Product of the cross gains there.
+        /// Product of the cross gains at the mode.
         gain: f64,
     },
 }
 
-/// The figures of `design`, which is that of `axis`.
+/// The figures of `design`, which must be the design of `axis`.
 pub fn convolution_figures(axis: &AxisSection, design: &AxisDesign) -> ConvolutionFigures {
     let partial_sums = design.impulses.partial_sums();
     let mut figures = ConvolutionFigures {

@@ -1,7 +1,7 @@
-//! `custom`: the impulses of the machine file as they are.
+//! `custom`: the impulses of the machine file, unchanged.
 //!
-//! First time 0, times increasing, amplitudes that sum to 1 within 1e-9. Nothing is promised at any mode; the residual that
-//! is reported says what the impulses do.
+//! The first time is 0, times increase, and the amplitudes sum to 1 within 1e-9. No residual is promised at any mode;
+//! the reported residual says what the impulses do.
 
 use super::DesignError;
 use crate::impulse::{Impulse, ImpulseSequence};
@@ -9,7 +9,7 @@ use crate::impulse::{Impulse, ImpulseSequence};
 /// Takes `(time_s, amplitude)` pairs of the axis `axis`.
 ///
 /// # Errors
-/// [`DesignError::NoSequence`] names the rule that the list breaks, and where.
+/// [`DesignError::NoSequence`] names the rule that the list breaks, and the impulse.
 pub fn design(axis: &str, pairs: &[(f64, f64)]) -> Result<ImpulseSequence, DesignError> {
     let impulses = pairs.iter().map(|&(time_s, amplitude)| Impulse { time_s, amplitude });
     ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::NoSequence {

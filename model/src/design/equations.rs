@@ -1,7 +1,8 @@
-//! Equations on the residual of a shaper, with their exact derivatives: what the EI and the negative kinds are solved from.
+//! Equations on the residual of a shaper, with exact derivatives, from which the EI and the negative kinds are
+//! solved.
 //!
-//! Times are in undamped periods, frequencies are ratios `w` to the mode's. Referred to the last impulse, as the residual
-//! is, so that nothing grows, and with `p = 2π(ζ + j√(1−ζ²))`,
+//! Times are in undamped periods, frequencies are ratios `w` to the mode's. Everything is referred to the last
+//! impulse, as the residual is, so that nothing grows. With `p = 2π(ζ + j√(1−ζ²))`,
 //!
 //! ```text
 //! R(w) = Σ A_i e^{q_i w},   q_i = p t_i − 2πζ t_n            V(w) = |R(w)|
@@ -10,20 +11,20 @@
 //! hump at w:          |R(w)| = V and Re(conj(R) R′) = 0       two: as high as the tolerance, and a peak
 //! ```
 //!
-//! Unknowns are the amplitudes (or none of them, where they are fixed), the times but the first, and some of the ratios,
-//! in this order. Every row also has its derivative along a path of damping and tolerance, which the equations are followed
-//! on ([`super::path`]).
+//! The unknowns are, in this order: the amplitudes (none where they are fixed), the times after the first, and some
+//! of the ratios. Every row also has its derivative along a path of damping and tolerance, along which
+//! [`super::path`] follows the equations.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Where on its path a system of equations stands, and in which direction that leads.
+/// A position on the path of a system of equations, with the direction of the path there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     /// Damping ratio.
     pub damping: f64,
-    /// Tolerance: height of the humps.
+    /// Tolerance, which is the height of the humps.
     pub tolerance: f64,
     /// Change of the damping along the path.
     pub damping_rate: f64,
@@ -31,44 +32,44 @@ pub(super) struct Point {
     pub tolerance_rate: f64,
 }
 
-/// A frequency ratio at which something is asked for.
+/// A frequency ratio at which a condition is set.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Ratio {
-    /// Given.
+    /// A given ratio.
     Fixed(f64),
-    /// Solved for: its value, and its place among the unknown ratios.
+    /// An unknown ratio: its value, and its index among the unknown ratios.
     Free(f64, usize),
 }
 
-/// Values, derivatives by the unknowns, and derivative along the path.
+/// Values of the equations with their derivatives.
 #[derive(Debug, Clone)]
 pub(super) struct Linearised {
-    /// What is to become zero.
+    /// Values, which a solution makes zero.
     pub values: DVector<f64>,
-    /// Derivatives by the unknowns.
+    /// Derivatives with respect to the unknowns.
     pub jacobian: DMatrix<f64>,
     /// Derivatives along the path.
     pub path: DVector<f64>,
 }
 
-/// Rows under construction for one set of impulses.
+/// Builder of the rows for one set of impulses.
 pub(super) struct Equations<'a> {
     amplitudes: &'a [f64],
     times: &'a [f64],
     amplitudes_free: bool,
     point: Point,
-    /// `p` and its derivative by the damping.
+    /// `p` and its derivative with respect to the damping.
     pole: Complex<f64>,
     pole_rate: Complex<f64>,
     system: Linearised,
     row: usize,
 }
 
-/// `R` and `R′` at a ratio, or derivatives of both.
+/// `R` and `R′` at a ratio, or a derivative of both.
 type Pair = [Complex<f64>; 2];
 
 impl<'a> Equations<'a> {
-    /// No rows yet, of `count` for as many unknowns.
+    /// Starts a system of `count` rows for as many unknowns.
     pub(super) fn new(
         amplitudes: &'a [f64],
         times: &'a [f64],
@@ -93,7 +94,7 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// The amplitudes sum to one.
+    /// Adds the condition that the amplitudes sum to one.
     pub(super) fn unit_sum(mut self) -> Self {
         self.system.values[self.row] = self.amplitudes.iter().sum::<f64>() - 1.0;
         for column in 0..self.amplitudes.len() {
@@ -103,7 +104,7 @@ impl<'a> Equations<'a> {
         self
     }
 
-    /// Nothing is left at the ratio.
+    /// Adds the condition that the residual is zero at the ratio.
     pub(super) fn zero(mut self, ratio: Ratio) -> Self {
         self.rows(
             ratio,
@@ -114,7 +115,7 @@ impl<'a> Equations<'a> {
         self
     }
 
-    /// Nothing is left at the mode, and nothing of first order next to it.
+    /// Adds the conditions that the residual and its first derivative are zero at the mode.
     pub(super) fn stationary_zero(mut self) -> Self {
         let mode = Ratio::Fixed(1.0);
         self.rows(mode, |[sum, _]| [sum.re, sum.im], |[sum, _]| [sum.re, sum.im], [0.0; 2]);
@@ -127,7 +128,7 @@ impl<'a> Equations<'a> {
         self
     }
 
-    /// The residual has a peak of the tolerance at the ratio.
+    /// Adds the conditions that the residual has a peak of the height of the tolerance at the ratio.
     pub(super) fn hump(mut self, ratio: Ratio) -> Self {
         let [sum, slope] = self.at(ratio).0;
         let power = self.point.tolerance * self.point.tolerance;
@@ -148,13 +149,13 @@ impl<'a> Equations<'a> {
         self
     }
 
-    /// The system, once it has all its rows.
+    /// Returns the system once it has all its rows.
     pub(super) fn finish(self) -> Linearised {
         self.system
     }
 
-    /// Two rows: values from `R` and `R′`, derivatives from those of `R` and `R′`; `tolerance_path` is the derivative by
-    /// what else changes along the path.
+    /// Adds two rows: values from `R` and `R′`, derivatives from theirs. `tolerance_path` is the derivative with
+    /// respect to what else changes along the path.
     fn rows(
         &mut self,
         ratio: Ratio,
@@ -177,7 +178,8 @@ impl<'a> Equations<'a> {
         self.row += 2;
     }
 
-    /// `R` and `R′` at a ratio; their derivatives by the unknowns, with columns; and by the damping.
+    /// `R` and `R′` at a ratio, their derivatives with respect to the unknowns, each with its column, and with
+    /// respect to the damping.
     fn at(&self, ratio: Ratio) -> (Pair, Vec<(usize, Pair)>, Pair) {
         let w = match ratio {
             Ratio::Fixed(w) | Ratio::Free(w, _) => w,
@@ -207,7 +209,7 @@ impl<'a> Equations<'a> {
                 columns.push((times_from + index - 1, [by_time * w, by_time * (rate * w + 1.0)]));
             }
         }
-        // The last time also moves what all is referred to.
+        // The last time is also the reference of all terms.
         if let Some((_, [by_sum, by_slope])) = columns.last_mut() {
             *by_sum -= sum * (self.pole.re * w);
             *by_slope -= (sum + slope * w) * self.pole.re;
@@ -223,7 +225,7 @@ impl<'a> Equations<'a> {
 mod tests {
     use super::*;
 
-    /// Every kind of row for three impulses, two unknown ratios: the unknowns as one vector.
+    /// A system with every kind of row, for three impulses and two unknown ratios; the unknowns are one vector.
     fn system(x: &DVector<f64>, damping: f64, tolerance: f64) -> Linearised {
         let point = Point {
             damping,

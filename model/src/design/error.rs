@@ -1,4 +1,4 @@
-//! Why a shaper cannot be designed.
+//! Errors of shaper design.
 
 use thiserror::Error;
 
@@ -10,50 +10,51 @@ use crate::impulse::ImpulseError;
 use crate::mode::Mode;
 use crate::unit::short;
 
-/// Why a machine has no shapers. Every message names the axis or the mode, what is allowed, and what to do.
+/// Why a machine cannot get shapers. Every message names the axis or the mode, what is allowed, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DesignError {
-    /// A kind that this version parses and does not design.
+    /// The kind parses, but this version does not design it.
     #[error("not built in this version: {kind}")]
     NotBuilt {
         /// The kind.
         kind: ShaperKind,
     },
-    /// A kind per mode, and no mode.
+    /// The kind designs one shaper per mode, and the axis has no mode.
     #[error(
         "axis {axis}: shaper {kind:?} needs at least one [[axis.mode]]; without modes use kind \"none\" or \"custom\""
     )]
     NoModes {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Its kind.
+        /// Kind of its shaper.
         kind: String,
     },
-    /// A mode whose own shaper is one that serves whole axes.
+    /// A mode's own shaper is of a kind that serves whole axes.
     #[error(
         "axis {axis}, mode {hz} Hz: shaper \"{kind}\" treats all modes of an axis together; name it in [axis.shaper], \
          or give this mode a kind for one mode, such as zv, zvd or ei",
         hz = short(mode.frequency_hz)
     )]
     JointKindOfOneMode {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The kind.
+        /// The kind that treats all modes together.
         kind: ShaperKind,
         /// The mode.
         mode: Mode,
     },
-    /// A frequency or damping that no mode has.
+    /// The mode has an invalid frequency or damping ratio.
     #[error(
         "mode {hz} Hz with damping {damping}: the frequency must be positive and finite, the damping in [0, 1)",
         hz = short(mode.frequency_hz), damping = short(mode.damping)
     )]
     Mode {
-        /// The mode.
+        /// The invalid mode.
         mode: Mode,
     },
-    /// A tolerance that no EI shaper has.
-    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} is none that it is solved for: take one above {least:e} and below {most}, \
+    /// The tolerance is outside the range that the EI kind is solved for.
+    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} is outside the range that is solved: take one \
+        above {least:e} and below {most}, \
          or \"zv\" or \"zvd\", which need none",
         hz = short(mode.frequency_hz))]
     Tolerance {
@@ -63,12 +64,12 @@ pub enum DesignError {
         mode: Mode,
         /// The tolerance found.
         tolerance: f64,
-        /// Smallest that is solved.
+        /// Smallest tolerance that is solved.
         least: f64,
-        /// Largest that is solved.
+        /// Largest tolerance that is solved.
         most: f64,
     },
-    /// An invalid bias-point shaper.
+    /// Tolerance, order or kind of a bias-point shaper is invalid.
     #[error(
         "shaper \"{kind}\" with tolerance {tolerance} and order {order}: zv-ei, zv-ei-2, zvd-ei, multi-ei and chebyshev-ei \
          take a tolerance between 0 and 1, both excluded, chebyshev-ei an order of 1 to 5"
@@ -76,12 +77,12 @@ pub enum DesignError {
     BiasPoint {
         /// The kind.
         kind: ShaperKind,
-        /// Its order.
+        /// Order that was asked for.
         order: u32,
-        /// The tolerance.
+        /// Tolerance that was asked for.
         tolerance: f64,
     },
-    /// A damping beyond those that the kind is solved for.
+    /// The damping ratio is larger than the kind is solved for.
     #[error(
         "shaper \"{kind}\" takes a damping of 0 to {most}; the mode at {hz} Hz has {damping}: use \"{instead}\" for this mode",
         hz = short(mode.frequency_hz), damping = short(mode.damping)
@@ -91,12 +92,12 @@ pub enum DesignError {
         kind: ShaperKind,
         /// The mode.
         mode: Mode,
-        /// Largest damping of the kind.
+        /// Largest damping ratio of the kind.
         most: f64,
-        /// A kind that takes this damping.
+        /// A kind that allows this damping ratio.
         instead: ShaperKind,
     },
-    /// Newton's method lost the solution on the way to the damping and tolerance.
+    /// Newton's method lost the solution on the way to this damping and tolerance.
     #[error(
         "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: no solution found beyond {percent:.0} % of the way from the \
          undamped shaper; use \"zv\" or \"zvd\" for this mode",
@@ -107,10 +108,10 @@ pub enum DesignError {
         kind: ShaperKind,
         /// The mode.
         mode: Mode,
-        /// Share of the way, 0 to 1.
+        /// Fraction of the way that was reached, 0 to 1.
         reached: f64,
     },
-    /// No shaper of the kind leaves this tolerance at this damping.
+    /// No shaper of the kind has this tolerance at this damping ratio.
     #[error(
         "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {}; the mode at {hz} Hz has \
          {damping}{}use \"zv\" or \"zvd\" for this mode",
@@ -122,14 +123,15 @@ pub enum DesignError {
         kind: ShaperKind,
         /// The mode.
         mode: Mode,
-        /// The tolerance.
+        /// Tolerance that was asked for.
         tolerance: f64,
-        /// Damping up to which the kind exists for this tolerance.
+        /// Largest damping ratio at which the kind exists for this tolerance.
         largest_damping: f64,
-        /// Tolerance up to which the kind exists at this damping; `None` if it exists at none that is solved for.
+        /// Largest tolerance for which the kind exists at this damping ratio; `None` if it exists for none that is
+        /// solved.
         largest_tolerance: Option<f64>,
     },
-    /// A design that does not do what its kind promises: numbers beyond what `f64` resolves.
+    /// The finished design does not do what its kind promises, because `f64` cannot resolve its numbers.
     #[error(
         "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: its residual is {found:e} instead of {promised}; \
          the mode is too extreme to compute with",
@@ -145,79 +147,79 @@ pub enum DesignError {
         /// Residual that the kind promises.
         promised: f64,
     },
-    /// Impulses that are no shaper.
+    /// The impulses are not a valid sequence.
     #[error("{what}: {cause}")]
     NoSequence {
-        /// Which shaper.
+        /// The shaper that has these impulses.
         what: String,
         /// The rule that they break.
         cause: ImpulseError,
     },
-    /// A convolution beyond all tables.
+    /// A convolution has more impulses than any table holds.
     #[error(
         "axis {axis}: the shapers of its modes give {found} impulses, more than {IMPULSES_MAX}; \
          use fewer modes or shorter kinds"
     )]
     TooManyImpulses {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Impulses before coincident ones merge.
+        /// Number of impulses before coincident ones are merged.
         found: usize,
     },
-    /// Modes without a shaper in common.
+    /// The modes have no common shaper.
     #[error("{0}")]
     Joint(#[from] JointError),
-    /// The same, with the axis whose modes they are.
+    /// An error about all modes of an axis, with the axis.
     #[error("axis {axis}: shaper \"{kind}\": {cause}")]
     JointOfAxis {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Its kind.
+        /// Kind of its shaper.
         kind: ShaperKind,
-        /// What is wrong.
+        /// The error.
         cause: Box<DesignError>,
     },
-    /// A family whose tables leave out a part of the range.
+    /// The listed tables of a family do not cover a part of the range.
     #[error(
         "axis {axis}: no table keeps the residual within the tolerance from {low} to {high}; {needed} tables cover all points: {values}"
     )]
     FamilyGap {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Where the tables below end.
+        /// Value at which the range of the tables below ends.
         low: String,
-        /// Where the tables above begin.
+        /// Value at which the range of the tables above begins.
         high: String,
-        /// Tables that cover the range.
+        /// Number of tables that cover the range.
         needed: usize,
-        /// What to write.
+        /// Values to write into the file.
         values: String,
     },
-    /// A family of more tables than a driver is to hold.
+    /// A family needs more tables than a driver may hold.
     #[error("axis {axis}: more than {most} tables would be needed to cover all points")]
     FamilySize {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Most tables.
+        /// Largest number of tables.
         most: usize,
     },
-    /// A table of a family that leaves too much at its own value.
+    /// A table of a family leaves more than the tolerance at its own value, or hardly less.
     #[error(
         "axis {axis}: at {value} the table that is designed for just this value leaves more than the tolerance, or hardly less"
     )]
     FamilyUncovered {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Value of the variable.
+        /// Value of the variable for which the table was designed.
         value: String,
     },
-    /// A shaper without a tap table.
+    /// The shaper has no tap table.
     #[error(transparent)]
     Table(#[from] DigitiseError),
 }
 
 impl DesignError {
-    /// Impulses of a kind at a mode that are no shaper.
+    /// Makes the error for a kind whose impulses at a mode are not a valid sequence.
     pub(super) fn no_sequence(kind: ShaperKind, mode: &Mode, cause: ImpulseError) -> Self {
         DesignError::NoSequence {
             what: format!(
@@ -229,7 +231,7 @@ impl DesignError {
         }
     }
 
-    /// What a design leaves, against what its kind promises.
+    /// Checks the residual of a design against what its kind promises.
     pub(super) fn verify(kind: ShaperKind, mode: &Mode, found: f64, promised: f64, accuracy: f64) -> Result<(), Self> {
         if (found - promised).abs() <= accuracy {
             Ok(())
@@ -243,7 +245,7 @@ impl DesignError {
         }
     }
 
-    /// A mode that can be designed for, or the error.
+    /// Checks that a mode can be designed for.
     pub(super) fn check_mode(mode: &Mode) -> Result<(), Self> {
         let frequency = mode.frequency_hz.is_finite() && mode.frequency_hz > 0.0;
         if frequency && (0.0..1.0).contains(&mode.damping) {
@@ -266,7 +268,7 @@ fn tolerance_limit(largest: Option<f64>) -> String {
     )
 }
 
-/// A limit to four decimals, or as many digits if it is small, that still lies within it.
+/// Rounds a limit down to four decimals, or to more where it is small, so that the result is still within it.
 fn rounded_down(limit: f64) -> String {
     if limit >= 0.01 {
         format!("{}", (limit * 1e4).floor() / 1e4)

@@ -10,24 +10,26 @@
 //!                                  down: to the table below               one third on the way down
 //! ```
 //!
-//! A table covers the connected range of the variable round its own value on which the residual vibration of its integer taps is at
-//! most the tolerance of each mode, and what rounding the coefficients may add, `Σ|c_i/2^F − a_i|`. An EI kind leaves just its tolerance
-//! at its own value, and a little more beside it where the damping changes too: it may leave a tenth more than there. Neighbours overlap,
-//! so that at every value a table is within tolerance; the thresholds lie a third of an overlap apart, so that noise of the variable changes no
-//! table to and fro, and a third from its ends, so that there is time for the change.
+//! A table covers the connected range of the variable round its own value on which the residual vibration of its
+//! integer taps is at most the tolerance of each mode plus what rounding the coefficients may add,
+//! `Σ|c_i/2^F − a_i|`. An EI kind leaves exactly its tolerance at its own value, and a little more beside it where
+//! the damping changes too; there it may exceed its own residual by a tenth. Neighbours overlap, so that at every
+//! value a table is within tolerance. The thresholds lie a third of an overlap apart, so that noise of the variable
+//! does not switch tables to and fro, and a third from its ends, so that there is time for the change.
 //!
-//! # What a hand-over adds
-//! The shaper hands over by increments: those of the command before the change go through the old table A, later ones through the new
-//! table B (`docs/shaper.md`). So the shaped command is the sum of two, each shaped by one table: the command up to the change, where it
-//! stops at once, and the rest, which starts at once. A command that stops or starts at velocity `v` without a shaper leaves a mode
-//! ringing with the amplitude `v/ω_d`, and its shaper leaves the part `V` of that. A hand-over at velocity `v` therefore adds at most
+//! # What a handover adds
+//! The shaper hands over by increments: those of the command before the change go through the old table A, later ones
+//! through the new table B (`docs/shaper.md`). So the shaped command is the sum of two, each shaped by one table: the
+//! command up to the change, where it stops at once, and the rest, which starts at once. A command that stops or
+//! starts at velocity `v` without a shaper leaves a mode ringing with the amplitude `v/ω_d`, and its shaper leaves
+//! the fraction `V` of that. A handover at velocity `v` therefore adds at most
 //!
 //! ```text
 //! (V_A + V_B) · v / ω_d
 //! ```
 //!
-//! to the amplitude of a mode that keeps its frequency until both tables have passed; nothing at rest. `model/tests/family.rs` tries
-//! it on random machines, and on one whose mode moves meanwhile.
+//! to the amplitude of a mode that keeps its frequency until both tables have passed; at rest it adds nothing.
+//! `model/tests/family.rs` tries it on random machines, and on one whose mode moves meanwhile.
 
 use super::{AxisDesign, AxisTables, DesignError, design_axis};
 use crate::analysis::{residual_vibration_at, tap_impulses};
@@ -37,24 +39,25 @@ use crate::machine_file::{AxisSection, Digitise, FamilySection, MAX_TABLES};
 use crate::mode::Mode;
 use crate::unit::short;
 
-/// Slack of a tolerance, as of every insensitivity.
+/// Factor by which a residual may exceed its tolerance, as in every insensitivity.
 const SLACK: f64 = 1.0 + 1e-6;
-/// What a table may leave beside its own value, as a multiple of what it leaves there, if that is more than the tolerance.
+/// Largest residual of a table beside its own value, as a multiple of that at its value, where this exceeds the
+/// tolerance.
 const BESIDE: f64 = 1.1;
-/// Largest change of a mode's frequency from step to step of a search along the variable.
+/// Largest relative change of a mode's frequency in one step of a search along the variable.
 const FREQUENCY_STEP: f64 = 2e-3;
-/// A range is searched in at least so many steps.
+/// Smallest number of steps in which a range is searched.
 const LEAST_STEPS: f64 = 256.0;
-/// Bisections for the end of a range: to 1e-9 of a step.
+/// Number of bisections for the end of a range: to 1e-9 of a step.
 const BISECTIONS: usize = 30;
-/// Bisections for the value of the next table: each is a design. To 1/1024 of the range.
+/// Number of bisections for the value of the next table, each of which is a design: to 1/1024 of the range.
 const VALUE_BISECTIONS: usize = 10;
-/// Part of the way from a table's value to its end by which the next one overlaps it, at least and at most.
+/// Smallest and largest overlap of a table with the next one, as a fraction of the way from its value to its end.
 const OVERLAP: [f64; 2] = [0.15, 0.8];
-/// Parts of an overlap: below both thresholds, between them, and above them.
+/// Number of parts of an overlap: below both thresholds, between them, and above them.
 const PARTS: f64 = 3.0;
 
-/// The tables of an axis whose modes move, in the order of the variable.
+/// The tables of an axis whose modes move, in increasing order of the variable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableFamily {
     /// Index of the axis, from 0.
@@ -63,27 +66,28 @@ pub struct TableFamily {
     pub nominal: usize,
     /// The tables.
     pub members: Vec<FamilyMember>,
-    /// So many tables cover the range; fewer than `members` where the file asks for more.
+    /// Number of tables that cover the range; fewer than `members` where the file asks for more.
     pub needed: usize,
 }
 
 /// A table of a family.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FamilyMember {
-    /// Value of the variable that it is designed for.
+    /// Value of the variable for which it is designed.
     pub value: f64,
-    /// Where every mode's residual is within its tolerance, within the range of the family.
+    /// Part of the family's range in which every mode's residual is within its tolerance.
     pub covers: [f64; 2],
-    /// Below this value the host changes to the table before; negative infinity for the first.
+    /// Threshold below which the host changes to the table before; negative infinity for the first table.
     pub down: f64,
-    /// Above this value the host changes to the table after; infinity for the last.
+    /// Threshold above which the host changes to the table after; infinity for the last table.
     pub up: f64,
-    /// The table at its stages.
+    /// The table, with the design and the real taps that it was made of.
     pub tables: AxisTables,
 }
 
 impl TableFamily {
-    /// The table for a value, where that of index `now` is in use: that one up to its thresholds, then the next, and so on.
+    /// Index of the table for a value, where table `now` is in use: it stays in use up to its thresholds, then the
+    /// next one is, and so on.
     pub fn choose(&self, now: usize, value: f64) -> usize {
         let mut chosen = now.min(self.members.len().saturating_sub(1));
         while chosen > 0 && value < self.members[chosen].down {
@@ -95,8 +99,8 @@ impl TableFamily {
         chosen
     }
 
-    /// How fast the variable may change, per second: then a table is still within its tolerance when what it was last asked for has passed
-    /// through it. Infinite for a single table.
+    /// Largest rate of the variable, per second, at which a table is still within its tolerance when the last command
+    /// that it was given has passed through it. Infinite for a single table.
     pub fn fastest_per_s(&self, sample_hz: f64) -> f64 {
         let pairs = self.members.windows(2).map(|pair| {
             let longest = pair
@@ -109,7 +113,7 @@ impl TableFamily {
         pairs.fold(f64::INFINITY, f64::min)
     }
 
-    /// Most taps of a table.
+    /// Largest number of taps of a table.
     pub fn most_taps(&self) -> usize {
         let taps = self.members.iter().map(|member| member.tables.table.taps().len());
         taps.max().unwrap_or(0)
@@ -124,7 +128,7 @@ impl TableFamily {
         delays.max().unwrap_or(0)
     }
 
-    /// Amplitude that a hand-over from the table of index `from` to that of index `to` adds at most to this mode, per unit of velocity, in
+    /// Largest amplitude that a handover from table `from` to table `to` adds to this mode, per unit of velocity, in
     /// seconds: `(V_A + V_B)/ω_d`.
     pub fn handover_bound_s(&self, from: usize, to: usize, mode: &Mode, sample_hz: f64) -> f64 {
         let residual = |index: usize| {
@@ -135,7 +139,7 @@ impl TableFamily {
     }
 }
 
-/// A table of a family before it is rounded.
+/// A table of a family before its coefficients are rounded.
 pub(super) struct Candidate {
     pub(super) value: f64,
     pub(super) section: AxisSection,
@@ -145,17 +149,19 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// Its longest delay.
+    /// Its longest delay in seconds.
     fn longest_s(&self, sample_hz: f64) -> f64 {
         let last = self.digitised.taps.last();
         last.map_or(0.0, |tap| f64::from(tap.delay_samples)) / sample_hz
     }
 }
 
-/// The tables of an axis before rounding, in the order of the variable, and how many are needed; nothing where no mode moves.
+/// Designs the tables of an axis before rounding, in increasing order of the variable, and counts how many are
+/// needed; `None` where no mode moves.
 ///
 /// # Errors
-/// [`DesignError`] where a value has no design, its table is beyond the tolerance at its own value, or neighbours do not overlap.
+/// [`DesignError`] where a value has no design, its table exceeds the tolerance at its own value, or neighbours do
+/// not overlap.
 pub(super) fn candidates(
     axis: &AxisSection,
     how: Digitise,
@@ -190,10 +196,10 @@ pub(super) fn candidates(
     Ok((given, chosen.len()))
 }
 
-/// The family of an axis from its rounded tables.
+/// Makes the family of an axis from its rounded tables.
 ///
 /// # Errors
-/// [`DesignError::FamilyGap`] where rounding has parted two neighbours.
+/// [`DesignError::FamilyGap`] where rounding left two neighbours without an overlap.
 pub(super) fn of_tables(
     index: usize,
     axis: &AxisSection,
@@ -249,7 +255,7 @@ pub(super) fn of_tables(
     })
 }
 
-/// The first part of the range that no table covers, or in which neighbours only touch.
+/// The first part of the range that no table covers, or in which neighbours only touch; `None` if there is none.
 fn gap(covers: &[[f64; 2]], range: [f64; 2]) -> Option<[f64; 2]> {
     let mut reached = range[0];
     for (place, [low, high]) in covers.iter().enumerate() {
@@ -279,7 +285,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// As few tables as cover the range, from the nominal value to both sides, each as far from the last as overlaps it.
+    /// As few tables as cover the range, from the nominal value to both sides, each as far from the last as their
+    /// overlap allows.
     fn fewest(&self) -> Result<Vec<Candidate>, DesignError> {
         let [low, high] = self.family.range;
         let mut members = vec![self.at(self.family.nominal)?];
@@ -306,7 +313,7 @@ impl Search<'_> {
         }
     }
 
-    /// The table farthest from `from` towards `end` that overlaps it.
+    /// The table farthest from `from` towards `end` that still overlaps it.
     fn next(&self, from: &Candidate, end: f64) -> Result<Candidate, DesignError> {
         let upward = end > from.value;
         let (near, far) = match upward {
@@ -316,7 +323,7 @@ impl Search<'_> {
         let edge = from.covers[far];
         let way = (edge - from.value).abs();
         let overlaps = |candidate: &Candidate| {
-            // At full speed, what went into a table must be out of it before its range ends.
+            // At full speed, the command that went into a table must have left it before its range ends.
             let passed =
                 PARTS * self.fastest_per_s() * from.longest_s(self.sample_hz).max(candidate.longest_s(self.sample_hz));
             let overlap = passed.clamp(OVERLAP[0] * way, OVERLAP[1] * way);
@@ -329,7 +336,7 @@ impl Search<'_> {
         if overlaps(&last) {
             return Ok(last);
         }
-        // One at the edge itself overlaps it, unless the tolerance of the two is hardly any.
+        // A table at the edge itself overlaps this one, unless the tolerance of the two is very small.
         let mut best = self.at(edge)?;
         if !overlaps(&best) {
             return Err(DesignError::FamilyUncovered {
@@ -348,13 +355,14 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// How fast the variable may change by the machine file: a position at the axis's velocity, of others nothing is known.
+    /// Largest rate of the variable by the machine file: the axis's velocity for a position; infinite for others, of
+    /// which nothing is known.
     fn fastest_per_s(&self) -> f64 {
         let velocity = self.axis.limits.and_then(|limits| limits.velocity);
         velocity.filter(|_| self.family.is_position()).unwrap_or(0.0)
     }
 
-    /// The table for a value.
+    /// Designs the table for a value.
     fn at(&self, value: f64) -> Result<Candidate, DesignError> {
         let section = self.axis.at_value(value);
         let design = design_axis(&section, self.sample_hz)?;
@@ -377,8 +385,8 @@ impl Search<'_> {
     }
 }
 
-/// The connected range of the variable round `value` on which no mode's residual is above what is allowed; a point where it is above
-/// its tolerance there.
+/// The connected range of the variable round `value` on which every mode's residual is within its bound; a single
+/// point where a mode exceeds its tolerance at `value` itself.
 fn covered(axis: &AxisSection, family: &FamilySection, impulses: &[Impulse], value: f64, rounding: f64) -> [f64; 2] {
     let limits = axis.modes.iter().map(|mode| {
         let tolerance = axis.tolerance_of(mode) * SLACK + rounding;
@@ -405,7 +413,7 @@ fn covered(axis: &AxisSection, family: &FamilySection, impulses: &[Impulse], val
     })
 }
 
-/// A step from `from` towards `end`, or to it, in which no mode's frequency changes much.
+/// Next value on the way from `from` to `end`, at most `end`, such that no mode's frequency changes much.
 fn step(axis: &AxisSection, family: &FamilySection, from: f64, end: f64) -> f64 {
     let longest = (family.range[1] - family.range[0]) / LEAST_STEPS;
     let mut step = (end - from).clamp(-longest, longest);
@@ -419,11 +427,11 @@ fn step(axis: &AxisSection, family: &FamilySection, from: f64, end: f64) -> f64 
     while !hardly_changes(step) && from + step / 2.0 != from {
         step /= 2.0;
     }
-    // The end itself, not what rounding makes of it.
+    // This returns exactly `end`, without the rounding of a sum.
     if step == end - from { end - from } else { step }
 }
 
-/// The end of a range between a value inside and one outside.
+/// Bisects for the end of a range between a value inside and one outside.
 fn bisected(mut inside: f64, mut outside: f64, within: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = f64::midpoint(inside, outside);
@@ -435,7 +443,8 @@ fn bisected(mut inside: f64, mut outside: f64, within: impl Fn(f64) -> bool) -> 
     inside
 }
 
-/// Residual of impulses in order of time, referred to the last one, zero or not: a tap that rounds to zero does not change it by a jump.
+/// Residual of impulses in order of time, referred to the last one even where it is zero, so that a tap that rounds
+/// to zero does not change the residual by a jump.
 fn residual(impulses: &[Impulse], mode: &Mode) -> f64 {
     residual_vibration_at(impulses, mode, impulses.last().map_or(0.0, |last| last.time_s))
 }

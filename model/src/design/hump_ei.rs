@@ -1,8 +1,9 @@
-//! Extra insensitive with one, two and three humps: `ei`, `two-hump-ei`, `three-hump-ei`, exact for damping.
+//! Extra-insensitive shapers with one, two and three humps: `ei`, `two-hump-ei`, `three-hump-ei`, exact with damping.
 //!
-//! `m + 1` impulses whose residual is zero at `m` frequencies and has a peak of the tolerance at the `m − 1` between them;
-//! the middle one of these 2m − 1 frequencies is the mode's (Singhose, Seering and Singer 1994; Singhose, Porter, Tuttle and
-//! Singer 1997). So the frequency may be off further than for the `zv` power of the same length.
+//! A shaper has `m + 1` impulses. Its residual is zero at `m` frequencies and peaks at the tolerance at the `m − 1`
+//! between them; the middle one of these 2m − 1 frequencies is the mode's (Singhose, Seering and Singer 1994;
+//! Singhose, Porter, Tuttle and Singer 1997). It therefore allows a larger error of the frequency than the `zv` power
+//! of the same length.
 //!
 //! ```text
 //! w_1 < … < w_{2m−1},  w_m = 1          R(w_k) = 0 for odd k,   |R(w_k)| = V and d|R|/dw = 0 for even k,   Σ A = 1, t_1 = 0
@@ -11,8 +12,8 @@
 //! ```
 //!
 //! (`R`: `equations.rs`.) The undamped solution is followed along the damping (`path.rs`) for as long as its
-//! amplitudes are positive and its impulses and frequencies in order. The published fits are not used: theirs is a residual
-//! of 4.88 to 5.04 % where 5 % is asked for.
+//! amplitudes are positive and its impulses and frequencies are in order. The published fits are not used: where 5 %
+//! is asked for, they leave a residual of 4.88 to 5.04 %.
 
 use std::f64::consts::PI;
 
@@ -26,26 +27,27 @@ use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// Smallest tolerance that is solved for; below it, the shaper is a power of `zv` to three digits and more.
+/// Smallest tolerance that is solved for; below it, the shaper equals a power of `zv` to at least three digits.
 pub const TOLERANCE_MIN: f64 = 1e-6;
-/// Largest tolerance that is solved for; at 1 nothing is left to shape.
+/// Largest tolerance that is solved for; at 1 there would be nothing left to shape.
 pub const TOLERANCE_MAX: f64 = 0.9;
 
-/// Longest step along the damping.
+/// Longest step in the damping ratio.
 const LONGEST_STEP: f64 = 0.1;
-/// Shortest step, at which the branch counts as ended: where zeros and humps close up, it ends within some hundred of these.
+/// Shortest step, at which the branch counts as ended: where zeros and humps meet, it ends within some hundred of
+/// these.
 const SHORTEST_STEP: f64 = 1e-7;
 /// Relative accuracy of the largest tolerance that an error names.
 const LIMIT_ACCURACY: f64 = 1e-3;
 /// Largest deviation of the finished shaper from its zeros and humps.
 const VERIFIED: f64 = 1e-9;
 
-/// A shaper with humps.
+/// An EI shaper with its zeros and humps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HumpEi {
     /// The impulses.
     pub impulses: ImpulseSequence,
-    /// Frequency ratios at which nothing rings, increasing.
+    /// Frequency ratios at which the residual is zero, increasing.
     pub zeros: Vec<f64>,
     /// Frequency ratios between them at which the residual peaks at the tolerance, increasing.
     pub humps: Vec<f64>,
@@ -54,9 +56,9 @@ pub struct HumpEi {
 /// Designs an `ei`, `two-hump-ei` or `three-hump-ei` shaper with humps of `tolerance`.
 ///
 /// # Errors
-/// [`DesignError::Tolerance`] outside [`TOLERANCE_MIN`]..=[`TOLERANCE_MAX`]; [`DesignError::NoSolution`] above the damping
-/// at which the solution ends, an amplitude becomes negative or two impulses meet; [`DesignError::NotBuilt`] for a kind of
-/// another family.
+/// [`DesignError::Tolerance`] outside [`TOLERANCE_MIN`]..=[`TOLERANCE_MAX`]; [`DesignError::NoSolution`] above the
+/// damping at which the solution ends because an amplitude becomes negative or two impulses meet;
+/// [`DesignError::NotBuilt`] for a kind of another family.
 pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<HumpEi, DesignError> {
     DesignError::check_mode(mode)?;
     let zeros = match kind {
@@ -110,12 +112,12 @@ pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<HumpEi, D
 struct Shape {
     amplitudes: Vec<f64>,
     times: Vec<f64>,
-    /// Zeros and humps in turn, increasing.
+    /// Zeros and humps alternately, increasing.
     ratios: Vec<f64>,
 }
 
-/// Largest tolerance for which the branch reaches a damping, found by halving: the damping at which it ends falls with the
-/// tolerance. `None` if it does not even for the smallest.
+/// Largest tolerance for which the branch reaches this damping, found by bisection: the damping at which the branch
+/// ends falls with the tolerance. `None` if it does not reach it even for the smallest.
 fn largest_tolerance(zeros: usize, damping: f64) -> Option<f64> {
     let exists = |tolerance| Path::new(zeros, damping, tolerance).follow().is_ok();
     if !exists(TOLERANCE_MIN) {
@@ -133,8 +135,8 @@ fn largest_tolerance(zeros: usize, damping: f64) -> Option<f64> {
     Some(known)
 }
 
-/// The way from no damping to the wanted one, for the kind with `zeros` zeros. The tolerance stays: along another way round
-/// the folds of the solution one would reach other sheets of it, with the same tolerance and damping.
+/// The path from no damping to the wanted damping, for the kind with `zeros` zeros. The tolerance stays constant:
+/// other paths, round the folds of the solution, would reach other sheets with the same tolerance and damping.
 #[derive(Debug, Clone, Copy)]
 struct Path {
     zeros: usize,
@@ -151,21 +153,22 @@ impl Path {
         }
     }
 
-    /// Follows the solution to the end; the error is how far it exists, 0 to 1.
+    /// Follows the solution to the end. The error is the fraction of the path, 0 to 1, on which it exists.
     fn follow(&self) -> Result<DVector<f64>, f64> {
-        // The same steps in damping whatever damping is wanted, so that all see the branch end at the same one.
+        // The steps in damping do not depend on the wanted damping, so that every design sees the branch end at the
+        // same place.
         let [longest, shortest] = [LONGEST_STEP, SHORTEST_STEP].map(|step| step / self.damping.max(LONGEST_STEP));
         follow(self, self.undamped(), longest, shortest)
     }
 
-    /// The equal ripple without damping.
+    /// The unknowns of the equal-ripple solution without damping.
     fn undamped(&self) -> DVector<f64> {
         let count = self.zeros;
         let edge = (self.tolerance.recip().acosh() / count as f64).cosh().recip();
         let cosine = |k: usize| edge * (k as f64 * PI / (2 * count) as f64).cos();
         let mut amplitudes = vec![1.0];
         for k in (1..=count).step_by(2) {
-            // The middle zero stands alone, every other has its mirror above the mode.
+            // The middle zero stands alone; every other one has a mirror image above the mode.
             let pair = 1.0 - 2.0 * cosine(k) * cosine(k);
             let factor = if k == count {
                 vec![0.5, 0.5]
@@ -230,7 +233,8 @@ impl Branch for Path {
         equations.finish()
     }
 
-    /// As the tolerance goes to 0, so do the differences from the power of `zv`: with its `m`-th root those of the ratios.
+    /// As the tolerance goes to 0, the differences from the power of `zv` do too; those of the ratios with its `m`-th
+    /// root.
     fn units(&self, _: f64) -> DVector<f64> {
         let spread = self.tolerance.powf((self.zeros as f64).recip());
         let ratios_from = 2 * self.zeros + 1;
@@ -310,7 +314,8 @@ mod tests {
 
     #[test]
     fn unit_the_branch_ends_where_others_found_it_and_the_error_names_both_limits() {
-        // Damping at which the branch ends by tolerance, for ei, two and three humps; beyond 0.4 none was looked for.
+        // Damping at which the branch ends for a tolerance, for one, two and three humps; beyond 0.4 no end was
+        // looked for.
         for (tolerance, ends) in [
             (0.05, [None, None, Some(0.276)]),
             (0.1, [None, Some(0.290), Some(0.206)]),

@@ -1,4 +1,4 @@
-//! Kinds that treat all modes of an axis together: from the keys of the machine file to their designs.
+//! Kinds that treat all modes of an axis together: reads the keys of the machine file and designs the shaper.
 
 use super::antisymmetric::{self, Antisymmetric, AntisymmetricMethod, Participant};
 use super::constraint::{Amplitudes, Constraint};
@@ -13,10 +13,10 @@ use crate::impulse::ImpulseSequence;
 use crate::machine_file::{AxisSection, DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE};
 use crate::mode::Mode;
 
-/// What a design found out beside its impulses.
+/// Results of a design beside its impulses.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Findings {
-    /// Nothing.
+    /// The kind has no further results.
     #[default]
     None,
     /// All solutions of `periodic`.
@@ -94,7 +94,7 @@ fn design_antisymmetric(axis: &AxisSection) -> Result<(ImpulseSequence, Findings
     });
     let participants: Vec<Participant> = participants.collect();
     let found = antisymmetric::design(&participants, method, ratio_tolerance)?;
-    // The paper's damped impulses and ratios with a tolerance leave what they leave.
+    // The paper's damped impulses, and ratios with a tolerance, leave a residual that is only reported.
     if method == AntisymmetricMethod::Exact && ratio_tolerance == 0.0 {
         check_zeros(ShaperKind::Antisymmetric, &found.impulses, axis)?;
     }

@@ -1,4 +1,4 @@
-//! Why a kind that treats all modes of an axis together has no shaper for them.
+//! Errors of the kinds that treat all modes of an axis together.
 
 use thiserror::Error;
 
@@ -9,34 +9,34 @@ use crate::unit::{short, show_seconds};
 /// Why the modes of an axis have no common shaper. Modes are counted from 1, in the order of the file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum JointError {
-    /// Two modes that are one.
+    /// Two modes are equal.
     #[error("modes {first} and {second} coincide at {hz} Hz: leave one of them out", hz = short(mode.frequency_hz))]
     Coincident {
-        /// Position of the first.
+        /// Number of the first mode.
         first: usize,
-        /// Position of the second.
+        /// Number of the second mode.
         second: usize,
         /// The mode.
         mode: Mode,
     },
-    /// A base that does not repeat over the modes.
+    /// The kind cannot be the base of `periodic`.
     #[error("no base \"{0}\": choose zv-ei, multi-ei or chebyshev-ei")]
     Base(ShaperKind),
-    /// An invalid search limit.
+    /// The search limit is invalid.
     #[error(
         "lowest_frequency_hz {lowest} with these modes means more than {most} periods to search; \
          raise lowest_frequency_hz to {least} or above",
         lowest = short(*lowest_hz), least = short(*least_hz)
     )]
     SearchRange {
-        /// The limit found.
+        /// The search limit of the file.
         lowest_hz: f64,
         /// Most odd multiples per mode that are searched.
         most: u32,
-        /// Smallest limit that is searched.
+        /// Smallest search limit that is allowed.
         least_hz: f64,
     },
-    /// No frequency whose odd multiples come near enough to every mode.
+    /// No frequency has odd multiples close enough to every mode.
     #[error(
         "no periodic solution above lowest_frequency_hz {lowest}: no frequency has odd multiples within {lambda:.4} of it \
          of every mode; use a wider base (\"chebyshev-ei\" with order 5), a larger tolerance, a smaller \
@@ -46,10 +46,10 @@ pub enum JointError {
     NoPeriodicSolution {
         /// The search limit.
         lowest_hz: f64,
-        /// One-sided relative width of the base.
+        /// One-sided relative width of the base's insensitivity.
         lambda: f64,
     },
-    /// Damping moves a mode above the tolerance.
+    /// Damping raises the residual of a mode above its tolerance.
     #[error(
         "the mode at {hz} Hz, damping {damping}, keeps a residual of {found:.6}, above its tolerance {tolerance}: the \
          amplitudes are those of undamped modes; raise the tolerance, or use a kind for each mode such as \"zvd\"",
@@ -63,16 +63,16 @@ pub enum JointError {
         /// Its tolerance.
         tolerance: f64,
     },
-    /// Frequencies without a usable common divisor.
+    /// The frequencies have no usable common divisor.
     #[error(
         "the damped frequencies {frequencies_hz} Hz have no common divisor whose multiples stay below {most}, so no \
          antiperiod that a shaper could wait for; set ratio_tolerance to the accuracy of the frequencies, or use a kind \
          for each mode such as \"zv\""
     )]
     NoCommonDivisor {
-        /// The frequencies, as text.
+        /// The damped frequencies in Hz, as text.
         frequencies_hz: String,
-        /// Largest multiple of the lowest mode.
+        /// Largest multiple of the divisor that the lowest mode may have.
         most: u64,
     },
     /// No two modes share an antiperiod.
@@ -83,11 +83,11 @@ pub enum JointError {
         divisor = short(*divisor_hz)
     )]
     NoAntisymmetry {
-        /// The frequencies, as text.
+        /// The damped frequencies in Hz, as text.
         frequencies_hz: String,
         /// The multiples of the common divisor, as text.
         multiples: String,
-        /// Common divisor.
+        /// Common divisor in Hz.
         divisor_hz: f64,
     },
     /// Newton's method found no three impulses.
@@ -97,21 +97,21 @@ pub enum JointError {
         antiperiod = show_seconds(*antiperiod_s, 4)
     )]
     ThreeImpulse {
-        /// Antiperiod.
+        /// Antiperiod in seconds.
         antiperiod_s: f64,
     },
-    /// An invalid constraint.
+    /// The kind cannot be a mode's constraint.
     #[error("a mode with shaper \"{0}\": under \"simultaneous\" a mode takes zv or zvd")]
     Constraint(ShaperKind),
-    /// More than is solved for.
+    /// There are more modes than can be solved together.
     #[error("{found} modes: 1 to {most} are solved together; use a kind for each mode such as \"ps-zv\"")]
     TooManyModes {
-        /// Modes found.
+        /// Number of modes of the axis.
         found: usize,
-        /// Most that are solved.
+        /// Largest number of modes.
         most: usize,
     },
-    /// No sequence of bounded impulses was found.
+    /// No sequence of impulses with bounded partial sums was found.
     #[error(
         "no {impulses} impulses of amplitudes {amplitudes} were found that meet all constraints of these modes: frequencies \
          far apart need more impulses than constraints; use a kind for each mode such as \"ps-zv\" or \"zv\""
@@ -122,15 +122,15 @@ pub enum JointError {
         /// Their amplitudes, as text.
         amplitudes: &'static str,
     },
-    /// A bound or an order of `vibrationless` that is not solved.
+    /// The bound or the order of `vibrationless` is not solved.
     #[error(
         "shaper \"vibrationless\" with order {order} and epsilon {epsilon}: the orders 1 to {most} are solved, this one for \
          epsilon from {least:e} to {largest}; take an epsilon there, a lower order, or \"zvdd\""
     )]
     Vibrationless {
-        /// Order asked for.
+        /// Order that was asked for.
         order: u32,
-        /// Bound asked for.
+        /// Bound that was asked for.
         epsilon: f64,
         /// Largest order.
         most: u32,
@@ -151,14 +151,14 @@ pub enum JointError {
          start, and R and K no longer describe it; use a longer start, or fewer frequencies"
     )]
     ShortStart {
-        /// Length of the start control.
+        /// Length of the start in seconds.
         start_s: f64,
-        /// Sum of the delays.
+        /// Sum of the delays of the half sums in seconds.
         filter_s: f64,
     },
 }
 
-/// Finds two modes that are one, to the rounding of decimals.
+/// Checks that no two modes are equal to the rounding of decimals.
 pub(super) fn check_distinct(modes: &[Mode]) -> Result<(), JointError> {
     const SAME: f64 = 1e-9;
     for (second, mode) in modes.iter().enumerate() {
@@ -176,7 +176,7 @@ pub(super) fn check_distinct(modes: &[Mode]) -> Result<(), JointError> {
     Ok(())
 }
 
-/// Frequencies as messages list them.
+/// Writes frequencies as messages list them.
 pub(super) fn list(values: &[f64]) -> String {
     let texts: Vec<String> = values.iter().map(|value| short(*value)).collect();
     texts.join(", ")

@@ -1,4 +1,4 @@
-//! The kinds of shaper by name.
+//! The kinds of shaper and their names.
 
 use std::fmt;
 
@@ -65,7 +65,7 @@ impl ShaperKind {
         (ShaperKind::None, "none"),
     ];
 
-    /// The name in the machine file.
+    /// Name in the machine file.
     pub fn name(self) -> &'static str {
         Self::ALL
             .iter()
@@ -73,12 +73,13 @@ impl ShaperKind {
             .map_or("", |(_, name)| name)
     }
 
-    /// The kind of that name, if there is one.
+    /// The kind with this name; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, n)| *n == name).map(|(kind, _)| *kind)
     }
 
-    /// Whether this version designs the kind; the others parse and end in `not built in this version`.
+    /// Whether this version designs the kind. The machine file accepts the names of the others, and then reports
+    /// `not built in this version`.
     pub fn is_built(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! All axes of a machine, from the machine file to tap tables with one `F`.
+//! Designs all axes of a machine: from the machine file to tap tables with one common `F`.
 
 use super::family::{self, TableFamily};
 use super::matching::{self, AxisDelay, StageDelay};
@@ -12,54 +12,55 @@ use crate::taps::TapTable;
 /// The shapers of a machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MachineDesign {
-    /// Sample rate that the tables are for, in Hz.
+    /// Sample rate of the tables in Hz.
     pub sample_hz: f64,
-    /// `F` of all tables.
+    /// Fraction bits `F` of all coefficients.
     pub coefficient_fraction: u32,
     /// One entry per axis, in the order of the file.
     pub axes: Vec<AxisTables>,
-    /// The tables of each axis whose modes move; the nominal one of each is the axis's own.
+    /// The table families of the axes whose modes move. The nominal table of a family is that of the axis.
     pub families: Vec<TableFamily>,
-    /// What is left between the axes' delays, where the file has `[stage]`.
+    /// Remaining difference between the axes' delays, where the file has `[stage]`.
     pub stage: Option<StageDelay>,
 }
 
-/// The shaper of one axis at its three stages: float, on the grid, integers.
+/// The shaper of one axis at its three stages: continuous impulses, real taps, integer taps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisTables {
-    /// Impulses in continuous time.
+    /// The design: impulses in continuous time.
     pub design: AxisDesign,
-    /// Real taps: what the float design computes with. Where the file has `[stage]`, as late as the other axes'.
+    /// Real taps, with which the float design computes. Where the file has `[stage]`, they are delayed like the other
+    /// axes'.
     pub digitised: Digitised,
-    /// Integer taps of these: what the hardware computes with.
+    /// Integer taps, rounded from the real ones, with which the hardware computes.
     pub table: TapTable,
-    /// What the axis's delay is made of.
+    /// The parts of the axis's delay.
     pub delay: AxisDelay,
 }
 
-/// What an axis's shaper leaves at one of its modes.
+/// Residual vibration and insensitivity of an axis's shaper at one of its modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeFigures {
     /// The mode.
     pub mode: Mode,
-    /// Tolerance that `insensitivity` is for.
+    /// Tolerance at which `insensitivity` is measured.
     pub tolerance: f64,
     /// Residual vibration of the impulses.
     pub residual: f64,
     /// Insensitivity of the impulses; `None` if `residual` exceeds the tolerance.
     pub insensitivity: Option<Insensitivity>,
-    /// Residual vibration of the real taps, as of the last integer tap: where the last real tap rounds to zero, the two
-    /// could not be compared otherwise.
+    /// Residual vibration of the real taps, referred to the time of the last integer tap: where the last real tap
+    /// rounds to zero, the two could not be compared otherwise.
     pub residual_digitised: f64,
-    /// Residual vibration of the integer taps: the guaranteed one.
+    /// Residual vibration of the integer taps: the figure that is guaranteed.
     pub residual_quantised: f64,
 }
 
 /// Designs, digitises and quantises the shapers of all axes; with `[stage]` their delays are made equal in between.
 ///
 /// # Errors
-/// [`DesignError`] names the axis, what was found, what is allowed and what to do. Nothing large is allocated for a shaper
-/// that no hardware holds.
+/// [`DesignError`] names the axis, what was found, what is allowed and what to do. A shaper that no hardware holds is
+/// refused before anything large is allocated.
 pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
     let sample_hz = machine.clock.sample_hz;
     let how = machine.fixed_point.digitise;
@@ -71,7 +72,7 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
         designs.push((axis, design, digitised));
         families.push(family::candidates(axis, how, sample_hz)?);
     }
-    // The tables of the axes first, then those of the families: one F serves all, and one delay.
+    // The tables of the axes come first, then those of the families: all have one F and one delay.
     let members = families.iter().flat_map(|(candidates, _)| candidates);
     let members = members.map(|candidate| (&candidate.section, &candidate.design, &candidate.digitised));
     let all: Vec<_> = designs
@@ -114,27 +115,27 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
 }
 
 impl MachineDesign {
-    /// The family of an axis, where its modes move.
+    /// The table family of an axis; `None` where its modes do not move.
     pub fn family_of(&self, axis: usize) -> Option<&TableFamily> {
         self.families.iter().find(|family| family.axis == axis)
     }
 }
 
 impl AxisTables {
-    /// `Σ |c_i/2^F − a_i|`.
+    /// Sum of the rounding errors of the coefficients, `Σ |c_i/2^F − a_i|`.
     pub fn quantising_error(&self) -> f64 {
         quantising_error(&self.digitised, &self.table)
     }
 
-    /// How far the hardware's output can be from [`Digitised::shape`] for these command words, in LSB, saturation excluded:
-    /// `(max x − min x) · Σ |c_i/2^F − a_i| + ½`.
+    /// Largest distance, in LSB, between the hardware's output and [`Digitised::shape`] for these command words,
+    /// saturation excluded: `(max x − min x) · Σ |c_i/2^F − a_i| + ½`.
     pub fn output_bound_lsb(&self, command: &[i64]) -> f64 {
         let highest = command.iter().max().map_or(0.0, |word| *word as f64);
         let lowest = command.iter().min().map_or(0.0, |word| *word as f64);
         (highest - lowest) * self.quantising_error() + 0.5
     }
 
-    /// The figures at every mode of the axis that was designed, in the order of the file.
+    /// The figures at every mode of `axis`, which must be the one that was designed, in the order of the file.
     pub fn mode_figures(&self, axis: &AxisSection, sample_hz: f64) -> Vec<ModeFigures> {
         let continuous = self.design.impulses.impulses();
         let real = self.digitised.impulses(sample_hz);

@@ -1,4 +1,4 @@
-//! Equal total delay of the axes of a stage, folded into their tap tables.
+//! Equal total delays of the axes of a stage, made by delaying their tap tables.
 //!
 //! ```text
 //! own   = Σ a_i d_i / f_s          the shaper's mean, of its real taps
@@ -7,45 +7,46 @@
 //! added = total − own              whole samples in every delay, the fraction f as (1 − f, f), then rounding
 //! ```
 //!
-//! A ramp comes out of every axis `total` late, so that a straight line at any angle stays one, and a circle keeps its shape
-//! but for what the shapers' different lengths smooth away. `2ζ/ω` is the delay of a mode at low frequencies; modes one behind
-//! the other add it up. It counts where the loop is closed before the modes; where the loop's own position is the load's (a torque
-//! drive with its encoder on the load, or a scale that closes the loop), the controller takes it out, and it is 0.
+//! A ramp comes out of every axis `total` late, so that a straight line at any angle stays straight, and a circle
+//! keeps its shape except for what the shapers' different lengths smooth away. `2ζ/ω` is the delay of a mode at low
+//! frequencies; the delays of modes in series add up. They count where the loop is closed before the modes. Where the
+//! loop's own position is the load's (a torque drive with its encoder on the load, or a scale that closes the loop),
+//! the controller compensates them, and they count as 0.
 //!
-//! What rounding the coefficients leaves is the mismatch that is reported: with `e_i = c_i/2^F − a_i`, whose sum is 0, at most
-//! `½·(d_n − d_1)·Σ|e_i|` samples per axis.
+//! Rounding the coefficients leaves the mismatch that is reported: with `e_i = c_i/2^F − a_i`, whose sum is 0, it is
+//! at most `½·(d_n − d_1)·Σ|e_i|` samples per axis.
 
 use crate::digitise::{DigitiseError, Digitised};
 use crate::machine_file::{AxisSection, DriveMode, Machine, ScaleUse};
 use crate::taps::TapTable;
 
-/// What the delay of an axis is made of, in seconds, from the command to the load under a ramp.
+/// The parts of an axis's delay in seconds, from the command to the load, for a ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisDelay {
-    /// Mean of the shaper's real taps, before anything is added.
+    /// Mean delay of the shaper's real taps, before anything is added.
     pub shaper_s: f64,
     /// Lag of the axis's modes, `Σ 2ζ/ω`.
     pub mode_lag_s: f64,
-    /// What was folded into the table, in samples; 0 without `[stage]`.
+    /// Delay that was added to the table, in samples; 0 without `[stage]`.
     pub added_samples: f64,
-    /// The same in seconds.
+    /// Delay that was added to the table, in seconds.
     pub added_s: f64,
-    /// What rounding the coefficients adds or takes.
+    /// Change of the delay by rounding the coefficients.
     pub rounding_s: f64,
 }
 
 impl AxisDelay {
-    /// Total before the coefficients are rounded.
+    /// Total delay before the coefficients are rounded.
     pub fn designed_s(&self) -> f64 {
         self.shaper_s + self.mode_lag_s + self.added_s
     }
 
-    /// Total of the integer table.
+    /// Total delay of the integer table.
     pub fn total_s(&self) -> f64 {
         self.designed_s() + self.rounding_s
     }
 
-    /// The same with what rounding to `table` leaves.
+    /// Returns the delay with what rounding to `table` changes.
     pub(super) fn of_table(self, digitised: &Digitised, table: &TapTable, sample_hz: f64) -> Self {
         Self {
             rounding_s: (table.mean_delay_samples() - digitised.mean_delay_samples()) / sample_hz,
@@ -54,19 +55,19 @@ impl AxisDelay {
     }
 }
 
-/// What is left between the axes of a stage.
+/// The remaining difference between the delays of a stage's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StageDelay {
     /// Total delay of every axis before the coefficients are rounded, in seconds.
     pub total_s: f64,
-    /// Largest difference of two axes' totals after it, in seconds.
+    /// Largest difference between two axes' totals after rounding, in seconds.
     pub mismatch_s: f64,
-    /// Speed at which the mismatch counts, in m/s: the file's, else the smallest velocity limit of the axes.
+    /// Speed at which the mismatch is reported, in m/s: the file's, else the smallest velocity limit of the axes.
     pub contour_speed: Option<f64>,
 }
 
 impl StageDelay {
-    /// The figures of a machine with `[stage]`.
+    /// Delay figures of a machine with `[stage]`; `None` without.
     pub(super) fn of_machine(machine: &Machine, delays: &[AxisDelay]) -> Option<Self> {
         let stage = machine.stage.as_ref()?;
         let totals = || delays.iter().map(AxisDelay::total_s);
@@ -81,13 +82,13 @@ impl StageDelay {
         })
     }
 
-    /// How far apart two axes are at the contour speed, in µm; nothing where there is no speed.
+    /// Distance between two axes at the contour speed, in µm; `None` where there is no speed.
     pub fn mismatch_um(&self) -> Option<f64> {
         self.contour_speed.map(|speed| self.mismatch_s * speed * 1e6)
     }
 }
 
-/// Lag of the modes of an axis at low frequencies, `Σ 2ζ/ω`, in seconds; 0 where the loop holds the load itself.
+/// Lag of an axis's modes at low frequencies, `Σ 2ζ/ω`, in seconds; 0 where the loop controls the load itself.
 pub fn mode_lag_s(axis: &AxisSection) -> f64 {
     let torque = axis
         .drive
@@ -100,11 +101,11 @@ pub fn mode_lag_s(axis: &AxisSection) -> f64 {
     modes.map(|mode| 2.0 * mode.damping / mode.omega()).sum()
 }
 
-/// The taps of all axes, and of what else an axis may use in their place, equally late where the machine has `[stage]`, as they are
-/// where it has none.
+/// Delays the taps of all axes, and the further tables of an axis, to one total where the machine has `[stage]`;
+/// returns them unchanged where it has none.
 ///
 /// # Errors
-/// [`DigitiseError::MatchedDelay`] where a ring buffer cannot hold the delay that an axis is missing.
+/// [`DigitiseError::MatchedDelay`] where a ring buffer cannot hold the delay that an axis needs.
 pub(super) fn matched(
     machine: &Machine,
     tables: &[(&AxisSection, &Digitised)],

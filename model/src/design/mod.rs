@@ -1,4 +1,5 @@
-//! Shaper design: from the modes and the kind of an axis to impulses, from there to the tap tables of the machine.
+//! Shaper design: from the modes and the kind of an axis to impulses, and from these to the tap tables of the
+//! machine.
 //!
 //! ```text
 //! Axis ─► design_axis ─► AxisDesign (float, exact) ─► digitise ─► quantise ─► TapTable     design_machine does all axes
@@ -51,7 +52,8 @@ use crate::machine_file::{AxisMode, AxisSection};
 use crate::mode::Mode;
 use kind::ShaperKind;
 
-/// Most impulses that a convolution may grow to: a tap table holds 256, so more is a slip in the machine file.
+/// Largest number of impulses of a convolution. A tap table holds 256, so more than this is a mistake in the machine
+/// file.
 pub const IMPULSES_MAX: usize = 4096;
 
 /// Largest deviation of a design's residual from what its kind promises.
@@ -60,26 +62,26 @@ const RESIDUAL_TOLERANCE: f64 = 1e-9;
 /// The shaper of one axis in continuous time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisDesign {
-    /// The axis's name.
+    /// Name of the axis.
     pub name: String,
-    /// Kind as reports name it: several, joined by `+`, where the modes have their own.
+    /// Kind as reports name it; the kinds of the modes, joined by `+`, where they have their own.
     pub kind: String,
     /// The impulses of the whole axis.
     pub impulses: ImpulseSequence,
-    /// What the impulses are made of: digitising needs it.
+    /// The shapers that the impulses are made of, which digitising needs.
     pub parts: ShaperParts,
-    /// What else the design found out.
+    /// Further results of the design.
     pub findings: Findings,
 }
 
-/// What an axis's impulses are made of.
+/// The shapers that an axis's impulses are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ShaperParts {
     /// One shaper per mode, in the order of the file; the axis has their convolution.
     PerMode(Vec<ShaperPart>),
     /// One shaper for all modes.
     Joint {
-        /// The first mode of the file, if there is one: at its pole the impulses are digitised.
+        /// The first mode of the file, at whose pole the impulses are digitised; `None` without modes.
         reference: Option<Mode>,
     },
 }
@@ -120,7 +122,7 @@ pub fn design_axis(axis: &AxisSection, sample_hz: f64) -> Result<AxisDesign, Des
     })
 }
 
-/// One shaper per mode, and their convolution.
+/// Designs one shaper per mode and convolves them.
 fn per_mode(axis: &AxisSection) -> Result<(ImpulseSequence, ShaperParts), DesignError> {
     if axis.modes.is_empty() {
         return Err(DesignError::NoModes {
@@ -152,10 +154,10 @@ fn per_mode(axis: &AxisSection) -> Result<(ImpulseSequence, ShaperParts), Design
     Ok((whole, ShaperParts::PerMode(parts)))
 }
 
-/// The impulses of one mode's shaper, checked at its mode.
+/// Designs the impulses of one mode's shaper, and checks them at the mode.
 fn mode_impulses(axis: &AxisSection, axis_mode: &AxisMode) -> Result<ImpulseSequence, DesignError> {
     let (kind, mode) = (axis.kind_of(axis_mode), axis_mode.mode);
-    // What serves all modes of an axis cannot be one mode's share of a convolution.
+    // A shaper that serves all modes of an axis cannot be one factor of a convolution.
     if kind.treats_modes_together() && kind != ShaperKind::None {
         return Err(DesignError::JointKindOfOneMode {
             axis: axis.name.clone(),
@@ -171,21 +173,22 @@ fn mode_impulses(axis: &AxisSection, axis_mode: &AxisMode) -> Result<ImpulseSequ
     design_mode(kind, &mode, &settings)
 }
 
-/// What a shaper of one mode is designed to, beside the mode.
+/// Parameters of a mode's shaper beside the mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeSettings {
-    /// Residual that the kinds with a tolerance promise.
+    /// Residual vibration that the kinds with a tolerance promise, in (0, 1).
     pub tolerance: f64,
-    /// Order of the kinds that have one.
+    /// Order, for the kinds that have one.
     pub order: u32,
-    /// Residual in the band of `vibrationless`.
+    /// Bound `ε` of the residual in the band of `vibrationless`.
     pub epsilon: f64,
 }
 
-/// The shaper of one mode by itself, checked at the mode.
+/// Designs the shaper of one mode, and checks it at the mode.
 ///
 /// # Errors
-/// [`DesignError`] where the kind is not built or treats modes together, does not exist for the mode, or misses what it promises.
+/// [`DesignError`] where the kind is not built or treats modes together, does not exist for the mode, or misses its
+/// promise.
 pub fn design_mode(kind: ShaperKind, mode: &Mode, settings: &ModeSettings) -> Result<ImpulseSequence, DesignError> {
     let tolerance = settings.tolerance;
     let (impulses, promised) = match kind {
@@ -206,7 +209,8 @@ pub fn design_mode(kind: ShaperKind, mode: &Mode, settings: &ModeSettings) -> Re
         ShaperKind::ZvEi | ShaperKind::ZvEi2 | ShaperKind::ZvdEi | ShaperKind::MultiEi | ShaperKind::ChebyshevEi => {
             (bias_point::design(kind, settings.order, mode, tolerance)?, tolerance)
         }
-        // The cascade promises a band, not a residual: damping is left out of its design, and reported.
+        // The cascade promises a band, not a residual at the mode: its design ignores damping, which the report
+        // includes.
         ShaperKind::Vibrationless => return vibrationless::design(mode, settings.order, settings.epsilon),
         _ => return Err(DesignError::NotBuilt { kind }),
     };

@@ -1,8 +1,8 @@
 //! Negative shapers: `um-zv um-zvd um-ei` and `ps-zv ps-zvd ps-ei`.
 //!
-//! Impulses of alternating sign, with amplitudes that are given and times that are solved for (Singhose, Singer and Seering
-//! 1994; the `ps` kinds are the NZV, NZVD and NEI of the negative-impulse paper). They are a third to a fifth shorter than
-//! their positive counterparts; the price is some insensitivity, and a command that swings back:
+//! The impulses alternate in sign. Their amplitudes are given and their times are solved for (Singhose, Singer and
+//! Seering 1994; the `ps` kinds are the NZV, NZVD and NEI of the negative-impulse paper). They are a third to a fifth
+//! shorter than their positive counterparts; the price is some insensitivity, and a command that swings back:
 //!
 //! ```text
 //! um (unity magnitude):   1, −1, 1, …     partial sums 0 … 1
@@ -13,9 +13,9 @@
 //! -ei    5 impulses   R(w_lo) = R(w_hi) = 0, |R(1)| = V, d|R|/dw(1) = 0           t_2 … t_5, w_lo, w_hi
 //! ```
 //!
-//! (`R`: `equations.rs`.) There are many solutions; these are the shortest known, followed from the undamped one along
-//! damping and tolerance (`path.rs`). The published cubic fits in the damping, off by 1e-4 to 4e-4 of a period, are
-//! not used: at sums of amplitudes of 5 to 9, a shaper needs its times to the last digit.
+//! (`R`: `equations.rs`.) There are many solutions. These are the shortest known, followed from the undamped one
+//! along damping and tolerance (`path.rs`). The published cubic fits in the damping are off by 1e-4 to 4e-4 of a
+//! period and not used: with amplitudes whose magnitudes sum to 5 to 9, a shaper needs its times to the last digit.
 
 use nalgebra::DVector;
 
@@ -28,19 +28,19 @@ use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// Largest damping of the family.
+/// Largest damping ratio of the family.
 pub const DAMPING_MAX: f64 = 0.4;
-/// Tolerances of `um-ei` and `ps-ei` lie below this.
+/// The tolerances of `um-ei` and `ps-ei` lie below this value.
 pub const TOLERANCE_BELOW: f64 = 0.5;
 
-/// Tolerance of the undamped solutions that the others are followed from.
+/// Tolerance of the undamped solutions from which the others are followed.
 const START_TOLERANCE: f64 = 0.05;
-/// Longest step along the damping and along the root of the tolerance.
+/// Longest step in the damping ratio and in the root of the tolerance.
 const LONGEST_STEP: f64 = 0.1;
 /// Largest deviation of the finished shaper from its zeros and its hump.
 const VERIFIED: f64 = 1e-9;
 
-/// Designs a negative shaper; `tolerance` counts for `um-ei` and `ps-ei` only.
+/// Designs a negative shaper; only `um-ei` and `ps-ei` use `tolerance`.
 ///
 /// # Errors
 /// [`DesignError::Damping`] above [`DAMPING_MAX`]; [`DesignError::Tolerance`] below 1e-6 or from [`TOLERANCE_BELOW`] on;
@@ -98,7 +98,7 @@ pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<ImpulseSe
     Ok(impulses)
 }
 
-/// What is asked for at the mode.
+/// Condition on the residual at the mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Condition {
     Zero,
@@ -106,14 +106,15 @@ enum Condition {
     Hump,
 }
 
-/// A kind: what is given, and where the undamped solution lies.
+/// Data of a kind: its given amplitudes, and its undamped solution.
 #[derive(Debug, Clone, Copy)]
 struct Family {
     condition: Condition,
     amplitudes: &'static [f64],
-    /// Times in periods but the first, then the zeros of an EI at 5 %: close enough for Newton's method to find all digits.
+    /// Times in periods after the first, then the zeros of an EI at 5 %: accurate enough for Newton's method to find
+    /// all digits.
     undamped: &'static [f64],
-    /// The kind with positive amplitudes that does the same.
+    /// The kind with positive amplitudes that meets the same conditions.
     positive: ShaperKind,
 }
 
@@ -161,15 +162,15 @@ impl Family {
         })
     }
 
-    /// All times, in periods.
+    /// All times in periods, the first included.
     fn times(&self, unknowns: &[f64]) -> Vec<f64> {
         let times = unknowns.iter().take(self.amplitudes.len() - 1);
         [0.0].into_iter().chain(times.copied()).collect()
     }
 }
 
-/// From the undamped solution at [`START_TOLERANCE`] to the wanted one: straight in damping and root of the tolerance, in
-/// which the zeros move evenly.
+/// The path from the undamped solution at [`START_TOLERANCE`] to the wanted one. It is straight in the damping and in
+/// the root of the tolerance, in which the zeros move evenly.
 struct Path<'a> {
     family: &'a Family,
     damping: f64,
@@ -202,7 +203,7 @@ impl Branch for Path<'_> {
         equations.finish()
     }
 
-    /// As the tolerance goes to 0, so do the differences from `-zvd`: with its root those of the zeros.
+    /// As the tolerance goes to 0, the differences from `-zvd` do too; those of the zeros with its root.
     fn units(&self, s: f64) -> DVector<f64> {
         let root = START_TOLERANCE.sqrt() + s * self.root_change;
         let times = self.family.amplitudes.len() - 1;
@@ -309,7 +310,7 @@ mod tests {
                     Err(DesignError::Tolerance { .. })
                 ));
             }
-            // The others have no tolerance.
+            // The other kinds ignore the tolerance.
             assert!(design(ShaperKind::PsZv, &mode(0.1), tolerance).is_ok());
         }
     }

@@ -1,16 +1,18 @@
 //! Newton's method for a small square system, with the Jacobian from central differences.
 //!
-//! The unknowns are scaled to order one and there are some ten at most, so the Jacobian costs nothing and differences are
-//! accurate enough: the steps end at rounding all the same, because the equations themselves are exact.
+//! The unknowns are scaled to order one and number ten or so at most, so the Jacobian is cheap and differences are
+//! accurate enough: the steps still end at rounding level, because the equations themselves are exact.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Half width of the central differences, at which truncation and rounding are about equal.
 const DIFFERENCE: f64 = 6e-6;
-/// Newton doubles its digits each time; from a neighbouring solution it needs four or five rounds.
+/// Largest number of rounds. Newton's method doubles the digits each time; from a neighbouring solution it needs four
+/// or five rounds.
 const ROUNDS: usize = 30;
 
-/// Solves `equations(x) = 0` from a start close by. `None` if it does not get every equation below `accuracy`.
+/// Solves `equations(x) = 0` from a start near the solution. `None` if it does not get every equation below
+/// `accuracy`.
 pub(super) fn solve(
     equations: impl Fn(&DVector<f64>) -> DVector<f64>,
     start: DVector<f64>,
@@ -41,7 +43,7 @@ pub(super) fn solve(
     (largest(&values) < accuracy).then_some(best)
 }
 
-/// Largest magnitude, NaN if there is one.
+/// Largest magnitude of the values; NaN if one of them is NaN.
 fn largest(values: &DVector<f64>) -> f64 {
     values
         .iter()

@@ -1,47 +1,51 @@
-//! Following a solution from where it is known to where it is wanted.
+//! Follows a solution of equations from where it is known to where it is wanted.
 //!
-//! The equations depend on a position `s` on a path, 0 to 1, along which damping and tolerance go from those of a known
-//! solution to those asked for. From a solution at `s`, the next start is on its tangent, bent as over the last step; Newton's
-//! method takes it to the solution there. A step counts only if Newton's corrections shrink from the first on, and if the
-//! tangents at both its ends lead from one to the other. Then the solution found is the continuation of the last one, and not
-//! another that happens to be near: next to a fold, across which another sheet of solutions begins, the tangents are steep
-//! and do not lead there. Otherwise half the step is tried, until steps are so short that the branch itself ends.
+//! The equations depend on a position `s` on a path, 0 to 1, along which damping and tolerance go from those of a
+//! known solution to those asked for. From the solution at `s`, the start for the next one lies on its tangent, with
+//! the curvature of the last step; Newton's method takes it to the solution there. A step counts only if Newton's
+//! corrections shrink from the first on, and if the tangents at both its ends lead from one to the other. Then the
+//! solution found is the continuation of the last one, and not another that happens to be near: next to a fold, where
+//! another sheet of solutions begins, the tangents are steep and do not lead there. Otherwise half the step is tried,
+//! until steps are so short that the branch itself ends.
 
 use nalgebra::DVector;
 
 use super::equations::Linearised;
 
-/// Corrections must shrink by this factor at least, each time.
+/// Each correction must be smaller than the one before by at least this factor.
 const CONTRACTION: f64 = 0.25;
-/// Where a step leads may differ by this share of its length from where the tangents at its ends do: on the way into a fold by
-/// 0.03 when the step is half of what is left, beyond it by 0.3 and more.
+/// Largest difference, as a fraction of a step, between its end and where the tangents at its two ends lead. On the
+/// way into a fold the difference is 0.03 when the step is half of what is left; beyond the fold it is 0.3 and more.
 const SAME_SHEET: f64 = 0.1;
-/// A correction of this size, in units of the unknowns, leaves an error of its square: enough to go on from. At the end of
-/// the path one more follows, which leaves rounding, and which may be no smaller for that reason.
+/// Correction, in units of the unknowns, at which an intermediate solution is accurate enough: the error is its
+/// square. At the end of the path one more correction follows; it leaves rounding errors only, and need therefore not
+/// be smaller.
 const SETTLED: f64 = 1e-5;
-/// Newton doubles its digits each time; more rounds mean that it does not.
+/// Largest number of rounds; Newton's method doubles the digits each time, so more would mean that it does not
+/// converge.
 const ROUNDS: usize = 12;
 /// Shortest step for which the end of a branch counts as found, to six digits.
 pub(super) const PRECISE: f64 = 1e-6;
 
 /// A system of equations along a path.
 pub(super) trait Branch {
-    /// Values and derivatives at position `s` for these unknowns.
+    /// Values and derivatives of the equations at position `s` for these unknowns.
     fn linearised(&self, unknowns: &DVector<f64>, s: f64) -> Linearised;
 
-    /// How far each unknown lies from the next solution, or from where the equations degenerate, at position `s`: a
-    /// correction is small if it is small in these units.
+    /// Scale of each unknown at position `s`: its distance from the next solution, or from where the equations
+    /// degenerate. A correction is small if it is small in these units.
     fn units(&self, s: f64) -> DVector<f64>;
 
-    /// Whether a solution is one of the kind: in order, positive where it has to be.
+    /// Whether a solution is valid for the kind: its times are in order, and its amplitudes positive where they must
+    /// be.
     fn is_valid(&self, unknowns: &DVector<f64>) -> bool;
 }
 
-/// Follows `branch` from a start near its solution at 0 up to 1, in steps of at most `longest` and, before it is given up, at
-/// least `shortest`.
+/// Follows `branch` from a start near its solution at 0 up to 1, in steps of at most `longest`. It gives up when a
+/// step of `shortest` fails.
 ///
 /// # Errors
-/// The position up to which the branch was followed, where it does not reach 1; 0 if there is none at 0.
+/// The position up to which the branch was followed, where it does not reach 1; 0 if there is no solution at 0.
 pub(super) fn follow(
     branch: &impl Branch,
     start: DVector<f64>,
@@ -52,7 +56,7 @@ pub(super) fn follow(
     let (mut s, mut step) = (0.0, longest.min(1.0));
     // Change of the tangent, from the last step.
     let mut bend = DVector::zeros(here.unknowns.len());
-    // Not at once after a failure: towards the end of a branch every longer step fails again.
+    // After a failure the next step does not grow: towards the end of a branch every longer step would fail again.
     let mut may_grow = false;
     while s < 1.0 {
         let next = if s + step >= 1.0 { 1.0 } else { s + step };
@@ -75,22 +79,24 @@ pub(super) fn follow(
     Ok(here.unknowns)
 }
 
-/// A solution and how it moves along the path.
+/// A solution with its derivative along the path.
 struct Solution {
     unknowns: DVector<f64>,
     tangent: DVector<f64>,
 }
 
-/// Whether two solutions lie on one sheet: whether the mean of their tangents leads from one to the other, `step` further on.
+/// Whether two solutions, `step` apart, lie on one sheet: whether the mean of their tangents leads from one to the
+/// other.
 fn same_sheet(here: &Solution, there: &Solution, step: f64, units: &DVector<f64>) -> bool {
     let size = |vector: DVector<f64>| vector.component_div(units).norm();
     let way = &there.unknowns - &here.unknowns;
     let deviation = size(&way - (&here.tangent + &there.tangent) * (step / 2.0));
-    // What Newton's method leaves is no deviation.
+    // A deviation as small as Newton's remaining error does not count.
     deviation <= SAME_SHEET * size(way) || deviation <= SETTLED
 }
 
-/// Newton's method at one position: the valid solution that the corrections from `start` shrink towards.
+/// Newton's method at one position: returns the valid solution to which it converges from `start`, with shrinking
+/// corrections.
 fn solve(branch: &impl Branch, start: DVector<f64>, s: f64) -> Option<Solution> {
     let units = branch.units(s);
     let mut unknowns = start;
@@ -121,7 +127,7 @@ mod tests {
     use super::*;
     use nalgebra::DMatrix;
 
-    /// `x² = 1 − s/limit`: ends in a fold at `limit`.
+    /// The branch `x² = 1 − s/limit`, which ends in a fold at `limit`.
     struct Fold(f64);
 
     impl Branch for Fold {
@@ -151,7 +157,8 @@ mod tests {
         }
     }
 
-    /// `x³ − x/4 = s − 1/2`, an S lying down: the sheet from `s = 0` ends below 0.55, where another has long begun.
+    /// The branch `x³ − x/4 = s − 1/2`, a horizontal S: the sheet from `s = 0` ends below 0.55, where another has
+    /// long begun.
     struct Cubic;
 
     impl Branch for Cubic {

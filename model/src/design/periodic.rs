@@ -1,18 +1,18 @@
-//! `periodic`: one undamped shaper for many modes, through the period of its residual.
+//! `periodic`: one undamped shaper for many modes, by the periodicity of its residual.
 //!
-//! The residual of impulses at `kπ/ω_sys` repeats with `2ω_sys`, so what a base shaper keeps round `ω_sys` it also keeps
-//! round its odd multiples, with the same absolute width (Zhang and Li 2010, section 3.2). A base with the one-sided
-//! relative width `λ` therefore serves the mode `ω_i` if, for some `n ≥ 0`,
+//! The residual of impulses at `kπ/ω_sys` repeats with `2ω_sys`. The bound that a base shaper keeps round `ω_sys`
+//! therefore holds round its odd multiples too, with the same absolute width (Zhang and Li 2010, section 3.2). A base
+//! with the one-sided relative width `λ` serves the mode `ω_i` if, for some `n ≥ 0`,
 //!
 //! ```text
 //! ω_i / (2n + 1 + λ) ≤ ω_sys ≤ ω_i / (2n + 1 − λ)
 //! ```
 //!
-//! For each mode these are disjoint intervals; what is left after intersecting those of all modes, down to the lowest
-//! frequency, is the complete list of solutions. The largest frequency of the list is designed for: it is the shortest
-//! shaper. `ω_i` is the damped frequency. The amplitudes are those of undamped modes, so each mode's residual is checked.
+//! For each mode these are disjoint intervals; the intersection over all modes, down to the lowest frequency, is the
+//! complete list of solutions. The largest frequency of the list is chosen: it gives the shortest shaper. `ω_i` is
+//! the damped frequency. The amplitudes are those for undamped modes, so each mode's residual is checked.
 //!
-//! Limits: at most [`MULTIPLES_MAX`] odd multiples per mode are searched; no ring buffer holds a shaper beyond.
+//! Limits: at most [`MULTIPLES_MAX`] odd multiples per mode are searched; no ring buffer holds a longer shaper.
 
 use super::DesignError;
 use super::bias_point::{self, BiasPoint};
@@ -22,17 +22,17 @@ use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// Most odd multiples per mode that are searched.
+/// Largest number of odd multiples per mode that are searched.
 pub const MULTIPLES_MAX: u32 = 16_384;
 
-/// What `periodic` repeats: kind, order of `chebyshev-ei`, tolerance.
+/// The base that `periodic` repeats: kind, order of `chebyshev-ei`, tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Base {
-    /// `zv-ei`, `multi-ei` or `chebyshev-ei`.
+    /// Kind of the base: `zv-ei`, `multi-ei` or `chebyshev-ei`.
     pub kind: ShaperKind,
     /// Zero pairs of `chebyshev-ei`.
     pub order: u32,
-    /// Residual at the edge of the width.
+    /// Residual at the edges of the base's width.
     pub tolerance: f64,
 }
 
@@ -60,12 +60,12 @@ pub struct Periodic {
     pub solutions: Vec<Solution>,
 }
 
-/// Designs the shortest periodic shaper whose frequency is at least `lowest_hz`; `modes` come with their tolerances.
+/// Designs the shortest periodic shaper whose frequency is at least `lowest_hz`; each mode comes with its tolerance.
 ///
 /// # Errors
-/// [`JointError::Base`] for another base, [`JointError::NoPeriodicSolution`] and [`JointError::SearchRange`] from the
-/// search, [`JointError::AboveTolerance`] for a mode that its damping lifts above its own tolerance; [`DesignError`] for an
-/// invalid mode or a base without amplitudes.
+/// [`JointError::Base`] for another base; [`JointError::NoPeriodicSolution`] and [`JointError::SearchRange`] from the
+/// search; [`JointError::AboveTolerance`] for a mode whose damping raises its residual above its tolerance;
+/// [`DesignError`] for an invalid mode or an invalid base.
 pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Periodic, DesignError> {
     let plain: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
     plain.iter().try_for_each(DesignError::check_mode)?;
@@ -92,7 +92,8 @@ pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Perio
     })?;
     for &(mode, tolerance) in modes {
         let found = residual_vibration(impulses.impulses(), &mode);
-        // The edge of the width is the tolerance itself: as for the insensitivity, rounding there is no excess.
+        // The residual at the edge of the width equals the tolerance, so rounding there is no excess; insensitivity
+        // does the same.
         if found.is_nan() || found > tolerance * (1.0 + 1e-6) {
             return Err(JointError::AboveTolerance { mode, found, tolerance }.into());
         }
@@ -105,10 +106,11 @@ pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Perio
     })
 }
 
-/// All frequencies from `lowest_hz` on whose odd multiples lie within `lambda` times themselves of every frequency.
+/// All frequencies, from `lowest_hz` up, of which every mode's frequency is within `lambda` times the frequency of an
+/// odd multiple.
 ///
-/// `lambda` in (0, 1). Complete; the largest first; intervals that reach below `lowest_hz` end there. Time and memory grow
-/// with the sum of `frequency / lowest_hz`.
+/// `lambda` lies in (0, 1). The list is complete and has the largest first; an interval that reaches below
+/// `lowest_hz` ends there. Time and memory grow with the sum of `frequency / lowest_hz`.
 ///
 /// # Errors
 /// [`JointError::SearchRange`] where that is more than [`MULTIPLES_MAX`] multiples for a mode.
@@ -130,11 +132,11 @@ pub fn search(frequencies_hz: &[f64], lambda: f64, lowest_hz: f64) -> Result<Vec
     for &frequency_hz in frequencies_hz {
         left = intersect(&left, frequency_hz, lambda);
     }
-    // Without a mode nothing limits the frequency: no solution either.
+    // Without a mode nothing limits the frequency, so there is no solution either.
     Ok(left.into_iter().filter(|s| s.high_hz.is_finite()).collect())
 }
 
-/// Cuts intervals, the largest first, with those of one more mode. Both lists are walked once.
+/// Intersects intervals, the largest first, with those of one more mode. Both lists are walked once.
 fn intersect(left: &[Solution], frequency_hz: f64, lambda: f64) -> Vec<Solution> {
     let mut cut = Vec::new();
     let mut first_n = 0;
@@ -143,7 +145,8 @@ fn intersect(left: &[Solution], frequency_hz: f64, lambda: f64) -> Vec<Solution>
             let multiple = f64::from(2 * n + 1);
             (frequency_hz / (multiple + lambda), frequency_hz / (multiple - lambda))
         };
-        // An interval of the mode may serve the next solution too, so the walk goes on from the first that reached down.
+        // An interval of the mode may serve the next solution too, so the walk continues from the first one that
+        // reached so far down.
         while first_n <= MULTIPLES_MAX && bounds(first_n).0 > solution.high_hz {
             first_n += 1;
         }

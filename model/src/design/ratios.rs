@@ -1,47 +1,47 @@
-//! Ratios of frequencies: common divisor, odd multiples, classes by power of two.
+//! Ratios of frequencies: common divisor, odd multiples, and classes by powers of two.
 //!
-//! Modes share an antiperiod `T_a = 1/(2 f_c)` where every `f_i = m_i f_c` with an odd `m_i`: each swings an odd number of
-//! half periods in `T_a`, so all stand mirrored at once (Singh and Heppler 1993). For rational ratios that is so exactly
-//! if all `m_i` hold the same power of two; the smallest partition into sets with an antiperiod is therefore that into
-//! classes of equal power.
+//! Modes share an antiperiod `T_a = 1/(2 f_c)` where every `f_i = m_i f_c` with an odd `m_i`: each makes an odd
+//! number of half swings in `T_a`, so all are inverted at once (Singh and Heppler 1993). For rational ratios that is
+//! so exactly if all `m_i` contain the same power of two; the smallest partition into sets with an antiperiod is
+//! therefore that into classes of equal power.
 //!
-//! Frequencies come as `f64`: the damped frequency of a mode that a file gives undamped is irrational as written. So a
-//! ratio is taken for the simplest fraction within [`ROUNDING`] of it, found by its continued fraction: exact for decimals
-//! as written, and for equal damping. Nothing is missed by that: a multiple above [`MULTIPLE_MAX`] of the lowest mode
-//! means an antiperiod of as many half periods, which no ring buffer holds.
+//! Frequencies come as `f64`, and the damped frequency of a mode whose natural frequency the file gives is
+//! irrational. So a ratio is taken to be the simplest fraction within [`ROUNDING`] of it, found by its continued
+//! fraction. This is exact for decimals as written, and for equal damping. Nothing is missed by it: a multiple above
+//! [`MULTIPLE_MAX`] of the lowest mode would mean an antiperiod of as many half periods, which no ring buffer holds.
 
 use super::joint_error::{JointError, list};
 
-/// Relative distance at which a ratio of two frequencies is a fraction: some hundred units of the last place, what
-/// decimals of 14 digits and the conversion to the damped frequency leave.
+/// Relative distance within which a ratio of two frequencies is taken for a fraction: some hundred units of the last
+/// place, which decimals of 14 digits and the conversion to the damped frequency leave.
 pub const ROUNDING: f64 = 1e-13;
-/// Largest multiple of the lowest mode.
+/// Largest multiple of the divisor that the lowest mode may have.
 pub const MULTIPLE_MAX: u64 = 16_384;
-/// Candidates that the search with a tolerance tries before it gives up: far below a second.
+/// Number of candidates after which the search with a tolerance gives up; it takes far less than a second.
 const BUDGET: u32 = 1_000_000;
 
 /// Frequencies as whole multiples of a common divisor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Multiples {
-    /// The common divisor `f_c` in the unit of the frequencies, such that the largest relative error is the smallest.
+    /// The common divisor `f_c`, in the unit of the frequencies, that makes the largest relative error smallest.
     pub divisor: f64,
-    /// `m_i`, in the order of the frequencies.
+    /// The multiple `m_i` of each frequency, in their order.
     pub multiples: Vec<u64>,
-    /// Largest `|f_i − m_i f_c| / f_i`.
+    /// Largest relative error `|f_i − m_i f_c| / f_i`.
     pub error: f64,
 }
 
-/// Frequencies that share an antiperiod.
+/// A set of frequencies that share an antiperiod.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Class {
-    /// Positions of its members in the list of frequencies, ascending.
+    /// Indices of its members in the list of frequencies, ascending.
     pub members: Vec<usize>,
-    /// Divisor, odd multiples, error, for the members.
+    /// Divisor, odd multiples and error of the members.
     pub multiples: Multiples,
 }
 
 impl Multiples {
-    /// Takes multiples, and finds the divisor with the least largest relative error.
+    /// Takes the multiples, and finds the divisor whose largest relative error is smallest.
     fn of(frequencies: &[f64], multiples: Vec<u64>) -> Self {
         let inverse = multiples.iter().zip(frequencies).map(|(m, f)| *m as f64 / f);
         let (least, most) = inverse.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), value| {
@@ -54,12 +54,12 @@ impl Multiples {
         }
     }
 
-    /// Whether all multiples are odd: whether there is an antiperiod.
+    /// Whether all multiples are odd, so that there is an antiperiod.
     pub fn is_antisymmetric(&self) -> bool {
         self.multiples.iter().all(|m| m % 2 == 1)
     }
 
-    /// Antiperiod `1/(2 f_c)`, where there is one.
+    /// Antiperiod `1/(2 f_c)`; `None` where there is none.
     pub fn antiperiod(&self) -> Option<f64> {
         self.is_antisymmetric().then_some(0.5 / self.divisor)
     }
@@ -68,8 +68,8 @@ impl Multiples {
 /// The greatest common divisor of the frequencies, and their multiples of it.
 ///
 /// # Errors
-/// [`JointError::NoCommonDivisor`] where a ratio is no fraction, or the lowest frequency is more than [`MULTIPLE_MAX`]
-/// times the divisor.
+/// [`JointError::NoCommonDivisor`] where a ratio is not a fraction, or the lowest frequency is more than
+/// [`MULTIPLE_MAX`] times the divisor.
 pub fn common_divisor(frequencies: &[f64]) -> Result<Multiples, JointError> {
     let none = || JointError::NoCommonDivisor {
         frequencies_hz: list(frequencies),
@@ -78,7 +78,7 @@ pub fn common_divisor(frequencies: &[f64]) -> Result<Multiples, JointError> {
     let lowest = frequencies.iter().fold(f64::INFINITY, |least: f64, f| least.min(*f));
     let fractions = frequencies.iter().map(|f| fraction(f / lowest));
     let fractions: Vec<(u64, u64)> = fractions.collect::<Option<_>>().ok_or_else(none)?;
-    // The lowest mode is the least common multiple of the denominators times the divisor.
+    // The multiple of the lowest mode is the least common multiple of the denominators.
     let lowest_multiple = fractions.iter().try_fold(1, |multiple: u64, (_, denominator)| {
         let common = multiple / gcd(multiple, *denominator) * denominator;
         (common <= MULTIPLE_MAX).then_some(common)
@@ -88,11 +88,11 @@ pub fn common_divisor(frequencies: &[f64]) -> Result<Multiples, JointError> {
     Ok(Multiples::of(frequencies, multiples.collect()))
 }
 
-/// The smallest partition into sets with an antiperiod: by the power of two in the multiples, the set of the first
-/// frequency first.
+/// The smallest partition into sets with an antiperiod, by the power of two in the multiples; the set with the first
+/// frequency comes first.
 ///
 /// # Errors
-/// As for [`common_divisor`].
+/// Those of [`common_divisor`].
 pub fn partition(frequencies: &[f64]) -> Result<Vec<Class>, JointError> {
     let all = common_divisor(frequencies)?;
     let mut classes: Vec<(u32, Vec<usize>)> = Vec::new();
@@ -117,8 +117,8 @@ pub fn partition(frequencies: &[f64]) -> Result<Vec<Class>, JointError> {
     Ok(classes.into_iter().map(|(_, members)| class(members)).collect())
 }
 
-/// The smallest odd multiples with `|f_i − m_i f_c| ≤ tolerance · f_i` for one `f_c`: first that of the lowest frequency is
-/// made as small as possible, then that of the first in the list, and so on.
+/// The smallest odd multiples with `|f_i − m_i f_c| ≤ tolerance · f_i` for one `f_c`. The multiple of the lowest
+/// frequency is made as small as possible, then that of the first in the list, and so on.
 ///
 /// # Errors
 /// [`JointError::NoCommonDivisor`] where the lowest frequency would be more than [`MULTIPLE_MAX`] times the divisor.
@@ -126,7 +126,7 @@ pub fn nearest_odd(frequencies: &[f64], tolerance: f64) -> Result<Multiples, Joi
     let lowest = frequencies.iter().fold(f64::INFINITY, |least: f64, f| least.min(*f));
     let mut search = OddSearch {
         frequencies,
-        // Decimals that are equal to the tolerance on paper count as within it.
+        // Decimals whose distance on paper equals the tolerance count as within it.
         tolerance: tolerance + ROUNDING,
         left: BUDGET,
     };
@@ -141,7 +141,7 @@ pub fn nearest_odd(frequencies: &[f64], tolerance: f64) -> Result<Multiples, Joi
     })
 }
 
-/// Depth-first search over the multiples, the divisor known to an interval.
+/// Depth-first search over the multiples; the divisor is known to an interval.
 struct OddSearch<'a> {
     frequencies: &'a [f64],
     tolerance: f64,
@@ -149,13 +149,13 @@ struct OddSearch<'a> {
 }
 
 impl OddSearch<'_> {
-    /// Divisors for which `multiple` is near enough.
+    /// Interval of divisors for which `multiple` is close enough.
     fn within(&self, frequency: f64, multiple: u64) -> (f64, f64) {
         let exact = frequency / multiple as f64;
         (exact * (1.0 - self.tolerance), exact * (1.0 + self.tolerance))
     }
 
-    /// Adds multiples of the remaining frequencies for a divisor in `interval`.
+    /// Adds multiples of the remaining frequencies, for a divisor in `interval`.
     fn extend(&mut self, interval: (f64, f64), multiples: Vec<u64>) -> Option<Vec<u64>> {
         let Some(&frequency) = self.frequencies.get(multiples.len()) else {
             return Some(multiples);
@@ -184,7 +184,7 @@ fn fraction(ratio: f64) -> Option<(u64, u64)> {
     let mut rest = ratio;
     loop {
         let whole = rest.floor();
-        // The numerators are what grows first; past 2^53 they have no place in f64 either.
+        // The numerators grow fastest; past 2^53 they are not exact in f64.
         if whole.is_nan() || whole >= 9e15 {
             return None;
         }
@@ -229,7 +229,7 @@ mod tests {
         for (f, m) in [30.2, 10.0].iter().zip([3.0, 1.0]) {
             assert!(((f - m * found.divisor) / f).abs() <= found.error * (1.0 + 1e-9));
         }
-        // 2 : 1 has no odd pair; within 2 % the first is 51 : 25, in lowest terms.
+        // The ratio 2 : 1 has no odd pair; within 2 % the first one is 51 : 25 in lowest terms.
         let found = nearest_odd(&[1.0, 2.0], 0.02).unwrap();
         let ratio = found.multiples[1] as f64 / found.multiples[0] as f64;
         assert!(found.is_antisymmetric() && (ratio - 2.0).abs() <= 0.08, "{found:?}");

@@ -1,18 +1,18 @@
-//! `simultaneous`: all modes at once, with impulses of alternating sign and bounded partial sums.
+//! `simultaneous`: one shaper for all modes, with impulses of alternating sign and bounded partial sums.
 //!
 //! ```text
 //! ps: amplitudes 1, −2, 2, …, 2: partial sums −1 … 1        um: 1, −1, 1, …, 1: partial sums 0 … 1
 //! zv:  S(p) = Σ A_i e^{p t_i} = 0                           zvd: also Σ A_i t_i e^{p t_i} = 0,   p = ζω + jω_d
 //! ```
 //!
-//! Two real equations for a `zv` mode, four for a `zvd` mode, and as many unknown times: with two modes half the impulses
-//! of the convolution of two `ps-zv`, shorter, and within bounds that a convolution leaves. The price is robustness: other
-//! frequencies than the modes' are amplified.
+//! A `zv` mode gives two real equations and a `zvd` mode four, and there are as many unknown times. With two modes
+//! that is half the impulses of the convolution of two `ps-zv`, and the shaper is shorter and keeps the bounds that a
+//! convolution breaks. The price is robustness: other frequencies than the modes' are amplified.
 //!
-//! The shortest command within the bounds is found first (`time_optimal`); if it has as many jumps as there are
-//! equations it is this shaper, and no bounded command is shorter ([`Simultaneous::is_time_optimal`]). Otherwise, as with
-//! frequencies far apart, Newton's method starts from several thousand deterministic pseudo-random sequences; the shortest
-//! that it finds is returned and *not* proven to be the shortest there is.
+//! First the shortest command within the bounds is found (`time_optimal`). If it has as many jumps as there are
+//! equations it is this shaper, and no bounded command is shorter ([`Simultaneous::is_time_optimal`]). Otherwise, as
+//! with frequencies far apart, Newton's method starts from several thousand deterministic pseudo-random sequences.
+//! The shortest solution found is returned, and it is *not* proven to be the shortest.
 //!
 //! Limits: 1 to [`MODES_MAX`] modes.
 
@@ -27,7 +27,7 @@ use super::time_optimal::Problem;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// Most modes that are solved together.
+/// Largest number of modes that are solved together.
 pub const MODES_MAX: usize = 4;
 
 /// A simultaneous shaper.
@@ -35,7 +35,7 @@ pub const MODES_MAX: usize = 4;
 pub struct Simultaneous {
     /// The impulses.
     pub impulses: ImpulseSequence,
-    /// Whether no command within the bounds is shorter, with any number of jumps.
+    /// Whether it is proven that no command within the bounds is shorter, with any number of jumps.
     pub is_time_optimal: bool,
 }
 
@@ -55,7 +55,7 @@ pub fn design(modes: &[(Mode, Constraint)], amplitudes: Amplitudes) -> Result<Si
         }
         .into());
     }
-    // Times in radians of the fastest mode: of order one, whatever the frequencies.
+    // Times are in radians of the fastest mode, so that they are of order one whatever the frequencies.
     let fastest = plain.iter().map(Mode::omega_damped).fold(0.0, f64::max);
     let poles = modes.iter().map(|(mode, constraint)| {
         let pole = Complex::new(mode.decay(), mode.omega_damped()) / fastest;
@@ -87,16 +87,17 @@ pub fn design(modes: &[(Mode, Constraint)], amplitudes: Amplitudes) -> Result<Si
     })
 }
 
-/// The constraints on the times after the first, which is 0.
+/// The constraints, as equations for the times after the first, which is 0.
 struct System {
     poles: Vec<(Complex<f64>, Constraint)>,
     amplitudes: Amplitudes,
 }
 
-/// Largest value of an equation that counts as zero; each is of order one.
+/// Largest value at which an equation counts as zero; each is of order one.
 const ACCURACY: f64 = 1e-12;
 const NEWTON_ROUNDS: usize = 60;
-/// Newton steps of all starts together, in units of the cube of the unknowns: some tenths of a second.
+/// Largest number of Newton steps of all starts together, times the cube of the number of unknowns: some tenths of a
+/// second.
 const BUDGET: usize = 8_000_000;
 
 impl System {
@@ -104,7 +105,7 @@ impl System {
         self.poles.iter().map(|(_, constraint)| constraint.equations()).sum()
     }
 
-    /// The times, and whether they are the time-optimal ones.
+    /// Solves for the times. Returns them and whether they are time-optimal.
     fn solve(&self) -> Option<(DVector<f64>, bool)> {
         let problem = Problem {
             poles: &self.poles,
@@ -124,7 +125,7 @@ impl System {
         self.search().map(|times| (times, false))
     }
 
-    /// Shortest solution from pseudo-random starts.
+    /// The shortest solution from pseudo-random starts.
     fn search(&self) -> Option<DVector<f64>> {
         let unknowns = self.unknowns();
         let periods = self
@@ -136,7 +137,7 @@ impl System {
         let mut steps = BUDGET / (unknowns * unknowns * unknowns);
         let mut shortest: Option<DVector<f64>> = None;
         while steps > 0 {
-            // Never longer than the shortest so far: only better ones are of interest.
+            // A start is never longer than the shortest solution so far, since only shorter ones are of interest.
             let end = shortest.as_ref().map_or(longest, |times| times[unknowns - 1]) * random.next().sqrt();
             let mut times: Vec<f64> = (1..unknowns).map(|_| end * random.next()).chain([end]).collect();
             times.sort_by(f64::total_cmp);
@@ -152,7 +153,8 @@ impl System {
         shortest
     }
 
-    /// Damped Newton's method; a solution whose times increase, or nothing. Counts its steps down from `steps`.
+    /// Damped Newton's method: returns a solution whose times increase, or `None`. It subtracts its steps from
+    /// `steps`.
     fn refine(&self, start: DVector<f64>, steps: &mut usize) -> Option<DVector<f64>> {
         let mut times = start;
         let (mut values, mut jacobian) = self.equations(&times);
@@ -165,7 +167,7 @@ impl System {
                 let next = &times - &step * share;
                 let (next_values, next_jacobian) = self.equations(&next);
                 let next_error = next_values.norm();
-                // Rounding ends the descent; before that every step must gain.
+                // Rounding ends the descent; before that every step must make progress.
                 if next_error < error * (1.0 - 0.1 * share) || (share == 1.0 && next_error < ACCURACY) {
                     (times, values, jacobian) = (next, next_values, next_jacobian);
                     break;
@@ -183,7 +185,7 @@ impl System {
         (increasing && values.amax() < ACCURACY).then_some(times)
     }
 
-    /// The constraints, referred to the last impulse so that nothing grows, and their derivatives.
+    /// The constraints and their derivatives, referred to the last impulse so that nothing grows.
     fn equations(&self, times: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let unknowns = times.len();
         let end = times[unknowns - 1];
@@ -206,7 +208,7 @@ impl System {
                     set_column(&mut jacobian, row + 2, index, moment_slope);
                 }
             }
-            // The end is the reference of all terms too.
+            // The last time is also the reference of all terms.
             let last = unknowns - 1;
             add_column(&mut jacobian, row, last, -pole * sum);
             values[row] = sum.re;
@@ -232,7 +234,7 @@ fn add_column(matrix: &mut DMatrix<f64>, row: usize, column: usize, value: Compl
     matrix[(row + 1, column)] += value.im;
 }
 
-/// Marsaglia's xorshift: starts that are the same in every run.
+/// Marsaglia's xorshift generator, so that the starts are the same in every run.
 struct Random(u64);
 
 impl Random {

@@ -1,7 +1,7 @@
-//! The shortest bounded command that brings all modes to rest: a convex problem, solved through its dual.
+//! The shortest bounded command that brings all modes to rest: a convex problem, solved by its dual.
 //!
-//! A shaped step is a command `u(t)`; that it moves only between two bounds, and rests at 1 from `T` on, is convex in `u`,
-//! and so is every constraint. With `s = T − t` and `u = centre + reach·v`, `|v| ≤ 1`:
+//! A shaped step is a command `u(t)`. The conditions that it stays between two bounds, and rests at 1 from `T` on,
+//! are convex in `u`, and so is every constraint. With `s = T − t` and `u = centre + reach·v`, `|v| ≤ 1`:
 //!
 //! ```text
 //! zero at p:           ∫ u·p e^{−ps} ds = 1            double zero at p: also  ∫ u·(1 − ps) e^{−ps} ds = 0
@@ -10,31 +10,32 @@
 //! there                v = sign(c·ψ): the command jumps from bound to bound, where c·ψ changes sign
 //! ```
 //!
-//! For fixed `T` the best `c` minimises the convex `½L² − c·b`, by Newton's method; gradient and Hessian follow from the
-//! zeros of `c·ψ` without quadrature. `T` is bisected. The switching times that come out are the start of another Newton's
-//! method, on the constraints themselves ([`super::simultaneous`]); accuracy here is a matter of its convergence only.
+//! For fixed `T` the best `c` minimises the convex `½L² − c·b`, by Newton's method; gradient and Hessian follow from
+//! the zeros of `c·ψ` without quadrature. `T` is bisected. The resulting switching times are the start of another
+//! Newton's method, on the constraints themselves ([`super::simultaneous`]), so accuracy here matters only for its
+//! convergence.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::constraint::{Amplitudes, Constraint};
 
-/// Samples of the fastest mode's period at which sign changes are looked for.
+/// Samples per period of the fastest mode at which sign changes are looked for.
 const SAMPLES_PER_PERIOD: f64 = 48.0;
-/// Most samples: the frequencies are then so far apart that the command has hundreds of switches anyway.
+/// Largest number of samples: with frequencies further apart the command has hundreds of switches anyway.
 const SAMPLES_MAX: f64 = 8192.0;
 const NEWTON_ROUNDS: usize = 60;
 const BISECTIONS: usize = 22;
 
-/// A command that jumps between its bounds.
+/// A command that switches between its bounds.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct BangBang {
-    /// Instants of the jumps after the first at 0, the last at the end.
+    /// Times of the jumps after the first, which is at 0; the last is the end.
     pub(super) times: Vec<f64>,
-    /// Whether it starts at the upper bound.
+    /// Whether the command starts at the upper bound.
     pub(super) starts_high: bool,
 }
 
-/// Poles `p = σ + jω` with their constraints, in any unit of time.
+/// The poles `p = σ + jω` with their constraints, in any unit of time.
 pub(super) struct Problem<'a> {
     pub(super) poles: &'a [(Complex<f64>, Constraint)],
     pub(super) amplitudes: Amplitudes,
@@ -49,7 +50,7 @@ impl Problem<'_> {
             Constraint::Zv => 1.0 / p.im,
             Constraint::Zvd => 2.0 / p.im,
         });
-        // What convolved positive shapers would take; with strong damping a bounded command may take longer.
+        // This is what convolved positive shapers would take; with strong damping a bounded command may take longer.
         let mut long = std::f64::consts::PI * half_periods.sum::<f64>();
         let mut start = None;
         for _ in 0..4 {
@@ -67,7 +68,7 @@ impl Problem<'_> {
         None
     }
 
-    /// Bisects for the shortest time, from one that is long enough.
+    /// Bisects for the shortest time, starting from one that is long enough.
     fn shorten(&self, grid: &[DVector<f64>], long: f64, found: Best) -> Option<BangBang> {
         let (mut low, mut high) = (0.0, long);
         let mut kept = found;
@@ -118,7 +119,7 @@ impl Problem<'_> {
             let value = zero(pole);
             rows.extend([value.re, value.im]);
             if constraint == Constraint::Zvd {
-                // In units of the pole's time, as the others.
+                // The derivative is scaled by the pole's time, as the other rows are.
                 let value = derivative(pole);
                 rows.extend([value.re, value.im]);
             }
@@ -133,7 +134,7 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// Where `c·ψ` changes sign in `[0, end]`, ascending, and whether it is positive at `end`.
+    /// The zeros in `[0, end]` at which `c·ψ` changes sign, ascending, and whether it is positive at `end`.
     fn sign_changes(&self, grid: &[DVector<f64>], long: f64, end: f64, weights: &DVector<f64>) -> (Vec<f64>, bool) {
         let spacing = long / (grid.len() - 1) as f64;
         let inside = grid
@@ -152,7 +153,7 @@ impl Problem<'_> {
         (zeros, last.1 > 0.0)
     }
 
-    /// Regula falsi with the Illinois correction between two samples of opposite sign.
+    /// Finds a zero between two samples of opposite sign by regula falsi with the Illinois correction.
     fn refine_zero(&self, weights: &DVector<f64>, low: (f64, f64), high: (f64, f64)) -> f64 {
         let ((mut a, mut at_a), (mut b, mut at_b)) = (low, high);
         for _ in 0..8 {
@@ -198,7 +199,7 @@ impl Problem<'_> {
         let target = self.target(end);
         let mut weights = start.unwrap_or_else(|| target.clone());
         let mut length = self.length(grid, long, end, &weights);
-        // The best multiple of the start.
+        // The start is scaled to its best multiple.
         let scale = target.dot(&weights) / (length.value * length.value);
         if !(scale.is_finite() && scale > 0.0) {
             weights = target.clone();

@@ -1,22 +1,23 @@
-//! `vibrationless`: half sums of the command with itself, half a period later, for several frequencies round each mode.
+//! `vibrationless`: half sums of the command with itself delayed by half a period, for several frequencies round each
+//! mode.
 //!
 //! ```text
 //! F_k(t) = (F_{k−1}(t) + F_{k−1}(t − τ_k))/2,   τ_k = π/(r_k ω_d),  k = 1…n          2^n impulses of weight 2^−n
 //! P(ω) = Π cos(πω / (2 r_k ω_d))                                                       the gain at a frequency
 //! ```
 //!
-//! (Prourzin and Shevlyakov.) The ratios `r_k` make the robustness index `Δ` as large as it gets: `2|P| ≤ ε` on
-//! `(1 ± Δ)·ω_d`; the 2 is the largest that a start of full height can leave. At the optimum `n + 1` of the peaks of `|P|`
-//! are equal: the two ends of the band and those between zeros. They are `n + 1` equations for `r_1 … r_n` and `Δ`, solved
-//! by Newton's method to the last digits.
+//! (Prourzin and Shevlyakov.) The ratios `r_k` make the robustness index `Δ` as large as possible: `2|P| ≤ ε` on
+//! `(1 ± Δ)·ω_d`; the factor 2 is the largest vibration that a start of full height can leave. At the optimum `n + 1`
+//! of the peaks of `|P|` are equal: some of the two ends of the band and the maxima between zeros. They give `n + 1`
+//! equations for `r_1 … r_n` and `Δ`, solved by Newton's method to the last digits.
 //!
-//! A zero repeats at its odd multiples, so in a wide band one frequency may serve twice: there are several *families* of
-//! optima, told apart by how many such repetitions lie in the band. Each is followed from a known member to the wanted
-//! `ε`; where another peak rises to the bound, it takes the place of one of the equal ones. The widest band wins. The
-//! members to start from were found by multistart minimax search over Δ = 0.1 … 0.8; the index of a design is certain,
-//! that no family is wider is not proven. At ε = 0.05 it agrees with a global search for every order.
+//! A zero repeats at its odd multiples, so in a wide band one frequency may serve twice: there are several *families*
+//! of optima, which differ in how many such repetitions lie in the band. Each is followed from a known member to the
+//! wanted `ε`; where another peak rises to the bound, it takes the place of one of the equal ones. The widest band is
+//! chosen. The starting members were found by multistart minimax search over Δ = 0.1 … 0.8: the index of a design is
+//! certain, but it is not proven that no family is wider. At ε = 0.05 it agrees with a global search for every order.
 //!
-//! Damping is ignored here, and included in the residual that is reported.
+//! Damping is ignored in the design, and included in the residual that is reported.
 
 use std::f64::consts::PI;
 
@@ -30,25 +31,25 @@ use crate::mode::Mode;
 
 /// Largest number of frequencies per mode.
 pub const ORDER_MAX: u32 = 5;
-/// Smallest `ε`: below, the frequencies coincide to half of the digits.
+/// Smallest `ε`; below it, the frequencies coincide to half of their digits.
 pub const EPSILON_MIN: f64 = 1e-6;
 
 /// Frequencies of a half-sum cascade, as ratios to the mode's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VibrationlessCascade {
-    /// `r_1 < … < r_n`.
+    /// The ratios `r_1 < … < r_n`.
     pub ratios: Vec<f64>,
-    /// Robustness index: `2|P| ≤ ε` on `1 ± Δ`.
+    /// Robustness index `Δ`: `2|P| ≤ ε` on `1 ± Δ`.
     pub index: f64,
 }
 
-/// Largest `ε` that is solved, for the orders 1 to 5: above, the families that are known end.
+/// Largest `ε` that is solved, for the orders 1 to 5; above it, the known families end.
 pub const EPSILON_MAX: [f64; ORDER_MAX as usize] = [0.5, 0.5, 0.38, 0.2, 0.06];
 
 /// A member of a family: `(ε, Δ, r)`, to the digits from which Newton's method converges.
 type Seed = (f64, f64, &'static [f64]);
 
-/// Families without repetitions first. Beyond order 1, which is a closed form.
+/// Starting members for the orders 2 to 5; families without repetitions come first. Order 1 has a closed form.
 const SEEDS: [&[Seed]; 4] = [
     &[(0.097339, 0.2, &[0.8591, 1.1394])],
     &[
@@ -76,10 +77,11 @@ const SEEDS: [&[Seed]; 4] = [
     ],
 ];
 
-/// Designs the cascade of one mode: `order` frequencies for the bound `epsilon`.
+/// Designs the cascade of one mode, with `order` frequencies and the bound `epsilon`.
 ///
 /// # Errors
-/// [`JointError::Vibrationless`] outside of what is solved; [`DesignError`] for an invalid mode, or times beyond `f64`.
+/// [`JointError::Vibrationless`] for an order or bound that is not solved; [`DesignError`] for an invalid mode, or
+/// times beyond `f64`.
 pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let cascade = optimum(order, epsilon)?;
@@ -91,10 +93,10 @@ pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, 
         .map_err(|cause| DesignError::no_sequence(ShaperKind::Vibrationless, mode, cause))
 }
 
-/// Impulses of half sums with these delays in seconds: `2^n` of weight `2^−n`, coincident ones merged.
+/// Impulses of the half sums with these delays in seconds: `2^n` of weight `2^−n`, coincident ones merged.
 ///
 /// # Errors
-/// [`crate::impulse::ImpulseError`] for a delay that is not above 0, or sums beyond `f64`.
+/// [`crate::impulse::ImpulseError`] for a delay that is not above 0, or for sums beyond `f64`.
 pub fn half_sum_cascade(delays_s: &[f64]) -> Result<ImpulseSequence, crate::impulse::ImpulseError> {
     delays_s.iter().try_fold(ImpulseSequence::unity(), |whole, &delay_s| {
         let half = |time_s| Impulse { time_s, amplitude: 0.5 };
@@ -139,8 +141,8 @@ pub fn gain(ratios: &[f64], frequency: f64) -> f64 {
     factors.product::<f64>().abs()
 }
 
-/// The robustness index of any frequencies: the largest `Δ < 1` with `2|P| ≤ epsilon` on `1 ± Δ`, to the last digit; 0 if
-/// the bound is not even met at 1, or for ratios outside 0.001 to 1000.
+/// The robustness index of any frequencies: the largest `Δ < 1` with `2|P| ≤ epsilon` on `1 ± Δ`, to the last digit.
+/// It is 0 if the bound does not hold even at 1, or for ratios outside 0.001 to 1000.
 pub fn robustness_index(ratios: &[f64], epsilon: f64) -> f64 {
     let bound = epsilon / 2.0;
     if gain(ratios, 1.0) > bound || !are_solvable(ratios) {
@@ -159,12 +161,12 @@ pub fn robustness_index(ratios: &[f64], epsilon: f64) -> f64 {
     low
 }
 
-/// Whether the zeros of a band are few: a smaller ratio has thousands of them, which nobody designs.
+/// Whether the band contains few zeros; a smaller ratio has thousands of them, and no practical design needs one.
 fn are_solvable(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (1e-3..=1e3).contains(ratio))
 }
 
-/// Zeros of the gain in order, the ratios and their odd multiples, up to the first few above `high`.
+/// Zeros of the gain in ascending order: the ratios and their odd multiples, up to the first few above `high`.
 fn zeros(ratios: &[f64], high: f64) -> Vec<f64> {
     if !are_solvable(ratios) {
         return Vec::new();
@@ -182,8 +184,8 @@ fn zeros(ratios: &[f64], high: f64) -> Vec<f64> {
     zeros
 }
 
-/// Frequencies in the band `1 ± index` at which the gain is largest between two neighbouring zeros, with the position of
-/// the zero before them. Below the first zero the gain only falls.
+/// Frequencies in the band `1 ± index` at which the gain is largest between two neighbouring zeros, each with the
+/// index of the zero before it. Below the first zero the gain only falls.
 fn peaks(ratios: &[f64], index: f64) -> impl Iterator<Item = (usize, f64)> + use<'_> {
     let zeros = zeros(ratios, 1.0 + index);
     let all = (1..zeros.len()).map(move |right| (right - 1, peak_between(ratios, zeros[right - 1], zeros[right])));
@@ -199,7 +201,7 @@ fn peak_between(ratios: &[f64], left: f64, right: f64) -> f64 {
         slope.sum::<f64>() > 0.0
     };
     let (mut low, mut high) = (left, right);
-    // The height is stationary there: half of the digits of the place are all of the height's.
+    // The height is stationary there, so half of the digits of the frequency give all digits of the height.
     for _ in 0..32 {
         let middle = f64::midpoint(low, high);
         if falls(middle) { high = middle } else { low = middle }
@@ -207,7 +209,7 @@ fn peak_between(ratios: &[f64], left: f64, right: f64) -> f64 {
     f64::midpoint(low, high)
 }
 
-/// The highest peak above the bound, if there is one; `unknowns` are the ratios and the index.
+/// The highest peak above the bound; `None` if there is none. `unknowns` are the ratios and the index.
 fn highest_above(unknowns: &DVector<f64>, log_epsilon: f64) -> Option<Peak> {
     let (ratios, index) = unknowns.as_slice().split_at(unknowns.len() - 1);
     let index = index[0];
@@ -219,31 +221,31 @@ fn highest_above(unknowns: &DVector<f64>, log_epsilon: f64) -> Option<Peak> {
     highest.filter(|(height, _)| *height > bound).map(|(_, peak)| peak)
 }
 
-/// What happens on the way to a bound where another peak rises above it.
+/// What to do on the way to a bound where another peak rises above it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Above {
-    /// It takes the place of one of the equal peaks.
+    /// The peak takes the place of one of the equal peaks.
     Exchanged,
-    /// The way goes on: the peak may have fallen again at its end.
+    /// The way continues, because the peak may have fallen again at its end.
     Crossed,
 }
 
-/// A place at which the gain may be largest.
+/// A frequency at which the gain may be largest.
 #[derive(Debug, Clone, Copy)]
 enum Peak {
     /// The lower end of the band.
     Low,
-    /// Between two zeros, by the position of the first.
+    /// Between two zeros; the index is that of the lower one.
     After(usize),
     /// The upper end of the band.
     High,
 }
 
-/// A family of optima: which `n + 1` peaks are equal.
+/// A family of optima, given by the `n + 1` peaks that are equal.
 struct Family(Vec<Peak>);
 
 impl Family {
-    /// The `n + 1` highest peaks of a seed.
+    /// The family of a seed: that of its `n + 1` highest peaks.
     fn of(seed: &Seed) -> Self {
         let (_, index, ratios) = *seed;
         let ends = [(Peak::Low, 1.0 - index), (Peak::High, 1.0 + index)];
@@ -259,9 +261,9 @@ impl Family {
         )
     }
 
-    /// Follows the family from a seed to `epsilon`, in steps of its logarithm that halve where there is no way on.
+    /// Follows the family from a seed to `epsilon`, in steps of its logarithm that are halved where a step fails.
     fn follow(mut self, seed: &Seed, epsilon: f64, above: Above) -> Option<VibrationlessCascade> {
-        // An exchange must not be missed; without one, the way is smooth.
+        // An exchange must not be missed, so the steps are short; without one the way is smooth.
         let first_step: f64 = match above {
             Above::Exchanged => 0.1,
             Above::Crossed => 0.5,
@@ -291,8 +293,8 @@ impl Family {
         }
     }
 
-    /// The optimum at the next bound. Where another peak rises above the bound, it takes the place of one of the equal
-    /// ones: of that which leaves the widest band.
+    /// The optimum at the next bound. Where another peak rises above the bound, it replaces that one of the equal
+    /// peaks whose removal leaves the widest band.
     fn step(&self, start: &DVector<f64>, log_epsilon: f64, above: Above) -> Option<(Self, DVector<f64>)> {
         let refined = self.refine(start, log_epsilon)?;
         let higher = highest_above(&refined, log_epsilon).filter(|_| above == Above::Exchanged);
@@ -319,7 +321,7 @@ impl Family {
         (ordered && ratios[0] > 1.0 - index && index < 1.0).then_some(found)
     }
 
-    /// Distance of the peaks' heights from `ε/2`, as logarithms; NaN where the family has no such peak.
+    /// Distances of the peaks' heights from `ε/2`, as logarithms; NaN where the family has no such peak.
     fn equations(&self, unknowns: &DVector<f64>, log_epsilon: f64) -> DVector<f64> {
         let (ratios, index) = unknowns.as_slice().split_at(unknowns.len() - 1);
         let index = index[0];

@@ -1,16 +1,18 @@
-//! Zero vibration: `zv`, its powers `zvd`, `zvdd`, `zvddd`, and `mzv` between the first two.
+//! Zero-vibration shapers: `zv`, its powers `zvd`, `zvdd`, `zvddd`, and `mzv`, which lies between the first two.
 //!
 //! ```text
 //! K = e^{−ζπ/√(1−ζ²)}        one factor: amplitudes [1, K]/(1 + K) at 0, T_d/2
 //! m factors:                 A_k = C(m, k)·K^k / (1 + K)^m at k·T_d/2,  k = 0…m
 //! ```
 //!
-//! The second impulse starts the mode a half swing late, with what damping has left of it: they cancel (Smith's posicast,
-//! 1957; Singer and Seering 1990). Each further factor makes one more derivative of the residual zero at the mode, costs
-//! another half period of delay, and forgives a larger error of the frequency. Exists for every damping in [0, 1).
+//! The second impulse excites the mode half a swing late, with the amplitude that damping has left of the first, so
+//! that the two cancel (Smith's posicast, 1957; Singer and Seering 1990). Each further factor makes one more
+//! derivative of the residual zero at the mode, costs another half period of delay, and allows a larger error of the
+//! frequency. The shapers exist for every damping ratio in [0, 1).
 //!
-//! `mzv`, known from 3D printers, has three impulses 3/8 of a period apart instead of 1/2: between `zv` and `zvd` in length and
-//! in insensitivity. With `k = e^{−0.75ζπ/√(1−ζ²)}` what damping leaves of a swing in that time,
+//! `mzv`, known from 3D printers, has three impulses 3/8 of a period apart instead of 1/2; its length and
+//! insensitivity lie between those of `zv` and `zvd`. With `k = e^{−0.75ζπ/√(1−ζ²)}`, which damping leaves of a swing
+//! in that time,
 //!
 //! ```text
 //! mzv:  amplitudes ∝ [1 − 1/√2, (√2 − 1)·k, (1 − 1/√2)·k²] at 0, ⅜T_d, ¾T_d
@@ -23,7 +25,7 @@ use super::kind::ShaperKind;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// Designs `factors` ZV factors in series, 1 (`zv`) to 4 (`zvddd`); `kind` is for messages.
+/// Designs `factors` ZV factors in series, 1 (`zv`) to 4 (`zvddd`); `kind` is used in messages only.
 ///
 /// # Errors
 /// [`DesignError::Mode`] for an invalid mode, [`DesignError::NoSequence`] where times leave the range of `f64`.
@@ -36,7 +38,7 @@ pub fn design(kind: ShaperKind, mode: &Mode, factors: u32) -> Result<ImpulseSequ
 /// Designs an `mzv` shaper.
 ///
 /// # Errors
-/// As [`design`].
+/// Those of [`design`].
 pub fn design_mzv(mode: &Mode) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let ratio = mode.half_swing_ratio().powf(0.75);
@@ -107,7 +109,7 @@ mod tests {
                 Err(DesignError::Mode { .. })
             ));
         }
-        // Legal numbers whose period has no place in f64.
+        // Valid frequencies whose period cannot be represented in f64.
         for frequency_hz in [f64::MAX, f64::MIN_POSITIVE / 1e10] {
             let mode = Mode {
                 frequency_hz,

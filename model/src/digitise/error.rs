@@ -1,35 +1,35 @@
-//! Why a shaper has no tap table.
+//! Errors of digitising.
 
 use thiserror::Error;
 
 use crate::taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIENT_MIN, TapTableError};
 use crate::unit::{short, show_seconds};
 
-/// Longest delay in samples: the largest ring buffer, 2^14 words, less the two that writing and reading need.
+/// Longest delay in samples: the largest ring buffer has 2^14 words, of which writing and reading need two.
 pub const DELAY_MAX_SAMPLES: u32 = (1 << 14) - 2;
-/// Most taps of a table.
+/// Largest number of taps of a table.
 pub const TAPS_MAX: usize = 256;
 
-/// Why a shaper has no tap table. Every message says what was found, what is allowed, and what to do.
+/// Why a shaper cannot become a tap table. Every message says what was found, what is allowed, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DigitiseError {
-    /// Longer than any ring buffer.
+    /// The shaper lasts longer than any ring buffer.
     #[error(
         "axis {axis}: the shaper lasts {}, {found} samples at {sample_hz} Hz; the ring buffer holds at most \
          {DELAY_MAX_SAMPLES}: lower sample_hz, or use a shorter kind",
         show_seconds(*.duration_s, 4)
     )]
     Delay {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
         /// Longest delay in samples.
         found: f64,
-        /// Duration in seconds.
+        /// Duration of the shaper in seconds.
         duration_s: f64,
-        /// Sample rate.
+        /// Sample rate in Hz.
         sample_hz: f64,
     },
-    /// Too long once it is as late as the slowest axis.
+    /// Delayed to match the slowest axis, the shaper is longer than any ring buffer.
     #[error(
         "axis {axis}: to be as late as axis {slowest} and [stage] extra_delay_s, it needs {} more samples of delay, \
          which reach {found:.0} samples back at {sample_hz} Hz; the ring buffer holds at most {DELAY_MAX_SAMPLES}: lower \
@@ -37,88 +37,88 @@ pub enum DigitiseError {
         short(*added_samples)
     )]
     MatchedDelay {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The axis with the largest delay of its own.
+        /// Name of the axis with the largest delay of its own.
         slowest: String,
-        /// Delay that is missing, in samples.
+        /// Delay to add, in samples.
         added_samples: f64,
-        /// Longest delay in samples.
+        /// Longest delay with it, in samples.
         found: f64,
-        /// Sample rate.
+        /// Sample rate in Hz.
         sample_hz: f64,
     },
-    /// More taps than the largest table.
+    /// There are more taps than the largest table holds.
     #[error(
         "axis {axis}: {found} taps; a table holds at most {TAPS_MAX}: use a lower sample_hz, shorter kinds, fewer modes under one \
          shaper, or digitise = \"nearest\""
     )]
     Taps {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Taps found.
+        /// Number of taps.
         found: usize,
     },
-    /// A mode faster than the samples can follow.
+    /// A mode's frequency is too high for the sample rate.
     #[error(
         "axis {axis}: a mode of {} Hz cannot be shaped with {sample_hz} samples per second; \
          sample_hz must be more than twice the mode's frequency",
         short(*frequency_hz)
     )]
     Nyquist {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The mode's frequency.
+        /// Frequency of the mode in Hz.
         frequency_hz: f64,
-        /// Sample rate.
+        /// Sample rate in Hz.
         sample_hz: f64,
     },
-    /// Taps that cancel, or numbers out of all proportion.
+    /// The taps cancel, or their numbers are out of all proportion, so that they cannot be scaled to the sum 1.
     #[error(
         "axis {axis}: on the sample grid the amplitudes sum to {}, too little to scale to 1; raise sample_hz, \
          or use digitise = \"linear\"",
         short(*sum)
     )]
     NoUnitSum {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The sum found.
+        /// Sum of the taps.
         sum: f64,
     },
-    /// A coefficient that 18 bits cannot hold even with one fraction bit.
+    /// 18 bits cannot hold a coefficient even with one fraction bit.
     #[error(
         "axis {axis}: a tap has the weight {}; coefficients of {COEFFICIENT_MIN} to {COEFFICIENT_MAX} with at least \
          one fraction bit reach ±65535: use smaller amplitudes or a higher sample_hz",
         short(*weight)
     )]
     Weight {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
         /// Largest weight by magnitude.
         weight: f64,
     },
-    /// A number of fraction bits that does not fit.
+    /// The requested number of fraction bits does not fit the coefficients.
     #[error(
         "coefficient_fraction = {requested}: the coefficients of this machine fit 18 bits with 1 to {largest} fraction \
          bits; give at most {largest}, or leave the key out"
     )]
     Fraction {
-        /// As in the machine file.
+        /// Fraction bits that the machine file asks for.
         requested: u32,
-        /// Largest that fits, at most [`COEFFICIENT_FRACTION_MAX`].
+        /// Largest number that fits, at most [`COEFFICIENT_FRACTION_MAX`].
         largest: u32,
     },
-    /// Integers that are no table: a defect here, said instead of hidden.
+    /// The rounded taps are not a valid table. This is a defect of this program, which is reported instead of hidden.
     #[error("axis {axis}: {cause}")]
     Table {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The broken rule.
+        /// The rule that the taps break.
         cause: TapTableError,
     },
 }
 
 const _: () = assert!(
     COEFFICIENT_FRACTION_MAX == 16,
-    "the message of `Weight` says what one fraction bit reaches"
+    "the message of `Weight` gives the limit of one fraction bit"
 );

@@ -1,4 +1,4 @@
-//! One impulse on the sample grid: `n = ⌊t/T_s⌋`, `f = t/T_s − n`.
+//! Places one impulse on the sample grid: `n = ⌊t/T_s⌋`, `f = t/T_s − n`.
 //!
 //! | method | taps | residual that it leaves at the mode |
 //! |---|---|---|
@@ -10,14 +10,14 @@ use crate::digitise::RealTap;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
-/// An impulse this close to a sample, in samples, is on it. More than rounding leaves of a time that is a whole number of
-/// samples (a thousandth of this at the longest delay), and too little to matter for a residual.
+/// An impulse this close to a sample, in samples, counts as on it. The rounding error of a time that is a whole
+/// number of samples is a thousandth of this at the longest delay, and the residual does not notice so small a shift.
 const ON_SAMPLE: f64 = 1e-11;
 
-/// One or two taps: what one impulse becomes.
+/// The one or two taps of an impulse.
 pub type Placed = [Option<RealTap>; 2];
 
-/// Whole samples and the fraction beyond them.
+/// Splits the time of an impulse into whole samples and the fraction beyond them.
 fn split(impulse: &Impulse, sample_hz: f64) -> (u32, f64) {
     let position = impulse.time_s * sample_hz;
     let nearest = position.round();
@@ -28,7 +28,7 @@ fn split(impulse: &Impulse, sample_hz: f64) -> (u32, f64) {
     }
 }
 
-/// The last sample that a sequence can reach, as a float so that no time is too long.
+/// The last sample that a sequence can reach; a float, so that it holds any time.
 pub(super) fn last_sample(impulses: &ImpulseSequence, sample_hz: f64) -> f64 {
     let position = impulses.duration_s() * sample_hz;
     if (position - position.round()).abs() <= ON_SAMPLE {
@@ -38,7 +38,7 @@ pub(super) fn last_sample(impulses: &ImpulseSequence, sample_hz: f64) -> f64 {
     }
 }
 
-/// Two taps, or one where the second is not needed.
+/// Makes two taps, or one where the second is not needed.
 fn pair(delay_samples: u32, first: f64, second: Option<f64>) -> Placed {
     let tap = |delay_samples, weight| RealTap { delay_samples, weight };
     [
@@ -47,14 +47,14 @@ fn pair(delay_samples: u32, first: f64, second: Option<f64>) -> Placed {
     ]
 }
 
-/// One tap at the nearest sample, halves up.
+/// One tap at the nearest sample; a half is rounded up.
 pub fn nearest(impulse: &Impulse, sample_hz: f64) -> Placed {
     let (sample, fraction) = split(impulse, sample_hz);
     let sample = if fraction >= 0.5 { sample + 1 } else { sample };
     pair(sample, impulse.amplitude, None)
 }
 
-/// Two taps weighted by distance: keeps the sum and the delay.
+/// Two taps weighted by distance, which keep the sum and the delay.
 pub fn linear(impulse: &Impulse, sample_hz: f64) -> Placed {
     let (sample, fraction) = split(impulse, sample_hz);
     let second = (fraction > 0.0).then_some(impulse.amplitude * fraction);

@@ -1,14 +1,15 @@
-//! Digitising: impulses at any time become taps at whole samples, and those become integers.
+//! Digitising: impulses at any time become taps at whole samples, and then integers.
 //!
 //! ```text
 //! impulses ─► grid (two taps per impulse, real) ─► parts convolved ─► real taps a_i ─► quantise ─► TapTable, Σ c_i = 2^F
 //! ```
 //!
-//! `modal`: each part (one mode's shaper) is put on the grid by itself and divided by its own sum; the parts' real sequences
-//! are then convolved, taps on equal samples added. So each mode keeps its own zeros. `linear` and `nearest` place the
-//! impulses of the whole axis. Rounding to integers comes once, at the
-//! end ([`quantise`]). What the other axes of a stage need of delay is folded in before ([`Digitised::delayed`]). The methods are in [`grid`]; the real taps stay beside the integers, because the float design that
-//! the hardware is compared with uses them.
+//! With `modal`, each part (one mode's shaper) is put on the grid by itself and divided by its own sum. The parts'
+//! real sequences are then convolved, and taps on equal samples added, so that each mode keeps its own zeros.
+//! `linear` and `nearest` place the impulses of the whole axis. Rounding to integers comes once, at the end
+//! ([`quantise`]). The delay that an axis needs to match the other axes of a stage is added before that
+//! ([`Digitised::delayed`]). The methods are in [`grid`]; the real taps are kept beside the integers, because the
+//! float design that the hardware is compared with uses them.
 
 mod error;
 pub mod grid;
@@ -26,7 +27,7 @@ use crate::impulse::{Impulse, ImpulseSequence};
 use crate::machine_file::Digitise;
 use crate::mode::Mode;
 
-/// A tap before rounding: `weight · x[n − delay_samples]`.
+/// A tap before rounding, which contributes `weight · x[n − delay_samples]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RealTap {
     /// Delay in samples.
@@ -35,7 +36,7 @@ pub struct RealTap {
     pub weight: f64,
 }
 
-/// How the impulses of an axis came onto the sample grid.
+/// Method by which the impulses of an axis were put on the sample grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DigitiseMethod {
     /// Two taps per impulse, exact at the pole of the mode that the impulse belongs to.
@@ -65,14 +66,14 @@ impl fmt::Display for DigitiseMethod {
 /// A shaper on the sample grid, before rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Digitised {
-    /// The method that was used; not always the one asked for ([`digitise`]).
+    /// The method that was used, which is not always the one asked for ([`digitise`]).
     pub method_used: DigitiseMethod,
-    /// The taps, delays strictly increasing, weights not zero and with sum 1.
+    /// The taps: delays strictly increasing, weights not zero, sum 1.
     pub taps: Vec<RealTap>,
 }
 
 impl Digitised {
-    /// The impulses that the taps stand for.
+    /// The taps as impulses in continuous time.
     pub fn impulses(&self, sample_hz: f64) -> Vec<Impulse> {
         let taps = self.taps.iter();
         taps.map(|tap| Impulse {
@@ -82,16 +83,16 @@ impl Digitised {
         .collect()
     }
 
-    /// Mean delay `Σ a_i d_i` in samples: how far a shaped ramp trails.
+    /// Mean delay `Σ a_i d_i` in samples, by which a shaped ramp lags.
     pub fn mean_delay_samples(&self) -> f64 {
         let taps = self.taps.iter();
         taps.map(|tap| tap.weight * f64::from(tap.delay_samples)).sum()
     }
 
-    /// The same taps, later by so many samples: the whole ones in every delay, the fraction `f` convolved in as `(1 − f, f)`.
-    /// The sum stays 1. As seen by a mode that is a factor of at most 1: no residual grows.
+    /// The taps delayed by `samples`: whole samples are added to every delay, and the fraction `f` is convolved in as
+    /// `(1 − f, f)`. The sum stays 1. At a mode this multiplies the residual by at most 1, so no residual grows.
     ///
-    /// `None` for a delay that is negative or no number, or longer than the largest ring buffer.
+    /// `None` for a delay that is negative or NaN, or longer than the largest ring buffer.
     pub fn delayed(&self, samples: f64) -> Option<Self> {
         let (whole, fraction) = split_delay(samples)?;
         let last = self.taps.last().map_or(0, |tap| tap.delay_samples);
@@ -113,8 +114,8 @@ impl Digitised {
         })
     }
 
-    /// The float design's output for these command words, in the same unit: what the hardware's output is compared with.
-    /// Before the first word the command was at the first word.
+    /// The float design's output for these command words, in the same unit; the hardware's output is compared with
+    /// it. Before the first word the command had the value of the first word.
     pub fn shape(&self, command: &[i64]) -> Vec<f64> {
         let word = |sample: usize, delay_samples: u32| {
             let delayed = sample.saturating_sub(delay_samples as usize);
@@ -127,13 +128,13 @@ impl Digitised {
 
 /// Puts an axis's shaper on the sample grid.
 ///
-/// `modal` for impulses that serve all modes together (`custom`, joint kinds) is exact at the first mode of the file only,
-/// and without a mode becomes `linear`: [`Digitised::method_used`] says so.
+/// For impulses that serve all modes together (`custom`, joint kinds), `modal` is exact only at the first mode of the
+/// file, and becomes `linear` where there is no mode: [`Digitised::method_used`] says so.
 ///
 /// # Errors
 /// [`DigitiseError::Delay`] for a shaper longer than the largest ring buffer, before anything is allocated;
-/// [`DigitiseError::Nyquist`] for a mode that the sample rate cannot carry; [`DigitiseError::NoUnitSum`] where the taps of a part
-/// cancel.
+/// [`DigitiseError::Nyquist`] for a mode whose frequency is too high for the sample rate;
+/// [`DigitiseError::NoUnitSum`] where the taps of a part cancel.
 pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, DigitiseError> {
     let whole = || vec![(&design.impulses, None)];
     let (method_used, sequences) = match (how, &design.parts) {
@@ -141,7 +142,7 @@ pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Di
         (Digitise::Linear, _) => (DigitiseMethod::Linear, whole()),
         (Digitise::Nearest, _) => (DigitiseMethod::Nearest, whole()),
         (Digitise::Modal, ShaperParts::PerMode(parts)) => {
-            // Without a shaper, a mode has no say in the grid.
+            // Modes without a shaper do not matter for the grid.
             let shaped = parts.iter().filter(|p| p.kind != ShaperKind::None);
             let sequences: Vec<_> = shaped.map(|p| (&p.impulses, Some(p.mode))).collect();
             (DigitiseMethod::Modal, sequences)
@@ -162,7 +163,7 @@ pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Di
     })
 }
 
-/// Weights by delay as taps, without those that are 0.
+/// Makes taps of weights by delay, without those that are 0.
 fn real_taps(weights: BTreeMap<u32, f64>) -> Vec<RealTap> {
     let weights = weights.into_iter().filter(|(_, weight)| *weight != 0.0);
     weights
@@ -170,10 +171,12 @@ fn real_taps(weights: BTreeMap<u32, f64>) -> Vec<RealTap> {
         .collect()
 }
 
-/// A delay this close to whole samples is one: it spares taps, and is far below what rounding the coefficients moves.
+/// A delay this close to whole samples counts as whole. This saves taps, and the difference is far below what
+/// rounding the coefficients changes.
 const WHOLE_DELAY: f64 = 1e-10;
 
-/// Whole samples and the fraction beyond them; `None` for what is no delay of this hardware.
+/// Splits a delay into whole samples and the fraction beyond them; `None` for a delay that the hardware does not
+/// have.
 fn split_delay(samples: f64) -> Option<(u32, f64)> {
     if !(0.0..=f64::from(DELAY_MAX_SAMPLES)).contains(&samples) {
         return None;
@@ -185,7 +188,7 @@ fn split_delay(samples: f64) -> Option<(u32, f64)> {
     Some((samples.floor() as u32, samples - samples.floor()))
 }
 
-/// Refuses what no ring buffer holds; each sequence ends at most one sample after its last impulse.
+/// Refuses a sequence that no ring buffer holds; each sequence ends at most one sample after its last impulse.
 fn check_delay<'a>(
     design: &AxisDesign,
     sequences: impl Iterator<Item = &'a ImpulseSequence>,
@@ -203,7 +206,7 @@ fn check_delay<'a>(
     })
 }
 
-/// One sequence on the grid, divided by its sum.
+/// Puts one sequence on the grid and divides it by its sum.
 fn part(
     axis: &str,
     impulses: &ImpulseSequence,
@@ -244,7 +247,7 @@ fn part(
     }
 }
 
-/// One tap sequence after the other.
+/// Convolves two tap sequences.
 fn convolve(a: &BTreeMap<u32, f64>, b: &BTreeMap<u32, f64>) -> BTreeMap<u32, f64> {
     let mut product: BTreeMap<u32, f64> = BTreeMap::new();
     for (delay_a, weight_a) in a {
@@ -339,7 +342,7 @@ mod tests {
         assert_eq!(taps(0.0), [(0, 0.25), (2, 0.75)]);
         assert_eq!(taps(3.0 - 1e-12), [(3, 0.25), (5, 0.75)]);
         assert_eq!(taps(1.25), [(1, 0.1875), (2, 0.0625), (3, 0.5625), (4, 0.1875)]);
-        // The last tap may reach the end of the ring, and no further.
+        // The last tap may reach the end of the ring buffer, but not beyond.
         let room = f64::from(DELAY_MAX_SAMPLES - 2);
         assert_eq!(taps(room).last().unwrap().0, DELAY_MAX_SAMPLES);
         for bad in [room + 0.5, room + 1.0, 1e300, -1e-9, f64::NAN, f64::INFINITY] {

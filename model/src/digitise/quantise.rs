@@ -1,25 +1,25 @@
-//! Rounding real taps to integers with the sum exactly `2^F`.
+//! Rounds real taps to integers whose sum is exactly `2^F`.
 //!
 //! ```text
 //! c_i = ⌊a_i·2^F⌋, then +1 to the largest fractions until Σ c_i = 2^F; ties to the smaller delay; zeros dropped
 //! ```
 //!
-//! The sum is exact so that a shaper at rest hands the position through to the last bit. `F` is one number per machine: it
-//! is a constant of the hardware, shared by all axes. Without a wish it is the largest up to 16 at which every *rounded*
-//! coefficient of all tables lies in 18 bits.
+//! The sum is exact so that a shaper at rest passes the position through to the last bit. There is one `F` per
+//! machine: it is a constant of the hardware, shared by all axes. Where the file does not fix it, it is the largest
+//! up to 16 at which every *rounded* coefficient of all tables fits 18 bits.
 
 use super::{DigitiseError, Digitised, RealTap, TAPS_MAX};
 use crate::taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 
-/// Values this close to a whole number, and fractions this close to each other, are equal: weights that are equal on paper
-/// differ by rounding, and must not decide a tie by it.
+/// Values this close to a whole number, and fractions this close to each other, count as equal: weights that are
+/// equal on paper differ by rounding, which must not decide a tie.
 const EQUAL: f64 = 1e-9;
 
-/// Rounds the taps of all axes of a machine, given with the axes' names, to tables with one `F`.
+/// Rounds the taps of all axes of a machine, given with the axes' names, to tables with one common `F`.
 ///
 /// # Errors
-/// [`DigitiseError::Fraction`] if the coefficients do not fit with the `F` asked for; it names the largest that does.
-/// [`DigitiseError::Weight`] if none does. [`DigitiseError::Taps`] for more taps than a table holds.
+/// [`DigitiseError::Fraction`] if the coefficients do not fit with the `F` asked for; it names the largest that fits.
+/// [`DigitiseError::Weight`] if none fits. [`DigitiseError::Taps`] for more taps than a table holds.
 pub fn quantise(axes: &[(&str, &Digitised)], fraction: Option<u32>) -> Result<Vec<TapTable>, DigitiseError> {
     let largest = largest_fraction(axes)?;
     let fraction = match fraction {
@@ -85,7 +85,7 @@ fn integers(taps: &[RealTap], fraction: u32) -> Vec<i64> {
             scaled.floor()
         };
         coefficients.push(whole as i64);
-        // On a grid of `EQUAL`, so that equal fractions compare equal.
+        // Fractions are put on a grid of `EQUAL`, so that equal ones compare equal.
         remainders.push((((scaled - whole).max(0.0) / EQUAL).round() as i64, index));
     }
     let floors: i64 = coefficients.iter().fold(0, |sum, c| sum.saturating_add(*c));
@@ -97,7 +97,8 @@ fn integers(taps: &[RealTap], fraction: u32) -> Vec<i64> {
     coefficients
 }
 
-/// `Σ |c_i/2^F − a_i|` over all delays of both: times the range of the command, how far the output can be off by rounding.
+/// `Σ |c_i/2^F − a_i|` over all delays of both: multiplied by the range of the command, the largest error of the
+/// output that rounding causes.
 pub fn quantising_error(digitised: &Digitised, table: &TapTable) -> f64 {
     let scale = f64::from(1u32 << table.coefficient_fraction());
     let coefficient_at = |delay_samples| {
@@ -147,7 +148,7 @@ mod tests {
     fn unit_largest_remainders_get_the_missing_ones() {
         // Times 4: 1.2, 0.9, 1.9; floors 1 0 1, two are missing.
         assert_eq!(coefficients(&table(&[0.3, 0.225, 0.475], Some(2)).unwrap()), [1, 1, 2]);
-        // Thirds of 2^16: equal fractions, the one that is missing goes to the smallest delay.
+        // Thirds of 2^16 have equal fractions; the missing unit goes to the smallest delay.
         let third = 1.0 / 3.0;
         let noise = 1.0 + 4.0 * f64::EPSILON;
         let tied = table(&[third, third * noise, third], None).unwrap();

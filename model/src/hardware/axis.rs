@@ -1,4 +1,4 @@
-//! What is built for one axis: its shaper, the gains of its loop, its components.
+//! The hardware of one axis: its shaper, the gains of its loop, its components.
 
 use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, pwm_config, pwm_mode};
 use crate::control::{
@@ -11,32 +11,32 @@ use crate::rtl::component::{Component, ComponentError};
 use crate::rtl::divider::DividerConfig;
 use crate::rtl::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 
-/// The tap table of an axis, and the family that it is of where the axis's modes move.
+/// The tap table of an axis, and its table family where the modes of the axis move.
 type Tables<'a> = (&'a AxisTables, Option<&'a TableFamily>);
 
-/// What is built for an axis.
+/// The hardware of an axis.
 #[derive(Debug, Clone)]
 pub struct AxisHardware {
-    /// Its shaper in the machine's top module, if that can be built and run at the sample rate.
+    /// Its shaper in the machine's top module; the error says why it cannot be built or not run at the sample rate.
     pub shaper: Result<ShaperConfig, HardwareError>,
-    /// Its loop, where it has a controller.
+    /// Its loop; `None` where it has no controller.
     pub control: Option<AxisLoop>,
 }
 
 /// The loop of an axis with a controller.
 #[derive(Debug, Clone)]
 pub struct AxisLoop {
-    /// From the position to what the drive does about it, in s.
+    /// Lag of the loop, from the position to the drive's response, in s.
     pub lag_s: f64,
-    /// The gains, and what follows of them.
+    /// The gains, with the figures derived from them.
     pub derived: Derived,
     /// The words of the axis's supervisor.
     pub supervision: Supervision,
-    /// Whether the pins have no pattern for a negative command.
+    /// Whether the PWM has no pattern for a negative command.
     pub is_one_sided: bool,
-    /// Whether velocity and acceleration are not shaped.
+    /// Whether only the position is shaped, and not velocity and acceleration.
     pub is_one_channel: bool,
-    /// Where the file does not say how far the axis goes.
+    /// Set where the file does not say how far the axis travels.
     pub no_travel: Option<NoTravel>,
 }
 
@@ -45,12 +45,12 @@ pub struct AxisLoop {
 pub struct AxisComponent {
     /// Index of the axis, from 0.
     pub axis: usize,
-    /// The block behind its registers.
+    /// The block behind its own registers.
     pub component: Component,
 }
 
 impl AxisHardware {
-    /// `of_stage` are lag and gains where the axis is part of a stage.
+    /// Decides the hardware of an axis. `of_stage` has lag and gains where the axis is part of a stage.
     pub(super) fn of(
         machine: &Machine,
         index: usize,
@@ -63,7 +63,7 @@ impl AxisHardware {
         Ok(Self { shaper, control })
     }
 
-    /// The components of the axis.
+    /// Makes the components of the axis.
     pub(super) fn components(
         &self,
         axis: &AxisSection,
@@ -97,7 +97,8 @@ impl AxisHardware {
     }
 }
 
-/// The shaper of an axis in the machine's top module, or why it cannot be built, or the axis not run at the sample rate.
+/// The shaper of an axis in the machine's top module. The error says why it cannot be built, or why it cannot run at
+/// the sample rate.
 fn shaper(
     machine: &Machine,
     index: usize,
@@ -106,7 +107,7 @@ fn shaper(
 ) -> Result<ShaperConfig, HardwareError> {
     let unfit = |key: &str, reason: String| HardwareError::new(index, key, format!("axis `{}`: {reason}", axis.name));
     let plain = of_axis(machine.fixed_point.command_bits, tables);
-    // The position of a modulo axis wraps, and a family is handed over while it moves.
+    // Both need the motion shaper: the position of a modulo axis wraps, and a family hands over while the axis moves.
     let motion = ShaperMotion {
         channels: 1,
         modulo: axis.modulo,
@@ -134,7 +135,7 @@ fn shaper(
 /// A plain shaper with room for all tables of an axis.
 ///
 /// # Errors
-/// [`ShaperConfigError`] where it is beyond the sizes of the hardware.
+/// [`ShaperConfigError`] where the shaper exceeds the sizes of the hardware.
 pub(super) fn of_axis(word_bits: u32, (own, family): Tables<'_>) -> Result<ShaperConfig, ShaperConfigError> {
     let plain = ShaperConfig::new(word_bits, own.table.clone())?;
     match family {
@@ -143,8 +144,8 @@ pub(super) fn of_axis(word_bits: u32, (own, family): Tables<'_>) -> Result<Shape
     }
 }
 
-/// The shaper of an axis as a component: one with a controller shapes velocity and acceleration too, and can change its
-/// table while it moves, as far as words and ring allow.
+/// The shaper of an axis as a component. With a controller it also shapes velocity and acceleration, and can change
+/// its table while the axis moves, as far as words and ring buffer allow.
 fn component_shaper(axis: &AxisSection, top: &ShaperConfig) -> ShaperConfig {
     if axis.controller.is_none() {
         return top.clone();
@@ -159,7 +160,8 @@ fn component_shaper(axis: &AxisSection, top: &ShaperConfig) -> ShaperConfig {
     channels(3).or_else(|_| channels(1)).unwrap_or_else(|_| top.clone())
 }
 
-/// What an axis does in a tick; nothing that must be in time where its position is not measured.
+/// The times of the axis's blocks within a tick; `None` where its position is not measured, so that nothing must be
+/// in time.
 fn schedule(axis: &AxisSection, top: &ShaperConfig) -> Option<ControlSchedule> {
     let shaper = component_shaper(axis, top);
     match (&axis.controller, &axis.encoder) {
@@ -169,7 +171,7 @@ fn schedule(axis: &AxisSection, top: &ShaperConfig) -> Option<ControlSchedule> {
     }
 }
 
-/// The loop of an axis with a controller: with the lag and the gains of the stage, or else of its components.
+/// The loop of an axis with a controller, with the lag and the gains of the stage, or else of its components.
 fn control(
     machine: &Machine,
     index: usize,
@@ -185,7 +187,7 @@ fn control(
     let (lag_s, derived) = match of_stage {
         Some(of_stage) => of_stage,
         None => {
-            // Without a shaper there is no hardware: its pass counts nothing.
+            // A shaper that cannot be built takes no clocks.
             let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
             let schedule = ControlSchedule::controlling(shape_clocks);
             let lag_s = loop_lag_s(drive, schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
@@ -208,11 +210,12 @@ fn control(
     }))
 }
 
-/// A sample lasts a multiple of so many clocks: every axis's PWM has a whole number of periods in it.
+/// Number of clocks of which a sample must last a multiple, so that every axis's PWM has a whole number of periods in
+/// it.
 fn pwm_step_clocks(machine: &Machine) -> u64 {
     let periods = machine.axes.iter().filter_map(|axis| axis.pwm.as_ref());
     let periods = periods.map(|pwm| u64::from(pwm.period_clocks(&machine.clock)).max(1));
-    // Each divides the sample, which has at most a million clocks; so does what all of them divide.
+    // Each period divides the sample, which has at most a million clocks, and so does their least common multiple.
     periods.fold(1, |common, period| common / common_divisor(common, period) * period)
 }
 

@@ -1,4 +1,4 @@
-//! What a machine cannot be built as, and which key of its file is to blame.
+//! Errors of the decision what to build, with the key of the machine file that is to blame.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
 pub struct HardwareError {
-    /// Index of the axis that is concerned, from 0.
+    /// Index of the axis, from 0.
     pub axis: usize,
     /// The key of the machine file to blame, such as `axis.pwm.frequency_hz`.
     pub key: String,

@@ -1,4 +1,4 @@
-//! What a machine is built as, decided once from its file and its design.
+//! The hardware that is built for a machine, decided once from its file and its design.
 //!
 //! ```text
 //! machine, design ─► shaper of each axis in the top module
@@ -7,8 +7,8 @@
 //!                 ─► components, each a block behind registers of its own
 //! ```
 //!
-//! Some of it can be impossible while the rest is not: a design can be looked at though a tick is too short for it. So each
-//! part keeps the reason why it cannot be, a [`HardwareError`] with the key of the machine file to blame.
+//! Some parts can be impossible while others are not: a design can be studied even if a tick is too short for it. So
+//! each part that cannot be built has its reason, a [`HardwareError`] with the key of the machine file to blame.
 
 mod axis;
 mod error;
@@ -27,14 +27,14 @@ use crate::rtl::divider::DividerConfig;
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::stage::StageError;
 
-/// The key of the sample rate.
+/// Key of the sample rate.
 const SAMPLE_KEY: &str = "clock.sample_hz";
-/// The key of an axis's name.
+/// Key of an axis's name.
 pub const NAME_KEY: &str = "axis.name";
-/// The key of a PWM's period.
+/// Key of a PWM's frequency.
 const PERIOD_KEY: &str = "axis.pwm.frequency_hz";
 
-/// What is built for a machine.
+/// The hardware of a machine.
 #[derive(Debug, Clone)]
 pub struct Hardware<'a> {
     machine: &'a Machine,
@@ -43,10 +43,10 @@ pub struct Hardware<'a> {
     without_stage: Option<String>,
 }
 
-/// The stage of a machine.
+/// The stage of a machine, with its component.
 #[derive(Debug, Clone)]
 pub struct StageHardware {
-    /// Its settings, and what was derived for its axes.
+    /// Settings of the stage, with the figures derived for its axes.
     pub of_machine: MachineStage,
     /// The stage behind its registers.
     pub component: Component,
@@ -56,7 +56,7 @@ impl<'a> Hardware<'a> {
     /// Decides what is built for a machine with this design.
     ///
     /// # Errors
-    /// [`HardwareError`] for a controller or a supervisor that cannot be.
+    /// [`HardwareError`] for a controller or a supervisor that cannot be built.
     pub fn of(machine: &'a Machine, design: &MachineDesign) -> Result<Self, HardwareError> {
         let mut without_stage = None;
         let stage = complete_stage(machine, design, &mut without_stage);
@@ -78,20 +78,20 @@ impl<'a> Hardware<'a> {
         })
     }
 
-    /// What is built for each axis, in the order of the machine file.
+    /// The hardware of each axis, in the order of the machine file.
     pub fn axes(&self) -> &[AxisHardware] {
         &self.axes
     }
 
-    /// The stage, if every loop of the machine is complete and its shapers suit one.
+    /// The stage. `None` where a loop of the machine is incomplete, or its shapers do not suit a stage.
     ///
     /// # Errors
-    /// [`HardwareError`] where the machine file asks of it what cannot be.
+    /// [`HardwareError`] where the machine file asks for a stage that cannot be built.
     pub fn stage(&self) -> Result<Option<&StageHardware>, HardwareError> {
         self.stage.as_ref().map(Option::as_ref).map_err(Clone::clone)
     }
 
-    /// Why there is no stage though every loop is complete: the shapers do not suit one.
+    /// Why a machine whose loops are all complete has no stage: its shapers do not suit one. Else `None`.
     pub fn without_stage(&self) -> Option<&str> {
         self.without_stage.as_deref()
     }
@@ -99,7 +99,7 @@ impl<'a> Hardware<'a> {
     /// The shaper of each axis in the machine's top module.
     ///
     /// # Errors
-    /// [`HardwareError`] of the first axis that cannot have its own, or not run it at the sample rate.
+    /// [`HardwareError`] of the first axis whose shaper cannot be built, or cannot run at the sample rate.
     pub fn shapers(&self) -> Result<Vec<ShaperConfig>, HardwareError> {
         self.axes.iter().map(|axis| axis.shaper.clone()).collect()
     }
@@ -107,17 +107,17 @@ impl<'a> Hardware<'a> {
     /// The divider for the machine's tick.
     ///
     /// # Errors
-    /// [`HardwareError`] for a tick of a length that a divider does not take.
+    /// [`HardwareError`] for a tick whose length the divider does not support.
     pub fn divider(&self) -> Result<DividerConfig, HardwareError> {
         let clocks = u64::from(self.machine.clock.clocks_per_sample());
         DividerConfig::new(clocks).map_err(|error| HardwareError::new(0, SAMPLE_KEY, error))
     }
 
-    /// The blocks of the machine's axes as components, each behind registers of its own, axis by axis: none for a machine of
-    /// shapers alone.
+    /// The blocks of the machine's axes as components, each behind its own registers, axis by axis. A machine that
+    /// has only shapers has none.
     ///
     /// # Errors
-    /// [`HardwareError`] for a block that the machine file asks for and that cannot be.
+    /// [`HardwareError`] for a block that the machine file asks for and that cannot be built.
     pub fn components(&self) -> Result<Vec<AxisComponent>, HardwareError> {
         let mut components = Vec::new();
         if !self.machine.axes.iter().any(crate::machine_file::AxisSection::has_loop) {
@@ -135,13 +135,13 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// The stage with its component. A machine whose shapers do not suit a stage has none, and `reason` says why.
+/// Makes the stage with its component. A machine whose shapers do not suit a stage has none, and `reason` says why.
 fn complete_stage(
     machine: &Machine,
     design: &MachineDesign,
     reason: &mut Option<String>,
 ) -> Result<Option<StageHardware>, HardwareError> {
-    // A machine of shapers alone has words and delays that a stage does not; it wants none.
+    // A machine with only shapers may have words and delays that a stage does not allow; it needs no stage.
     if !machine.axes.iter().all(crate::machine_file::AxisSection::has_loop) {
         return Ok(None);
     }
@@ -170,7 +170,7 @@ fn complete_stage(
     }
 }
 
-/// Axis and key of the machine file that an error of a stage comes from.
+/// Axis and key of the machine file that are to blame for an error of a stage.
 fn to_blame(stage: &MachineStage, error: &StageError) -> (usize, &'static str) {
     match error {
         StageError::Period { axis, .. } => {

@@ -1,4 +1,4 @@
-//! The stage of a machine: what its file says of the axes, as the hardware is built from it.
+//! The stage of a machine: turns what its file says of the axes into the configuration of the hardware.
 
 use super::axis::of_axis;
 use super::error_table;
@@ -15,21 +15,21 @@ use crate::rtl::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 use crate::rtl::stage::{StageAxis, StageConfig, StageErrorTable, StageScale, StageSchedule};
 use crate::rtl::trace::{TraceConfig, TraceConfigError};
 
-/// A stage, and what was derived for its axes.
+/// A stage, with the figures derived for its axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MachineStage {
-    /// What it is built from.
+    /// Configuration of the stage.
     pub config: StageConfig,
-    /// Lag of each axis's loop in s, with the stage's schedule.
+    /// Lag of each axis's loop in s, with the timing of the stage.
     pub lags_s: Vec<f64>,
-    /// Controller of each axis.
+    /// Gains of each axis's controller, with the figures derived from them.
     pub derived: Vec<Derived>,
-    /// The tap tables of the axes whose modes move.
+    /// The table families of the axes whose modes move.
     pub families: Vec<TableFamily>,
 }
 
 impl MachineStage {
-    /// The axis whose name clashes: the first without which, under another name, the stage `builds`.
+    /// Index of the axis whose name clashes with another one's: the first without whose name the stage `builds`.
     pub fn clashing_axis(&self, builds: impl Fn(&StageConfig) -> bool) -> usize {
         let renamed = |axis: &usize| {
             let mut config = self.config.clone();
@@ -43,10 +43,10 @@ impl MachineStage {
 /// Why a machine has no stage. `axis` counts from 0.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineStageError {
-    /// The tick.
+    /// The tick has a length that its divider does not support.
     #[error(transparent)]
     Tick(#[from] DividerConfigError),
-    /// A shaper.
+    /// The shaper of an axis cannot be built.
     #[error("axis {axis}: {error}; a stage shapes position, velocity and acceleration")]
     Shaper {
         /// Index of the axis, from 0.
@@ -54,7 +54,7 @@ pub enum MachineStageError {
         /// The reason.
         error: ShaperConfigError,
     },
-    /// A PWM.
+    /// The PWM of an axis cannot be built.
     #[error("{error}")]
     Pwm {
         /// Index of the axis, from 0.
@@ -62,7 +62,7 @@ pub enum MachineStageError {
         /// The reason.
         error: PwmConfigError,
     },
-    /// A scale.
+    /// The scale of an axis has a ratio that cannot be built.
     #[error("axis {axis}: {error}")]
     Scale {
         /// Index of the axis, from 0.
@@ -86,7 +86,7 @@ pub enum MachineStageError {
         /// The reason.
         error: TraceConfigError,
     },
-    /// A controller.
+    /// The controller of an axis has no valid gains.
     #[error("{error}")]
     Control {
         /// Index of the axis, from 0.
@@ -94,7 +94,7 @@ pub enum MachineStageError {
         /// The reason.
         error: ControlError,
     },
-    /// A supervisor.
+    /// The limits of an axis do not fit its supervisor.
     #[error("{error}")]
     Supervision {
         /// Index of the axis, from 0.
@@ -105,7 +105,7 @@ pub enum MachineStageError {
 }
 
 impl MachineStageError {
-    /// Axis and key of the machine file that are to blame.
+    /// Axis, from 0, and key of the machine file that are to blame.
     pub fn key(&self) -> (usize, String) {
         match self {
             Self::Tick(_) => (0, "clock.sample_hz".to_owned()),
@@ -120,10 +120,10 @@ impl MachineStageError {
     }
 }
 
-/// The stage of a machine, if every axis of it has encoder, PWM, drive and controller; else none.
+/// The stage of a machine; `None` unless every axis has encoder, PWM, drive and controller.
 ///
 /// # Errors
-/// [`MachineStageError`] with the key to blame.
+/// [`MachineStageError`], which has the key to blame.
 pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<MachineStage>, MachineStageError> {
     let mut axes = Vec::new();
     for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
@@ -242,7 +242,7 @@ impl Parts<'_> {
     }
 }
 
-/// The mode's register value.
+/// The register value of a PWM mode.
 pub fn pwm_mode(mode: PwmMode) -> BridgeMode {
     match mode {
         PwmMode::Direction => BridgeMode::Direction,
@@ -252,7 +252,8 @@ pub fn pwm_mode(mode: PwmMode) -> BridgeMode {
     }
 }
 
-/// What is fixed in an axis's PWM: all pins have one polarity, and what the file asks for is the least that a register takes.
+/// Build parameters of an axis's PWM: all pins have one polarity, and the times of the file are the least that a
+/// register accepts.
 ///
 /// # Errors
 /// [`PwmConfigError`] for a dead time or minimum pulse of more than 1023 clocks.

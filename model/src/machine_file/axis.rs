@@ -1,4 +1,4 @@
-//! `[[axis]]`, and which of an axis's blocks need each other.
+//! `[[axis]]`: reading one axis, and checking that each of its blocks finds the others that it needs.
 
 use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
@@ -22,17 +22,17 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "unit",
         Values::Word(|| AxisUnit::ALL.map(|(_, name)| name).to_vec()),
-        "What the figures of the axis are in, its counts among them.",
+        "Unit of all figures of the axis, including its counts.",
     )
     .default(Default::Word("m")),
     Key::switch(
         "modulo",
-        "The position counts on across the word's end: a rotary axis without an end.",
+        "A rotary axis without end stops: the position wraps at the end of its word.",
     ),
     Key::new(
         "shaper",
         Values::Table(shaper::KEYS),
-        "One shaper for the axis; absent where every mode has `shaper`.",
+        "Shaper of the whole axis; leave it out where every mode has `shaper`.",
     ),
     Key::new(
         "mode",
@@ -42,30 +42,43 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "mechanics",
         Values::Table(mechanics::KEYS),
-        "A ball screw by its data sheets, in place of `[[axis.mode]]`: the mode follows.",
+        "Data-sheet figures of a ball screw, from which the mode is computed, in place of `[[axis.mode]]`.",
     ),
     Key::new(
         "family",
         Values::Table(moving::KEYS),
-        "Which tap tables an axis gets whose modes move.",
+        "Choice of the tap tables for an axis whose modes move.",
     ),
     Key::new(
         "encoder",
         Values::Table(encoder::KEYS),
-        "Reads the position from an encoder.",
+        "Encoder from which the position is read.",
     ),
-    Key::new("scale", Values::Table(scale::KEYS), "Reads a linear scale at the load."),
-    Key::new("pwm", Values::Table(pwm::KEYS), "Drives the pins."),
+    Key::new("scale", Values::Table(scale::KEYS), "Linear scale at the load."),
+    Key::new(
+        "pwm",
+        Values::Table(pwm::KEYS),
+        "Pulse width modulator that drives the pins.",
+    ),
     Key::new(
         "drive",
         Values::Table(drive::KEYS),
-        "What the duty of the PWM commands.",
+        "Drive behind the PWM: what its duty commands.",
     ),
-    Key::new("controller", Values::Table(controller::KEYS), "Closes the loop."),
+    Key::new(
+        "controller",
+        Values::Table(controller::KEYS),
+        "Controller that closes the position loop.",
+    ),
     Key::new(
         "limits",
         Values::Table(limits::KEYS),
-        "What moves may ask for, and what the supervisor of the axis watches.",
+        "Limits of moves, and what the supervisor of the axis monitors.",
+    ),
+    Key::new(
+        "trace",
+        Values::Table(trace::KEYS),
+        "Trace memory that records signals of the loop.",
     ),
     Key::new(
         "error_table",
@@ -75,8 +88,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("trace", Values::Table(trace::KEYS), "Records signals of the loop."),
 ];
 
-/// Reads one axis under a name that was read before. Without a valid clock or number format the checks that need them
-/// are left out.
+/// Reads one axis, whose name has been read already. Checks that need a valid clock or number format are skipped
+/// without one.
 pub(super) fn read(
     table: &Table<'_, '_>,
     name: Option<String>,
@@ -101,7 +114,7 @@ pub(super) fn read(
         Some(Some((screw_table, mode, screw))) => (given.map(|_| vec![(screw_table, mode)]), Some(screw)),
     };
     let family = modes.as_mut().and_then(|modes| moving::read_family(table, modes, unit));
-    // A shaper that was refused is not compared with the modes: what it lacks would be reported twice.
+    // A shaper that was refused is not compared with the modes, so that its fault is not reported twice.
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
     }
@@ -157,7 +170,8 @@ pub(super) fn read(
     })
 }
 
-/// A table that may be absent; `None` where it is there and refused.
+/// Turns what a reader returned round, so that `?` ends at a refusal: `Some(None)` where the table is absent, `None`
+/// where it was refused.
 fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
     match read {
         Some(value) => value.map(Some),
@@ -172,7 +186,7 @@ fn read_unit(table: &Table<'_, '_>) -> AxisUnit {
     unit.map_or(AxisUnit::default(), |(unit, _)| unit)
 }
 
-/// Whether the axis is rotary: its shaper is then the one for motion, which not every word width has.
+/// Reads whether the axis is rotary. A rotary axis needs the shaper for motion, which not every word width has.
 fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
     let modulo = table.boolean("modulo") == Some(true);
     let bits = fixed_point.map(|format| format.command_bits);
@@ -186,7 +200,7 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
     modulo
 }
 
-/// A block of an axis that others must be there for.
+/// A block of an axis, with the other blocks that it needs.
 pub(super) struct Need {
     pub(super) block: &'static str,
     pub(super) others: &'static [&'static str],
@@ -239,7 +253,7 @@ fn check_needs(axis: &Table<'_, '_>) {
     }
 }
 
-/// `a, b and c`.
+/// Joins words as in `a, b and c`.
 fn listed(words: &[String]) -> String {
     match words {
         [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),

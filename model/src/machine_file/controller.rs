@@ -1,17 +1,17 @@
-//! `[axis.controller]`: the law that turns the error of the position into the drive's command.
+//! `[axis.controller]`: the control law that turns the position error into the drive's command.
 
 use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 use crate::unit::AxisUnit;
 
-/// Gains that must be there and pull.
+/// Range of the gains that are required and must be above 0.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
-/// Gains of the sliding-mode law that may be absent.
+/// Range of the gains of the sliding-mode law that may be 0.
 const NOT_NEGATIVE: NumberRange = NumberRange::closed(0.0, 1e12);
 
-/// `[axis.controller]`, with the error in m (or rad). A velocity drive is commanded in m/s, a torque drive by the
-/// acceleration in m/s² that its force is to give.
+/// `[axis.controller]`, with the position error in m (or rad). The law's output is a velocity in m/s for a velocity
+/// drive, and for a torque drive the acceleration in m/s² that its force shall produce.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Controller {
     /// Sliding mode with a boundary layer: `s = de + c·e`, reaching law `−ε·sat(s/φ) − k·s`.
@@ -25,30 +25,31 @@ pub enum Controller {
         /// Half width φ of the boundary layer, m/s.
         boundary: f64,
     },
-    /// Proportional and derivative with feed-forward; a gain that the file leaves out follows from the drive.
+    /// Proportional and derivative gain with feed-forward; a gain that the file leaves out is computed from the
+    /// drive.
     Pd {
-        /// Command per error: 1/s of a velocity drive, 1/s² of a torque drive.
+        /// Proportional gain: in 1/s for a velocity drive, in 1/s² for a torque drive.
         proportional: Option<f64>,
-        /// Command per rate of the error: a number of a velocity drive, 1/s of a torque drive.
+        /// Derivative gain: without unit for a velocity drive, in 1/s for a torque drive.
         derivative: Option<f64>,
     },
-    /// The same with an integral that is frozen while the command is clamped.
+    /// PD with an integral term, which is frozen while the command is clamped.
     Pid {
-        /// As for PD.
+        /// Proportional gain, as for PD.
         proportional: Option<f64>,
-        /// As for PD.
+        /// Derivative gain, as for PD.
         derivative: Option<f64>,
-        /// Command per integrated error: 1/s² of a velocity drive, 1/s³ of a torque drive.
+        /// Integral gain: in 1/s² for a velocity drive, in 1/s³ for a torque drive.
         integral: Option<f64>,
     },
 }
 
-/// The laws.
+/// Names of the control laws.
 const KINDS: [&str; 3] = ["sliding-mode", "pd", "pid"];
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("kind", Values::Word(|| KINDS.to_vec()), "The law.").required(),
+    Key::new("kind", Values::Word(|| KINDS.to_vec()), "Control law.").required(),
     Key::new(
         "c",
         Values::Number(POSITIVE),
@@ -72,22 +73,25 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "proportional",
         Values::Number(POSITIVE),
-        "Command per error of `pd` and `pid`: 1/s of a velocity drive, 1/s² of a torque drive. Else it follows from the loop.",
+        "Proportional gain of `pd` and `pid`: 1/s for a velocity drive, 1/s² for a torque drive. Absent: computed \
+        from the loop.",
     ),
     Key::new(
         "derivative",
         Values::Number(POSITIVE),
-        "Command per rate of the error of `pd` and `pid`: a number of a velocity drive, 1/s of a torque drive. Else it follows \
+        "Command per rate of the error of `pd` and `pid`: a number of a velocity drive, 1/s of a torque drive. Else \
+        it follows \
          from the loop.",
     ),
     Key::new(
         "integral",
         Values::Number(POSITIVE),
-        "Command per integrated error of `pid`: 1/s² of a velocity drive, 1/s³ of a torque drive. Else it follows from the loop.",
+        "Command per integrated error of `pid`: 1/s² of a velocity drive, 1/s³ of a torque drive. Else it follows \
+        from the loop.",
     ),
 ];
 
-/// Each key of a law, and the kinds that have it.
+/// The gains, each with the control laws that have it.
 const GAINS: [(&str, &[&str]); 7] = [
     ("c", &["sliding-mode"]),
     ("k", &["sliding-mode"]),
@@ -103,7 +107,7 @@ pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> 
     table.allow(KEYS);
     let kind = table.required_choice("kind", &KINDS);
     let gain = |key| {
-        // The others are rates, and numbers: the same in every unit.
+        // The other gains are rates or plain numbers, which are the same in every unit.
         match key {
             "epsilon" => table.quantity(key, NOT_NEGATIVE, unit),
             "boundary" => table.quantity(key, POSITIVE, unit),

@@ -1,30 +1,30 @@
-//! `[axis.drive]`: what the PWM's duty means to the power stage behind it.
+//! `[axis.drive]`: what the PWM's duty commands of the power stage behind it.
 
 use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 use crate::unit::AxisUnit;
 
-/// What must be there to divide by.
+/// Range of the figures that are divided by.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
-/// What may be absent in the machine.
+/// Range of frictions, which may be 0.
 const NOT_NEGATIVE: NumberRange = NumberRange::closed(0.0, 1e12);
 
-/// What the duty is a command for.
+/// Quantity that the duty commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DriveMode {
-    /// A current, and by it a force or torque.
+    /// The duty commands a current, and through it a force or torque.
     Torque {
         /// Moved mass in kg, or inertia in kg·m², as the motor feels it.
         equivalent_mass: f64,
         /// Force per current in N/A, or torque in N·m/A.
         force_constant: f64,
-        /// Largest current that is asked for, in A; at most `full_scale_a`.
+        /// Largest current that is commanded, in A; at most `full_scale_a`.
         current_limit_a: f64,
         /// Current at full duty, in A.
         full_scale_a: f64,
     },
-    /// A velocity, which a stiff drive keeps.
+    /// The duty commands a velocity, which a stiff drive keeps.
     Velocity {
         /// Velocity at full duty, in the axis's unit/s.
         full_scale_velocity: f64,
@@ -34,9 +34,9 @@ pub enum DriveMode {
 /// `[axis.drive]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
-    /// What the duty is a command for.
+    /// Quantity that the duty commands.
     pub mode: DriveMode,
-    /// Bandwidth with which the drive follows its command, in Hz, where the file gives it.
+    /// Bandwidth with which the drive follows its command, in Hz; `None` where the file gives none.
     pub bandwidth_hz: Option<f64>,
     /// Viscous friction in N·s/m. Default 0.
     pub viscous: f64,
@@ -44,7 +44,7 @@ pub struct Drive {
     pub coulomb: f64,
 }
 
-/// What full duty commands.
+/// Names of the quantities that full duty can command.
 const MODES: [&str; 2] = ["torque", "velocity"];
 
 /// The keys of the table.
@@ -52,7 +52,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "mode",
         Values::Word(|| MODES.to_vec()),
-        "What full duty commands: a current, and by it a torque, or a velocity.",
+        "Quantity that full duty commands: a current, and through it a torque, or a velocity.",
     )
     .required(),
     Key::new(
@@ -68,7 +68,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "current_limit_a",
         Values::Number(POSITIVE),
-        "Most current that is asked for, in A; at most `full_scale_a`. `torque` needs it.",
+        "Largest current that is commanded, in A; at most `full_scale_a`. `torque` needs it.",
     ),
     Key::new(
         "full_scale_a",
@@ -83,7 +83,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "bandwidth_hz",
         Values::Number(POSITIVE),
-        "How fast the drive follows its command, in Hz.",
+        "Bandwidth with which the drive follows its command, in Hz.",
     ),
     Key::or_zero("viscous", NOT_NEGATIVE, "Viscous friction in N·s/m."),
     Key::or_zero("coulomb", NOT_NEGATIVE, "Coulomb friction in N."),

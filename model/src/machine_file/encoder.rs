@@ -7,12 +7,12 @@ use crate::rtl::pulse_counter::FILTER_CLOCKS_MAX;
 /// `[axis.encoder]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoder {
-    /// Pulses of up to so many clocks are ignored, 0 to [`FILTER_CLOCKS_MAX`]. Default 0: every level that two flip-flops
-    /// see counts.
+    /// Pulses of up to this many clocks are ignored: 0 (the default, no filter) to [`FILTER_CLOCKS_MAX`]. Without a
+    /// filter every level counts that two flip-flops see.
     pub filter_clocks: u32,
-    /// Whether the encoder has an index line. Default: it has none.
+    /// Whether the encoder has an index line. Default: false.
     pub index: bool,
-    /// Whether its lines count down where the drive's positive command moves up. Default: they count up.
+    /// Whether the lines count down where the drive's positive command moves up. Default: false.
     pub invert: bool,
 }
 
@@ -21,7 +21,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "filter_clocks",
         Values::Integer(0, FILTER_CLOCKS_MAX),
-        "Pulses of up to so many clocks are ignored, on every line. 0: no filter.",
+        "Pulses of up to this many clocks are ignored on every line. 0: no filter.",
     )
     .default(Default::Integer(0)),
     Key::switch("index", "The encoder has an index line."),

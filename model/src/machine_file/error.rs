@@ -1,4 +1,4 @@
-//! What is wrong with a machine file: every problem with its place, what was found, what is allowed and the remedy.
+//! The errors of a machine file: each problem with its place, what was found, what is allowed and the remedy.
 //!
 //! The plain text of a [`SpecError`] is complete without colours or graphics, one line per problem:
 //!
@@ -6,16 +6,16 @@
 //! stage.toml:23: axis.mode.damping of axis x, mode 1: found 1.2; allowed: at least 0, below 1
 //! ```
 //!
-//! As a [`miette::Diagnostic`] it adds the source with a mark at each place, and the remedies as help, each with the line that it is
-//! for where there are several. A handler should
-//! not wrap lines: the plain text is meant to be searched.
+//! As a [`miette::Diagnostic`] it adds the source with a mark at each place. The remedies are its help; where there
+//! are several, each begins with its line number. A handler should not wrap lines: the plain text is meant to be
+//! searched.
 
 use std::fmt;
 use std::ops::Range;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 
-/// Problems that one error keeps; a file that is wrong in more places is not better understood by a longer list.
+/// Largest number of problems that one error lists; a longer list would not help to mend the file.
 pub const MAX_PROBLEMS: usize = 20;
 
 /// Why a machine file was refused: at least one [`Problem`], in the order of the file.
@@ -30,13 +30,13 @@ pub struct SpecError {
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// Line in the file, from 1. Of a missing key: the line of its table's header.
+    /// Line in the file, from 1. For a missing key it is the line of its table's header.
     pub line: usize,
     /// Bytes of the file that the problem is about.
     pub span: Range<usize>,
-    /// Dotted key, such as `axis.mode.damping`; empty where the file as a whole is meant.
+    /// Dotted key, such as `axis.mode.damping`; empty where the problem is the file as a whole.
     pub key: String,
-    /// Which of several tables, such as `axis x, mode 2`; empty where there is only one.
+    /// The table among several of its kind, such as `axis x, mode 2`; empty where there is only one.
     pub place: String,
     /// What was found and what is allowed.
     pub cause: ProblemCause,
@@ -47,7 +47,7 @@ pub struct Problem {
 /// What is wrong, with what was found and what is allowed instead.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ProblemCause {
-    /// The text is no TOML.
+    /// The text is not valid TOML.
     #[error("found a TOML syntax error: {0}; allowed: TOML as of https://toml.io")]
     Syntax(String),
     /// The file holds no key at all.
@@ -96,7 +96,7 @@ pub enum ProblemCause {
         /// The list.
         allowed: String,
     },
-    /// A name that must be unique and is not.
+    /// A name that must be unique but is used twice.
     #[error("found {found}, which line {first_line} already has; allowed: {allowed}")]
     Duplicate {
         /// The value as it stands in the file.
@@ -106,7 +106,7 @@ pub enum ProblemCause {
         /// The rule.
         allowed: String,
     },
-    /// Keys that are right alone and wrong together.
+    /// Keys that are valid alone but contradict each other.
     #[error("found {found}; allowed: {allowed}")]
     Inconsistent {
         /// The combination.
@@ -114,12 +114,12 @@ pub enum ProblemCause {
         /// The combinations that are right.
         allowed: String,
     },
-    /// Right, and known, but no part of this version builds it.
+    /// A valid value that this version does not build.
     #[error("not built in this version: {name}{}", allowed.as_ref().map(|a| format!("; allowed: {a}")).unwrap_or_default())]
     NotBuilt {
-        /// The block, key or kind.
+        /// Name of the block, key or kind.
         name: String,
-        /// What is built instead, where there is a choice.
+        /// The alternatives that are built, where there is a choice.
         allowed: Option<String>,
     },
 }
@@ -143,7 +143,7 @@ impl ProblemCause {
 }
 
 impl SpecError {
-    /// Takes problems in any order. `unlisted` further ones were found and not kept.
+    /// Makes the error of problems in any order. `unlisted` further problems were found and not kept.
     pub(super) fn new(file_name: &str, text: &str, mut problems: Vec<Problem>, unlisted: usize) -> Self {
         problems.sort_by_key(|p| p.span.start);
         Self {
@@ -159,7 +159,7 @@ impl SpecError {
     }
 }
 
-/// The lines of an error's plain text.
+/// Writes the lines of an error's plain text.
 struct Listing<'e>(&'e SpecError);
 
 impl fmt::Display for Listing<'_> {

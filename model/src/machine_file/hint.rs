@@ -1,21 +1,21 @@
-//! What a wrong value most likely stands for: percent, kilohertz, milliseconds, a number in quotes.
+//! Guesses at the mistake behind a wrong value: percent, kilohertz, milliseconds, a number in quotes.
 //!
-//! A hint is the remedy of a problem: it asks, and says what to write if the answer is yes.
+//! A hint is the remedy of a problem. It asks whether the guess is right, and says what to write if it is.
 
 use toml::de::DeValue;
 
 use super::range::NumberRange;
 use crate::unit::short;
 
-/// A prefix of a unit: its sign, and how much it stands for.
+/// A prefix of a unit: its symbol and its factor.
 type Prefix = (&'static str, f64);
 
-/// Prefixes of a frequency that is too low, the most likely first.
+/// Prefixes of a clock frequency that is too low, the most likely first.
 pub(super) const MEGA_OR_KILO: [Prefix; 2] = [("MHz", 1e6), ("kHz", 1e3)];
-/// Of a sample rate or a mode.
+/// Prefixes of a sample rate or of a mode's frequency that is too low.
 pub(super) const KILO: [Prefix; 1] = [("kHz", 1e3)];
 
-/// A number that can be written in a machine file, the thousands of a whole one apart from each other.
+/// Writes a number as in a machine file: a whole one with `_` between groups of three digits.
 pub(super) fn written(value: f64) -> String {
     if value.fract() != 0.0 || value.abs() >= 1e15 {
         return short(value);
@@ -34,7 +34,7 @@ pub(super) fn written(value: f64) -> String {
     }
 }
 
-/// Asks whether a frequency was meant in another unit: the first with which it is `right`.
+/// Asks whether a frequency was meant in another unit: the first of `units` in which it passes `right`.
 pub(super) fn in_other_unit(key: &str, found_hz: f64, units: &[Prefix], right: impl Fn(f64) -> bool) -> Option<String> {
     let (unit, factor) = units.iter().find(|(_, factor)| right(found_hz * factor))?;
     let (number, meant) = (short(found_hz), written(found_hz * factor));
@@ -101,7 +101,7 @@ pub(super) fn of_type(key: &str, found: &DeValue<'_>, allowed: &str, dotted: &st
     }
 }
 
-/// The remedy for text that is no TOML: what the parser says, and the line that it says it of.
+/// The remedy for text that is not valid TOML, from the parser's message and the line that it is about.
 pub(super) fn of_syntax(message: &str, line: &str) -> String {
     let line = line.trim();
     let value = line.split_once('=').map_or("", |(_, value)| value.trim());

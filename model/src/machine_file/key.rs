@@ -13,24 +13,25 @@ pub(super) struct Key {
     /// Whether a file without it is refused.
     pub(super) required: bool,
     pub(super) default: Option<Default>,
-    /// Another key that stands in its place: a table has one of the two.
+    /// Another key that may stand in place of this one: a table has one of the two.
     pub(super) instead_of: Option<&'static str>,
-    /// Another key that cannot be without this one.
+    /// Another key that is only valid beside this one.
     pub(super) needed_by: Option<&'static str>,
     /// Meaning and unit, in a sentence.
     pub(super) about: &'static str,
 }
 
-/// What a key may be.
+/// Values that a key may have.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Values {
     /// A number; integers count as numbers.
     Number(NumberRange),
-    /// A length or angle of the axis, or what is made of one and time, in the axis's unit. The range is in m or rad.
+    /// A length or angle of the axis, or its velocity, acceleration or jerk, in the axis's unit. The range is in m or
+    /// rad.
     Quantity(NumberRange),
     /// Counts per unit of the axis. The range is per m or rad.
     Counts(NumberRange),
-    /// A whole number, from the first to the second.
+    /// A whole number, from the first to the second, both included.
     Integer(u32, u32),
     /// A whole number of this list.
     OneOf(&'static [u32]),
@@ -50,15 +51,15 @@ pub(super) enum Values {
     PlainPair(NumberRange),
     /// `[low, high]` in the axis's unit. The range is in m or rad.
     Pair(NumberRange),
-    /// A list of 1 to so many pairs of numbers.
+    /// A list of pairs of numbers, at least 1 and at most this many.
     Pairs(NumberRange, usize),
-    /// A list of 1 to so many rows, whose numbers lie in these ranges.
+    /// A list of rows whose numbers lie in these ranges, at least 1 row and at most this many.
     Rows(&'static [NumberRange], usize),
-    /// A list of 1 to so many numbers.
+    /// A list of numbers, at least 1 and at most this many.
     Numbers(NumberRange, usize),
     /// A table.
     Table(&'static [Key]),
-    /// 1 to so many tables.
+    /// An array of tables, at least 1 and at most this many.
     Tables(&'static [Key], usize),
 }
 
@@ -72,7 +73,7 @@ pub(super) enum Default {
 }
 
 impl Key {
-    /// A key that may be absent, and then has no value.
+    /// Makes an optional key without a default.
     pub(super) const fn new(name: &'static str, values: Values, about: &'static str) -> Self {
         Self {
             name,
@@ -85,12 +86,12 @@ impl Key {
         }
     }
 
-    /// The same, which every such table has.
+    /// Marks the key as required.
     pub(super) const fn required(self) -> Self {
         Self { required: true, ..self }
     }
 
-    /// The same, with the value that it has where it is absent.
+    /// Gives the key a default.
     pub(super) const fn default(self, value: Default) -> Self {
         Self {
             default: Some(value),
@@ -98,7 +99,7 @@ impl Key {
         }
     }
 
-    /// The same, in the place of another key: a table has one of the two.
+    /// Marks the key as an alternative to `other`: a table has one of the two.
     pub(super) const fn instead_of(self, other: &'static str) -> Self {
         Self {
             instead_of: Some(other),
@@ -106,7 +107,7 @@ impl Key {
         }
     }
 
-    /// The same, without which another key cannot be.
+    /// Says that `other` is only valid beside this key.
     pub(super) const fn needed_by(self, other: &'static str) -> Self {
         Self {
             needed_by: Some(other),
@@ -114,12 +115,12 @@ impl Key {
         }
     }
 
-    /// A switch that is off where it is absent.
+    /// Makes an optional boolean, false by default.
     pub(super) const fn switch(name: &'static str, about: &'static str) -> Self {
         Self::new(name, Values::Boolean, about).default(Default::Boolean(false))
     }
 
-    /// A number that is 0 where it is absent.
+    /// Makes an optional number, 0 by default.
     pub(super) const fn or_zero(name: &'static str, range: NumberRange, about: &'static str) -> Self {
         Self::new(name, Values::Number(range), about).default(Default::Number(0.0))
     }

@@ -1,7 +1,8 @@
-//! `[axis.limits]`: what a move may ask for, and what the supervisor of the axis watches and does.
+//! `[axis.limits]`: limits of moves, and what the supervisor of the axis monitors and how it reacts.
 //!
-//! Values are in m, rad and s; the file has them in the axis's unit. [`crate::control::supervision`] turns them into the words of the hardware, and refuses
-//! what those do not hold. `docs/machine-file.md` has every key with its default.
+//! Values are in m, rad and s; the file has them in the axis's unit. [`crate::control::supervision`] turns them into
+//! the words of the hardware, and refuses values that do not fit. `docs/machine-file.md` has every key with its
+//! default.
 
 use super::FixedPoint;
 use super::key::{Default as Absent, Key, Values};
@@ -11,20 +12,20 @@ use crate::rtl::axis::{ALWAYS_OFF, Cause};
 use crate::rtl::shaper::WORD_BITS;
 use crate::unit::AxisUnit;
 
-/// Positions.
+/// Range of positions.
 const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9);
-/// Velocity, acceleration and jerk, and distances: far above any machine, finite when multiplied with each other.
+/// Range of velocity, acceleration, jerk and distances: far above any machine, and products of them stay finite.
 const MOTION: NumberRange = NumberRange::positive(1e9);
-/// Times of the brake and of what lasts too long; 0 where there is none.
+/// Range of the brake's times and of the monitors' time limits, which may be 0.
 const SECONDS: NumberRange = NumberRange::closed(0.0, 60.0).unit("s");
-/// Times that cannot be 0.
+/// Range of times that must be above 0.
 const LASTING: NumberRange = NumberRange::positive(60.0).unit("s");
-/// Parts of full scale.
+/// Range of fractions of full scale.
 const PART: NumberRange = NumberRange::closed(0.0, 1.0);
-/// Commands above a part of full scale, which the whole is not.
+/// Range of command levels that must stay below full scale.
 const PART_BELOW: NumberRange = PART.open_above();
 
-/// Causes of which the file chooses the reaction.
+/// Causes whose reaction the file may choose.
 const CHOICES: [Cause; 13] = [
     Cause::DriveLost,
     Cause::LimitPlus,
@@ -41,8 +42,8 @@ const CHOICES: [Cause; 13] = [
     Cause::Schedule,
 ];
 
-/// Causes that switch off where the file does not say: those that leave in doubt what a quick stop needs, which is a drive
-/// that obeys, a position that is true, and a controller that is in time.
+/// Causes that switch off by default. They put in doubt what a quick stop needs: a drive that obeys, a position that
+/// is true, and a controller that is in time.
 const DEFAULT_OFF: [Cause; 6] = [
     Cause::DriveLost,
     Cause::FollowingError,
@@ -52,13 +53,12 @@ const DEFAULT_OFF: [Cause; 6] = [
     Cause::Schedule,
 ];
 
-/// Part of full scale above which an encoder must count, where the file does not say: friction and weight take less.
+/// Default fraction of full scale above which the encoder must count: friction and weight take less.
 const DEFAULT_LOST_COMMAND: f64 = 0.5;
-/// Largest manual duty, where the file does not say.
+/// Default of the largest manual duty, as a fraction of full duty.
 const DEFAULT_DIRECT_DUTY: f64 = 0.1;
 
-/// `[axis.limits]`, in m (or rad) and s. [`LimitsSection::default`] is an axis without the
-/// table.
+/// `[axis.limits]`, in m (or rad) and s. [`LimitsSection::default`] stands for an axis without the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitsSection {
     /// Largest velocity, m/s.
@@ -69,33 +69,34 @@ pub struct LimitsSection {
     pub jerk: Option<f64>,
     /// Soft limits of the position, m.
     pub travel: Option<[f64; 2]>,
-    /// The soft limits act only once the host has homed the axis. Default false.
+    /// Whether the soft limits act only once the host has homed the axis. Default false.
     pub soft_limits_after_homing: bool,
-    /// Deceleration of a quick stop, m/s²; else `acceleration`.
+    /// Deceleration of a quick stop, m/s²; `None`: `acceleration` is used.
     pub stop_deceleration: Option<f64>,
     /// Largest distance of the position from the shaped command, m.
     pub following_error: Option<f64>,
     /// Largest distance of the motor's position from the scale's, m; only with `[axis.scale]`.
     pub deviation: Option<f64>,
-    /// How long the command may be clamped, s; 0: not watched.
+    /// How long the command may be clamped, s; 0 disables the check.
     pub saturation_s: f64,
-    /// How long the encoder may stand still under a command, s; 0: not watched.
+    /// How long the encoder may stand still under a command, s; 0 disables the check.
     pub encoder_lost_s: f64,
-    /// Part of full scale, 0 to below 1, above which a command must move the encoder. Default 0.5.
+    /// Fraction of full scale, 0 to below 1, above which a command must move the encoder. Default 0.5.
     pub encoder_lost_command: f64,
-    /// How long the host may be silent, s; 0: no watchdog.
+    /// How long the host may be silent, s; 0 disables the watchdog.
     pub watchdog_s: f64,
     /// Time from releasing the brake until it is open, s. Default 0.
     pub brake_release_s: f64,
     /// Time from applying the brake until it holds, s. Default 0.
     pub brake_apply_s: f64,
-    /// Pulses of up to this long on the axis's lines are ignored, s. Default 0.
+    /// Pulses of up to this length on the axis's lines are ignored, s. Default 0.
     pub line_filter_s: f64,
-    /// Word of [`Cause`] bits: 1 switches off, 0 leads to a quick stop. What always switches off is in it.
+    /// Word of [`Cause`] bits: 1 switches off, 0 leads to a quick stop. The causes that always switch off are set in
+    /// it.
     pub off_causes: u16,
-    /// Largest manual duty, as a part of full duty. Default 0.1.
+    /// Largest manual duty, as a fraction of full duty. Default 0.1.
     pub direct_duty: f64,
-    /// How long a manual duty stands without being asked for again, s.
+    /// How long a manual duty stays applied without a new request, s.
     pub direct_hold_s: Option<f64>,
     /// Largest amplitude of test signals, m.
     pub excitation: Option<f64>,
@@ -127,47 +128,48 @@ impl Default for LimitsSection {
     }
 }
 
-/// The word with the bits of these causes, and of those that always switch off.
+/// The word with the bits of these causes and of those that always switch off.
 fn word_of(causes: impl IntoIterator<Item = Cause>) -> u16 {
-    // Above are causes that leave no choice.
+    // The bits from 16 up are causes whose reaction cannot be chosen.
     causes.into_iter().fold(ALWAYS_OFF, |word, cause| word | cause.bit()) as u16
 }
 
-/// The keys of the table: of what moves may ask for, which the tools use without a supervisor, then those of the supervisor.
+/// The keys of the table: first the limits of moves, which the tools use without a supervisor too, then those of the
+/// supervisor.
 pub(super) const KEYS: &[Key] = &[
     Key::new(
         "velocity",
         Values::Quantity(MOTION),
-        "Most velocity that a move may ask for, in the axis's unit/s.",
+        "Largest velocity of a move, in the axis's unit/s.",
     ),
     Key::new(
         "acceleration",
         Values::Quantity(MOTION),
-        "Most acceleration that a move may ask for, in the axis's unit/s².",
+        "Largest acceleration of a move, in the axis's unit/s².",
     ),
     Key::new(
         "jerk",
         Values::Quantity(MOTION),
-        "Most jerk that a move may ask for, in the axis's unit/s³.",
+        "Largest jerk of a move, in the axis's unit/s³.",
     ),
     Key::new(
         "travel",
         Values::Pair(POSITION),
-        "[low, high] of the position in the axis's unit: soft limits of an axis with a controller.",
+        "Lowest and highest position in the axis's unit, [low, high]: the soft limits of an axis with a controller.",
     ),
     Key::switch(
         "soft_limits_after_homing",
-        "`travel` stops the hardware only once the host has homed the axis.",
+        "Whether the soft limits of `travel` act only once the host has homed the axis.",
     ),
     Key::new(
         "stop_deceleration",
         Values::Quantity(MOTION),
-        "Deceleration of a quick stop, in the axis's unit/s²; else `acceleration`.",
+        "Deceleration of a quick stop, in the axis's unit/s². Absent: `acceleration`.",
     ),
     Key::new(
         "following_error",
         Values::Quantity(MOTION),
-        "Largest distance of the position from the shaped command, in the axis's unit; else it is not watched.",
+        "Largest distance of the position from the shaped command, in the axis's unit. Absent: not checked.",
     ),
     Key::new(
         "deviation",
@@ -177,17 +179,17 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "saturation_s",
         SECONDS,
-        "How long the controller's command may be clamped, in s. 0: not watched.",
+        "How long the controller's command may be clamped, in s. 0: not checked.",
     ),
     Key::or_zero(
         "encoder_lost_s",
         SECONDS,
-        "How long the encoder may stand still, or go the wrong way, under a command, in s. 0: not watched.",
+        "How long the encoder may stand still, or go the wrong way, under a command, in s. 0: not checked.",
     ),
     Key::new(
         "encoder_lost_command",
         Values::Number(PART_BELOW),
-        "Part of full scale above which a command must move the encoder; needs `encoder_lost_s`.",
+        "Fraction of full scale above which a command must move the encoder; needs `encoder_lost_s`.",
     )
     .default(Absent::Number(DEFAULT_LOST_COMMAND)),
     Key::or_zero(
@@ -208,23 +210,25 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "line_filter_s",
         SECONDS,
-        "Pulses of up to so long, in s, on the lines (emergency stop, limit switches, home, drive ready) are ignored.",
+        "Pulses of up to this length, in s, on the lines (emergency stop, limit switches, home, drive ready) are \
+        ignored.",
     ),
     Key::new(
         "off",
         Values::Words(|| CHOICES.map(Cause::name).to_vec()),
-        "Causes that switch the outputs off at once; the others lead to a quick stop. It replaces the whole default.",
+        "Causes that switch the outputs off at once; the others lead to a quick stop. The list replaces the whole \
+        default.",
     ),
     Key::new(
         "direct_duty",
         Values::Number(PART),
-        "Bring-up: largest manual duty, as a part of full duty.",
+        "Bring-up: largest manual duty, as a fraction of full duty.",
     )
     .default(Absent::Number(DEFAULT_DIRECT_DUTY)),
     Key::new(
         "direct_hold_s",
         Values::Number(LASTING),
-        "Bring-up: how long a manual duty stands without being asked for again, in s.",
+        "Bring-up: how long a manual duty stays applied without a new request, in s.",
     ),
     Key::new(
         "excitation",
@@ -232,10 +236,11 @@ pub(super) const KEYS: &[Key] = &[
         "Bring-up: largest amplitude of test signals, in the axis's unit.",
     ),
 ];
-/// How many of them are of moves.
+/// How many of the keys are limits of moves.
 const OF_MOVES: usize = 4;
 
-/// Reads the limits of an axis; `word` is counts per unit of the loop and the format that the travel must fit, where both are valid.
+/// Reads the limits of an axis. `word` has the loop's counts per unit and the number format that the travel must fit;
+/// `None` where one of them is invalid.
 pub(super) fn read(
     axis: &Table<'_, '_>,
     table: &Table<'_, '_>,
@@ -274,7 +279,7 @@ pub(super) fn read(
     }
 }
 
-/// Checks that what is to be supervised is there.
+/// Checks that each monitored quantity exists on the axis.
 fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
     let supervised = KEYS.iter().skip(OF_MOVES).map(|key| key.name);
     for key in supervised.filter(|key| table.has(key)) {

@@ -1,4 +1,5 @@
-//! The tables that a machine has once: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of its axes.
+//! The tables that stand once in a machine file: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of
+//! its axes.
 
 use super::error::ProblemCause;
 use super::hint::{self, KILO, MEGA_OR_KILO};
@@ -11,19 +12,19 @@ use crate::spelling::same_letters;
 use crate::taps::COEFFICIENT_FRACTION_MAX;
 use crate::unit::short;
 
-/// Axes that one stage drives.
+/// Largest number of axes of one stage.
 const MAX_AXES: usize = 4;
-/// Fabric clock and sample tick: up to what any device of the families reaches.
+/// Range of fabric clock and sample tick: up to what any device of the families reaches.
 const CLOCK_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
-/// Longest sample period in clocks: 100 Hz from 100 MHz. Simulators step through every one of them.
+/// Longest sample period in clocks: 100 Hz from 100 MHz. Simulators step through every clock of it.
 const MAX_CLOCKS_PER_SAMPLE: f64 = 1e6;
-/// Fewest clocks per sample of any machine: a pass over one tap.
+/// Fewest clocks per sample of any machine: a shaper with one tap takes that many.
 const LEAST_CLOCKS_PER_SAMPLE: f64 = 9.0;
-/// Device families, of [`Target::family`].
+/// Device families: the allowed values of [`Target::family`].
 pub const FAMILIES: [&str; 5] = ["cyclone2", "cyclone4e", "cyclone10lp", "cyclone5", "max10"];
-/// Boards that projects are made for, of [`Target::board`].
+/// Boards for which projects are written: the allowed values of [`Target::board`].
 pub const BOARDS: [&str; 2] = ["de1", "de1soc"];
-/// How an impulse between two samples becomes taps.
+/// Ways to turn an impulse between two samples into taps.
 const DIGITISE: [&str; 3] = ["modal", "linear", "nearest"];
 
 /// The keys of the whole file.
@@ -31,7 +32,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "name",
         Values::Name,
-        "The top module; file and Verilog names derive from it. No keyword of Verilog, no name of a hardware block.",
+        "Name of the top module; file and Verilog names derive from it. No keyword of Verilog, no name of a hardware \
+        block.",
     )
     .required(),
     Key::new("clock", Values::Table(CLOCK_KEYS), "Clock and sample tick.").required(),
@@ -39,13 +41,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "target",
         Values::Table(TARGET_KEYS),
-        "Device, for the synthesis estimate.",
+        "Device for the synthesis estimate.",
     ),
     Key::new("axis", Values::Tables(axis::KEYS, MAX_AXES), "The axes.").required(),
     Key::new(
         "stage",
         Values::Table(stage::KEYS),
-        "What concerns all axes. With this table, empty or not, the delays of all axes are made equal.",
+        "Settings of all axes together. With this table, even an empty one, the delays of all axes are made equal.",
     ),
 ];
 
@@ -59,18 +61,22 @@ const CLOCK_KEYS: &[Key] = &[
     .required(),
 ];
 
-/// Fraction bits of the widest word; of a narrower one they are fewer.
+/// Fraction bits of the widest word; a narrower word allows fewer.
 const FRACTION: Values = Values::Integer(0, *WORD_BITS.end() - 1);
 
 const FIXED_POINT_KEYS: &[Key] = &[
     Key::new(
         "command_bits",
         Values::Integer(*WORD_BITS.start(), *WORD_BITS.end()),
-        "Width of a command word: 18 and more for a shaper for motion, 32 for a stage.",
+        "Width of a command word in bits: at least 18 for a motion shaper, 32 for a stage.",
     )
     .default(Default::Integer(DEFAULT_COMMAND_BITS)),
-    Key::new("command_fraction", FRACTION, "Fraction bits of position, in counts; below `command_bits`.")
-        .default(Default::Integer(DEFAULT_POSITION_FRACTION)),
+    Key::new(
+        "command_fraction",
+        FRACTION,
+        "Fraction bits of position, in counts; below `command_bits`.",
+    )
+    .default(Default::Integer(DEFAULT_POSITION_FRACTION)),
     Key::new(
         "velocity_fraction",
         FRACTION,
@@ -86,12 +92,13 @@ const FIXED_POINT_KEYS: &[Key] = &[
     Key::new(
         "coefficient_fraction",
         Values::Integer(1, COEFFICIENT_FRACTION_MAX),
-        "Fraction bits of the 18-bit coefficients; else the most at which every coefficient fits.",
+        "Fraction bits of the 18-bit coefficients. Absent: the most at which every coefficient fits.",
     ),
     Key::new(
         "digitise",
         Values::Word(|| DIGITISE.to_vec()),
-        "How an impulse between two samples becomes taps: modal (two, exact at the mode's pole), linear (two, by distance), \
+        "How an impulse between two samples becomes taps: modal (two, exact at the mode's pole), linear (two, by \
+        distance), \
          nearest (one).",
     )
     .default(Default::Word("modal")),
@@ -102,7 +109,7 @@ const TARGET_KEYS: &[Key] = &[
     Key::new(
         "board",
         Values::Word(|| BOARDS.to_vec()),
-        "Board, of this family; without it `posicast generate` writes projects for all that it knows.",
+        "Board, of this family. Absent: `posicast generate` writes a project for every board that it knows.",
     ),
 ];
 
@@ -143,10 +150,11 @@ fn read_axes(
         let table = table.at(format!("axis {place}"));
         if let Some(name) = &name {
             match lines.iter().find(|(other, _)| other == name) {
-                Some((_, line)) => table.duplicate("name", *line, "every axis has a name of its own"),
+                Some((_, line)) => table.duplicate("name", *line, "every axis must have a different name"),
                 None if lines.iter().any(|(other, _)| clash(other, name)) => table.refuse(
                     "name",
-                    "not `u` where another axis is `x` or `y`: their shapers are the instances `u_x` and `u_y` in the Verilog, which \
+                    "not `u` where another axis is `x` or `y`: their shapers are the instances `u_x` and `u_y` in the \
+                    Verilog, which \
                      the command and the output of an axis `u` would be too",
                     "rename one of the two",
                 ),
@@ -163,7 +171,7 @@ fn read_axes(
     axes
 }
 
-/// Would a port of one axis have the name of the other's shaper?
+/// Returns whether a port of one axis would have the name of the other's shaper.
 fn clash(one: &str, other: &str) -> bool {
     [(one, other), (other, one)]
         .iter()
@@ -222,19 +230,19 @@ fn read_clock(table: &Table<'_, '_>) -> Option<ClockSection> {
     })
 }
 
-/// Whether a clock goes into a sample so many times, and no more than a sample may have.
+/// Returns whether the clock is a whole multiple of the sample rate, and a sample no longer than allowed.
 fn divides(frequency_hz: f64, sample_hz: f64) -> bool {
     let ratio = frequency_hz / sample_hz;
     (1.0..=MAX_CLOCKS_PER_SAMPLE).contains(&ratio) && (ratio - ratio.round()).abs() <= RATIO_ROUNDING * ratio
 }
 
-/// A frequency with no more digits than it takes to divide the clock.
+/// Writes a frequency with no more digits than needed to divide the clock.
 fn exact(hz: f64) -> String {
     let rounded: f64 = format!("{hz:.11e}").parse().unwrap_or(hz);
     rounded.to_string()
 }
 
-/// The frequency nearest to `wanted_hz` that goes into `frequency_hz` a whole number of times.
+/// The frequency nearest to `wanted_hz` that divides `frequency_hz` a whole number of times.
 fn nearest_divisor(frequency_hz: f64, wanted_hz: f64) -> f64 {
     let ratio = frequency_hz / wanted_hz;
     let faster_hz = frequency_hz / ratio.floor().max(1.0);
@@ -246,7 +254,7 @@ fn nearest_divisor(frequency_hz: f64, wanted_hz: f64) -> f64 {
     }
 }
 
-/// The same among the frequencies that are whole numbers of hertz; `None` where the fabric clock itself is none.
+/// The nearest such frequency that is a whole number of hertz; `None` where the fabric clock itself is not one.
 fn nearest_whole_divisor(frequency_hz: f64, wanted_hz: f64) -> Option<f64> {
     let clocks = (1..=MAX_CLOCKS_PER_SAMPLE as u32).map(f64::from);
     let divisors = clocks
@@ -260,7 +268,8 @@ const DEFAULT_POSITION_FRACTION: u32 = 8;
 const DEFAULT_VELOCITY_FRACTION: u32 = 16;
 const DEFAULT_ACCELERATION_FRACTION: u32 = 24;
 
-/// The number formats where the file gives none. A word too narrow for a default takes the most fraction bits it has.
+/// The number formats of a file without `[fixed_point]`. A word too narrow for a default gets the most fraction bits
+/// that it holds.
 fn default_fixed_point(command_bits: u32) -> FixedPoint {
     let most = command_bits - 1;
     FixedPoint {
@@ -302,7 +311,7 @@ fn read_target(table: &Table<'_, '_>) -> Option<Target> {
     let family = table.required_choice("family", &FAMILIES);
     let board = table.text("board", BOARDS.join(", "));
     if let Some(unknown) = board.filter(|board| !BOARDS.contains(board)) {
-        // Another number is another board, and not a misspelling.
+        // A name with another number is another board, not a misspelling.
         let meant = BOARDS.iter().find(|known| same_letters(known, unknown));
         let remedy = match meant {
             Some(known) => format!("did you mean \"{known}\"?"),

@@ -1,7 +1,8 @@
-//! `[axis.mechanics]`: a ball screw between motor and table by its data sheets, in the place of `[[axis.mode]]`.
+//! `[axis.mechanics]`: a ball screw between motor and table, described by its data sheets in place of
+//! `[[axis.mode]]`.
 //!
-//! The mode follows ([`crate::mechanics`]): of a velocity drive, and of an axis without a drive, the table on the screw while the motor is
-//! held; of a torque drive, motor against table.
+//! The mode is computed by [`crate::mechanics`]. For a velocity drive, and for an axis without a drive, it is the
+//! table on the screw while the motor is held; for a torque drive it is motor against table.
 
 use super::key::{Default, Key, Values};
 use super::range::NumberRange;
@@ -10,7 +11,7 @@ use super::{AxisMode, ClockSection, mode};
 use crate::mechanics::{SHEAR_MODULUS, ScrewDrive, Stiction, torsional_stiffness};
 use crate::unit::AxisUnit;
 
-/// Lengths: a micrometre in the place of a metre is a slip of the unit.
+/// Range of lengths; its lower end catches a length that was given in another unit than m.
 const LENGTH_M: NumberRange = NumberRange::closed(1e-4, 100.0).unit("m");
 /// Stiffness of nut and bearings.
 const STIFFNESS: NumberRange = NumberRange::closed(1e3, 1e12).unit("N/m");
@@ -20,19 +21,19 @@ const TORSION: NumberRange = NumberRange::closed(1e-3, 1e9).unit("N·m/rad");
 const INERTIA: NumberRange = NumberRange::closed(1e-12, 1e3).unit("kg·m²");
 /// Mass of a table.
 const MASS: NumberRange = NumberRange::closed(1e-3, 1e6).unit("kg");
-/// Friction at rest.
+/// Friction at rest (breakaway).
 const FORCE: NumberRange = NumberRange::closed(0.0, 1e9).unit("N");
 /// Stribeck velocity.
 const VELOCITY: NumberRange = NumberRange::positive(1e3).unit("m/s");
-/// Stribeck velocity where the file has none: the XY stage's.
+/// Default Stribeck velocity in m/s: that of the XY stage.
 const DEFAULT_STRIBECK: f64 = 0.005;
 const BREAKAWAY: &str = "breakaway";
 const STRIBECK: &str = "stribeck_velocity";
-/// The name of the table.
+/// Name of the table.
 const TABLE: &str = "mechanics";
-/// Diameter and length of a coupling, of which neither says anything alone.
+/// Diameter and length of a coupling; both are needed to compute its stiffness.
 const COUPLING: [&str; 2] = ["coupling_diameter_m", "coupling_length_m"];
-/// The damping ratio, which no data sheet has.
+/// Key of the damping ratio, which no data sheet states.
 const DAMPING: &str = "motor_held_damping";
 const COUPLING_STIFFNESS: &str = "coupling_stiffness";
 
@@ -42,19 +43,19 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "screw_diameter_m",
         Values::Number(LENGTH_M),
-        "Diameter of the steel screw in m; its root's, where that is known.",
+        "Diameter of the steel screw in m; the root diameter where it is known.",
     )
     .required(),
     Key::new("screw_length_m", Values::Number(LENGTH_M), "Length of the screw in m.").required(),
     Key::new(
         "loaded_length_m",
         Values::Number(LENGTH_M),
-        "Length of the screw in m that is pulled, between bearing and nut; else `screw_length_m`.",
+        "Length of the screw under load, from bearing to nut, in m. Absent: `screw_length_m`.",
     ),
     Key::new(
         COUPLING[0],
         Values::Number(LENGTH_M),
-        "Diameter of a coupling of steel in m; without a coupling it is rigid.",
+        "Diameter of a steel coupling in m. Absent: the coupling is rigid.",
     ),
     Key::new(COUPLING[1], Values::Number(LENGTH_M), "Length of that coupling in m."),
     Key::new(
@@ -75,20 +76,21 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "motor_inertia",
         Values::Number(INERTIA),
-        "Inertia of the rotor, and of what is fixed to it, in kg·m²; the screw's own is computed.",
+        "Inertia of the rotor and of all that is fixed to it, in kg·m²; the screw's own is computed.",
     )
     .required(),
     Key::new("table_mass", Values::Number(MASS), "Moved mass of the table in kg.").required(),
     Key::new(
         DAMPING,
         Values::Number(mode::DAMPING),
-        "Damping ratio ζ of the table on the screw, with the motor held.",
+        "Damping ratio ζ of the table on the screw with the motor held.",
     )
     .required(),
     Key::new(
         BREAKAWAY,
         Values::Number(FORCE),
-        "Friction of the table at rest in N: the simulated machine then is motor and table with friction that sticks.",
+        "Breakaway friction of the table in N. The simulated machine is then a motor and a table with stick-slip \
+        friction.",
     ),
     Key::new(
         STRIBECK,
@@ -98,7 +100,7 @@ pub(super) const KEYS: &[Key] = &[
     .default(Default::Number(DEFAULT_STRIBECK)),
 ];
 
-/// Reads the mode that follows from the table, with the table, and what is in it; `None` where one of its values is refused.
+/// Reads the table and computes the mode. Returns the table, the screw and the mode; `None` where a value is refused.
 pub(super) fn read<'r, 't>(
     axis: &Table<'r, 't>,
     clock: Option<ClockSection>,
@@ -143,7 +145,7 @@ pub(super) fn read<'r, 't>(
     Some((table, mode, screw))
 }
 
-/// Friction that sticks; `Some(None)` where the file has none.
+/// Reads the stick-slip friction; `Some(None)` where the file has none.
 fn read_stiction(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Option<Stiction>> {
     let breakaway = table.number(BREAKAWAY, FORCE);
     let stribeck_velocity = table.number(STRIBECK, VELOCITY).unwrap_or(DEFAULT_STRIBECK);
@@ -157,7 +159,7 @@ fn read_stiction(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Option<S
         return Some(None);
     }
     let breakaway = breakaway?;
-    // Both are looked up again where the drive is read, with what is wrong about them.
+    // `drive` looks these keys up again and reports what is wrong with them.
     let drive = axis.table("drive");
     let has_bandwidth = drive.as_ref().is_some_and(|drive| drive.has("bandwidth_hz"));
     if !(axis.has_word("drive", "mode", "torque") && has_bandwidth) {
@@ -180,7 +182,7 @@ fn read_stiction(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Option<S
             BREAKAWAY,
             found,
             allowed,
-            "raise `breakaway`: what sticks takes more than what slides",
+            "raise `breakaway`: static friction is larger than sliding friction",
         );
         return None;
     }
@@ -215,9 +217,9 @@ fn read_coupling(table: &Table<'_, '_>) -> Option<f64> {
     }
 }
 
-/// The mode that the axis's drive leaves to the machine.
+/// The mode of the screw: with the motor held or free, whichever the axis's drive leaves to the machine.
 fn read_mode(axis: &Table<'_, '_>, table: &Table<'_, '_>, screw: &ScrewDrive, clock: ClockSection) -> Option<AxisMode> {
-    // What is wrong with the drive is said where it is read.
+    // Reading the drive reports what is wrong with it.
     let is_torque = axis.has_word("drive", "mode", "torque");
     let (mode, state) = if is_torque {
         (screw.free_mode(), "free, as behind a torque drive,")
@@ -227,7 +229,12 @@ fn read_mode(axis: &Table<'_, '_>, table: &Table<'_, '_>, screw: &ScrewDrive, cl
     if mode.damping >= 1.0 {
         let found = format!("{}, with the motor {state} {:.3}", table.quote(DAMPING), mode.damping);
         let allowed = "a damping ratio below 1 with the motor free too";
-        table.contradiction(DAMPING, found, allowed, "lower it: what does not ring needs no shaper");
+        table.contradiction(
+            DAMPING,
+            found,
+            allowed,
+            "lower it: an axis that does not ring needs no shaper",
+        );
         return None;
     }
     let half = clock.sample_hz / 2.0;

@@ -1,9 +1,9 @@
 //! The machine file: what an engineer knows of a machine, parsed and validated.
 //!
-//! The types here hold only values that passed validation; [`parse`] is the one way to make them from text. It reads the
-//! whole schema of `docs/machine-file.md`, checks every value, and shows all problems of a file at once. A kind of
-//! shaper that is known and that no part of this version builds is checked as the others are, and then refused with
-//! `not built in this version: NAME`: a machine never lacks silently what its file asks for.
+//! The types here hold only values that passed validation; [`parse`] is the one way to make them from text. It reads
+//! the whole schema of `docs/machine-file.md`, checks every value, and reports all problems of a file at once. A kind
+//! of shaper that is known but not built in this version is checked as the others are, and then refused with
+//! `not built in this version: NAME`: a machine never silently lacks what its file asks for.
 //!
 //! ```
 //! let text = r#"
@@ -27,8 +27,7 @@
 //! );
 //! ```
 //!
-//! Whether tables and delays fit the hardware's sizes is checked where they are made, by [`crate::digitise`] and
-//! [`crate::rtl::shaper`].
+//! [`crate::digitise`] and [`crate::rtl::shaper`] check whether tables and delays fit the hardware's sizes.
 
 mod axis;
 mod controller;
@@ -82,11 +81,11 @@ use posicast_optimal::{Command, Prefer};
 use reader::Reader;
 use table::Table;
 
-/// Parses and validates a machine file. `file_name` is for messages only: nothing is read from disk.
+/// Parses and validates a machine file. `file_name` appears in messages only: nothing is read from disk.
 ///
 /// # Errors
-/// [`SpecError`] lists every problem, up to [`MAX_PROBLEMS`], with file, line, key, what was found, what is allowed and
-/// what to do. What is not built in this version is an error only in a file that has no other.
+/// [`SpecError`] lists every problem, up to [`MAX_PROBLEMS`], with file, line, key, what was found, what is allowed
+/// and what to do. A feature that this version does not build is reported only where the file has no other problem.
 pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
     parse_beside(file_name, text, &|_| {
         Err("files beside the machine file are not read here".to_owned())
@@ -139,17 +138,17 @@ pub fn parse_beside(
 /// A whole machine file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine {
-    /// Verilog names derive from it: `[a-z][a-z0-9_]*`, no keyword.
+    /// Name of the machine, from which Verilog names derive: `[a-z][a-z0-9_]*`, no keyword.
     pub name: String,
     /// Clock and sample tick.
     pub clock: ClockSection,
-    /// Number formats and digitising.
+    /// Number formats and method of digitising.
     pub fixed_point: FixedPoint,
-    /// Device, for synthesis.
+    /// Device for the synthesis estimate.
     pub target: Option<Target>,
-    /// One to four axes, names unique.
+    /// The axes, one to four, with unique names.
     pub axes: Vec<AxisSection>,
-    /// What concerns all axes.
+    /// `[stage]`: settings of all axes together.
     pub stage: Option<StageSection>,
 }
 
@@ -163,7 +162,7 @@ pub struct ClockSection {
 }
 
 impl ClockSection {
-    /// Fabric clocks per sample: exact, validation made sure.
+    /// Fabric clocks per sample. The quotient is exact: validation makes sure of it.
     pub fn clocks_per_sample(&self) -> u32 {
         (self.frequency_hz / self.sample_hz).round() as u32
     }
@@ -174,7 +173,7 @@ impl ClockSection {
     }
 }
 
-/// How impulses between two samples become taps.
+/// Ways to turn impulses between two samples into taps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Digitise {
     /// Two taps per impulse, exact at the mode's pole.
@@ -189,7 +188,7 @@ pub enum Digitise {
 /// `[fixed_point]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FixedPoint {
-    /// Width of a command word: 8 to 32.
+    /// Width of a command word in bits: 8 to 32.
     pub command_bits: u32,
     /// Fraction bits of position, in encoder counts.
     pub command_fraction: u32,
@@ -197,9 +196,9 @@ pub struct FixedPoint {
     pub velocity_fraction: u32,
     /// Fraction bits of acceleration, in counts per sample².
     pub acceleration_fraction: u32,
-    /// Fraction bits of the coefficients, where the file fixes them; else the largest that fits.
+    /// Fraction bits of the coefficients; `None`: the largest number that fits is chosen.
     pub coefficient_fraction: Option<u32>,
-    /// Digitising.
+    /// Method of digitising.
     pub digitise: Digitise,
 }
 
@@ -217,19 +216,20 @@ pub struct Target {
 pub struct AxisSection {
     /// Name, unique in the machine; Verilog names derive from it.
     pub name: String,
-    /// The unit of its figures in the file; here all are in m, rad and s.
+    /// Unit of the axis's figures in the file; the values here are in m, rad and s.
     pub unit: AxisUnit,
     /// Encoder counts per m or rad.
     pub counts_per_unit: f64,
-    /// Whether the position counts on across the word's end, modulo `2^command_bits`: a rotary axis.
+    /// Whether the position wraps modulo `2^command_bits`, as on a rotary axis without end stops.
     pub modulo: bool,
-    /// `[axis.shaper]`; absent only if every mode names its own.
+    /// `[axis.shaper]`; absent only if every mode names its own shaper.
     pub shaper: Option<ShaperChoice>,
-    /// Modes in the order of the file; empty only for `custom` and `none`.
+    /// Modes in the order of the file; empty only for the kinds `custom` and `none`.
     pub modes: Vec<AxisMode>,
-    /// `[axis.mechanics]`, from which the only mode then follows.
+    /// `[axis.mechanics]`; the axis's only mode is then computed from it.
     pub mechanics: Option<ScrewDrive>,
-    /// What the modes move with; absent where none has `points`. The modes are those at its nominal value.
+    /// The variable with which the modes move; `None` where no mode has `points`. `modes` then holds the modes at its
+    /// nominal value.
     pub family: Option<FamilySection>,
     /// `[axis.encoder]`.
     pub encoder: Option<Encoder>,
@@ -249,13 +249,13 @@ pub struct AxisSection {
     pub trace: Option<TraceSection>,
 }
 
-/// Residual that an EI kind tolerates where the file gives no tolerance.
+/// Default of the residual that an EI kind tolerates, as a fraction of the unshaped vibration.
 pub const DEFAULT_TOLERANCE: f64 = 0.05;
-/// Residual bound of `vibrationless` where the file gives no epsilon.
+/// Default of the residual bound of `vibrationless`.
 const DEFAULT_EPSILON: f64 = 0.05;
-/// Zero pairs of `chebyshev-ei` where the file gives no order.
+/// Default number of zero pairs of `chebyshev-ei`.
 pub(crate) const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
-/// Frequencies per mode of `vibrationless` where the file gives no order.
+/// Default number of frequencies per mode of `vibrationless`.
 const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
 
 impl AxisSection {
@@ -264,8 +264,8 @@ impl AxisSection {
         self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some()
     }
 
-    /// Counts per m or rad of the counter that the position loop runs on: commands, errors and distances of the
-    /// hardware are in its counts. The encoder's, or the scale's where that is the position.
+    /// Counts per m or rad of the counter that the position loop runs on: the encoder's, or the scale's where that is
+    /// the loop's position. Commands, errors and distances of the hardware are in these counts.
     pub fn loop_counts_per_unit(&self) -> f64 {
         match self.scale {
             Some(scale) if scale.usage == ScaleUse::Position => scale.counts_per_unit,
@@ -273,7 +273,7 @@ impl AxisSection {
         }
     }
 
-    /// The same per unit of the file.
+    /// Counts of the loop per unit of the machine file.
     pub fn loop_counts_per_file_unit(&self) -> f64 {
         self.unit.counts_in_file(self.loop_counts_per_unit())
     }
@@ -285,7 +285,7 @@ impl AxisSection {
         kind.treats_modes_together().then_some(kind)
     }
 
-    /// Kind of a mode's shaper: the mode's own, else, under `simultaneous`, `zv`, else the axis's.
+    /// Kind of a mode's shaper: the mode's own; else `zv` under `simultaneous`; else the axis's.
     pub fn kind_of(&self, mode: &AxisMode) -> ShaperKind {
         let axis_kind = self.shaper.as_ref().map_or(ShaperKind::None, |s| s.kind);
         let inherited = if axis_kind == ShaperKind::Simultaneous {
@@ -325,8 +325,8 @@ impl AxisSection {
         given.unwrap_or_else(|| modes.fold(f64::INFINITY, f64::min) / 10.0)
     }
 
-    /// The kind as reports and JSON name it: the axis's where every mode follows it, else those of the modes joined by
-    /// `+`, in the order of the file.
+    /// Kind as reports and JSON name it: the axis's where every mode follows it, else those of the modes joined by
+    /// `+` in the order of the file.
     pub fn kind_name(&self) -> String {
         match &self.shaper {
             Some(shaper)
@@ -345,11 +345,11 @@ impl AxisSection {
 /// `[axis.shaper]`: the kind, and the parameters that the file gives for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShaperChoice {
-    /// Kind.
+    /// Kind of shaper.
     pub kind: ShaperKind,
-    /// Residual that an EI kind tolerates at the mode, in (0, 1); default 0.05.
+    /// Residual vibration that an EI kind tolerates at the mode, in (0, 1); default 0.05.
     pub tolerance: Option<f64>,
-    /// Zero pairs of `chebyshev-ei`, frequencies per mode of `vibrationless`: 1..=5.
+    /// Zero pairs of `chebyshev-ei`, or frequencies per mode of `vibrationless`: 1..=5.
     pub order: Option<u32>,
     /// Residual bound of `vibrationless`.
     pub epsilon: Option<f64>,
@@ -374,7 +374,7 @@ pub struct ShaperChoice {
 }
 
 impl ShaperChoice {
-    /// A kind with every other key left out.
+    /// Makes a choice of this kind with every other key left out.
     pub fn of_kind(kind: ShaperKind) -> Self {
         Self {
             kind,
@@ -397,9 +397,9 @@ impl ShaperChoice {
 /// `[[axis.mode]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisMode {
-    /// Frequency and damping with the motor held: what the shaper is for.
+    /// Frequency and damping ratio with the motor held, for which the shaper is designed.
     pub mode: Mode,
-    /// The mode as the file gives it, where that was measured with the motor free and converted to `mode`.
+    /// The mode as the file gives it, where it was measured with the motor free and converted to `mode`.
     pub free: Option<Mode>,
     /// The mode's own kind, instead of the axis's.
     pub shaper: Option<ShaperKind>,
@@ -413,7 +413,7 @@ pub struct AxisMode {
     pub damping_band: Option<[f64; 2]>,
     /// Share of the mode in the axis's response; only ratios count. Default 1.
     pub participation: f64,
-    /// Where a mode that moves is for which value of the variable, in increasing order; empty for one that does not move.
+    /// For a mode that moves, its frequency and damping at values of the variable in increasing order; else empty.
     pub points: Vec<ModePoint>,
 }
 

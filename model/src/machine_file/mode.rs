@@ -1,7 +1,8 @@
-//! `[[axis.mode]]`: frequency and damping of a mode, and with the motor held or free it was measured.
+//! `[[axis.mode]]`: frequency and damping of a mode, and whether it was measured with the motor held or free.
 //!
-//! A shaper on the reference of a position loop is for the mode that rings while the loop holds the motor. One that was measured with the motor
-//! free is converted, which takes the two masses; without them nothing says which shaper is right, and the file is refused.
+//! A shaper on the reference of a position loop is designed for the mode that rings while the loop holds the motor. A
+//! mode that was measured with the motor free is converted, for which the two masses are needed; a file that does not
+//! give them is refused, because nothing then says which shaper is right.
 
 use super::hint::{self, KILO};
 use super::key::{Default, Key, Values};
@@ -12,9 +13,10 @@ use crate::design::kind::ShaperKind;
 use crate::mode::Mode;
 use crate::unit::short;
 
-/// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
+/// Largest number of modes of an axis: with five impulses each their convolution has 390,625, far more than any table
+/// holds.
 pub(super) const MAX_MODES: usize = 8;
-/// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
+/// Range of a frequency before it is compared with the sample rate. Below it a shaper would last for hours.
 pub(super) const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
 /// Damping ratio of a mode that rings.
 pub(super) const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
@@ -22,15 +24,15 @@ pub(super) const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above
 const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 /// Masses in kg, or inertias in kg·m².
 const MASS: NumberRange = NumberRange::positive(1e12);
-/// Where the figures of a mode come from.
-pub(super) const MEASURE: &str = "docs/modes.md says how to measure frequency and damping";
-/// A sample rate below this is most likely given in kHz.
+/// Tells where to find how a mode's figures are measured.
+pub(super) const MEASURE: &str = "docs/modes.md explains how to measure frequency and damping";
+/// A sample rate below this was most likely given in kHz.
 const LIKELY_SAMPLE_HZ: f64 = 100.0;
-/// How a mode was measured.
+/// Word for a mode that was measured with the motor held.
 const MOTOR_HELD: &str = "motor_held";
 const FREE: &str = "free";
 const MEASURED: [&str; 2] = [MOTOR_HELD, FREE];
-/// The keys of the frequency.
+/// Key of the undamped natural frequency.
 const UNDAMPED: &str = "frequency_hz";
 const DAMPED: &str = "damped_frequency_hz";
 /// The uncertainty of a mode.
@@ -49,7 +51,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "damped_frequency_hz",
         Values::Number(FREQUENCY_HZ),
-        "In place of `frequency_hz`: the frequency of the ringing, f·√(1−ζ²).",
+        "Damped frequency f·√(1−ζ²) in Hz, at which the mode rings; in place of `frequency_hz`.",
     )
     .instead_of("frequency_hz"),
     Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").needed_by("frequency_hz"),
@@ -58,18 +60,19 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "measured",
         Values::Word(|| MEASURED.to_vec()),
-        "Whether the motor was held, as by a position loop, or free, when the mode was measured: a free one is converted.",
+        "State of the motor while the mode was measured: held, as by a position loop, or free. A free mode is \
+        converted.",
     )
     .default(Default::Word(MOTOR_HELD)),
     Key::new(
         MASSES[0],
         Values::Number(MASS),
-        "Mass of the motor's side in kg, or inertia in kg·m²: converts a mode that was measured free.",
+        "Mass of the motor's side in kg, or inertia in kg·m², with which a mode that was measured free is converted.",
     ),
     Key::new(
         MASSES[1],
         Values::Number(MASS),
-        "Mass of the load in kg, or inertia in kg·m², at the coordinate of the motor's.",
+        "Mass of the load in kg, or inertia in kg·m², referred to the motor's coordinate.",
     ),
     Key::new(
         "shaper",
@@ -79,7 +82,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "tolerance",
         Values::Number(shaper::TOLERANCE),
-        "As in [axis.shaper], for this mode; else the axis's.",
+        "Tolerance of this mode, instead of the axis's (see [axis.shaper]).",
     ),
     shaper::ORDER,
     Key::new(
@@ -96,19 +99,19 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "participation",
         Values::Number(PARTICIPATION),
-        "Weight of the mode in what the tool does; only ratios count.",
+        "Modal participation, the mode's share of the axis's response; only ratios count.",
     )
     .default(Default::Number(1.0)),
 ];
 
-/// Reads the modes of an axis whose shaper is of this kind, each with its table; `None` where one of them is refused.
+/// Reads the modes of an axis whose shaper is of this kind, each with its table; `None` where a mode is refused.
 pub(super) fn read_all<'r, 't>(
     axis: &Table<'r, 't>,
     clock: Option<ClockSection>,
     kind: Option<ShaperKind>,
 ) -> Option<Vec<(Table<'r, 't>, AxisMode)>> {
     let tables = axis.tables("mode", MAX_MODES);
-    // All are read before the first refusal ends it: every mode's problems are to be shown.
+    // All modes are read before the first refusal ends the reading, so that every mode's problems are reported.
     let modes: Vec<Option<(Table, AxisMode)>> = tables
         .into_iter()
         .enumerate()
@@ -142,7 +145,7 @@ fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<Sh
                 moving::POINTS,
                 moving::MOVES_WITH
             );
-            let allowed = "the points of a mode that moves beside the name of what it moves with";
+            let allowed = "the points of a mode that moves, together with its variable";
             table.contradiction(moving::MOVES_WITH, "a variable without `points`", allowed, remedy);
         }
         let (mode, free) = read_fixed(table, clock, axis_kind)?;
@@ -166,7 +169,8 @@ fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<Sh
     })
 }
 
-/// A mode that does not move, with the motor held, and as it was measured where that was with the motor free.
+/// Reads a mode that does not move. Returns it with the motor held, and as measured where that was with the motor
+/// free.
 fn read_fixed(
     table: &Table<'_, '_>,
     clock: Option<ClockSection>,
@@ -189,8 +193,8 @@ fn read_fixed(
     Some((mode, free))
 }
 
-/// The masses that convert a mode which was measured free; `Some(None)` where it is to be taken as it is, `None` where that cannot be
-/// said.
+/// Reads the masses that convert a mode which was measured free. `Some(None)`: the mode is used as given. `None`: the
+/// keys contradict each other.
 fn read_masses(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>) -> Option<Option<[f64; 2]>> {
     let [motor, load] = MASSES.map(|key| table.number(key, MASS));
     let measured = table.choice("measured", &MEASURED);
@@ -200,11 +204,11 @@ fn read_masses(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>) -> Option<O
         let allowed =
             "masses with measured = \"free\", which they convert; without `measured` the mode is taken as it is";
         let present = MASSES.into_iter().find(|key| table.has(key)).unwrap_or(MASSES[0]);
-        let remedy = "add `measured = \"free\"`, or `measured = \"motor_held\"`; docs/modes.md says which";
+        let remedy = "add `measured = \"free\"`, or `measured = \"motor_held\"`; docs/modes.md explains which";
         table.contradiction(present, found, allowed, remedy);
         return None;
     }
-    // The impulses of these kinds are what they are, whatever the modes.
+    // The impulses of these kinds do not depend on the modes.
     let changes_shaper = !matches!(axis_kind, Some(ShaperKind::Custom | ShaperKind::None));
     if measured != Some(FREE) || (!changes_shaper && missing.len() == MASSES.len()) {
         return Some(None);
@@ -223,7 +227,7 @@ fn read_masses(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>) -> Option<O
     Some(Some([motor?, load?]))
 }
 
-/// The undamped natural frequency in Hz, from the one of the two keys that the file gives.
+/// Reads the undamped natural frequency in Hz, from whichever of the two keys the file has.
 fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>) -> Option<f64> {
     match (table.has(UNDAMPED), table.has(DAMPED)) {
         (true, true) => {
@@ -237,7 +241,7 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>) -> Option<f64> {
             Some(given / (1.0 - damping? * damping?).sqrt())
         }
         (false, false) => {
-            // Whichever of the two is misspelt is there.
+            // Where one of the two is present but misspelt, that has been reported already.
             if table.lacks(UNDAMPED) && table.lacks(DAMPED) {
                 let allowed = format!("{FREQUENCY_HZ}, or damped_frequency_hz or points in its place");
                 table.require_with(UNDAMPED, allowed, format!("add `frequency_hz`; {MEASURE}"));
@@ -247,8 +251,8 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>) -> Option<f64> {
     }
 }
 
-/// A mode must lie below half the sample rate: then so does the damped frequency, where the ringing and the pole are, and
-/// `ω_d·T_s < π`, without which two taps cannot place an impulse between two samples.
+/// Checks that a mode lies below half the sample rate. Its damped frequency does then too, and `ω_d·T_s < π`, without
+/// which two taps cannot place an impulse between two samples.
 fn check_below_half(table: &Table<'_, '_>, mode: &Mode, clock: ClockSection) -> Option<()> {
     let (half, hz) = (clock.sample_hz / 2.0, mode.frequency_hz);
     if hz < half {

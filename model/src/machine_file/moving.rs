@@ -11,36 +11,37 @@ use crate::design::kind::ShaperKind;
 use crate::mode::Mode;
 use crate::unit::{AxisUnit, short};
 
-/// Points of a mode.
+/// Largest number of points of a mode.
 pub(super) const MAX_POINTS: usize = 64;
-/// Tap tables of a family.
+/// Largest number of tap tables of a family.
 pub(crate) const MAX_TABLES: usize = 64;
-/// Values of the variable.
+/// Range of the variable.
 const VALUE: NumberRange = NumberRange::closed(-1e9, 1e9);
-/// Numbers of a point before its frequency and damping are checked.
+/// Range of a point's numbers before its frequency and damping are checked.
 const ANY: NumberRange = NumberRange::closed(-1e9, 1e9);
 pub(super) const POINTS: &str = "points";
 pub(super) const MOVES_WITH: &str = "moves_with";
 const FAMILY: &str = "family";
 const NOMINAL: &str = "nominal";
 const VALUES: &str = "values";
-/// The numbers of a point.
+/// Names of the numbers of a point.
 const NUMBERS: &str = "value, frequency_hz, damping";
-/// The variable that is the axis's own position.
+/// Name of the variable that is the axis's own position.
 pub(super) const POSITION: &str = "position";
 
-/// `points` and `moves_with` of a mode.
+/// The keys `points` and `moves_with` of a mode.
 pub(super) const KEYS_OF_MODE: [Key; 2] = [
     Key::new(
         POINTS,
         Values::Rows(&[VALUE, mode::FREQUENCY_HZ, mode::DAMPING], MAX_POINTS),
-        "In place of `frequency_hz` and `damping`: a mode that moves, as [value, frequency_hz, damping] with increasing values.",
+        "A mode that moves, as rows [value, frequency_hz, damping] with increasing values, in place of these two keys.",
     )
     .instead_of("frequency_hz"),
     Key::new(
         MOVES_WITH,
         Values::Name,
-        "What the values of `points` are of: `position` is the axis's own, in its unit; any other name is the host's to measure.",
+        "Variable of `points`: `position` is the axis's own, in its unit; a variable of any other name is measured by \
+        the host.",
     ),
 ];
 
@@ -49,17 +50,19 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         NOMINAL,
         Values::Number(VALUE),
-        "Value of the variable after reset: its table stands in the ROM. Else the first of `values`, else that of the first point.",
+        "Value of the variable after reset, whose table is in the ROM. Absent: the first of `values`, else of the \
+        points.",
     ),
     Key::new(
         VALUES,
         Values::Numbers(VALUE, MAX_TABLES),
-        "Values of the variable that get a table each; else as few as cover all points.",
+        "Values of the variable that get a table each. Absent: as few as cover all points.",
     ),
 ];
 
 impl AxisMode {
-    /// The mode at a value of the variable: between two points frequency and damping are linear, outside they stay as at the end.
+    /// The mode at a value of the variable. Frequency and damping are linear between two points, and constant beyond
+    /// the first and the last.
     pub fn at(&self, value: f64) -> Mode {
         let above = self.points.partition_point(|point| point.value <= value);
         let (Some(low), Some(high)) = (self.points.get(above.saturating_sub(1)), self.points.get(above)) else {
@@ -80,22 +83,22 @@ impl AxisMode {
 /// A mode that moves, at one value of the variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModePoint {
-    /// Value of the variable: of a position in m or rad, else as the file has it.
+    /// Value of the variable: in m or rad for a position, else the number of the file.
     pub value: f64,
-    /// Frequency and damping there, with the motor held.
+    /// Frequency and damping ratio at that value, with the motor held.
     pub mode: Mode,
 }
 
-/// What the modes of an axis move with, and `[axis.family]`.
+/// `[axis.family]`: the variable with which the modes of an axis move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FamilySection {
-    /// Its name: `position` is the axis's own position, of any other the host knows the value.
+    /// Name of the variable: `position` is the axis's own position; the host knows the value of any other.
     pub variable: String,
     /// First and last value that the points cover.
     pub range: [f64; 2],
-    /// Value after reset: the table for it stands in the ROM.
+    /// Value of the variable after reset, whose table is in the ROM.
     pub nominal: f64,
-    /// Values that get a table each, `nominal` among them; empty where the design chooses them.
+    /// Values of the variable that get a table each, `nominal` among them; empty where the design chooses them.
     pub values: Vec<f64>,
 }
 
@@ -105,7 +108,7 @@ impl FamilySection {
         self.variable == POSITION
     }
 
-    /// A value of the variable for a report: a position in the axis's unit, else the number.
+    /// Writes a value of the variable for a report: a position in the axis's unit, any other as a plain number.
     pub fn show(&self, value: f64, unit: AxisUnit) -> String {
         match self.is_position() {
             true => unit.as_in_file(value, ""),
@@ -115,7 +118,7 @@ impl FamilySection {
 }
 
 impl AxisSection {
-    /// The axis with its modes where they are at a value of the variable that they move with.
+    /// Returns the axis with its modes as they are at this value of the variable.
     pub fn at_value(&self, value: f64) -> Self {
         let modes = self.modes.iter().map(|mode| AxisMode {
             mode: mode.at(value),
@@ -128,7 +131,7 @@ impl AxisSection {
     }
 }
 
-/// The points of a mode that moves, as the file has them; `None` where they are refused.
+/// Reads the points of a mode that moves; `None` where they are refused.
 pub(super) fn read_points(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<Vec<ModePoint>> {
     let others = [
         "frequency_hz",
@@ -146,7 +149,7 @@ pub(super) fn read_points(table: &Table<'_, '_>, clock: Option<ClockSection>) ->
     }
     table.require_with(
         MOVES_WITH,
-        "the name of what the mode moves with",
+        "the name of the variable on which the mode depends",
         format!("add `{MOVES_WITH} = \"{POSITION}\"` for the axis's own position, or a name such as \"load\""),
     );
     let rows = table.rows::<3>(POINTS, ANY, NUMBERS, MAX_POINTS)?;
@@ -193,8 +196,8 @@ pub(super) fn read_points(table: &Table<'_, '_>, clock: Option<ClockSection>) ->
     Some(points.collect())
 }
 
-/// What the moving modes of an axis share, `Some(None)` where none moves; `None` where it is refused. Values of a position become m or rad,
-/// and each mode the one at the nominal value.
+/// Reads what the moving modes of an axis share: `Some(None)` where none moves, `None` where it is refused. Values of
+/// a position are converted to m or rad, and each mode is set to its value at the nominal point.
 pub(super) fn read_family<'r, 't>(
     axis: &Table<'r, 't>,
     modes: &mut [(Table<'r, 't>, AxisMode)],
@@ -305,7 +308,7 @@ fn read_values(table: &Table<'_, '_>) -> Option<Vec<f64>> {
     Some(values)
 }
 
-/// Checks what a family and the rest of its axis must agree on.
+/// Checks the family against the rest of its axis.
 pub(super) fn check(
     axis: &Table<'_, '_>,
     family: &FamilySection,

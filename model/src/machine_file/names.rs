@@ -1,15 +1,15 @@
 //! Names that become Verilog identifiers.
 
-/// Longest name of a machine or of an axis, in characters: names are joined to longer ones in Verilog and in C.
+/// Longest name of a machine or axis, in characters. Verilog and C join names to longer ones.
 pub(super) const MAX_NAME_LENGTH: usize = 64;
 
-/// What a name may look like, for messages.
+/// Rule for a name, for messages.
 pub(super) const NAME_RULE: &str = "[a-z][a-z0-9_]*, at most 64 characters, no Verilog or SystemVerilog keyword, no name of a hardware block, not beginning with posicast";
 
-/// What the names of modules begin with that are the same for every machine.
+/// Prefix of the modules that are the same for every machine.
 const LIBRARY: &str = "posicast";
 
-/// Names of our own: the hardware blocks, which are module names, and the ports that every module has.
+/// Reserved names of this project: the hardware blocks, which are module names, and the ports that every module has.
 const RESERVED: &[&str] = &[
     "axis",
     "cascade",
@@ -43,7 +43,7 @@ sync_reject_on table tagged task this throughout time timeprecision timeunit tra
 trior trireg type typedef union unique unique0 unsigned until until_with untyped use uwire var vectored virtual void
 wait wait_order wand weak weak0 weak1 while wildcard wire with within wor xnor xor";
 
-/// Whether a name can stand in Verilog and in C as it is.
+/// Returns whether a name can be used in Verilog and in C as it is.
 pub(super) fn is_name(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     name.starts_with(|c: char| c.is_ascii_lowercase())
@@ -54,8 +54,8 @@ pub(super) fn is_name(name: &str) -> bool {
         && !KEYWORDS.split_whitespace().any(|keyword| keyword == name)
 }
 
-/// The name that a refused one becomes in small letters, with `_` in place of what is not allowed; nothing where that is
-/// none either.
+/// Turns a refused name into an allowed one: in small letters, with `_` in place of what is not allowed; `None` where
+/// that is not allowed either.
 pub(super) fn mended(name: &str) -> Option<String> {
     let plain = |c: char| {
         if c.is_ascii_alphanumeric() {

@@ -1,11 +1,11 @@
-//! Where a key of a machine file stands: for what is found wrong after the file was read.
+//! Finds the line of a key in a machine file, for problems that are found after the file was read.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Line of a key's value, from 1; of a key that is absent the line of its table. `key` is dotted, such as
-/// `axis.drive.bandwidth_hz`, with the index of the table where it is not that of the axis, from 0: `axis.mode[1].damping`; `axis`
-/// counts the tables `[[axis]]` from 0. Nothing where the text has no such table.
+/// Line of a key's value, from 1; for an absent key the line of its table. `key` is dotted, such as
+/// `axis.drive.bandwidth_hz`; `axis` counts the tables `[[axis]]` from 0, and a table of another array has its index
+/// from 0 in the key, as in `axis.mode[1].damping`. `None` where the text has no such table.
 ///
 /// ```
 /// use posicast_model::machine_file::line_of;
@@ -38,7 +38,7 @@ pub fn line_of(text: &str, axis: usize, key: &str) -> Option<usize> {
     Some(1 + before.bytes().filter(|byte| *byte == b'\n').count())
 }
 
-/// The value itself; of an array of tables the table that is meant.
+/// Returns the value itself, or of an array of tables the table with this index.
 fn element<'a, 't>(value: &'a Spanned<DeValue<'t>>, axis: usize) -> Option<&'a Spanned<DeValue<'t>>> {
     match value.get_ref().as_array() {
         Some(tables) => tables.get(axis),

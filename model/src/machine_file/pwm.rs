@@ -1,7 +1,7 @@
 //! `[axis.pwm]`: the pulse width modulator, in clocks.
 //!
-//! The file has seconds, the hardware counts clocks. The period is a whole number of clocks exactly. Dead time and minimum
-//! pulse are rounded **up**: the pins never show less than the file asks for.
+//! The file has seconds; the hardware counts clocks. The period must be a whole number of clocks. Dead time and
+//! minimum pulse are rounded **up**, so that they are never shorter at the pins than in the file.
 
 use super::ClockSection;
 use super::hint::{self, KILO};
@@ -11,16 +11,16 @@ use super::table::Table;
 use crate::rtl::pwm::{SHORTEST_PERIOD_CLOCKS, TIME_BITS};
 use crate::unit::{short, show_seconds};
 
-/// Dead time and minimum pulse.
+/// Range of dead time and minimum pulse.
 const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
 const FREQUENCY_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
-/// PWM periods that the hardware counts, in clocks.
+/// Shortest and longest PWM period that the hardware counts, in clocks.
 const PERIOD_CLOCKS_MIN: u32 = SHORTEST_PERIOD_CLOCKS;
 const PERIOD_CLOCKS_MAX: u32 = 1 << 16;
-/// Longest dead time and minimum pulse that it counts, in clocks.
+/// Longest dead time and minimum pulse that the hardware counts, in clocks.
 const TIME_CLOCKS_MAX: u32 = (1 << TIME_BITS) - 1;
 
-/// How the duty drives the pins.
+/// Ways in which the duty drives the pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PwmMode {
     /// A pulse width and a direction.
@@ -29,22 +29,22 @@ pub enum PwmMode {
     HalfBridge,
     /// Four gates, one leg switching at a time.
     FullBridge,
-    /// Four gates, both legs against each other: zero is 50 %.
+    /// Four gates, both legs in antiphase: a command of zero is a duty of 50 %.
     LockedAntiphase,
 }
 
 /// `[axis.pwm]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PwmSection {
-    /// How the duty drives the pins.
+    /// The way in which the duty drives the pins.
     pub mode: PwmMode,
     /// PWM frequency in Hz: it divides the clock, and the sample tick divides it.
     pub frequency_hz: f64,
     /// Time for which both switches of a leg are off, in s. Default 0.
     pub dead_time_s: f64,
-    /// Shortest pulse that is not left out, in s. Default 0.
+    /// Shortest pulse that is output, in s; shorter ones are left out. Default 0.
     pub minimum_pulse_s: f64,
-    /// Whether a pin is on when it is low: fixed when the hardware is built. Default: high is on.
+    /// Whether the pins are active low, which is fixed when the hardware is built. Default false.
     pub active_low: bool,
 }
 
@@ -59,7 +59,7 @@ impl PwmMode {
 }
 
 impl PwmSection {
-    /// Clocks of a PWM period: exact, validation made sure.
+    /// Clocks of a PWM period. The quotient is exact: validation makes sure of it.
     pub fn period_clocks(&self, clock: &ClockSection) -> u32 {
         (clock.frequency_hz / self.frequency_hz).round() as u32
     }
@@ -75,8 +75,8 @@ impl PwmSection {
     }
 }
 
-/// The smallest whole number of clocks that lasts at least `seconds`; the last digits of decimals such as `500e-9`, which
-/// binary fractions only come near, add no clock.
+/// The smallest whole number of clocks that lasts at least `seconds`. A decimal such as `500e-9`, which binary
+/// fractions only approximate, does not gain a clock by its rounding.
 fn clocks_up(seconds: f64, clock: &ClockSection) -> u32 {
     let clocks = seconds * clock.frequency_hz;
     (clocks * (1.0 - RATIO_ROUNDING)).ceil() as u32
@@ -104,15 +104,15 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "minimum_pulse_s",
         SHORT_S,
-        "Shorter pulses, in s, are left out. It is rounded up to clocks.",
+        "Shortest pulse in s; shorter ones are left out. It is rounded up to clocks.",
     ),
     Key::switch(
         "active_low",
-        "A pin is on when it is low; fixed when the hardware is built.",
+        "Whether the pins are active low; fixed when the hardware is built.",
     ),
 ];
 
-/// Reads the table; `None` where a value is refused. Without a valid clock its checks are left out.
+/// Reads the table; `None` where a value is refused. Checks that need a valid clock are skipped without one.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<PwmSection> {
     table.allow(KEYS);
     let mode = table.required_choice("mode", &PwmMode::ALL.map(|(_, name)| name));
@@ -125,7 +125,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         minimum_pulse_s: table.number("minimum_pulse_s", SHORT_S).unwrap_or(0.0),
         active_low: table.boolean("active_low").unwrap_or(false),
     };
-    // What follows of a refused period would be told of the wrong one.
+    // Checks that build on a refused period would report consequences of it.
     if let Some(clock) = clock.filter(|clock| check_frequency(table, pwm.frequency_hz, clock)) {
         check_pulse(table, &pwm, &clock);
         check_counters(table, &pwm, &clock);
@@ -133,8 +133,8 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
     mode.map(|_| pwm)
 }
 
-/// A PWM period is a whole number of clocks, and a sample a whole number of PWM periods: of the frequencies that are
-/// both, the message names the nearest. Whether it is one.
+/// Checks that a PWM period is a whole number of clocks and a sample a whole number of PWM periods, and returns
+/// whether it is so. The message names the nearest frequency that meets both.
 fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) -> bool {
     let clocks_per_sample = clock.clocks_per_sample();
     let frequencies = || {
@@ -151,7 +151,8 @@ fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) -> 
             sample_hz,
         } = clock;
         let allowed = format!(
-            "what divides clock.frequency_hz = {frequency_hz} Hz and is a multiple of clock.sample_hz = {sample_hz} Hz; \
+            "what divides clock.frequency_hz = {frequency_hz} Hz and is a multiple of clock.sample_hz = {sample_hz} \
+            Hz; \
              the nearest is {nearest}"
         );
         let right = |hz: f64| pwm_hz < *sample_hz && frequencies().any(|frequency_hz| is(frequency_hz, hz));
@@ -163,8 +164,9 @@ fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) -> 
     true
 }
 
-/// A period has room for both sides' dead time and minimum pulse, and for a clock more: a leg that is late once, after a turn
-/// or a start, catches up only where a side lasts longer than the minimum. The hardware has at least a clock of each.
+/// Checks that a period has room for both sides' dead time and minimum pulse, and for one more clock: a leg that is
+/// late once, after a change of direction or a start, catches up only where a side lasts longer than the minimum. The
+/// hardware has at least one clock of each.
 fn check_pulse(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection) {
     let least = |clocks: u32| u64::from(clocks.max(1));
     let clocks = 2 * (least(pwm.dead_time_clocks(clock)) + least(pwm.minimum_pulse_clocks(clock)));
@@ -182,7 +184,7 @@ fn check_pulse(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection) {
     table.contradiction(key, found, allowed, "shorten both, or lower the PWM frequency");
 }
 
-/// What the hardware's counters hold: the period, the dead time and the shortest pulse, in clocks.
+/// Checks that the hardware's counters hold the period, the dead time and the shortest pulse, in clocks.
 fn check_counters(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection) {
     let shortest_hz = clock.frequency_hz / f64::from(PERIOD_CLOCKS_MAX);
     let period = pwm.period_clocks(clock);

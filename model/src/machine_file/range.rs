@@ -1,4 +1,4 @@
-//! Ranges of numbers, as data: one value serves the check, the message and the help.
+//! Ranges of numbers, as data: one value serves the check, the message and the help text.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ impl NumberRange {
         }
     }
 
-    /// The same without its upper end.
+    /// The range without its upper end.
     pub(super) const fn open_above(self) -> Self {
         Self {
             high_included: false,
@@ -40,7 +40,7 @@ impl NumberRange {
         }
     }
 
-    /// The same in units of which there are `factor` for one.
+    /// The range in a unit that is smaller by `factor`.
     pub(super) fn times(self, factor: f64) -> Self {
         Self {
             low: self.low * factor,
@@ -49,14 +49,15 @@ impl NumberRange {
         }
     }
 
-    /// What holds a number of the range in whatever unit an axis has: a millionth, or a million of them, is the most.
+    /// The range that holds a number of this one in whatever unit the axis has, between a millionth of a unit and a
+    /// million units.
     pub(super) fn in_any_unit(self) -> Self {
         let wider = self.times(1e6);
         let low = if self.low > 0.0 { self.low * 1e-6 } else { wider.low };
         Self { low, ..wider }
     }
 
-    /// The same in a unit.
+    /// The range with a unit for messages.
     pub(super) const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
@@ -104,7 +105,7 @@ impl fmt::Display for NumberRange {
     }
 }
 
-/// An end of a range, as people write it: `1e9` and not its ten digits.
+/// Writes an end of a range, `1e9` for example without its ten digits.
 fn end(value: f64) -> String {
     let (plain, power) = (value.to_string(), format!("{value:e}"));
     match plain.len() > 7 && power.len() < plain.len() {
@@ -113,9 +114,9 @@ fn end(value: f64) -> String {
     }
 }
 
-/// Counts per m or rad: up to a picometre per count.
+/// Range of counts per m or rad: up to one count per picometre.
 pub(super) const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
-/// Relative difference from a whole number that the decimals of a frequency may leave.
+/// Largest relative distance from a whole number that the decimals of a frequency may leave.
 pub(super) const RATIO_ROUNDING: f64 = 1e-9;
 
 #[cfg(test)]

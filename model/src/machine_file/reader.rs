@@ -1,6 +1,7 @@
-//! The text of a machine file and the problems found in it: places become lines, problems become the error.
+//! The text of a machine file and the problems found in it. Byte offsets become lines, and the problems become one
+//! error.
 //!
-//! Reading never stops at a problem, so that one run shows all that is wrong.
+//! Reading continues after a problem, so that one run reports all that is wrong.
 
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
@@ -92,12 +93,12 @@ impl<'t> Reader<'t> {
         self.problems.push(problem);
     }
 
-    /// Records what this version does not build: an error where [`Reader::report`] has none.
+    /// Records something that this version does not build: an error only where [`Reader::report`] recorded none.
     pub(super) fn report_not_built(&self, problem: Problem) {
         self.not_built.push(problem);
     }
 
-    /// The piece of the file at a place, on one line and without control characters.
+    /// Quotes the text at a place of the file on one line, without control characters.
     pub(super) fn quote(&self, span: Range<usize>) -> String {
         let text = self.text.get(span).unwrap_or_default();
         let mut quote: String = text.chars().take(MAX_QUOTE).flat_map(printable).collect();
@@ -107,7 +108,7 @@ impl<'t> Reader<'t> {
         quote
     }
 
-    /// The value, if nothing was wrong and everything that the file asks for is built.
+    /// Returns the value if no problem was recorded and this version builds everything that the file asks for.
     pub(super) fn finish<T>(self, value: Option<T>) -> Result<T, SpecError> {
         let list = if self.problems.kept.borrow().is_empty() {
             self.not_built
@@ -122,7 +123,7 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// A character as a message may show it: a machine file must not steer the terminal.
+/// Escapes a character for a message: the content of a machine file must not control the terminal.
 fn printable(c: char) -> impl Iterator<Item = char> {
     let escaped = if c.is_control() { Some(c.escape_debug()) } else { None };
     let plain = if c.is_control() { None } else { Some(c) };

@@ -5,13 +5,13 @@ use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use crate::unit::AxisUnit;
 
-/// What the scale's position is for.
+/// What the scale's position is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ScaleUse {
-    /// It is compared with the motor's; the loop is the motor's.
+    /// The position is compared with the motor's, which the loop runs on.
     #[default]
     Monitor,
-    /// The loop's position is the scale's, its velocity the motor's.
+    /// The loop's position is the scale's, and its velocity the motor's.
     Position,
 }
 
@@ -25,9 +25,9 @@ impl ScaleUse {
 pub struct Scale {
     /// Counts per m or rad of the scale; those of the motor's encoder are the axis's.
     pub counts_per_unit: f64,
-    /// What it is for. Default: to be compared.
+    /// What the scale is used for. Default: comparison.
     pub usage: ScaleUse,
-    /// Whether its lines count down where the motor's encoder counts up. Default: they count up.
+    /// Whether the scale's lines count down where the motor's encoder counts up. Default: false.
     pub invert: bool,
 }
 
@@ -42,7 +42,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "use",
         Values::Word(|| ScaleUse::ALL.map(|(_, name)| name).to_vec()),
-        "monitor: compared with the motor's position. position: the loop's position, with the velocity from the motor.",
+        "monitor: it is compared with the motor's position. position: the loop runs on it, with the velocity from the \
+        motor.",
     )
     .default(Default::Word("monitor")),
     Key::switch(

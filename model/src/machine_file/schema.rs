@@ -1,7 +1,7 @@
 //! The machine file's keys as JSON Schema (draft 07), for editors that complete and check TOML, such as those that use Taplo.
 //!
-//! A schema says what each key may be by itself. What keys must agree on (a PWM period of whole clocks, a travel that the word
-//! holds) is checked by [`super::parse`] alone: a file that the schema accepts may still be refused.
+//! A schema says which values each key may have by itself. Only [`super::parse`] checks what keys must agree on (a
+//! PWM period of whole clocks, a travel that the word holds): a file that the schema accepts may still be refused.
 
 use serde_json::{Map, Value, json};
 
@@ -11,7 +11,7 @@ use super::machine::KEYS;
 use super::names::{MAX_NAME_LENGTH, NAME_RULE};
 use super::range::NumberRange;
 
-/// The schema of the whole file.
+/// Returns the schema of the whole file.
 ///
 /// ```
 /// let schema = posicast_model::machine_file::schema();

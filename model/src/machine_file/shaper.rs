@@ -1,4 +1,4 @@
-//! `[axis.shaper]`, and what it and the modes' own `shaper` keys must agree on.
+//! `[axis.shaper]`, and its checks against the modes' own `shaper` keys.
 
 use super::key::{Default, Key, Values};
 use super::range::NumberRange;
@@ -9,19 +9,19 @@ use crate::digitise::TAPS_MAX;
 use crate::unit::short;
 use posicast_optimal::{Command, Prefer};
 
-/// Residual that a shaper tolerates.
+/// Range of the residual that a shaper tolerates.
 pub(super) const TOLERANCE: NumberRange = NumberRange::positive(1.0).open_above();
-/// Relative error of a ratio of frequencies.
+/// Range of the relative error of a frequency ratio.
 const RATIO_TOLERANCE: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
-/// Times of the impulses of `custom` in seconds, and their amplitudes: what 18 bits hold.
+/// Range of the times of the impulses of `custom` in seconds, and of their amplitudes: what 18 bits hold.
 const IMPULSE: NumberRange = NumberRange::closed(-65_535.0, 65_535.0);
-/// Impulses of `custom`: each becomes a tap at least, and the largest table holds 256.
+/// Largest number of impulses of `custom`: each becomes at least one tap, and the largest table holds 256.
 const MAX_IMPULSES: usize = 256;
-/// Distance from 1 that the decimals of amplitudes may leave in their sum.
+/// Largest distance from 1 that the decimals of amplitudes may leave in their sum.
 const SUM_ROUNDING: f64 = 1e-9;
-/// Zero pairs, or frequencies per mode.
+/// Largest number of zero pairs, or of frequencies per mode.
 const MAX_ORDER: u32 = 5;
-/// Search limit of `periodic` before it is compared with the sample rate.
+/// Largest search limit of `periodic`, before it is compared with the sample rate.
 const LOWEST_HZ: f64 = 1e9;
 /// Amplitudes of `simultaneous`.
 const AMPLITUDES: [&str; 2] = ["ps", "um"];
@@ -63,13 +63,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "base",
         Values::Word(|| BASES.map(ShaperKind::name).to_vec()),
-        "The shaper that `periodic` repeats.",
+        "Base shaper that `periodic` repeats.",
     )
     .default(Default::Word("multi-ei")),
     Key::new(
         "lowest_frequency_hz",
         Values::Number(NumberRange::positive(LOWEST_HZ).open_above()),
-        "End of the search of `periodic`, in Hz; else a tenth of the lowest mode.",
+        "End of the search of `periodic`, in Hz. Absent: a tenth of the lowest mode's frequency.",
     ),
     Key::new(
         "amplitude",
@@ -80,13 +80,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "method",
         Values::Word(|| METHODS.to_vec()),
-        "How `antisymmetric` is solved.",
+        "Method by which `antisymmetric` is solved.",
     )
     .default(Default::Word("exact")),
     Key::new(
         "ratio_tolerance",
         Values::Number(RATIO_TOLERANCE),
-        "Relative error of a ratio of frequencies that counts as odd, of `antisymmetric`.",
+        "Largest relative error at which `antisymmetric` takes a ratio of frequencies for odd.",
     )
     .default(Default::Number(0.0)),
     Key::new(
@@ -114,11 +114,11 @@ pub(super) const KEYS: &[Key] = &[
     ),
 ];
 
-/// `order`, of a shaper and of a mode.
+/// The key `order`, which the shapers of an axis and of a mode share.
 pub(super) const ORDER: Key = Key::new(
     "order",
     Values::Integer(1, MAX_ORDER),
-    "Zero pairs of `chebyshev-ei` (else 3), frequencies per mode of `vibrationless` (else 2).",
+    "Zero pairs of `chebyshev-ei` (default 3), or frequencies per mode of `vibrationless` (default 2).",
 );
 
 /// The kinds that have an order.
@@ -137,7 +137,7 @@ const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 10] = [
     ("ratio_tolerance", &[ShaperKind::Antisymmetric]),
 ];
 
-/// Reads a kind of shaper by name. A kind that is known and not built counts as read.
+/// Reads a kind of shaper by name. A kind that is known but not built counts as read.
 pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<ShaperKind> {
     let built = names(ShaperKind::is_built);
     let name = table.text(key, built.join(", "))?;
@@ -150,7 +150,7 @@ pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<ShaperKind> {
     Some(kind)
 }
 
-/// The names of the kinds that are wanted.
+/// Names of the kinds for which `wanted` is true.
 fn names(wanted: impl Fn(ShaperKind) -> bool) -> Vec<&'static str> {
     ShaperKind::ALL
         .iter()
@@ -159,7 +159,7 @@ fn names(wanted: impl Fn(ShaperKind) -> bool) -> Vec<&'static str> {
         .collect()
 }
 
-/// The kinds that serve one mode.
+/// Names of the kinds that can serve a single mode.
 pub(super) fn of_modes() -> Vec<&'static str> {
     names(|kind| kind.is_built() && !kind.treats_modes_together())
 }
@@ -280,7 +280,7 @@ fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f6
     Some(impulses)
 }
 
-/// Checks an axis's shaper against its modes. Both come with their tables, for the place of a problem.
+/// Checks an axis's shaper against its modes. Both come with their tables, which give the place of a problem.
 pub(super) fn check(
     axis: &Table<'_, '_>,
     shaper: Option<&(Table<'_, '_>, ShaperChoice)>,
@@ -322,7 +322,7 @@ pub(super) fn check(
     }
 }
 
-/// Checks a mode's own kind: it must serve one mode, and the axis's kind must leave room for it.
+/// Checks a mode's own kind: it must serve a single mode, and the axis's kind must allow it.
 fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>, mode: &AxisMode) {
     let Some(own) = mode.shaper else {
         return;
@@ -357,13 +357,13 @@ fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>, mode: 
     }
 }
 
-/// Checks that one of the kinds in use takes a key, if the key is there.
+/// Checks that at least one of the kinds in use takes a key, if the key is present.
 fn check_key(table: &Table<'_, '_>, key: &str, takers: &[ShaperKind], used: &[ShaperKind]) {
     if table.has(key) && !used.iter().any(|kind| takers.contains(kind)) {
         let used: Vec<&str> = used.iter().map(|kind| kind.name()).collect();
         let takers: Vec<&str> = takers.iter().map(|kind| kind.name()).collect();
         let found = format!("{key} with kind {}", used.join(", "));
         let allowed = format!("{key} with kind {}", takers.join(", "));
-        table.contradiction(key, found, allowed, format!("remove `{key}`: nothing would use it"));
+        table.contradiction(key, found, allowed, format!("remove `{key}`: it would have no effect"));
     }
 }

@@ -1,18 +1,19 @@
-//! `[stage]`: what concerns all axes. Where it is there, their delays are made equal ([`crate::design::matching`]).
+//! `[stage]`: settings of all axes together. With this table their delays are made equal
+//! ([`crate::design::matching`]).
 
 use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 
-/// Delays.
+/// Range of delays.
 const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
-/// Speeds.
+/// Range of speeds.
 const SPEED: NumberRange = NumberRange::positive(1e9).unit("m/s");
 
 /// `[stage]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StageSection {
-    /// Delay that every axis gets beyond that of the slowest, s. Default 0.
+    /// Delay that every axis gets in addition to that of the slowest axis, s. Default 0.
     pub extra_delay_s: f64,
     /// Speed at which the mismatch of the axes is reported, m/s.
     pub contour_speed: Option<f64>,
@@ -23,12 +24,14 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "extra_delay_s",
         SHORT_S,
-        "Delay in s that every axis gets beyond that of the slowest, for what is slower than the axes.",
+        "Delay in s that every axis gets in addition to that of the slowest, for devices that are slower than the \
+        axes.",
     ),
     Key::new(
         "contour_speed",
         Values::Number(SPEED),
-        "Speed in m/s at which the remaining mismatch of the axes is reported; else the smallest `velocity` of the axes.",
+        "Speed in m/s at which the remaining mismatch of the axes is reported. Absent: the smallest `velocity` of the \
+        axes.",
     ),
 ];
 

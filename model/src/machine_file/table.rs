@@ -1,7 +1,7 @@
-//! One TOML table with its place in the file: every value that is asked for is checked on the way.
+//! One TOML table with its place in the file; each getter checks the value that it returns.
 //!
-//! A getter returns `None` where the key is absent and where its value is refused; the refusal is recorded in the
-//! [`Reader`], which then ends in an error whatever became of the value.
+//! A getter returns `None` where the key is absent and where its value is refused. A refusal is recorded in the
+//! [`Reader`], which then ends in an error whatever the caller does with the `None`.
 
 mod unknown;
 
@@ -26,7 +26,7 @@ pub(super) struct Table<'r, 't> {
     header: Range<usize>,
     path: String,
     place: String,
-    /// Keys that are absent because the file has them misspelt, which is said already.
+    /// Keys that are absent because the file has them misspelt, which has been reported already.
     misspelt: RefCell<Vec<&'static str>>,
 }
 
@@ -43,12 +43,12 @@ impl<'r, 't> Table<'r, 't> {
         }
     }
 
-    /// The same table, told apart from others of its kind in messages.
+    /// The table with a place that tells it apart from others of its kind in messages.
     pub(super) fn at(self, place: String) -> Self {
         Self { place, ..self }
     }
 
-    /// How messages tell this table from others of its kind.
+    /// The words by which messages tell this table from others of its kind.
     pub(super) fn place(&self) -> &str {
         &self.place
     }
@@ -74,7 +74,7 @@ impl<'r, 't> Table<'r, 't> {
         self.value(key).is_some()
     }
 
-    /// Whether a table inside this one has this word under a key. Reports nothing.
+    /// Returns whether a table inside this one has this word under a key. It reports nothing.
     pub(super) fn has_word(&self, table: &str, key: &str, word: &str) -> bool {
         let inner = self.value(table).and_then(|value| value.get_ref().as_table());
         let found = inner
@@ -114,7 +114,7 @@ impl<'r, 't> Table<'r, 't> {
         reader.report(problem);
     }
 
-    /// Records a value that is of the right type and refused.
+    /// Records a value that has the right type but is refused.
     pub(super) fn refuse(&self, key: &str, allowed: impl Display, remedy: impl Into<String>) {
         let found = self.quote(key);
         let allowed = allowed.to_string();
@@ -147,7 +147,8 @@ impl<'r, 't> Table<'r, 't> {
         );
     }
 
-    /// Records something that the file asks for and that this version does not build: an error once all else is right.
+    /// Records something that the file asks for and this version does not build: an error only where there is no
+    /// other.
     pub(super) fn not_built(&self, key: &str, name: &str, allowed: Option<String>, remedy: &str) {
         let name = name.to_owned();
         let cause = ProblemCause::NotBuilt { name, allowed };
@@ -209,7 +210,7 @@ impl<'r, 't> Table<'r, 't> {
         inside
     }
 
-    /// A whole number of this list.
+    /// A whole number out of a list.
     pub(super) fn one_of(&self, key: &str, list: &[u32]) -> Option<u32> {
         let value = self.value(key)?;
         let texts: Vec<String> = list.iter().map(u32::to_string).collect();
@@ -236,7 +237,7 @@ impl<'r, 't> Table<'r, 't> {
         boolean
     }
 
-    /// A text; `allowed` says which, for the message where it is none.
+    /// A text. `allowed` says for the message which texts are allowed.
     pub(super) fn text(&self, key: &str, allowed: impl Display) -> Option<&'r str> {
         let value = self.value(key)?;
         let text = value.get_ref().as_str();
@@ -246,7 +247,7 @@ impl<'r, 't> Table<'r, 't> {
         text
     }
 
-    /// A name that can stand in Verilog and in C; it must be there.
+    /// A name that can be used in Verilog and in C; the key is required.
     pub(super) fn required_name(&self, key: &str) -> Option<String> {
         self.require(key, NAME_RULE);
         let name = self.text(key, NAME_RULE)?;
@@ -273,13 +274,13 @@ impl<'r, 't> Table<'r, 't> {
         word
     }
 
-    /// One of a list of words that must be there.
+    /// One of a list of words; the key is required.
     pub(super) fn required_choice<'w>(&self, key: &str, words: &[&'w str]) -> Option<&'w str> {
         self.require(key, words.join(", "));
         self.choice(key, words)
     }
 
-    /// What the words of a list stand for; the list may be empty.
+    /// The values for a list of words, which may be empty.
     pub(super) fn choices<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Option<Vec<T>> {
         let value = self.value(key)?;
         let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
@@ -329,7 +330,7 @@ impl<'r, 't> Table<'r, 't> {
         numbers
     }
 
-    /// A list of lists of `N` numbers in a range each; `names` names the numbers.
+    /// A list of rows of `N` numbers, each in a range; `names` names the numbers of a row.
     pub(super) fn rows<const N: usize>(
         &self,
         key: &str,
@@ -369,7 +370,7 @@ impl<'r, 't> Table<'r, 't> {
         Some(self.inner(key, value.span(), entries))
     }
 
-    /// The tables of an array of 1 to `most` tables; none where the key is absent.
+    /// The tables of an array of 1 to `most` tables; empty where the key is absent.
     pub(super) fn tables(&self, key: &str, most: usize) -> Vec<Table<'r, 't>> {
         let Some(value) = self.value(key) else {
             return Vec::new();
@@ -407,7 +408,7 @@ impl<'r, 't> Table<'r, 't> {
     }
 }
 
-/// The number that a value stands for; one beyond `f64` counts as infinite, which no range contains.
+/// The number that a value stands for. A number beyond `f64` becomes infinite, which no range contains.
 fn as_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),

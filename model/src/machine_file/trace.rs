@@ -7,7 +7,7 @@ use crate::rtl::trace::SAMPLES;
 /// `[axis.trace]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TraceSection {
-    /// Samples that it holds of each signal: 256, 512, 1024 or 2048.
+    /// Samples of each signal that the memory holds: 256, 512, 1024 or 2048.
     pub samples: u32,
 }
 

@@ -1,4 +1,4 @@
-//! The move of an axis where no command file is given: how far it goes, and how fast.
+//! The default move of an axis where no command file is given: its distance and velocity.
 //!
 //! ```text
 //! start = 0, or the end of the travel that is nearest to it
@@ -7,7 +7,7 @@
 //!         at most half of the travel and half of the command word
 //! ```
 //!
-//! It goes to the positive side if there is room. Without `velocity` in the file, d is 5 mm or 5 mrad.
+//! It goes in the positive direction if there is room. Without `velocity` in the file, d is 5 mm or 5 mrad.
 
 use thiserror::Error;
 
@@ -15,47 +15,47 @@ use super::profile::{Profile, ProfileError, motion_limits};
 use crate::machine_file::{AxisSection, FixedPoint};
 use crate::unit::AxisUnit;
 
-/// Least distance where there is room, in m or rad.
+/// Smallest distance where there is room, in m or rad.
 const LEAST_DISTANCE: f64 = 0.005;
-/// Part of the travel, and of the command word, that a move goes without being asked to.
+/// Fraction of the travel, and of the command word, that a default move covers at most.
 const PART_OF_ROOM: f64 = 0.5;
-/// What rounding of a product may add to a figure that has two digits.
+/// Relative error by which rounding of a product may exceed a figure with two digits.
 const ROUNDING: f64 = 1e-9;
 
-/// A move of an axis. Lengths in m or rad.
+/// A move of an axis. Lengths are in m or rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisMove {
-    /// From the start to the end; negative towards the negative side.
+    /// Distance from the start to the end; negative in the negative direction.
     pub distance: f64,
-    /// Largest velocity.
+    /// Largest velocity, positive.
     pub velocity: f64,
 }
 
-/// Why an axis does not move as it was told to. Lengths in m or rad, shown in the unit of the axis.
+/// Why a requested move is not possible. Lengths are in m or rad, shown in the unit of the axis.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AxisMoveError {
-    /// A distance that is none.
-    #[error("a move of {distance} moves nothing: give a distance in {unit} that is not 0")]
+    /// The distance is 0 or not finite.
+    #[error("a move of {distance} causes no motion: give a distance in {unit} that is not 0")]
     Nothing {
         /// The figure that was given.
         distance: f64,
         /// Unit of the axis.
         unit: AxisUnit,
     },
-    /// A distance below the encoder's steps.
+    /// The distance is less than a count of the encoder.
     #[error(
         "a move of {} is {:.3} counts, less than one: give at least {}, or check counts_per_unit and unit",
         .unit.as_in_file(*.distance, ""), .distance * .counts_per_unit, .unit.as_in_file(1.0 / .counts_per_unit, "")
     )]
     BelowCount {
-        /// The distance.
+        /// Requested distance.
         distance: f64,
         /// Counts per m or rad.
         counts_per_unit: f64,
         /// Unit of the axis.
         unit: AxisUnit,
     },
-    /// An end beyond the travel.
+    /// The move ends beyond the travel.
     #[error(
         "a move of {} goes from {} to {}, beyond the travel of {} to {}: give a distance from {} to {}",
         .unit.as_in_file(*.distance, ""), .unit.as_in_file(*.start, ""), .unit.as_in_file(.start + .distance, ""),
@@ -63,52 +63,52 @@ pub enum AxisMoveError {
         .unit.as_in_file(.travel[0] - .start, ""), .unit.as_in_file(.travel[1] - .start, "")
     )]
     BeyondTravel {
-        /// The distance.
+        /// Requested distance.
         distance: f64,
-        /// Where the move starts.
+        /// Position at which the move starts.
         start: f64,
         /// Ends of the travel.
         travel: [f64; 2],
         /// Unit of the axis.
         unit: AxisUnit,
     },
-    /// An end beyond the command word.
+    /// The move ends beyond the command word.
     #[error(
         "a move of {} ends at {counts} counts, beyond a command word of {command_bits} bits with {command_fraction} fraction bits: \
          give at most {}, or raise command_bits or lower command_fraction in [fixed_point]",
         .unit.as_in_file(*.distance, ""), .unit.as_in_file(*.most, "")
     )]
     BeyondWord {
-        /// The distance.
+        /// Requested distance.
         distance: f64,
-        /// Where it ends.
+        /// Position at the end, in counts.
         counts: f64,
         /// Width of the word.
         command_bits: u32,
         /// Fraction bits of the word.
         command_fraction: u32,
-        /// Farthest move.
+        /// Largest distance.
         most: f64,
         /// Unit of the axis.
         unit: AxisUnit,
     },
-    /// A speed that is none.
-    #[error("a speed of {speed} moves nothing: give a positive number in {unit}/s")]
+    /// The speed is not a positive number.
+    #[error("a speed of {speed} causes no motion: give a positive number in {unit}/s")]
     Still {
         /// The figure that was given.
         speed: f64,
         /// Unit of the axis.
         unit: AxisUnit,
     },
-    /// A speed above the limit.
+    /// The speed exceeds the velocity limit.
     #[error(
         "a speed of {} is above the axis's velocity limit of {limit}: give at most that, or raise axis.limits.velocity",
         .unit.as_in_file(*.speed, "/s"), limit = .unit.as_in_file(*.limit, "/s")
     )]
     TooFast {
-        /// The speed.
+        /// Requested speed.
         speed: f64,
-        /// The limit.
+        /// Velocity limit of the axis.
         limit: f64,
         /// Unit of the axis.
         unit: AxisUnit,
@@ -116,14 +116,14 @@ pub enum AxisMoveError {
 }
 
 impl AxisMove {
-    /// The move that an axis makes where it is not told another: see above.
+    /// The default move of an axis, as described above.
     pub fn of_axis(axis: &AxisSection, words: &FixedPoint) -> Self {
         let [velocity, ..] = motion_limits(axis.limits.as_ref());
         let known = axis.limits.is_some_and(|limits| limits.velocity.is_some());
         Self::default_at(axis, words, known.then_some(velocity))
     }
 
-    /// A move of this distance and speed, both in the unit of the axis; where one is missing, that of the axis.
+    /// A move with this distance and speed, both in the unit of the axis; a missing one is that of the default move.
     ///
     /// # Errors
     /// [`AxisMoveError`] for a move that does not fit travel, word, encoder or limits.
@@ -143,23 +143,23 @@ impl AxisMove {
         })
     }
 
-    /// Where the move starts: at 0, or at the end of the travel that is nearest.
+    /// Start of the move: 0, or the nearest end of the travel.
     pub fn start(axis: &AxisSection) -> f64 {
         let travel = axis.limits.and_then(|limits| limits.travel);
         travel.map_or(0.0, |[low, high]| 0.0f64.max(low).min(high))
     }
 
-    /// Its positions in time, with the acceleration and the jerk that the axis may have.
+    /// The move's position over time, with the acceleration and jerk limits of the axis.
     ///
     /// # Errors
-    /// As [`Profile::new`].
+    /// Those of [`Profile::new`].
     pub fn profile(&self, axis: &AxisSection) -> Result<Profile, ProfileError> {
         let [_, acceleration, jerk] = motion_limits(axis.limits.as_ref());
         let start = Self::start(axis);
         Profile::new(start, start + self.distance, self.velocity, acceleration, jerk)
     }
 
-    /// The move at this velocity; at that of an axis without limits where it is not known.
+    /// The default move at this velocity; where the velocity is `None`, that of an axis without limits.
     fn default_at(axis: &AxisSection, words: &FixedPoint, velocity: Option<f64>) -> Self {
         let [of_limits, acceleration, jerk] = motion_limits(axis.limits.as_ref());
         let reached = velocity.map_or(0.0, |velocity| distance_to_reach(velocity, acceleration, jerk));
@@ -173,7 +173,7 @@ impl AxisMove {
         let of_travel = PART_OF_ROOM * (high - low);
         let of_word = PART_OF_ROOM * largest_counts(words) / axis.loop_counts_per_unit();
         let distance = wanted.min(of_travel).min(of_word);
-        // The longer side of the start has half of the travel at least.
+        // The longer side of the start has at least half of the travel.
         let goes_up = high - start >= distance || high - start >= start - low;
         Self {
             distance: if goes_up { distance } else { -distance },
@@ -182,7 +182,7 @@ impl AxisMove {
     }
 }
 
-/// How far the shortest move goes that reaches its velocity.
+/// Distance of the shortest move that reaches this velocity.
 fn distance_to_reach(velocity: f64, acceleration: f64, jerk: f64) -> f64 {
     let seconds = match velocity * jerk < acceleration * acceleration {
         true => 2.0 * (velocity / jerk).sqrt(),
@@ -191,18 +191,18 @@ fn distance_to_reach(velocity: f64, acceleration: f64, jerk: f64) -> f64 {
     velocity * seconds
 }
 
-/// A positive figure rounded up to two digits.
+/// Rounds a positive figure up to two digits.
 fn two_digits_up(figure: f64) -> f64 {
     let power = 1 - figure.log10().floor() as i32;
     let digits = (figure * 10f64.powi(power) * (1.0 - ROUNDING)).ceil();
-    // A quotient of whole numbers is what the decimal figure reads as.
+    // A quotient of whole numbers equals what the decimal figure reads as.
     match power >= 0 {
         true => digits / 10f64.powi(power),
         false => digits * 10f64.powi(-power),
     }
 }
 
-/// Counts that a command word reaches.
+/// Range of a command word in counts.
 fn largest_counts(words: &FixedPoint) -> f64 {
     (f64::from(words.command_bits) - 1.0 - f64::from(words.command_fraction)).exp2()
 }
@@ -265,7 +265,7 @@ mod tests {
     use super::*;
     use crate::machine_file::{self, Machine};
 
-    /// A machine of one axis with this text in `[axis.limits]`.
+    /// A machine with one axis and this text in `[axis.limits]`.
     fn machine(unit: &str, counts_per_unit: f64, limits: &str) -> Machine {
         let text = format!(
             "name = \"one\"\n[clock]\nfrequency_hz = 50e6\nsample_hz = 10e3\n[[axis]]\nname = \"x\"\nunit = \"{unit}\"\n\

@@ -1,51 +1,52 @@
-//! A command given as points in time, on the sample grid.
+//! A command given as points in time, resampled to the sample grid.
 
 use super::profile::{ProfileError, SAMPLES_MAX};
 use crate::mode::Mode;
 
-/// Periods of the slowest mode that a command stands still at its end, so that what rings is seen.
+/// Periods of the slowest mode for which a command stands still at its end, so that ringing is visible.
 const SETTLE_PERIODS: f64 = 3.0;
 
-/// Why points are no command.
+/// Why points are not a valid command.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PointsError {
-    /// Fewer than one point.
-    #[error("there is no point: give at least one line `time_s,position`")]
+    /// The list is empty.
+    #[error("no points: give at least one line `time_s,position`")]
     Empty,
-    /// A time or position that is NaN or infinite.
-    #[error("point {point}: {value} is no finite number")]
+    /// A time or position is NaN or infinite.
+    #[error("point {point}: {value} is not a finite number")]
     NotFinite {
         /// Index of the point, from 0.
         point: usize,
         /// The value found.
         value: f64,
     },
-    /// A time that does not lie after the one before.
+    /// A time does not lie after the one before it.
     #[error("point {point}: time {time_s} s does not lie after {before_s} s: times must increase")]
     Order {
         /// Index of the point, from 0.
         point: usize,
-        /// The time found.
+        /// Its time in s.
         time_s: f64,
-        /// The time before it.
+        /// The time before it in s.
         before_s: f64,
     },
-    /// More samples than a run holds.
+    /// The command has more samples than a run holds.
     #[error(transparent)]
     TooLong(#[from] ProfileError),
 }
 
-/// How long a command stands still at its end in seconds: the shaper's duration and some periods of the slowest mode.
+/// Time in seconds for which a command stands still at its end: the shaper's duration and some periods of the slowest
+/// mode.
 pub fn settle_s(shaper_duration_s: f64, modes: impl IntoIterator<Item = Mode>) -> f64 {
     let slowest_s = modes.into_iter().map(|m| m.damped_period_s()).fold(0.0, f64::max);
     shaper_duration_s + SETTLE_PERIODS * slowest_s
 }
 
-/// Positions at the samples between the first point and `settle_s` after the last: straight lines between the points,
-/// the last position from then on.
+/// Positions at the samples from the first point to `settle_s` after the last: straight lines between the points,
+/// then the last position.
 ///
 /// # Errors
-/// [`PointsError`] names the point that is wrong.
+/// [`PointsError`] names the invalid point.
 pub fn resample(points: &[(f64, f64)], sample_hz: f64, settle_s: f64) -> Result<Vec<f64>, PointsError> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Err(PointsError::Empty);

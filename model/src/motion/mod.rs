@@ -1,16 +1,16 @@
 //! Motion commands: a jerk-limited move, its samples, and the integer words that the hardware gets.
 //!
 //! - [`Profile`]: a point-to-point move in up to seven segments, as fast as the limits allow;
-//! - [`AxisMove`]: the move that `run` and `simulate` use where no command file is given: how far, and how fast;
+//! - [`AxisMove`]: the move that `run` and `simulate` use where no command file is given: its distance and velocity;
 //! - [`Trajectory`]: steps, ramps, trapezoids and such moves as cubics of time, which a shaper keeps exact;
 //! - [`resample`]: a command given as points in time, on the sample grid;
-//! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error;
-//! - [`modulo_words`]: the same for a modulo axis, with whole turns;
+//! - [`command_words`]: positions as Q`command_fraction` counts, rounded half up; a position that does not fit is an
+//!   error;
+//! - [`modulo_words`]: the same for a modulo axis, including whole turns;
 //! - [`plan_move`], [`plan_to_and_fro`], [`plan_circle`], [`plan_places`]: moves as entries of the command FIFO;
-//! - [`TickLimits`]: what those may ask for.
+//! - [`TickLimits`]: the limits of such moves.
 //!
-//! The planner works in counts and ticks. All else has positions in the unit of the machine file (metres, or radians) and
-//! times in seconds.
+//! The planner works in counts and ticks. Everything else has positions in metres or radians and times in seconds.
 
 mod axis_move;
 mod command;

@@ -1,69 +1,71 @@
-//! Moves as entries of the command FIFO: segments of constant jerk, and points.
+//! Plans moves as entries of the command FIFO: segments of constant jerk, and points.
 //!
-//! Lengths are counts and times ticks, so limits are counts per tick, tick², tick³ ([`TickLimits`]).
+//! Lengths are in counts and times in ticks, so limits are in counts per tick, tick², tick³ ([`TickLimits`]).
 //!
 //! ```text
 //! a jerk-limited move of seven segments: n₁ n₂ n₁ n₃ n₁ n₂ n₁ ticks with jerk j 0 −j 0 −j 0 j
 //! covers exactly                         j · n₁ · (n₁ + n₂) · (2n₁ + n₂ + n₃)
 //! ```
 //!
-//! The three boxes that are convolved there hold for sums as they do for integrals. The jerk is cut to its word of 2^−32, so
-//! some of the distance is missing: on a long move whole counts. Moves of the same duration with a jerk of an LSB or some
-//! (n₂ = 0) are laid over it until what is missing is below half an LSB of the command word. A point of one tick at rest then
-//! says exactly where the target is.
+//! The convolution of three boxes described there holds for sums as it does for integrals. The jerk is truncated to
+//! its word of 2^−32, so some of the distance is missing: whole counts on a long move. Corrections, which are moves
+//! of the same duration with a jerk of one or a few LSB (n₂ = 0), are added until less than half an LSB of the
+//! command word is missing. A point of one tick at rest then sets the exact target.
 
 use super::{Profile, ProfileError, TickLimits};
 use crate::rtl::segments::{ACCELERATION_BITS, Entry, EntryMotion, FRACTION_BITS, POSITION_FRACTION, Point, TICK_BITS};
 use crate::rtl::word::{WordError, WordFormat};
 use std::collections::BTreeMap;
 
-/// Longest stretch that one entry holds.
+/// Longest interval of one entry, in ticks.
 const TICKS_MAX: f64 = ((1u32 << TICK_BITS) - 1) as f64;
 /// Half an LSB of a command word, in LSB of the integrator.
 const HALF_A_WORD: i128 = 1 << (FRACTION_BITS - POSITION_FRACTION - 1);
-/// Most points of a path: 10 minutes at 1.6 kHz.
+/// Largest number of points of a path: 10 minutes at 1.6 kHz.
 pub const POINTS_MAX: usize = 1_000_000;
 
-/// Why there is no plan.
+/// Why a move cannot be planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanError {
-    /// Invalid limits or ends.
+    /// The limits or ends are invalid.
     #[error(transparent)]
     Profile(#[from] ProfileError),
-    /// A stretch of too many ticks.
+    /// An interval has too many ticks for one entry.
     #[error(
-        "a stretch of {ticks:e} ticks: an entry holds {TICKS_MAX}; raise the limits, shorten the move, or lower sample_hz"
+        "a stretch of {ticks:e} ticks: an entry holds at most {TICKS_MAX}; raise the limits, shorten the move, or lower sample_hz"
     )]
     TooLong {
-        /// Ticks of the longest stretch.
+        /// Ticks of the longest interval.
         ticks: f64,
     },
-    /// A jerk, velocity or acceleration beyond its word.
+    /// A jerk, velocity or acceleration does not fit its word.
     #[error(
         "a jerk of {jerk:e} counts per tick³ does not fit: ±128 is the end; lower the jerk limit or raise sample_hz"
     )]
     Jerk {
-        /// Jerk found.
+        /// Jerk in counts per tick³.
         jerk: f64,
     },
-    /// A point that its words do not hold.
+    /// A point does not fit its words.
     #[error("a point of the path: {0}")]
     Word(#[from] WordError),
-    /// More points than anyone wants.
+    /// The path has too many points.
     #[error("a path of {points} points, one per tick; at most {POINTS_MAX}: raise the limits or shorten the path")]
     Points {
-        /// Points found.
+        /// Number of points.
         points: usize,
     },
 }
 
-/// The fastest jerk-limited move from `start`, the exact position of a command at rest (Q32.32 counts), to `end` (Q24.8).
+/// Plans the fastest jerk-limited move from `start`, the exact position of a command at rest (Q32.32 counts), to
+/// `end` (Q24.8).
 ///
-/// Segments, seven and up to eight more per correction, and the point on target, which notifies; nothing where `start` is
-/// `end`. Every stretch is a whole number of ticks, rounded up, so the limits are kept, but for some LSB of the jerk.
+/// Returns segments, seven and up to eight more per correction, and the point on the target, which notifies; no
+/// entries where `start` is `end`. Every interval is rounded up to whole ticks, so the limits are kept except for
+/// some LSB of the jerk.
 ///
 /// # Errors
-/// [`PlanError`] for invalid limits, and for what the entries do not hold.
+/// [`PlanError`] for invalid limits, and for values that the entries do not hold.
 pub fn plan_move(start: i64, end: i32, limits: &TickLimits) -> Result<Vec<Entry>, PlanError> {
     let target = i64::from(end) << (FRACTION_BITS - POSITION_FRACTION);
     let distance = i128::from(target) - i128::from(start);
@@ -101,7 +103,7 @@ pub fn plan_move(start: i64, end: i32, limits: &TickLimits) -> Result<Vec<Entry>
     Ok(entries)
 }
 
-/// Ticks of the stretches of a move: of jerk, of constant acceleration, of constant velocity.
+/// Ticks of the intervals of a move: of jerk, of constant acceleration, of constant velocity.
 #[derive(Debug, Clone, Copy)]
 struct Stretches {
     jerk: i128,
@@ -119,7 +121,7 @@ impl Stretches {
         4 * self.jerk + 2 * self.constant + self.cruise
     }
 
-    /// When the jerk changes, in ticks, and by how many times the jerk.
+    /// Ticks at which the jerk changes, each with its change as a multiple of the jerk.
     fn jerk_changes(&self) -> [(i128, i64); 8] {
         let lengths = [
             self.jerk,
@@ -140,7 +142,7 @@ impl Stretches {
     }
 }
 
-/// The move and what is laid over it, each with its jerk.
+/// The move and its corrections, each with its jerk.
 fn with_corrections(main: &Stretches, jerk: i64, distance: i128) -> Vec<(Stretches, i64)> {
     let mut moves = vec![(*main, jerk)];
     let duration = main.duration();
@@ -151,7 +153,7 @@ fn with_corrections(main: &Stretches, jerk: i64, distance: i128) -> Vec<(Stretch
             constant: 0,
             cruise: duration - 4 * ticks,
         };
-        // As long a stretch of jerk as one LSB allows: the distance grows with it.
+        // The interval of jerk is as long as one LSB allows: the distance grows with it.
         let (mut fits, mut beyond) = (1, duration / 4 + 1);
         while beyond - fits > 1 {
             let middle = (fits + beyond) / 2;
@@ -167,13 +169,13 @@ fn with_corrections(main: &Stretches, jerk: i64, distance: i128) -> Vec<(Stretch
             break;
         }
         missing -= jerk * per_jerk;
-        // Below a jerk of the main move, which fits.
+        // This is below the jerk of the main move, which fits.
         moves.push((of(fits), jerk as i64));
     }
     moves
 }
 
-/// The sum of the moves as segments.
+/// The sum of the moves, as segments.
 fn segments(moves: &[(Stretches, i64)]) -> Vec<Entry> {
     let mut changes: BTreeMap<i128, i64> = BTreeMap::new();
     for (stretches, jerk) in moves {
@@ -198,10 +200,10 @@ fn segments(moves: &[(Stretches, i64)]) -> Vec<Entry> {
         .collect()
 }
 
-/// There and back, so many times, from rest at `start` (Q24.8).
+/// Plans moves from `start` (Q24.8, at rest) to `end` and back, `times` times.
 ///
 /// # Errors
-/// As [`plan_move`].
+/// Those of [`plan_move`].
 pub fn plan_to_and_fro(start: i32, end: i32, times: usize, limits: &TickLimits) -> Result<Vec<Entry>, PlanError> {
     let exact = |position: i32| i64::from(position) << (FRACTION_BITS - POSITION_FRACTION);
     let mut entries = plan_move(exact(start), end, limits)?;
@@ -209,8 +211,9 @@ pub fn plan_to_and_fro(start: i32, end: i32, times: usize, limits: &TickLimits) 
     Ok(entries.repeat(times))
 }
 
-/// A circle by points, one per tick and axis: from rest at `start` (Q24.8, both axes) on its right, counter-clockwise,
-/// `turns` times round, at rest again. The limits hold along the path; its centripetal acceleration v²/r comes on top.
+/// Plans a circle as points, one per tick and axis: it starts at rest at `start` (Q24.8, both axes), its rightmost
+/// point, goes `turns` times round counter-clockwise, and ends at rest. The limits hold along the path; its
+/// centripetal acceleration v²/r is not included in them.
 ///
 /// # Errors
 /// [`PlanError`] for invalid limits, and for points that do not fit.
@@ -234,8 +237,8 @@ pub fn plan_circle(
     points(start, ticks as i64, place)
 }
 
-/// A path by its places in counts from `start` (Q24.8, both axes), the first of which is where it begins at rest: a point per tick and axis
-/// for each place after it, at rest at the last.
+/// Plans a path from its places, which are in counts from `start` (Q24.8, both axes). The first place is where it
+/// begins at rest; there is a point per tick and axis for each later place, and the last is at rest.
 ///
 /// # Errors
 /// [`PlanError`] for more places than [`POINTS_MAX`], and for points that do not fit.
@@ -250,8 +253,8 @@ pub fn plan_places(start: [i32; 2], places: &[[f64; 2]]) -> Result<[Vec<Entry>; 
     points(start, places.len().saturating_sub(1) as i64, place)
 }
 
-/// A point per tick and axis, for the ticks from 1 to `ticks`, of a path whose place at a tick, 0 and those before it too, `place` gives in
-/// counts from `start`.
+/// Points for the ticks 1 to `ticks`, one per tick and axis. `place` gives the path in counts from `start`, also for
+/// tick 0 and earlier.
 fn points(start: [i32; 2], ticks: i64, place: impl Fn(i64) -> [f64; 2]) -> Result<[Vec<Entry>; 2], PlanError> {
     let position = WordFormat::new(32, POSITION_FRACTION)?;
     let of_axis = |axis: usize| {
@@ -259,7 +262,8 @@ fn points(start: [i32; 2], ticks: i64, place: impl Fn(i64) -> [f64; 2]) -> Resul
         let at = |tick: i64| place(tick)[axis];
         let entries = (1..=ticks).map(|tick| {
             let (now, before, earlier) = (at(tick), at(tick - 1), at(tick - 2));
-            // The same differences that the integrator's sums stand for; at rest after the last.
+            // These are the differences that the integrator's sums stand for; after the last point the axis is at
+            // rest.
             let (velocity, acceleration) = if tick == ticks {
                 (0.0, 0.0)
             } else {
@@ -291,12 +295,12 @@ mod tests {
     use super::*;
     use crate::rtl::segments::Integrator;
 
-    /// Limits of the XY stage: 0.25 m/s, 8 m/s², 400 m/s³ at 1 µm per count and 10 kHz.
+    /// Limits of the XY stage: 0.25 m/s, 8 m/s² and 400 m/s³, at 1 µm per count and 10 kHz.
     fn stage() -> TickLimits {
         TickLimits::new(0.25, 8.0, 400.0, 1e6, 1e4)
     }
 
-    /// Plays entries, and gives the largest velocity, acceleration and jerk of the segments.
+    /// Plays entries, and returns the largest velocity, acceleration and jerk of the segments.
     fn play(at: &mut Integrator, entries: &[Entry]) -> [i64; 3] {
         let mut largest = [0; 3];
         for entry in entries {
@@ -394,7 +398,7 @@ mod tests {
             let last = entries.last().unwrap();
             let rest = Point::default();
             assert_eq!((last.motion, last.notify), (EntryMotion::Point(rest), true));
-            // Velocities are the differences of the positions, to their rounding.
+            // Velocities equal the differences of the positions, except for their rounding.
             for pair in entries[..entries.len() - 1].windows(2) {
                 let [EntryMotion::Point(before), EntryMotion::Point(now)] = [pair[0].motion, pair[1].motion] else {
                     panic!("only points are planned");

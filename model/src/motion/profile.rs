@@ -13,26 +13,26 @@ use thiserror::Error;
 use crate::machine_file::LimitsSection;
 use crate::unit::show_seconds;
 
-/// Most samples of a move: an hour and a half at 2 kHz, and 80 MB.
+/// Largest number of samples of a move: an hour and a half at 2 kHz, and 80 MB.
 pub const SAMPLES_MAX: usize = 10_000_000;
 
-/// Limits of a move where the axis has none, in m/s, m/s², m/s³.
+/// Default limits of a move in m/s, m/s² and m/s³.
 const DEFAULT_VELOCITY: f64 = 0.25;
 const DEFAULT_ACCELERATION: f64 = 8.0;
 const DEFAULT_JERK: f64 = 400.0;
 
-/// Why there is no move.
+/// Why a move is not possible.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProfileError {
-    /// An invalid limit.
+    /// A limit is invalid.
     #[error("{limit} limit {value}: it must be positive and finite")]
     Limit {
-        /// `velocity`, `acceleration` or `jerk`.
+        /// Name of the limit: `velocity`, `acceleration` or `jerk`.
         limit: &'static str,
-        /// The value found.
+        /// Value of the limit.
         value: f64,
     },
-    /// A start or an end that is no number.
+    /// The start or the end is not a finite number.
     #[error("a move from {start} to {end}: both must be finite numbers")]
     Ends {
         /// Start of the move.
@@ -40,18 +40,18 @@ pub enum ProfileError {
         /// End of the move.
         end: f64,
     },
-    /// More samples than anyone wants.
+    /// The move has too many samples.
     #[error(
         "a move of {} has {samples:.3e} samples at {sample_hz} Hz; at most {SAMPLES_MAX}: \
          raise the limits, shorten the move, or lower sample_hz",
         show_seconds(*.duration_s, 3)
     )]
     TooLong {
-        /// Duration of move and settling time.
+        /// Duration of the move and the settling time, in seconds.
         duration_s: f64,
-        /// Samples.
+        /// Number of samples.
         samples: f64,
-        /// Sample rate.
+        /// Sample rate in Hz.
         sample_hz: f64,
     },
 }
@@ -68,7 +68,8 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The fastest symmetric move from `start` to `end` within the limits (all positive, per second, second², second³).
+    /// The fastest symmetric move from `start` to `end` within the limits (all positive; per second, second²,
+    /// second³).
     ///
     /// # Errors
     /// [`ProfileError::Limit`] and [`ProfileError::Ends`] for invalid numbers.
@@ -82,7 +83,7 @@ impl Profile {
         if !distance.is_finite() {
             return Err(ProfileError::Ends { start, end });
         }
-        // What is met first, on the way to half the distance: the acceleration, the velocity, or the half itself.
+        // Which limit is reached first on the way to half the distance: the acceleration, the velocity, or none.
         let by_acceleration_s = acceleration / jerk;
         let by_velocity_s = (velocity / jerk).sqrt();
         let by_distance_s = (distance / jerk / 2.0).cbrt();
@@ -117,12 +118,12 @@ impl Profile {
         4.0 * self.jerk_s + 2.0 * self.constant_acceleration_s + self.constant_velocity_s
     }
 
-    /// How long the jerk, the constant acceleration and the constant velocity stand.
+    /// Durations in s of the constant jerk, the constant acceleration and the constant velocity.
     pub(super) fn stretches_s(&self) -> [f64; 3] {
         [self.jerk_s, self.constant_acceleration_s, self.constant_velocity_s]
     }
 
-    /// The eight instants at which the jerk changes, each with its change; some fall together where a segment is empty.
+    /// The eight instants at which the jerk changes, each with its change; some coincide where a segment is empty.
     pub(super) fn jerk_changes(&self) -> [(f64, f64); 8] {
         let jerk = self.jerk.copysign(self.distance);
         let signs = [1.0, -1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0];
@@ -143,7 +144,7 @@ impl Profile {
         })
     }
 
-    /// Position at `time_s` seconds after the start; before it the start, after the end the end.
+    /// Position at `time_s` seconds after the start; constant before the start and after the end.
     pub fn position(&self, time_s: f64) -> f64 {
         let left_s = self.duration_s() - time_s;
         let size = self.distance.abs();
@@ -163,7 +164,7 @@ impl Profile {
     fn travelled(&self, time_s: f64) -> f64 {
         let (jerk, jerk_s, constant_s) = (self.jerk, self.jerk_s, self.constant_acceleration_s);
         let peak = jerk * jerk_s;
-        // Each segment: time in it, then position, velocity and acceleration at its start.
+        // For each segment: the time in it, then position, velocity and acceleration at its start.
         let rise_s = time_s.min(jerk_s);
         let mut distance = jerk * rise_s.powi(3) / 6.0;
         let mut velocity = jerk * rise_s * rise_s / 2.0;
@@ -196,7 +197,7 @@ impl Profile {
     }
 }
 
-/// Velocity, acceleration and jerk that a move may ask for: the file's, or the defaults.
+/// Velocity, acceleration and jerk limit of a move: the file's, or the defaults.
 pub(crate) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
     let of = |limit: fn(&LimitsSection) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
     [
@@ -210,7 +211,7 @@ pub(crate) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Largest velocity, acceleration and jerk, by differences of a finely sampled profile.
+    /// Largest velocity, acceleration and jerk, from differences of a finely sampled profile.
     fn largest(profile: &Profile, steps: u32) -> [f64; 3] {
         let step_s = profile.duration_s() / f64::from(steps);
         let mut values: Vec<f64> = (0..=steps).map(|k| profile.position(f64::from(k) * step_s)).collect();
@@ -222,7 +223,7 @@ mod tests {
 
     #[test]
     fn unit_every_shape_of_profile_keeps_its_limits() {
-        // distance, velocity, acceleration, jerk; and which of the limits is reached
+        // Each case has distance, velocity, acceleration, jerk, and which of the limits is reached.
         let cases = [
             (1.0, 0.25, 8.0, 400.0, [true, true, true]),
             (0.01, 0.25, 8.0, 400.0, [false, true, true]),
@@ -263,7 +264,7 @@ mod tests {
         }
         assert!(Profile::new(f64::NAN, 1.0, 1.0, 1.0, 1.0).is_err());
         assert!(Profile::new(-f64::MAX, f64::MAX, 1.0, 1.0, 1.0).is_err());
-        // A creeping move is refused before its samples are made.
+        // A very slow move is refused before its samples are made.
         let creep = Profile::new(0.0, 1e6, 1e-300, 1e-300, 1e-300).unwrap();
         assert!(matches!(creep.samples(1e6, 0.0), Err(ProfileError::TooLong { .. })));
         let sudden = Profile::new(0.0, 1e-300, 1e300, 1e300, 1e300).unwrap();

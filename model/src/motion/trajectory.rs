@@ -4,9 +4,9 @@
 //! u(t) = Σ_k  p_k + v_k·(t − t_k) + a_k·(t − t_k)²/2 + j_k·(t − t_k)³/6        over the jumps k with t_k ≤ t
 //! ```
 //!
-//! A step is one jump of the position, a ramp one of the velocity, a trapezoidal velocity four of the acceleration, a
-//! jerk-limited move up to eight of the jerk. A shaper adds nothing new: it copies every jump, `A_i` times as high and `t_i`
-//! later. Lengths are in the unit of the command, times in seconds.
+//! A step is one jump of the position, a ramp one of the velocity, a trapezoidal velocity four of the acceleration,
+//! and a jerk-limited move up to eight of the jerk. A shaper stays in this class: it copies every jump, multiplied by
+//! `A_i` and delayed by `t_i`. Lengths are in the unit of the command, times in seconds.
 //!
 //! ```
 //! use posicast_model::impulse::Impulse;
@@ -20,11 +20,11 @@
 use super::profile::{Profile, ProfileError};
 use crate::impulse::Impulse;
 
-/// What sums of jumps that cancel on paper leave, relative to the jumps: below it a derivative is 0. Otherwise a jerk of
-/// 1e-17 would carry a machine at rest away in the course of a long look.
+/// Relative size of the rest of jumps that cancel on paper; below it a derivative is set to 0. Otherwise a jerk of
+/// 1e-17 would move a machine at rest away in a long simulation.
 const CANCELLED: f64 = 1e-13;
 
-/// A cubic of time: position, velocity, acceleration and jerk at its start.
+/// A cubic of time, given by position, velocity, acceleration and jerk at its start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cubic {
     /// Position.
@@ -38,7 +38,7 @@ pub struct Cubic {
 }
 
 impl Cubic {
-    /// The same cubic, `time_s` seconds later.
+    /// The same cubic, taken `time_s` seconds later.
     pub fn after(&self, time_s: f64) -> Self {
         Self {
             position: self.position
@@ -67,31 +67,31 @@ impl Cubic {
 /// A sudden change of position, velocity, acceleration or jerk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jump {
-    /// When, in seconds.
+    /// Time in seconds.
     pub time_s: f64,
-    /// By how much.
+    /// Change of position, velocity, acceleration and jerk.
     pub change: Cubic,
 }
 
-/// A stretch of time without a jump.
+/// An interval without a jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// Its start in seconds.
+    /// Start in seconds.
     pub start_s: f64,
-    /// What jumps at its start.
+    /// The jump at its start.
     pub jump: Cubic,
     /// The command from its start on.
     pub cubic: Cubic,
 }
 
-/// A command from rest at position 0.
+/// A command that starts from rest at position 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     jumps: Vec<Jump>,
 }
 
 impl Trajectory {
-    /// The command with these jumps, in any order of time.
+    /// Makes the command with these jumps, which may be in any order.
     pub fn new(mut jumps: Vec<Jump>) -> Self {
         jumps.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         let mut merged: Vec<Jump> = Vec::with_capacity(jumps.len());
@@ -118,7 +118,7 @@ impl Trajectory {
         }])
     }
 
-    /// A ramp without end.
+    /// A ramp of this velocity without end.
     pub fn ramp(velocity: f64) -> Self {
         Self::new(vec![Jump {
             time_s: 0.0,
@@ -129,7 +129,7 @@ impl Trajectory {
         }])
     }
 
-    /// A pulse: there at 0, back after `width_s` seconds.
+    /// A pulse: it goes to `position` at time 0, and back after `width_s` seconds.
     pub fn pulse(position: f64, width_s: f64) -> Self {
         let at = |time_s, position| Jump {
             time_s,
@@ -141,8 +141,8 @@ impl Trajectory {
         Self::new(vec![at(0.0, position), at(width_s, -position)])
     }
 
-    /// A move over `distance` (of either sign) with a trapezoidal velocity, or a triangular one where the distance is too
-    /// short for the velocity limit.
+    /// A move over `distance` (of either sign) with a trapezoidal velocity, or a triangular one where the distance is
+    /// too short to reach the velocity limit.
     ///
     /// # Errors
     /// [`ProfileError`] for limits that are not positive and finite, or a distance that is not finite.
@@ -185,7 +185,7 @@ impl Trajectory {
         ))
     }
 
-    /// The displacement of a jerk-limited move.
+    /// A jerk-limited move, relative to its start.
     pub fn of_profile(profile: &Profile) -> Self {
         let jumps = profile.jerk_changes().map(|(time_s, jerk)| Jump {
             time_s,
@@ -197,7 +197,7 @@ impl Trajectory {
         Self::new(jumps.to_vec())
     }
 
-    /// The command behind a shaper.
+    /// The command after a shaper.
     pub fn shaped(&self, impulses: &[Impulse]) -> Self {
         let copies = impulses.iter().flat_map(|impulse| {
             self.jumps.iter().map(|jump| Jump {
@@ -213,7 +213,7 @@ impl Trajectory {
         &self.jumps
     }
 
-    /// Time of the last jump: from then on the command rests (or ramps on).
+    /// Time of the last jump, from which on the command rests (or continues its ramp).
     pub fn end_s(&self) -> f64 {
         self.jumps.last().map_or(0.0, |j| j.time_s)
     }
@@ -234,7 +234,7 @@ impl Trajectory {
                 for k in 0..4 {
                     largest[k] = largest[k].max(arrived[k].abs()).max(change[k].abs());
                     let sum = arrived[k] + change[k];
-                    // A position that cancels is a place like any other.
+                    // Only derivatives are set to 0: a position near 0 is as good as any other.
                     next[k] = if k > 0 && sum.abs() <= CANCELLED * largest[k] {
                         0.0
                     } else {
@@ -252,7 +252,7 @@ impl Trajectory {
             .collect()
     }
 
-    /// Position at `time_s`; before the first jump 0.
+    /// Position at `time_s`; 0 before the first jump.
     pub fn position(&self, time_s: f64) -> f64 {
         let pieces = self.pieces();
         let index = pieces.partition_point(|p| p.start_s <= time_s);

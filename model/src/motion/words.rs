@@ -1,4 +1,4 @@
-//! Positions to command words: counts with `command_fraction` fraction bits, signed, `command_bits` wide.
+//! Converts positions to command words: signed counts with `command_fraction` fraction bits, `command_bits` wide.
 
 use thiserror::Error;
 
@@ -6,24 +6,25 @@ use crate::rtl::shaper::WORD_BITS;
 use crate::rtl::word::{WordError, WordFormat};
 use crate::taps::TapTable;
 
-/// Largest word of a modulo axis with its whole turns, as a power of two: positions keep their fraction in an `f64`.
+/// Largest word of a modulo axis with its whole turns, as a power of two: up to it, positions keep their fraction in
+/// an `f64`.
 const TURNED_WORD_BITS: i32 = 50;
 
-/// Why positions are no command words.
+/// Why positions cannot become command words.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CommandError {
-    /// A format that no command has.
+    /// The number format is not valid for a command.
     #[error(transparent)]
     Format(#[from] WordError),
-    /// A position that is NaN or infinite.
-    #[error("sample {sample}: position {position} is no finite number")]
+    /// A position is NaN or infinite.
+    #[error("sample {sample}: position {position} is not a finite number")]
     NotFinite {
         /// Index of the sample, from 0.
         sample: usize,
-        /// The position found.
+        /// The position.
         position: f64,
     },
-    /// A position beyond the word. The hardware would saturate.
+    /// A position does not fit the word; the hardware would saturate.
     #[error(
         "sample {sample}: position {position} is {counts} counts, beyond a word of {command_bits} bits with \
          {command_fraction} fraction bits (±{largest_counts} counts): {remedy}"
@@ -31,20 +32,20 @@ pub enum CommandError {
     DoesNotFit {
         /// Index of the sample, from 0.
         sample: usize,
-        /// The position found.
+        /// The position.
         position: f64,
-        /// The same in counts.
+        /// The position in counts.
         counts: f64,
         /// Width of the word.
         command_bits: u32,
         /// Fraction bits of the word.
         command_fraction: u32,
-        /// What the word reaches.
+        /// Range of the word in counts.
         largest_counts: f64,
-        /// The next size that is enough, or what else to do.
+        /// The next size that is large enough, or what else to do.
         remedy: String,
     },
-    /// A modulo axis that turns farther than its word can tell while a sample goes through the shaper.
+    /// A modulo axis turns farther than its word can tell within the shaper's delay.
     #[error(
         "sample {sample}: the position moves by {counts} counts within the shaper's delay of {delay_samples} samples, and the \
          words of a modulo axis must stay below half a turn of the word ({largest_counts} counts): move slower, or set more \
@@ -53,20 +54,21 @@ pub enum CommandError {
     TurnsTooFast {
         /// Index of the sample, from 0.
         sample: usize,
-        /// How far the position moves, in counts.
+        /// Distance that the position moves, in counts.
         counts: f64,
-        /// The tap's delay.
+        /// Delay of the tap, in samples.
         delay_samples: u32,
-        /// Half a turn, in counts.
+        /// Half a turn of the word, in counts.
         largest_counts: f64,
     },
 }
 
-/// Converts positions (in units of the machine file) to words of `command_bits` bits with `command_fraction` fraction bits,
-/// rounded half up as the hardware rounds.
+/// Converts positions (in units of the machine file) to words of `command_bits` bits with `command_fraction` fraction
+/// bits, rounded half up as the hardware does.
 ///
 /// # Errors
-/// [`CommandError`] names the first sample that is no number or does not fit, and the next size that is enough.
+/// [`CommandError`] names the first sample that is not finite or does not fit, and the next size that is large
+/// enough.
 pub fn command_words(
     positions: &[f64],
     counts_per_unit: f64,
@@ -92,12 +94,13 @@ pub fn command_words(
     positions.iter().enumerate().map(word).collect()
 }
 
-/// The same for a modulo axis: words with their whole turns, of which the hardware gets the lowest `command_bits`. `table` is
-/// the shaper that they go through.
+/// Converts positions of a modulo axis to words with their whole turns, of which the hardware gets the lowest
+/// `command_bits`. `table` is the shaper that they pass.
 ///
 /// # Errors
-/// [`CommandError`] names the first sample that is no number, is beyond 2^50, or at which the position has moved by half a
-/// turn of the word or more since a sample that the shaper still uses: the differences that it shapes would be ambiguous.
+/// [`CommandError`] names the first sample that is not finite, is beyond 2^50, or at which the position has moved by
+/// half a turn of the word or more since a sample that the shaper still uses: the differences that it shapes would be
+/// ambiguous.
 pub fn modulo_words(
     positions: &[f64],
     counts_per_unit: f64,
@@ -144,7 +147,7 @@ pub fn modulo_words(
     Ok(words)
 }
 
-/// What makes a word fit.
+/// The remedy for a word that does not fit.
 fn remedy(counts: f64, command_bits: u32, command_fraction: u32) -> String {
     let enough = |width: &u32| {
         let format = WordFormat::new(*width, command_fraction);
@@ -205,7 +208,7 @@ mod tests {
             let positions: Vec<f64> = (0..100).map(|sample| step * f64::from(sample)).collect();
             modulo_words(&positions, 1.0, 24, 8, &halves())
         };
-        // Half a turn of 24 bits with 8 of fraction is 32768 counts, and the longest delay 2 samples.
+        // Half a turn of 24 bits with 8 fraction bits is 32768 counts, and the longest delay is 2 samples.
         assert_eq!(words(16383.0).map(|words| words[99]), Ok(16383 * 256 * 99));
         let error = words(-16384.0).unwrap_err();
         assert!(

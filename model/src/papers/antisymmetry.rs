@@ -17,7 +17,7 @@ const DAMPING: f64 = 0.01;
 /// Sample period of the paper's simulations in seconds.
 const GRID_S: f64 = 0.01;
 
-/// The paper's three impulses.
+/// The three printed impulses of the paper.
 pub(super) const THREE_PRINTED: [f64; 3] = [0.30644, 0.49482, 0.19874];
 
 pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
@@ -27,12 +27,12 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     effectiveness(sheet)
 }
 
-/// The modes of the damped example: damped frequencies 2 and 14 rad/s.
+/// Returns the modes of the damped example: damped frequencies 2 and 14 rad/s.
 pub(super) fn example_modes(damping: f64) -> [Mode; 2] {
     [2.0, 14.0].map(|damped| mode_of_omega(damped / (1.0 - damping * damping).sqrt(), damping))
 }
 
-/// The antisymmetric shaper of a method.
+/// Returns the antisymmetric shaper of a method.
 pub(super) fn antisymmetric(method: &str, modes: &[Mode]) -> Result<Vec<Impulse>, DesignError> {
     let choice = ShaperChoice {
         method: Some(method.into()),
@@ -41,12 +41,12 @@ pub(super) fn antisymmetric(method: &str, modes: &[Mode]) -> Result<Vec<Impulse>
     chosen(choice, modes).map(|designed| designed.impulses().to_vec())
 }
 
-/// Multiples as numbers of a row.
+/// Converts multiples to the numbers of a row.
 fn numbers(multiples: &[u64]) -> Vec<f64> {
     multiples.iter().map(|m| *m as f64).collect()
 }
 
-/// Section 3: the test for an antiperiod.
+/// Section 3: test for an antiperiod.
 fn test(sheet: &mut Sheet) -> Result<(), DesignError> {
     let pair = common_divisor(&[2.0, 14.0])?;
     sheet.equal("section 4: ω_c of 2, 14 rad/s", "2", pair.divisor);
@@ -108,8 +108,8 @@ fn test(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// How many triples of odd numbers up to 29 have an antiperiod, and how many there are. Not asked of the test itself: half
-/// the sum of a command and its copy `π` later must be zero at every multiple.
+/// Returns how many triples of odd numbers up to 29 have an antiperiod, and how many triples there are. Independently
+/// of the test itself, it checks that half the sum of a command and its copy `π` later is zero at every multiple.
 fn odd_triples() -> (usize, usize) {
     let halves = [0.0, PI].map(|time_s| Impulse { time_s, amplitude: 0.5 });
     let odd = || (1..30).step_by(2);
@@ -120,7 +120,7 @@ fn odd_triples() -> (usize, usize) {
     (with, triples.len())
 }
 
-/// The criterion by greatest common divisors of minors, for 30, 105, 385 rad/s.
+/// Adds the criterion by greatest common divisors of minors, for 30, 105, 385 rad/s.
 fn minors(sheet: &mut Sheet, multiples: &[u64]) {
     let &[first, second, third] = multiples else { return };
     // m_j (2v_i + 1) = m_i (2v_j + 1), per pair of modes.
@@ -160,7 +160,7 @@ fn minors(sheet: &mut Sheet, multiples: &[u64]) {
     }
 }
 
-/// Table 1.
+/// Adds the rows of Table 1.
 fn undamped(sheet: &mut Sheet) -> Result<(), DesignError> {
     let modes = example_modes(0.0);
     let sizes = |impulses: &[Impulse]| impulses.iter().map(|i| i.amplitude).collect::<Vec<_>>();
@@ -191,7 +191,7 @@ fn undamped(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Table 2.
+/// Adds the rows of Table 2.
 fn damped(sheet: &mut Sheet) -> Result<(), DesignError> {
     let modes = example_modes(DAMPING);
     let two = antisymmetric("two-impulse", &modes)?;
@@ -228,7 +228,7 @@ fn damped(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Section 4.3: three impulses against the nine of the classical method.
+/// Adds the rows of section 4.3: three impulses compared with the nine of the classical method.
 fn effectiveness(sheet: &mut Sheet) -> Result<(), DesignError> {
     let modes = example_modes(DAMPING);
     let classical = shaper(ShaperKind::Zvd, &modes)?;
@@ -266,7 +266,7 @@ fn with_times(amplitudes: Vec<f64>, later_s: &[f64]) -> Vec<Impulse> {
     pairs.map(|(amplitude, time_s)| Impulse { time_s, amplitude }).collect()
 }
 
-/// Times at the nearest sample of the paper's simulations.
+/// Places the times at the nearest sample of the paper's simulations.
 fn on_grid(amplitudes: Vec<f64>, later_s: &[f64]) -> Vec<Impulse> {
     let rounded: Vec<f64> = later_s
         .iter()
@@ -275,13 +275,13 @@ fn on_grid(amplitudes: Vec<f64>, later_s: &[f64]) -> Vec<Impulse> {
     with_times(amplitudes, &rounded)
 }
 
-/// Amplitude left at a mode as a fraction of the unshaped one at the same time.
+/// Returns the amplitude left at a mode as a fraction of the unshaped one at the same time.
 fn residual_same_time(impulses: &[Impulse], mode: &Mode) -> f64 {
     pole_sum(impulses, mode, 0.0).norm()
 }
 
-/// Largest `|y|` after the last impulse over the largest unshaped one in the same time, where `y` is the sum of both modes'
-/// impulse responses, of equal size.
+/// Returns the largest `|y|` after the last impulse divided by the largest unshaped one in the same time, where `y`
+/// is the sum of both modes' impulse responses, of equal size.
 fn peak_ratio(impulses: &[Impulse], modes: &[Mode]) -> f64 {
     const LOOKS: u32 = 10_000;
     const LOOK_S: f64 = 1e-3;

@@ -1,24 +1,26 @@
-//! Modes one after the other, `∏ ω_i²/(s² + 2ζ_i ω_i s + ω_i²)`, as in the four-mode example of Zhang and Li.
+//! Modes in series, `∏ ω_i²/(s² + 2ζ_i ω_i s + ω_i²)`, as in the four-mode example of Zhang and Li.
 //!
-//! The step response is one plus a decaying oscillation per mode, whose complex amplitudes are the residues at the poles.
+//! The step response is one plus a decaying oscillation per mode, whose complex amplitudes are the residues at the
+//! poles.
 
 use crate::impulse::Impulse;
 use crate::mode::Mode;
 use nalgebra::Complex;
 
-/// Modes one after the other, with different poles.
+/// Modes in series, with different poles.
 pub(super) struct Chain {
-    /// Per mode: pole `−σ + jω_d`, residue of the unit step response.
+    /// Per mode, the pole `−σ + jω_d` and the residue of the unit step response.
     modes: Vec<(Complex<f64>, Complex<f64>)>,
 }
 
 impl Chain {
-    /// The chain of these modes.
+    /// Creates the chain of these modes.
     pub(super) fn new(modes: &[Mode]) -> Self {
         let pole = |mode: &Mode| Complex::new(-mode.decay(), mode.omega_damped());
         let with_residue = modes.iter().enumerate().map(|(index, mode)| {
             let at = pole(mode);
-            // G(s)/s without the factor (s − pole): ω²/((s − pole)(s − pole*)) of this mode, all of the others.
+            // G(s)/s without the factor (s − pole): ω²/((s − pole)(s − pole*)) for this mode, the whole factor for
+            // the others.
             let own = Complex::from(mode.omega().powi(2)) / (at * (at - at.conj()));
             let others = modes.iter().enumerate().filter(|(other, _)| *other != index);
             let residue = others.fold(own, |product, (_, other)| {
@@ -31,7 +33,7 @@ impl Chain {
         }
     }
 
-    /// Position less the step, as a fraction of the step, at a time after the last impulse.
+    /// Returns the position minus the step, as a fraction of the step, at a time after the last impulse.
     pub(super) fn vibration(&self, impulses: &[Impulse], time_s: f64) -> f64 {
         let modes = self.modes.iter().map(|(pole, residue)| {
             let terms = impulses

@@ -1,7 +1,7 @@
-//! The circle that the XY stage draws: X follows `R cos Ωt`, Y `R sin Ωt`, from rest at the centre.
+//! The circle that the XY stage draws: X follows `R cos Ωt` and Y follows `R sin Ωt`, from rest at the centre.
 //!
-//! The command of X starts with a step of `R`. A sine is no cubic, so the response is written as what it is: the steady
-//! oscillation `Re(H(jΩ)·e^{jΩt})`, and the free motion that makes the sum start at rest.
+//! The command of X starts with a step of `R`. A sine is not a cubic, so the response is written as the sum of the
+//! steady oscillation `Re(H(jΩ)·e^{jΩt})` and the free motion that makes the sum start at rest.
 
 use super::plants::PLANTS;
 use crate::impulse::ImpulseSequence;
@@ -13,9 +13,9 @@ use nalgebra::{Complex, Vector2};
 const RADIUS_MM: f64 = 10.0;
 /// Contour speed in mm/s (assumed).
 const SPEED_MM_S: f64 = 100.0;
-/// Time between two looks, in seconds: a few hundred in each period of either axis.
+/// Interval between two samples, in seconds: a few hundred per period of either axis.
 const LOOK_S: f64 = 2e-5;
-/// How long the stage is looked at after the end of the shapers, in seconds: once round the circle.
+/// Time after the end of the shapers that is sampled, in seconds: once round the circle.
 const LOOKED_AT_S: f64 = 0.65;
 
 /// A mode that follows the real part of `e^{j(Ωt − phase)}` from rest at time 0.
@@ -24,7 +24,7 @@ struct Follower {
     speed: f64,
     /// Steady response at time 0.
     steady: Complex<f64>,
-    /// What is missing at time 0, for a start from rest: position and velocity.
+    /// Position and velocity that the free motion must add at time 0 for a start from rest.
     missing: Vector2<f64>,
 }
 
@@ -50,7 +50,8 @@ impl Follower {
     }
 }
 
-/// Position on the way round a circle of radius 1, `(x, y)` over time, for plants `ratio` times as fast as their models.
+/// Returns the positions `(x, y)` over time on a circle of radius 1, for plants whose frequencies are `ratio` times
+/// those of their models.
 fn path(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64, f64)> {
     let speed = SPEED_MM_S / RADIUS_MM;
     let phases = [0.0, std::f64::consts::FRAC_PI_2];
@@ -70,15 +71,15 @@ fn path(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64
         .collect()
 }
 
-/// How far the stage gets outside the circle, as a fraction of the radius.
+/// Returns the largest excursion of the stage outside the circle, as a fraction of the radius.
 pub(super) fn excursion(shapers: &[ImpulseSequence; 2], ratio: f64) -> f64 {
     let longest_s = shapers.iter().map(ImpulseSequence::duration_s).fold(0.0, f64::max);
     let radii = path(shapers, ratio, longest_s + LOOKED_AT_S).into_iter();
     radii.map(|(x, y)| x.hypot(y) - 1.0).fold(0.0, f64::max)
 }
 
-/// How far the stage is outside the circle over time, `(seconds, mm)`, once it is on its way: from where it is at 90 % of
-/// the radius.
+/// Returns the distance outside the circle over time, `(seconds, mm)`, from the time at which the stage reaches 90 %
+/// of the radius.
 pub(super) fn radius_errors_mm(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64, f64)> {
     let radii = path(shapers, ratio, duration_s).into_iter().enumerate();
     let errors = radii.map(|(look, (x, y))| (look as f64 * LOOK_S, RADIUS_MM * (x.hypot(y) - 1.0)));

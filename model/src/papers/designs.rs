@@ -1,4 +1,4 @@
-//! Shapers for the papers' examples, through the same door as those of a machine file.
+//! Shapers for the papers' examples, designed by the same functions as those of a machine file.
 
 use crate::design::kind::ShaperKind;
 use crate::design::{DesignError, design_axis};
@@ -47,7 +47,7 @@ fn axis_mode(mode: Mode, shaper: Option<ShaperKind>) -> AxisMode {
     }
 }
 
-/// A mode by its undamped frequency in rad/s.
+/// Returns a mode, given its undamped frequency in rad/s.
 pub(super) fn mode_of_omega(omega: f64, damping: f64) -> Mode {
     Mode {
         frequency_hz: omega / TAU,
@@ -55,17 +55,17 @@ pub(super) fn mode_of_omega(omega: f64, damping: f64) -> Mode {
     }
 }
 
-/// The shaper of one kind for these modes; the tolerance is the default, 5 %.
+/// Designs the shaper of a kind for these modes, with the default tolerance of 5 %.
 pub(super) fn shaper(kind: ShaperKind, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
     chosen(ShaperChoice::of_kind(kind), modes)
 }
 
-/// The shaper that a choice gives for these modes.
+/// Designs the shaper of a choice for these modes.
 pub(super) fn chosen(shaper: ShaperChoice, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
     design_axis(&axis(shaper, modes), SAMPLE_HZ).map(|design| design.impulses)
 }
 
-/// The convolution of one shaper per mode.
+/// Returns the convolution of one shaper per mode.
 pub(super) fn hybrid(parts: &[(ShaperKind, Mode)]) -> Result<ImpulseSequence, DesignError> {
     let axis = AxisSection {
         shaper: None,
@@ -75,12 +75,12 @@ pub(super) fn hybrid(parts: &[(ShaperKind, Mode)]) -> Result<ImpulseSequence, De
     design_axis(&axis, SAMPLE_HZ).map(|design| design.impulses)
 }
 
-/// Amplitudes of a shaper in order of time.
+/// Returns the amplitudes of a shaper in order of time.
 pub(super) fn amplitudes(shaper: &ImpulseSequence) -> Vec<f64> {
     shaper.impulses().iter().map(|i| i.amplitude).collect()
 }
 
-/// Times of a shaper in seconds, after the first.
+/// Returns the times of a shaper in seconds, without that of the first impulse.
 pub(super) fn times_s(shaper: &ImpulseSequence) -> Vec<f64> {
     shaper.impulses().iter().skip(1).map(|i| i.time_s).collect()
 }

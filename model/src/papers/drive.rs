@@ -1,7 +1,7 @@
 //! The drive chain of the XY stage: stiffnesses from its data sheets, and the modes of its control loops.
 //!
-//! The thesis mixes N/m, N/µm and N·mm/rad under one heading. Here lengths are in mm and forces in N, stiffnesses in N/µm
-//! (= kN/mm) or N·mm/rad, as each item says.
+//! The thesis mixes N/m, N/µm and N·mm/rad under one heading. Here lengths are in mm, forces in N and stiffnesses in
+//! N/µm (= kN/mm) or N·mm/rad, as each item says.
 
 use super::sheet::{Rule, Sheet};
 use crate::mechanics::{
@@ -27,22 +27,22 @@ const BEARINGS: [f64; 2] = [133.4873, 140.3455];
 /// Rated torque of the motors, mN·m, at 3,000 turns a minute and 0.91 A.
 const RATED_TORQUE: f64 = 318.0;
 
-/// Torsional stiffness of a round shaft, N·mm/rad.
+/// Returns the torsional stiffness of a round shaft in N·mm/rad.
 fn torsion(diameter_mm: f64, length_mm: f64) -> f64 {
     torsional_stiffness(SHEAR_MODULUS, diameter_mm / 1e3, length_mm / 1e3) * 1e3
 }
 
-/// Tensile stiffness of a screw, N/µm.
+/// Returns the tensile stiffness of a screw in N/µm.
 fn tension(length_mm: f64) -> f64 {
     axial_stiffness(YOUNGS_MODULUS, SCREW_MM / 1e3, length_mm / 1e3) / 1e6
 }
 
-/// A torsional stiffness in N·mm/rad as the table feels it, N/µm.
+/// Converts a torsional stiffness in N·mm/rad to the stiffness at the table in N/µm.
 fn at_table(torsion: f64) -> f64 {
     torsion_at_table(torsion / 1e3, LEAD_MM / 1e3) / 1e6
 }
 
-/// Tables 2-1 to 2-3.
+/// Adds the rows of Tables 2-1 to 2-3.
 pub(super) fn rows(sheet: &mut Sheet) {
     let coupling = torsion(8.0, 25.0);
     let screws = SCREWS_MM.map(|length_mm| torsion(SCREW_MM, length_mm));
@@ -109,10 +109,10 @@ pub(super) fn rows(sheet: &mut Sheet) {
     motor(sheet);
 }
 
-/// Stiffness of the whole chain, as printed and with its units right, and what follows from it.
+/// Adds the stiffness of the whole chain, as printed and with correct units, and what follows from it.
 fn totals(sheet: &mut Sheet, coupling: f64, drives: [f64; 2]) {
     const PRINTED: [(&str, &str, f64); 2] = [("X", "33.9357", 34.8432), ("Y", "34.3578", 35.2884)];
-    // K1 in N·mm/rad, divided by 1,000, was added as if it were N/µm.
+    // The thesis divided K1 in N·mm/rad by 1,000 and added it as if it were in N/µm.
     let as_printed = PRINTED.map(|(_, _, drive)| in_series(&[drive, coupling / 1e3]));
     for (axis, (name, printed, _)) in PRINTED.into_iter().enumerate() {
         sheet.by_rule(
@@ -164,14 +164,15 @@ fn motor(sheet: &mut Sheet) {
     );
 }
 
-/// The winding of the motor, Table 2-2.
+/// The winding of the motor, from Table 2-2.
 pub(super) const WINDING: Winding = Winding {
     inductance_h: 0.05,
     resistance_ohm: 1.0,
     back_emf: 0.18,
 };
 
-/// The X axis without friction and limits, as the thesis computes with it: its own stiffness, mass and damping of 1e-5 s² and 0.0026 s.
+/// Returns the X axis without friction and limits, as the thesis computes with it: its own stiffness, and its mass
+/// and damping of 1e-5 s² and 0.0026 s.
 pub(super) fn x_axis(amplifier: Amplifier) -> DriveTrain {
     DriveTrain {
         torque_constant: 0.378,
@@ -184,7 +185,7 @@ pub(super) fn x_axis(amplifier: Amplifier) -> DriveTrain {
     }
 }
 
-/// Modes of the X axis in its velocity loop (eq. 2-18), lowest frequency first.
+/// Returns the modes of the X axis in its velocity loop (eq. 2-18), lowest frequency first.
 fn velocity_loop_modes() -> Vec<Mode> {
     let amplifier = Amplifier::Velocity {
         winding: WINDING,
@@ -194,7 +195,7 @@ fn velocity_loop_modes() -> Vec<Mode> {
     x_axis(amplifier).modes()
 }
 
-/// That the identified plant is the mode which the velocity loop leaves to the table.
+/// Adds a row that checks that the identified plant is the mode of the table in the velocity loop.
 pub(super) fn loop_rows(sheet: &mut Sheet, identified: &Mode) {
     let modes = velocity_loop_modes();
     let table = modes.first();

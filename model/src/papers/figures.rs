@@ -9,7 +9,7 @@ use crate::design::vibrationless::{gain, optimum};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::plant::response::step_response;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 801;
 
 /// One diagram.
@@ -17,9 +17,9 @@ const POINTS: usize = 801;
 pub struct Figure {
     /// Heading.
     pub title: String,
-    /// What the horizontal axis shows, with its unit.
+    /// Quantity on the horizontal axis, with its unit.
     pub x_label: &'static str,
-    /// What the vertical axis shows, with its unit.
+    /// Quantity on the vertical axis, with its unit.
     pub y_label: &'static str,
     /// Curves.
     pub curves: Vec<FigureCurve>,
@@ -32,7 +32,7 @@ pub struct FigureCurve {
     pub name: String,
     /// Points `(x, y)` in order of x.
     pub points: Vec<(f64, f64)>,
-    /// A level or a curve to compare with, rather than one of those that matter.
+    /// Whether this is a level or curve for comparison only.
     pub reference: bool,
 }
 
@@ -44,7 +44,7 @@ fn curve(name: impl Into<String>, points: Vec<(f64, f64)>) -> FigureCurve {
     }
 }
 
-/// A level from `low` to `high`; where it goes on beyond the curves, the legend has room beside them.
+/// Returns a horizontal line from `low` to `high`. If it extends beyond the curves, the legend has room beside them.
 fn level(name: &str, low: f64, high: f64, at: f64) -> FigureCurve {
     FigureCurve {
         name: name.into(),
@@ -53,12 +53,12 @@ fn level(name: &str, low: f64, high: f64, at: f64) -> FigureCurve {
     }
 }
 
-/// `POINTS` values from `low` to `high`.
+/// Returns `POINTS` evenly spaced values from `low` to `high`.
 fn spaced(low: f64, high: f64) -> impl Iterator<Item = f64> {
     (0..POINTS).map(move |k| low + (high - low) * k as f64 / (POINTS - 1) as f64)
 }
 
-/// Sensitivity curves of the five hybrids, and the periodicity on which the shaper for many modes rests.
+/// Draws the sensitivity curves of the five hybrids, and the periodicity on which the shaper for many modes rests.
 pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
     let mode = mode_of_omega(20.0, 0.0);
     let sensitivity = |kind: ShaperKind, high: f64| -> Result<Vec<(f64, f64)>, DesignError> {
@@ -90,7 +90,7 @@ pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
     ])
 }
 
-/// Step responses of positive, negative and plain negative shapers on both modes of the robot.
+/// Draws the step responses of positive, negative and plain negative shapers on both modes of the robot.
 pub(super) fn negative_hybrid() -> Result<Vec<Figure>, DesignError> {
     type Design = fn((usize, usize)) -> Result<(String, ImpulseSequence), DesignError>;
     let figure = |title: &str, pairs: &[(usize, usize)], design: Design| -> Result<Figure, DesignError> {
@@ -123,7 +123,7 @@ fn in_milliseconds(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.into_iter().map(|(time_s, y)| (1e3 * time_s, y)).collect()
 }
 
-/// Residual spectra of the cascades of greatest robustness.
+/// Draws the residual spectra of the cascades of greatest robustness.
 pub(super) fn vibrationless() -> Result<Vec<Figure>, DesignError> {
     const EPSILON: f64 = 0.05;
     let spectrum = |ratios: &[f64], high: f64| -> Vec<(f64, f64)> {
@@ -156,7 +156,7 @@ pub(super) fn vibrationless() -> Result<Vec<Figure>, DesignError> {
     ])
 }
 
-/// Responses of the two-mode example to a shaped impulse, undamped and damped.
+/// Draws the responses of the two-mode example to a shaped impulse, undamped and damped.
 pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
     let figure = |title: &str, damping: f64| -> Result<Figure, DesignError> {
         let modes = antisymmetry::example_modes(damping);
@@ -200,7 +200,7 @@ pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
     ])
 }
 
-/// Step responses of the X axis on plants that are off, and the radius on the way round the circle.
+/// Draws the step responses of the X axis on plants that deviate from the model, and the radius along the circle.
 pub(super) fn xy_stage() -> Result<Vec<Figure>, DesignError> {
     const KINDS: [(&str, ShaperKind); 3] = [
         ("unshaped", ShaperKind::None),

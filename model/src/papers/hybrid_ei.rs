@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 
 const TOLERANCE: f64 = 0.05;
 
-/// The columns of Table 1: name, kind (of ZVD by Zvd).
+/// The columns of Table 1: name and kind (Zvd stands for ZVD).
 pub(super) const TABLE_1: [(&str, ShaperKind); 5] = [
     ("ZVD", ShaperKind::Zvd),
     ("EI", ShaperKind::ZvEi),
@@ -26,14 +26,14 @@ pub(super) const TABLE_1: [(&str, ShaperKind); 5] = [
 
 /// The modes of the four-mode example in rad/s.
 const OMEGAS: [f64; 4] = [10.0, 35.0, 68.0, 124.0];
-/// Lowest `ω_sys` that is looked for, in rad/s.
+/// Lowest `ω_sys` that is searched, in rad/s.
 const LOWEST: f64 = 1.0;
 
 fn base(kind: ShaperKind) -> Result<BiasPoint, DesignError> {
     bias_point::undamped(kind, 1, TOLERANCE)
 }
 
-/// One-sided relative width at 5 %.
+/// Returns the one-sided relative width at 5 %.
 fn lambda(kind: ShaperKind) -> Result<f64, DesignError> {
     match kind {
         // V = cos²(ωT/2)
@@ -51,7 +51,7 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     four_modes(sheet)
 }
 
-/// Equations (6) to (20).
+/// Adds the rows of equations (6) to (20).
 fn single_hybrids(sheet: &mut Sheet) -> Result<(), DesignError> {
     let ei = base(ShaperKind::ZvEi)?;
     sheet.equal(
@@ -76,14 +76,14 @@ fn single_hybrids(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// The paper writes a constant where an impulse belongs.
+/// Adds an erratum: the paper writes a constant where an impulse belongs.
 fn constant_for_impulse(sheet: &mut Sheet, item: &str, paper: &str, amplitude: Option<&f64>) {
     let ours = amplitude.map_or_else(String::new, |a| format!("{a:.4} δ(t)"));
     let reason = "the first impulse is at t = 0, not a constant for all time";
     sheet.refuted(item, paper, ours.clone(), ours == paper, reason);
 }
 
-/// Equations (23) to (27): Multi-EI.
+/// Adds the rows of equations (23) to (27): Multi-EI.
 fn multi(sheet: &mut Sheet) -> Result<(), DesignError> {
     let multi = base(ShaperKind::MultiEi)?;
     // Zeros at θ = (1 − α)π: x = cos απ = −cos θ.
@@ -120,7 +120,7 @@ fn multi(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Table 1.
+/// Adds the rows of Table 1.
 fn widths(sheet: &mut Sheet) -> Result<(), DesignError> {
     const PRINTED: [&str; 5] = ["14.36", "19.97", "41.33", "48.2", "59.17"];
     let mut widest = 0.0f64;
@@ -149,7 +149,7 @@ fn widths(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Table 2: residuals of ZVD, EI and Multi-EI for `ω_sys = 20 rad/s`.
+/// Adds the rows of Table 2: residuals of ZVD, EI and Multi-EI for `ω_sys = 20 rad/s`.
 fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
     const SYSTEM: f64 = 20.0;
     const KINDS: [(&str, ShaperKind); 3] = [
@@ -157,7 +157,7 @@ fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
         ("EI", ShaperKind::ZvEi),
         ("Multi-EI", ShaperKind::MultiEi),
     ];
-    // Frequency, then per shaper the printed percentage and whether it is right.
+    // A frequency, then per shaper the printed percentage and whether it is right.
     type Line = (f64, [(&'static str, bool); 3]);
     const TABLE_2: [Line; 5] = [
         (10.36, [("47", true), ("42", false), ("5", true)]),
@@ -198,7 +198,7 @@ fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Section 3.2: one shaper for four modes.
+/// Adds the rows of section 3.2: one shaper for four modes.
 fn intersections(sheet: &mut Sheet) -> Result<(), DesignError> {
     let search = |lambda: f64| periodic::search(&OMEGAS, lambda, LOWEST).map_err(DesignError::from);
     let solutions = search(0.4819)?;
@@ -248,7 +248,7 @@ fn intersections(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Section 4: the chosen shaper and the cascade on the four-mode plant.
+/// Adds the rows of section 4: the chosen shaper and the cascade on the four-mode plant.
 fn four_modes(sheet: &mut Sheet) -> Result<(), DesignError> {
     let cascade = hybrid(&OMEGAS.map(|omega| (ShaperKind::ZvEi, mode_of_omega(omega, 0.0))))?;
     sheet.by_rule(
@@ -279,7 +279,7 @@ fn four_modes(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Largest deviation from the step after the last impulse of `shaper`, as a fraction of it.
+/// Returns the largest deviation from the step after the last impulse of `shaper`, as a fraction of the step.
 fn four_mode_deviation(shaper: &ImpulseSequence, damping: f64) -> f64 {
     const LOOKS: u32 = 120_000;
     const LOOK_S: f64 = 5e-4;

@@ -14,10 +14,10 @@ use std::f64::consts::TAU;
 
 /// Sample period in seconds.
 const SAMPLE_S: f64 = 0.5e-3;
-/// Samples: one period of the pseudo-random command.
+/// Number of samples: one period of the pseudo-random command.
 const SAMPLES: usize = 1023;
 
-/// One period of a maximum-length sequence of ±1: `x^10 + x^7 + 1`.
+/// Returns one period of a maximum-length sequence of ±1, by `x^10 + x^7 + 1`.
 fn pseudo_random() -> Vec<f64> {
     let mut register = 1u32;
     (0..SAMPLES)
@@ -29,7 +29,7 @@ fn pseudo_random() -> Vec<f64> {
         .collect()
 }
 
-/// Coefficients `[a_1, a_2, b_1, b_2]` that explain the plant's samples best.
+/// Returns the coefficients `[a_1, a_2, b_1, b_2]` that fit the plant's samples best.
 fn coefficients(plant: &Plant) -> Vector4<f64> {
     let mut sampled = SampledPlant::new(plant, SAMPLE_S, 0.0);
     let command = pseudo_random();
@@ -46,7 +46,7 @@ fn coefficients(plant: &Plant) -> Vector4<f64> {
     square.lu().solve(&right).unwrap_or_else(|| Vector4::repeat(f64::NAN))
 }
 
-/// The mode of the model that least squares finds in the samples of a plant with one mode.
+/// Returns the mode of the model that least squares finds in the samples of a plant with one mode.
 pub(super) fn identify(plant: &Plant) -> Mode {
     let found = coefficients(plant);
     let half = -found[0] / 2.0;
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn golden_coefficients_of_both_plants() {
-        // Zero-order hold of Gx and Gy at 0.5 ms, derived elsewhere.
+        // The expected values are the zero-order hold of Gx and Gy at 0.5 ms, derived elsewhere.
         let expected = [
             [
                 -1.721_222_944_760_167,

@@ -1,14 +1,14 @@
-//! The criterion for whole solutions of linear equations by greatest common divisors of minors.
+//! The criterion for integer solutions of linear equations by greatest common divisors of minors.
 //!
-//! `A v = b` has a whole solution if and only if the minors of the largest order of `A` and of `[A b]` have the same
-//! greatest common divisor. All equations here have two independent rows, so the minors are 2 by 2.
+//! `A v = b` has an integer solution if and only if the minors of the largest order of `A` and of `[A b]` have the
+//! same greatest common divisor. All equations here have two independent rows, so the minors are 2 by 2.
 
-/// `a·v = b` in three unknowns.
+/// An equation `a·v = b` in three unknowns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Equation {
-    /// `a`.
+    /// Coefficients `a`.
     pub(super) unknowns: [i64; 3],
-    /// `b`.
+    /// Right side `b`.
     pub(super) right: i64,
 }
 
@@ -19,7 +19,7 @@ impl Equation {
     }
 }
 
-/// Greatest common divisor of all 2-by-2 minors, those with the right side included or not.
+/// Returns the greatest common divisor of all 2-by-2 minors, with or without those that include the right side.
 pub(super) fn minors_divisor(equations: &[Equation], with_right_side: bool) -> u64 {
     let columns = if with_right_side { 4 } else { 3 };
     let mut divisor = 0;
@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn unit_a_solvable_system_has_equal_divisors() {
-        // v1 + v2 = 3, v2 + v3 = 5 has whole solutions; 2 v1 = 1 with v2 + v3 = 5 has none.
+        // v1 + v2 = 3 with v2 + v3 = 5 has integer solutions; 2 v1 = 1 with v2 + v3 = 5 has none.
         let equation = |unknowns, right| Equation { unknowns, right };
         let solvable = [equation([1, 1, 0], 3), equation([0, 1, 1], 5)];
         assert_eq!(minors_divisor(&solvable, false), minors_divisor(&solvable, true));

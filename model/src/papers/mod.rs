@@ -1,4 +1,4 @@
-//! The source papers' tables beside ours.
+//! Comparison of the source papers' tables with the results of this library.
 //!
 //! | paper | about |
 //! |---|---|
@@ -8,8 +8,8 @@
 //! | `antisymmetry` | one shaper for many modes whose frequencies are odd multiples (1993) |
 //! | `xy-stage` | a thesis on an XY stage: drive, identification, ZV and ZVD |
 //!
-//! Every row holds the paper's own number, which is the only thing that is typed in, and ours, which the library computes
-//! as the row is made. [`PaperVerdict`] and [`Rule`] say how the two become a verdict.
+//! Every row holds the paper's own number, which is the only one entered by hand, and ours, which the library
+//! computes when the row is made. [`PaperVerdict`] and [`Rule`] define how the two give a verdict.
 
 mod antisymmetry;
 mod beyond;
@@ -43,7 +43,7 @@ use sheet::Sheet;
 /// One of the source papers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Paper {
-    /// Bias-point hybrids of ZV and EI, and one shaper for many modes.
+    /// Bias-point hybrids of ZV and EI shapers, and one shaper for many modes.
     HybridEi,
     /// Negative-impulse shapers, a different one per mode.
     NegativeHybrid,
@@ -65,7 +65,7 @@ impl Paper {
         Paper::XyStage,
     ];
 
-    /// The name on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Paper::HybridEi => "hybrid-ei",
@@ -76,7 +76,7 @@ impl Paper {
         }
     }
 
-    /// What the paper is about.
+    /// Returns the subject of the paper.
     pub fn title(self) -> &'static str {
         match self {
             Paper::HybridEi => "hybrid EI shapers, and one of them for many modes (Zhang and Li 2010)",
@@ -87,7 +87,7 @@ impl Paper {
         }
     }
 
-    /// The paper of that name, if there is one.
+    /// Returns the paper of that name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|paper| paper.name() == name)
     }
@@ -95,7 +95,7 @@ impl Paper {
     /// Computes every row of the paper.
     ///
     /// # Errors
-    /// [`DesignError`] if a shaper of the paper cannot be designed: a fault of posicast.
+    /// [`DesignError`] if a shaper of the paper cannot be designed, which is a bug of posicast.
     pub fn reproduce(self) -> Result<Vec<PaperRow>, DesignError> {
         let mut sheet = Sheet::default();
         match self {
@@ -108,10 +108,10 @@ impl Paper {
         Ok(sheet.into_rows())
     }
 
-    /// The paper's figures, redrawn.
+    /// Returns the paper's figures, redrawn.
     ///
     /// # Errors
-    /// As [`Self::reproduce`].
+    /// Same as [`Self::reproduce`].
     pub fn figures(self) -> Result<Vec<Figure>, DesignError> {
         match self {
             Paper::HybridEi => figures::hybrid_ei(),

@@ -1,7 +1,8 @@
 //! "negative-hybrid": negative-impulse shapers, a different one per mode, for a robot with two modes.
 //!
-//! The paper's NZV, NZVD and NEI are our `ps-zv`, `ps-zvd` and `ps-ei`; X-Y means X for mode 1 and Y for mode 2. Its step
-//! responses lack the shares of the two modes; half each is assumed, as the paper's statements about them need.
+//! The paper's NZV, NZVD and NEI are our `ps-zv`, `ps-zvd` and `ps-ei`; X-Y means X for mode 1 and Y for mode 2. The
+//! paper does not give the shares of the two modes in its step responses; half each is assumed, as its statements
+//! about them require.
 
 use super::designs::{amplitudes, hybrid, shaper, times_s};
 use super::negative_shapers::{MODES, NEGATIVE, PAIRS, negative, positive};
@@ -59,10 +60,10 @@ const TIMES: [Times; 6] = [
         printed_ms: &[("0.70", true), ("1.23", true), ("2.77", true), ("2.97", true)],
     },
 ];
-/// The one printed time that neither reading of the frequencies gives.
+/// The only printed time that neither reading of the frequencies gives.
 const NEITHER: &str = "0.93";
 
-/// The times behind Tables 3 and 4, under both readings of the measured frequencies.
+/// Adds the times behind Tables 3 and 4, under both readings of the measured frequencies.
 fn single_mode_times(sheet: &mut Sheet) -> Result<(), DesignError> {
     const AS_DAMPED: &str = "the tables take T = √(1−ζ²)/f, against the paper's own eq. (2): it fits if the measured \
                              frequencies are damped ones";
@@ -98,7 +99,7 @@ fn single_mode_times(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Tables 3 and 4: impulses, amplitudes, last times.
+/// Adds the rows of Tables 3 and 4: impulses, amplitudes, last times.
 fn convolved_lists(sheet: &mut Sheet) -> Result<(), DesignError> {
     const LAST_MS: [&str; 6] = ["6.81", "6.83", "10.26", "11.97", "10.33", "12.02"];
     const COUNT: [&str; 6] = ["15", "15", "15", "25", "15", "25"];
@@ -109,7 +110,8 @@ fn convolved_lists(sheet: &mut Sheet) -> Result<(), DesignError> {
             count,
             convolved.impulses().len() as f64,
         );
-        // Printed as products of 1, −2, 2(, −2, 2), not in order of time: compared as sorted sets.
+        // The paper prints the amplitudes as products of 1, −2, 2(, −2, 2), not in order of time, so they are
+        // compared as sorted sets.
         let factors = [pair.0, pair.1].map(|k| {
             if k == 0 {
                 &[1.0, -2.0, 2.0][..]
@@ -138,7 +140,7 @@ fn convolved_lists(sheet: &mut Sheet) -> Result<(), DesignError> {
             "printed as the sum of two times that are rounded to 10 µs each",
         );
     }
-    // The paper's own two rounded times, of which every other entry is the sum.
+    // These are the paper's own two rounded times; every other entry is such a sum.
     let (second_of_nei, first_of_nzv) = (2.24, 0.93);
     sheet.erratum(
         "Table 4: NEI-NZV, t in ms that is the sum of the printed 2.24 and 0.93",
@@ -149,7 +151,7 @@ fn convolved_lists(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Table 5: positive duration, negative duration, saving in percent, saving in seconds, each as printed.
+/// Table 5 as printed: positive duration, negative duration, saving in percent, saving in seconds.
 const TABLE_5: [[&str; 4]; 6] = [
     ["10.5", "6.4", "39.04", "0.0041"],
     ["10.8", "6.9", "36.11", "0.0039"],
@@ -188,7 +190,7 @@ fn durations(sheet: &mut Sheet) -> Result<(), DesignError> {
         let negative_item = format!("Table 5: {negative_name} in ms");
         sheet.erratum(negative_item, printed[1], negative_s * 1e3, READ_OFF);
         let item = |what: &str| format!("Table 5: saving of {negative_name}, {what}");
-        // The paper's arithmetic on its own columns.
+        // This repeats the paper's arithmetic on its own columns.
         let columns = [printed[0], printed[1]].map(|n| n.parse().unwrap_or(f64::NAN));
         let of_columns = 100.0 * (1.0 - columns[1] / columns[0]);
         if printed[2] == "39.04" {

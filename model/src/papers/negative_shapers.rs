@@ -1,4 +1,4 @@
-//! The shapers of "negative-hybrid", and the robot that they are for.
+//! The shapers of "negative-hybrid", and the robot that they are designed for.
 
 use super::designs::hybrid;
 use crate::design::DesignError;
@@ -25,19 +25,19 @@ pub(super) const NEGATIVE: [(&str, ShaperKind); 3] = [
     ("NEI", ShaperKind::PsEi),
 ];
 
-/// The six pairs of different kinds: 0 for ZV, 1 for ZVD, 2 for EI.
+/// The six pairs of different kinds: 0 is ZV, 1 is ZVD, 2 is EI.
 pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
 /// The three pairs of one kind.
 pub(super) const PLAIN: [(usize, usize); 3] = [(0, 0), (1, 1), (2, 2)];
 
-/// The negative hybrid of a pair, with its name.
+/// Returns the negative hybrid of a pair, with its name.
 pub(super) fn negative((first, second): (usize, usize)) -> Result<(String, ImpulseSequence), DesignError> {
     let name = format!("{}-{}", NEGATIVE[first].0, NEGATIVE[second].0);
     let shaper = hybrid(&[(NEGATIVE[first].1, MODES[0]), (NEGATIVE[second].1, MODES[1])])?;
     Ok((name, shaper))
 }
 
-/// The positive hybrid of a pair, with its name.
+/// Returns the positive hybrid of a pair, with its name.
 pub(super) fn positive((first, second): (usize, usize)) -> Result<(String, ImpulseSequence), DesignError> {
     const POSITIVE: [(&str, ShaperKind); 3] =
         [("ZV", ShaperKind::Zv), ("ZVD", ShaperKind::Zvd), ("EI", ShaperKind::Ei)];
@@ -46,7 +46,7 @@ pub(super) fn positive((first, second): (usize, usize)) -> Result<(String, Impul
     Ok((name, shaper))
 }
 
-/// Both modes with equal shares.
+/// Returns the plant: both modes with equal shares.
 pub(super) fn plant() -> Plant {
     Plant::of_shares(MODES.map(|mode| PlantMode { mode, share: 0.5 }).to_vec())
 }

@@ -16,17 +16,17 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     properties(sheet)
 }
 
-/// Least of the values.
+/// Returns the smallest of the values.
 pub(super) fn least(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Largest of the values.
+/// Returns the largest of the values.
 pub(super) fn most(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// A shaper on the robot.
+/// Response of the robot with a shaper.
 struct Response {
     name: String,
     duration_s: f64,
@@ -34,7 +34,7 @@ struct Response {
     residual_2: f64,
     /// Largest deviation after the last impulse, as a fraction of the step.
     left: f64,
-    /// Largest way beyond the step or below the start.
+    /// Largest excursion beyond the step or below the start.
     transient: f64,
 }
 
@@ -51,10 +51,10 @@ impl Response {
     }
 }
 
-/// [`negative`] or [`positive`].
+/// The type of [`negative`] and [`positive`].
 type Design = fn((usize, usize)) -> Result<(String, ImpulseSequence), DesignError>;
 
-/// Statements about Figures 2 to 8.
+/// Adds the statements about Figures 2 to 8.
 fn responses(sheet: &mut Sheet) -> Result<(), DesignError> {
     let of = |pairs: &[(usize, usize)], design: Design| {
         let designs = pairs.iter().map(|pair| design(*pair).map(Response::new));
@@ -168,7 +168,7 @@ fn faster_and_limited(sheet: &mut Sheet, hybrids: &[Response], plain: &[Response
     }
 }
 
-/// Statements about amplitude and robustness.
+/// Adds the statements about amplitude and robustness.
 fn properties(sheet: &mut Sheet) -> Result<(), DesignError> {
     for pair in PAIRS {
         let (name, convolved) = negative(pair)?;

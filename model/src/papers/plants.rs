@@ -30,13 +30,13 @@ pub(super) const PLANTS: [Identified; 2] = [
 ];
 
 impl Identified {
-    /// The mode of the plant.
+    /// Returns the mode of the plant.
     pub(super) fn mode(&self) -> Mode {
         let omega = (self.zeroth / self.second).sqrt();
         mode_of_omega(omega, self.first / (2.0 * self.second * omega))
     }
 
-    /// The plant on the simulated machine.
+    /// Returns the plant of the simulated machine.
     pub(super) fn plant(&self) -> Plant {
         let mode = self.mode();
         Plant::of_shares(vec![PlantMode { mode, share: 1.0 }])

@@ -1,17 +1,17 @@
-//! One line of a paper's table, and how it ends.
+//! One line of a paper's table and its verdict.
 
 use std::fmt;
 
-/// How a row ends.
+/// Verdict of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PaperVerdict {
-    /// The paper's number is ours, to its printed digits.
+    /// The paper's number equals ours in its printed digits.
     Reproduced,
-    /// The paper's number is wrong; the reason says why.
+    /// The paper's number is wrong; `reason` explains why.
     Erratum,
-    /// There is nothing to hold against the paper's number; the reason says why.
+    /// The paper's number has no counterpart; `reason` explains why.
     NotComparable,
-    /// A fault of posicast: the row was agreed on as another, and is not that any more.
+    /// The row no longer has the verdict with which it was entered: a bug of posicast.
     NotReproduced,
 }
 
@@ -58,22 +58,22 @@ impl<const N: usize> From<[f64; N]> for Value {
 /// One line of a paper's table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperRow {
-    /// Where in the paper, and what.
+    /// Place in the paper and quantity.
     pub item: String,
     /// The paper's numbers.
     pub paper: Value,
     /// The paper's numbers as they are printed.
     pub printed: String,
-    /// Ours; `None` if there is nothing to compare with.
+    /// Our value; `None` if there is no counterpart.
     pub ours: Option<Value>,
     /// The verdict.
     pub verdict: PaperVerdict,
-    /// Why it is an erratum or not comparable, or what the agreement rests on; empty where there is nothing to say.
+    /// Why the row is an erratum or not comparable, or what the agreement depends on; may be empty.
     pub reason: String,
 }
 
 impl PaperRow {
-    /// Largest difference, ours minus the paper's; `None` for statements.
+    /// Returns the largest difference, ours minus the paper's; `None` for statements.
     pub fn difference(&self) -> Option<f64> {
         let (paper, ours) = (numbers(&self.paper), numbers(self.ours.as_ref()?));
         let differences = ours.iter().zip(&paper).map(|(ours, paper)| ours - paper);
@@ -81,7 +81,7 @@ impl PaperRow {
     }
 }
 
-/// The numbers of a value, none of a statement.
+/// Returns the numbers of a value; none for a statement.
 pub(super) fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Number(number) => vec![*number],

@@ -1,39 +1,40 @@
-//! Rows of a paper's table: the printed number beside ours, and the verdict.
+//! Rows of a paper's table: the printed number, ours, and the verdict.
 //!
-//! Only the paper's own number is typed in, as it is printed: its digits decide what counts as equal.
+//! Only the paper's own number is entered, as it is printed: its digits decide what counts as equal.
 //!
 //! | rule | the printed number is ours … |
 //! |---|---|
 //! | [`Rule::Rounded`] | rounded to the printed digits |
-//! | [`Rule::Truncated`] | cut off after them |
+//! | [`Rule::Truncated`] | truncated after them |
 //! | [`Rule::RoundedUp`] | rounded away from zero to them |
 //! | [`Rule::Within`] | up to an absolute difference that the row states |
 //! | [`Rule::AtMost`] | or more: it is a bound |
 //!
-//! A row is entered as one that agrees, or as an erratum with its reason. What is entered as agreeing and does not, and an
-//! erratum that agrees after all, are [`PaperVerdict::NotReproduced`]: then posicast has changed, not the paper.
+//! A row is entered as one that agrees, or as an erratum with its reason. If a row entered as agreeing does not
+//! agree, or if an erratum agrees after all, it becomes [`PaperVerdict::NotReproduced`]: then posicast has changed,
+//! not the paper.
 
 use super::row::{PaperRow, PaperVerdict, Value, numbers};
 
-/// What counts as equal.
+/// Rule for equality.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rule {
-    /// Ours rounds to the printed digits.
+    /// Our number rounds to the printed digits.
     Rounded,
-    /// Ours, cut off, is the printed digits.
+    /// Our number, truncated, has the printed digits.
     Truncated,
-    /// Ours, rounded away from zero, is the printed digits.
+    /// Our number, rounded away from zero, has the printed digits.
     RoundedUp,
-    /// Ours differs by no more than this.
+    /// Our number differs by no more than this.
     Within(f64),
-    /// Ours is no more than the printed bound.
+    /// Our number is no more than the printed bound.
     AtMost,
 }
 
 impl Rule {
     fn holds(self, printed: &PrintedNumber, ours: f64) -> bool {
         let unit = 10f64.powi(-printed.decimals);
-        // A tie, and the rounding of decimals to binary, must not decide.
+        // The slack keeps ties and the rounding of decimals to binary from deciding.
         let slack = 1e-9 * unit + 4.0 * f64::EPSILON * ours.abs();
         let beyond = (ours - printed.value) * if ours < 0.0 { -1.0 } else { 1.0 };
         match self {
@@ -48,12 +49,12 @@ impl Rule {
 
 struct PrintedNumber {
     value: f64,
-    /// Digits after the decimal point, less the exponent.
+    /// Number of digits after the decimal point minus the exponent.
     decimals: i32,
 }
 
 impl PrintedNumber {
-    /// NaN, which equals nothing, for what is no number.
+    /// Parses a number. A text that is not a number becomes NaN, which equals nothing.
     fn parse(text: &str) -> Self {
         let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
         let digits = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
@@ -99,24 +100,24 @@ impl Printed {
     }
 }
 
-/// The rows of one paper as they are entered.
+/// The rows of one paper while they are entered.
 #[derive(Default)]
 pub(super) struct Sheet {
     rows: Vec<PaperRow>,
 }
 
 impl Sheet {
-    /// The rows.
+    /// Returns the rows.
     pub(super) fn into_rows(self) -> Vec<PaperRow> {
         self.rows
     }
 
-    /// A number that is ours, rounded.
+    /// Adds a number that equals ours, rounded.
     pub(super) fn equal(&mut self, item: impl Into<String>, printed: impl Into<Printed>, ours: impl Into<Value>) {
         self.by_rule(item, printed, ours, Rule::Rounded, "");
     }
 
-    /// A number that is ours by a rule, and what is to be said about it.
+    /// Adds a number that equals ours by a rule, with a remark.
     pub(super) fn by_rule(
         &mut self,
         item: impl Into<String>,
@@ -134,7 +135,7 @@ impl Sheet {
         self.enter(item, &printed, Some(ours), verdict, note);
     }
 
-    /// A number that the paper has wrong.
+    /// Adds a number that is wrong in the paper.
     pub(super) fn erratum(
         &mut self,
         item: impl Into<String>,
@@ -152,7 +153,7 @@ impl Sheet {
         self.enter(item, &printed, Some(ours), verdict, reason);
     }
 
-    /// A bound of the paper that is exceeded.
+    /// Adds a bound of the paper that is exceeded.
     pub(super) fn exceeded(
         &mut self,
         item: impl Into<String>,
@@ -169,12 +170,12 @@ impl Sheet {
         self.enter(item, &printed, Some(ours), verdict, reason);
     }
 
-    /// A number of the paper that nothing can be held against.
+    /// Adds a number of the paper that has no counterpart.
     pub(super) fn not_comparable(&mut self, item: impl Into<String>, printed: impl Into<Printed>, reason: &str) {
         self.enter(item, &printed.into(), None, PaperVerdict::NotComparable, reason);
     }
 
-    /// Numbers for which the paper has a formula, evaluated as it stands there: equal to rounding.
+    /// Adds numbers for which the paper has a formula, evaluated as printed. They must agree up to rounding.
     pub(super) fn formula(&mut self, item: impl Into<String>, paper: impl Into<Value>, ours: impl Into<Value>) {
         const ROUNDING: f64 = 1e-9;
         let (paper, ours) = (paper.into(), ours.into());
@@ -198,7 +199,7 @@ impl Sheet {
         });
     }
 
-    /// A statement of the paper that our figures bear out, if `holds`.
+    /// Adds a statement of the paper that our figures confirm, if `holds`.
     pub(super) fn claim(&mut self, item: impl Into<String>, paper: &str, ours: String, holds: bool) {
         let verdict = if holds {
             PaperVerdict::Reproduced
@@ -208,7 +209,7 @@ impl Sheet {
         self.statement(item, paper, ours, verdict, "");
     }
 
-    /// A statement of the paper that our figures refute, unless it `holds` after all.
+    /// Adds a statement of the paper that our figures refute, unless it `holds` after all.
     pub(super) fn refuted(&mut self, item: impl Into<String>, paper: &str, ours: String, holds: bool, reason: &str) {
         let verdict = if holds {
             PaperVerdict::NotReproduced

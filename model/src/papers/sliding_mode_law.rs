@@ -6,8 +6,9 @@
 //! L i′ = K_cp u − K_e ω − R i           winding, eq. (4-2)
 //! ```
 //!
-//! Asked for an acceleration `v′`, the model says which `u` it takes: `u = (m R P′/(K_cp K_t)) · [v′ + c_3 x + c_4 v + …]`.
-//! Its coefficients are found by eliminating `θ`, `i` and `i′` with numbers, not by trusting anyone's algebra.
+//! Given an acceleration `v′`, the model determines the required `u`:
+//! `u = (m R P′/(K_cp K_t)) · [v′ + c_3 x + c_4 v + …]`. Its coefficients are found by eliminating `θ`, `i` and `i′`
+//! numerically, without relying on derived formulas.
 
 use super::sheet::Sheet;
 use std::f64::consts::TAU;
@@ -22,7 +23,7 @@ const DAMPING: f64 = 1.3e4;
 const BACK_EMF: f64 = 0.18;
 const TORQUE: f64 = 0.378;
 
-/// What the model is asked for, and its state.
+/// Required acceleration and state of the model.
 #[derive(Default)]
 struct State {
     acceleration: f64,
@@ -31,7 +32,7 @@ struct State {
     velocity: f64,
 }
 
-/// `K_cp u · K_t/(m R P′)`: the bracket of the law.
+/// Returns `K_cp u · K_t/(m R P′)`, the bracket of the law.
 fn bracket(state: &State) -> f64 {
     let stretch = (MASS * state.acceleration + DAMPING * state.velocity) / STIFFNESS;
     let angle = (stretch + state.position) / LEAD;

@@ -1,8 +1,9 @@
 //! "vibrationless": half-sum cascades that hold a band of frequencies.
 //!
-//! A cascade with the delays `τ_k = π/ω_k` turns a pulse `F_0` of length `T` into `F_n`. For a mode `ω`, `r` is what it does
-//! under `F`: the response of an undamped mode to the command `F`. `R` is the amplitude of `r` after the end, `K` the largest
-//! `|r|` over the largest `|F|`. `ω_0 = 1`; the bound on both is `ε = 0.05`, and `Δ` the relative half-width that keeps it.
+//! A cascade with the delays `τ_k = π/ω_k` turns a pulse `F_0` of length `T` into `F_n`. For a mode `ω`, `r` is the
+//! response of an undamped mode to the command `F`. `R` is the amplitude of `r` after the end, `K` the largest `|r|`
+//! divided by the largest `|F|`. `ω_0 = 1`; the bound on both is `ε = 0.05`, and `Δ` is the relative half-width
+//! within which it holds.
 
 use super::sheet::{Rule, Sheet};
 use crate::analysis::{Quantity, command_figures};
@@ -26,7 +27,7 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     theorem(sheet)
 }
 
-/// Table 1: frequencies of greatest robustness.
+/// Adds the rows of Table 1: frequencies of greatest robustness.
 fn table(sheet: &mut Sheet) -> Result<(), DesignError> {
     const R_FORGOTTEN: &str =
         "with 0.176 only K keeps its bound; R does not, though rows 1 and 3 of the table apply it";
@@ -54,7 +55,7 @@ fn table(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// What the paper's own frequencies do.
+/// Adds the results of the paper's own frequencies.
 fn own_frequencies(sheet: &mut Sheet) {
     let [one, two, three] = PAPER_RATIOS;
     sheet.equal(
@@ -81,7 +82,7 @@ fn own_frequencies(sheet: &mut Sheet) {
         robustness_index(three, EPSILON),
         "2|P| is 0.0513 between the zeros; 0.3 needs ε = 0.0532",
     );
-    // A band of 17.6 % round each of the frequencies 1 and 2.7, a cascade of two for each.
+    // A cascade of two for each of the frequencies 1 and 2.7 has a band of 17.6 % around each.
     const MODES: [f64; 2] = [1.0, 2.7];
     let ratios: Vec<f64> = MODES
         .iter()
@@ -100,7 +101,7 @@ fn own_frequencies(sheet: &mut Sheet) {
     }
 }
 
-/// An undamped mode with `ω = omega` under a force.
+/// Returns the response of an undamped mode with `ω = omega` to a force.
 fn response(omega: f64, force: &Trajectory) -> ResponseFigures {
     let mode = Mode {
         frequency_hz: omega / TAU,
@@ -109,7 +110,7 @@ fn response(omega: f64, force: &Trajectory) -> ResponseFigures {
     response_figures(&Plant::of_shares(vec![PlantMode { mode, share: 1.0 }]), force)
 }
 
-/// The cascade of these frequencies.
+/// Returns the cascade of these frequencies.
 fn cascade(ratios: &[f64]) -> Result<ImpulseSequence, DesignError> {
     let delays_s: Vec<f64> = ratios.iter().map(|ratio| PI / ratio).collect();
     half_sum_cascade(&delays_s).map_err(|cause| DesignError::NoSequence {
@@ -118,7 +119,7 @@ fn cascade(ratios: &[f64]) -> Result<ImpulseSequence, DesignError> {
     })
 }
 
-/// The theorem, and what it leaves out.
+/// Adds the rows of the theorem, and a condition that it omits.
 fn theorem(sheet: &mut Sheet) -> Result<(), DesignError> {
     let one = cascade(PAPER_RATIOS[0])?;
     let dynamic = |force: &Trajectory| {
@@ -144,7 +145,7 @@ fn theorem(sheet: &mut Sheet) -> Result<(), DesignError> {
     );
     let two = cascade(PAPER_RATIOS[1])?;
     let sum: f64 = two.impulses().iter().map(|i| i.amplitude).sum();
-    // Without the factor 2^−n the sum over the 2^n delays is that of so many ones.
+    // Without the factor 2^−n the sum over the 2^n delays is a sum of 2^n ones.
     sheet.erratum(
         "text: F_n = Σ F_0(t − t_i), sum of the weights, n = 2",
         "4",
@@ -169,7 +170,7 @@ mod tests {
 
     #[test]
     fn golden_k_r_and_largest_force() {
-        // n, ω, T/π, K, R/max|F|, max|F|, with the paper's frequencies; derived elsewhere.
+        // Columns: n, ω, T/π, K, R/max|F|, max|F|, with the paper's frequencies; the values were derived elsewhere.
         let cases = [
             (0, 0.7, 0.5, [1.044_997_129_431_897_6, 0.948_837_538_034_358_4, 0.5]),
             (0, 0.85, 3.3, [1.233_445_363_855_905_5, 0.445_158_912_353_880_4, 1.0]),

@@ -1,4 +1,5 @@
-//! "xy-stage": a thesis on an XY stage: its drive chain, its identified plants, their shapers, and the circle they draw.
+//! "xy-stage": a thesis on an XY stage: its drive chain, its identified plants, their shapers, and the circle that it
+//! draws.
 //!
 //! ```text
 //! Gx = 6.787 / (1e-5 s² + 0.0026 s + 6.787)       Gy = 3.4358 / (1e-5 s² + 0.0018 s + 3.4358)
@@ -19,7 +20,7 @@ use crate::plant::Plant;
 use crate::plant::response::step_figures;
 use std::f64::consts::{PI, TAU};
 
-/// Overshoot of a shaped step in percent where the plant's frequency is `ratio` times the modelled one.
+/// Returns the overshoot of a shaped step in percent if the plant's frequency is `ratio` times the modelled one.
 fn overshoot(plant: &Plant, shaper: &ImpulseSequence, ratio: f64) -> f64 {
     100.0 * step_figures(&plant.scaled(ratio), shaper.impulses()).overshoot
 }
@@ -40,7 +41,7 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Chapter 3: ZV and ZVD for the identified plants.
+/// Adds the rows of chapter 3: ZV and ZVD for the identified plants.
 fn shapers(sheet: &mut Sheet, identified: &Identified) -> Result<(), DesignError> {
     const ROUNDING: &str = "the shaper leaves nothing on the exact plant; the figure is the rounding of its times";
     let (name, mode, plant) = (identified.name, identified.mode(), identified.plant());
@@ -95,9 +96,9 @@ fn shapers(sheet: &mut Sheet, identified: &Identified) -> Result<(), DesignError
     Ok(())
 }
 
-/// Section 3.2.3: 0.05 mm split into 0.03 and 0.02 mm half a period of 1 s apart.
+/// Adds the rows of section 3.2.3: 0.05 mm split into 0.03 and 0.02 mm half a period of 1 s apart.
 fn example(sheet: &mut Sheet) -> Result<(), DesignError> {
-    // The damping at which half a period leaves 0.02/0.03 of a swing.
+    // This is the damping at which half a period leaves 0.02/0.03 of a swing.
     let logarithm = (0.03f64 / 0.02).ln();
     let damping = logarithm / PI.hypot(logarithm);
     let mode = mode_of_omega(TAU / (1.0 - damping * damping).sqrt(), damping);
@@ -108,7 +109,8 @@ fn example(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Figure 3-10: a circle of 10 mm at 100 mm/s (assumed: the thesis gives neither), from a standing start.
+/// Adds the rows of Figure 3-10: a circle of 10 mm at 100 mm/s (assumed, since the thesis gives neither), from a
+/// standing start.
 fn circle(sheet: &mut Sheet) -> Result<(), DesignError> {
     let kinds = [ShaperKind::None, ShaperKind::Zv, ShaperKind::Zvd];
     let mut outside = Vec::new();
@@ -150,7 +152,7 @@ fn circle(sheet: &mut Sheet) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Equations (2-1) to (2-4): least squares on samples of Gx and Gy, without noise.
+/// Adds the rows of equations (2-1) to (2-4): least squares on samples of Gx and Gy, without noise.
 fn identified(sheet: &mut Sheet, plant: &Identified) {
     let (printed, found) = (plant.mode(), identify(&plant.plant()));
     sheet.formula(
@@ -163,7 +165,8 @@ fn identified(sheet: &mut Sheet, plant: &Identified) {
     );
 }
 
-/// Chapter 4: its parameters and its claims on the whole drive, under friction ([`super::controllers`]).
+/// Adds the rows of chapter 4: its parameters and its claims on the whole drive, under friction
+/// ([`super::controllers`]).
 fn controller(sheet: &mut Sheet) {
     let layer = ControllerCase::LAYER.float();
     let micrometres = |metres: f64| format!("{:.1} µm", 1e6 * metres);
@@ -175,10 +178,10 @@ fn controller(sheet: &mut Sheet) {
             1e3 * layer.surface_peak,
             micrometres(layer.error_peak)
         ),
-        // Within the layer, and e no more than s lets it be.
+        // The state stays within the layer, and e is no larger than s allows.
         layer.surface_peak < 0.02 && layer.error_peak <= layer.surface_peak / SLOPE && layer.limited == 0.0,
     );
-    // Section 8.2 of the notes: the gain within the layer times the lags of the loop.
+    // Section 8.2 of the notes gives this bound: the gain within the layer times the lags of the loop.
     let lags = (SLOPE + RATE + 4.0 / 0.02) * LOOP_LAG_S;
     sheet.claim(
         "chapter 4: reaching rate k of the sliding mode",
@@ -200,7 +203,8 @@ fn controller(sheet: &mut Sheet) {
             100.0 * si.limited,
             micrometres(millimetres.error_peak)
         ),
-        // Half of the time within the limit, and the line reached.
+        // With one reading, the command is limited less than half of the time; or with the other, the line is
+        // reached.
         si.limited < 0.5 || millimetres.crossings > 10.0,
         "the thesis gives no unit, and either reading is no controller: 15 g, or less than the friction",
     );

@@ -1,4 +1,4 @@
-//! The simulated machine: modes side by side, driven by a command that is a cubic of time between its jumps.
+//! The simulated machine: modes in parallel, driven by a command that is a cubic of time between its jumps.
 //!
 //! ```text
 //!            ┌─ share_1 · ω₁²/(s² + 2ζ₁ω₁s + ω₁²) ─┐
@@ -6,14 +6,14 @@
 //!            └─ share_m · ω_m²/(…)                 ┘
 //! ```
 //!
-//! Command and position have one unit, whichever; times are in seconds. A mode's state is its distance `d` from the command
-//! and its velocity `v`. While the command is constant both follow the closed form of a free oscillation, so that every
-//! instant is exact, however far away ([`free_motion`]): the discretisation for a zero-order hold without approximation.
-//! Under a ramp, a parabola or a cubic the same oscillation runs about a polynomial in closed form.
-//! Without modes the plant is rigid: the position is the command.
+//! Command and position have one unit, which may be any; times are in seconds. A mode's state is its distance `d`
+//! from the command and its velocity `v`. While the command is constant both follow the closed form of a free
+//! oscillation, so that every instant is exact, however far away ([`free_motion`]): this is the zero-order-hold
+//! discretisation without approximation. Under a ramp, a parabola or a cubic the same oscillation runs about a
+//! polynomial in closed form. Without modes the plant is rigid: the position is the command.
 //!
-//! The figures in [`response`] are measured on these states, by another way than the pole sums of [`crate::analysis`]: two
-//! witnesses for one shaper.
+//! The figures in [`response`] are measured on these states, independently of the pole sums of [`crate::analysis`],
+//! so that the two check each other.
 
 pub mod axis;
 pub mod drive_train;
@@ -26,31 +26,31 @@ use crate::machine_file::AxisSection;
 use crate::mode::Mode;
 use crate::motion::Cubic;
 
-/// A mode and its share in the position.
+/// A mode with its share in the position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlantMode {
     /// Frequency and damping.
     pub mode: Mode,
-    /// Share in the static response; those of a plant sum to one.
+    /// Share in the static response; the shares of a plant sum to one.
     pub share: f64,
 }
 
-/// Modes side by side.
+/// A plant of modes in parallel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plant {
     modes: Vec<PlantMode>,
 }
 
-/// Why modes are no plant.
+/// Why modes cannot form a plant.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PlantError {
-    /// Shares that cannot be scaled to one.
+    /// The participations cannot be scaled to the sum one.
     #[error("the participations of the modes sum to {0}: they must be finite and sum to more than 0")]
     Participation(f64),
 }
 
 impl Plant {
-    /// Modes with their participations, of which only the ratios count.
+    /// Makes a plant of modes with their participations, of which only the ratios matter.
     ///
     /// # Errors
     /// [`PlantError::Participation`] if the participations do not have a positive, finite sum.
@@ -67,7 +67,7 @@ impl Plant {
         Ok(Self { modes: modes.collect() })
     }
 
-    /// Modes with known shares, which must sum to one.
+    /// Makes a plant of modes with known shares, which must sum to one.
     pub fn of_shares(modes: Vec<PlantMode>) -> Self {
         Self { modes }
     }
@@ -75,18 +75,18 @@ impl Plant {
     /// The plant that an axis of the machine file describes.
     ///
     /// # Errors
-    /// As [`Plant::new`].
+    /// Those of [`Plant::new`].
     pub fn of_axis(axis: &AxisSection) -> Result<Self, PlantError> {
         let modes: Vec<_> = axis.modes.iter().map(|m| (m.mode, m.participation)).collect();
         Self::new(&modes)
     }
 
-    /// The modes, shares scaled to sum one.
+    /// The modes; their shares sum to one.
     pub fn modes(&self) -> &[PlantMode] {
         &self.modes
     }
 
-    /// The same machine with all frequencies multiplied by `ratio`: 0.9 is 10 % slower than the model.
+    /// The machine with all frequencies multiplied by `ratio`: 0.9 is 10 % slower than the model.
     pub fn scaled(&self, ratio: f64) -> Self {
         let modes = self.modes.iter().map(|m| PlantMode {
             mode: m.mode.scaled(ratio),
@@ -96,7 +96,7 @@ impl Plant {
     }
 }
 
-/// How the state `(d, v)` of a mode moves in `time_s` seconds of constant command:
+/// State `(d, v)` of a mode after `time_s` seconds of constant command:
 ///
 /// ```text
 ///                  ⎡ cos ω_d t + (σ/ω_d) sin ω_d t     (1/ω_d) sin ω_d t             ⎤
@@ -116,7 +116,7 @@ pub fn free_motion(mode: &Mode, time_s: f64) -> Matrix2<f64> {
     motion * (-decay * time_s).exp()
 }
 
-/// Amplitude of the free oscillation that starts in the state `(d, v)`, as of that instant.
+/// Amplitude of the free oscillation that starts in the state `(d, v)`.
 fn free_amplitude(mode: &Mode, state: &Vector2<f64>) -> f64 {
     let quadrature = (state.y + mode.decay() * state.x) / mode.omega_damped();
     state.x.hypot(quadrature)
@@ -127,12 +127,12 @@ fn free_amplitude(mode: &Mode, state: &Vector2<f64>) -> f64 {
 struct Motion<'a> {
     plant: &'a Plant,
     command: Cubic,
-    /// Per mode: its distance from the command, and the velocity of that.
+    /// State of each mode: its distance from the command, and the rate of that distance.
     states: Vec<Vector2<f64>>,
 }
 
 impl<'a> Motion<'a> {
-    /// At rest at position 0, as the command is.
+    /// Starts at rest at position 0, as the command does.
     fn at_rest(plant: &'a Plant) -> Self {
         Self {
             plant,
@@ -141,7 +141,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// The command jumps by `jump` and goes on as `command`; the machine stays as it is for the moment.
+    /// Lets the command jump by `jump` and continue as `command`; the state of the machine stays continuous.
     fn jump(&mut self, jump: &Cubic, command: Cubic) {
         for state in &mut self.states {
             *state -= Vector2::new(jump.position, jump.velocity);
@@ -155,11 +155,11 @@ impl<'a> Motion<'a> {
         let moved = modes.map(|(m, state)| self.moved(&m.mode, state, time_s) * m.share);
         let sum: Vector2<f64> = moved.sum();
         let command = self.command.after(time_s);
-        // Without modes the sum is 0: a rigid plant is where its command is.
+        // Without modes the sum is 0: a rigid plant follows its command.
         (command.position + sum.x, command.velocity + sum.y)
     }
 
-    /// Lets `time_s` seconds pass.
+    /// Advances the time by `time_s` seconds.
     fn advance(&mut self, time_s: f64) {
         let modes = self.plant.modes.iter().zip(&self.states);
         let states = modes.map(|(m, state)| self.moved(&m.mode, state, time_s));
@@ -167,20 +167,20 @@ impl<'a> Motion<'a> {
         self.command = self.command.after(time_s);
     }
 
-    /// State of a mode `time_s` seconds from now: what it trails by, and the free oscillation about that.
+    /// State of a mode `time_s` seconds from now: its lag, and the free oscillation about it.
     fn moved(&self, mode: &Mode, state: &Vector2<f64>, time_s: f64) -> Vector2<f64> {
         let lag = Lag::new(mode, &self.command);
         lag.after(time_s) + free_motion(mode, time_s) * (state - lag.after(0.0))
     }
 
-    /// Amplitude with which a mode oscillates now about what it trails by.
+    /// Amplitude with which a mode now oscillates about its lag.
     fn amplitude(&self, mode: &Mode, state: &Vector2<f64>) -> f64 {
         free_amplitude(mode, &(state - Lag::new(mode, &self.command).after(0.0)))
     }
 }
 
-/// How a mode trails a cubic command `u` without oscillating: the polynomial `e(t) = c_0 + c_1·t + c_2·t²` that solves
-/// `e″ + 2σe′ + ω²e = −u″ − 2σu′` for the distance `e` from the command.
+/// Lag of a mode behind a cubic command `u` without oscillation: the polynomial `e(t) = c_0 + c_1·t + c_2·t²` that
+/// solves `e″ + 2σe′ + ω²e = −u″ − 2σu′` for the distance `e` from the command.
 struct Lag {
     coefficients: [f64; 3],
 }
@@ -207,7 +207,7 @@ impl Lag {
     }
 }
 
-/// A plant at the pace of the samples: one matrix per mode, one multiplication per sample.
+/// A plant in steps of one sample: one matrix per mode, one multiplication per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledPlant {
     modes: Vec<PlantMode>,
@@ -217,7 +217,7 @@ pub struct SampledPlant {
 }
 
 impl SampledPlant {
-    /// A plant with `sample_period_s` seconds per sample, at rest at `position`.
+    /// Makes a plant with `sample_period_s` seconds per sample, at rest at `position`.
     pub fn new(plant: &Plant, sample_period_s: f64, position: f64) -> Self {
         let per_sample = plant.modes.iter().map(|m| free_motion(&m.mode, sample_period_s));
         Self {
@@ -228,7 +228,7 @@ impl SampledPlant {
         }
     }
 
-    /// Holds `command` for one sample; returns the position at the end of it.
+    /// Holds `command` for one sample, and returns the position at its end.
     pub fn step(&mut self, command: f64) -> f64 {
         let jump = self.command - command;
         self.command = command;
@@ -241,13 +241,13 @@ impl SampledPlant {
         position
     }
 
-    /// Sum of the amplitudes with which the modes ring now: no position from here on is farther from the command, in the
-    /// unit of the command.
+    /// Sum of the amplitudes with which the modes ring now, in the unit of the command: no later position is farther
+    /// from the command.
     pub fn vibration(&self) -> f64 {
         let modes = self.modes.iter().zip(&self.states);
         modes
             .map(|(m, state)| m.share.abs() * free_amplitude(&m.mode, state))
-            // Not `sum`, which is -0 without a mode.
+            // `sum` would be -0 without a mode.
             .fold(0.0, |sum, amplitude| sum + amplitude)
     }
 }

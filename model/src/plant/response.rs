@@ -1,8 +1,8 @@
-//! What a command does on the simulated plant: vibration that is left, overshoot, the curve itself.
+//! Response of the simulated plant to a command: residual vibration, overshoot, the curve itself.
 //!
-//! Any [`Trajectory`]: a step, a ramp, a trapezoid, a jerk-limited move, shaped or not. Between the jumps of the command the
-//! plant moves in closed form, so peaks between samples are found where they are: a sign change of the velocity is located
-//! on a grid of 1/48 of the shortest period and narrowed to rounding.
+//! The command is any [`Trajectory`]: a step, a ramp, a trapezoid, a jerk-limited move, shaped or not. Between the
+//! jumps of the command the plant moves in closed form, so peaks between samples are found exactly: a sign change of
+//! the velocity is located on a grid of 1/48 of the shortest period and refined to rounding.
 
 use nalgebra::Vector2;
 
@@ -10,38 +10,39 @@ use super::{Motion, Plant, free_amplitude};
 use crate::impulse::Impulse;
 use crate::motion::Trajectory;
 
-/// Fraction of the shortest period between two looks at the velocity: two peaks of the sum lie farther apart.
+/// Evaluations of the velocity per shortest period: two peaks of the sum lie farther apart than this.
 const LOOKS_PER_PERIOD: f64 = 48.0;
-/// Looks at one response, times modes; beyond it (periods of a millisecond and of minutes in one plant) they are spread out.
+/// Largest number of evaluations of one response, times modes; beyond it (with periods of a millisecond and of
+/// minutes in one plant) they are spread out.
 const LOOKS_MAX: f64 = 2e5;
-/// After the last impulse the peak is looked for in this many periods of the slowest mode; of one mode alone the first
-/// period has it.
+/// Number of periods of the slowest mode in which the peak after the last impulse is searched; with a single mode it
+/// lies in the first period.
 const TAIL_PERIODS: f64 = 20.0;
-/// Time constants after which a mode is at rest to rounding.
+/// Number of time constants after which a mode is at rest to rounding.
 const SETTLED: f64 = 40.0;
 
 /// Figures of one step response.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepFigures {
-    /// Per mode: amplitude after the last impulse, as a fraction of that of an unshaped step at its own start. The measured
-    /// counterpart of [`crate::analysis::residual_vibration`].
+    /// Per mode: amplitude after the last impulse, as a fraction of that of an unshaped step at its own start. It is
+    /// the measured counterpart of [`crate::analysis::residual_vibration`].
     pub residual: Vec<f64>,
-    /// Highest position beyond the step, as a fraction of it; 0 if there is none.
+    /// Overshoot: highest position beyond the step, as a fraction of it; 0 if there is none.
     pub overshoot: f64,
 }
 
-/// Step figures where the machine is as modelled, and where it is not.
+/// Step figures for the modelled machine, and for machines whose frequencies differ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantFigures {
-    /// Frequencies as in the machine file.
+    /// Figures with the frequencies of the machine file.
     pub nominal: StepFigures,
-    /// All frequencies 10 % lower.
+    /// Figures with all frequencies 10 % lower.
     pub minus_10_percent: StepFigures,
-    /// All frequencies 10 % higher.
+    /// Figures with all frequencies 10 % higher.
     pub plus_10_percent: StepFigures,
 }
 
-/// The three sets of figures for one shaper. A single impulse of amplitude 1 gives those of the unshaped machine.
+/// Step figures for one shaper. A single impulse of amplitude 1 gives those of the unshaped machine.
 pub fn plant_figures(plant: &Plant, impulses: &[Impulse]) -> PlantFigures {
     PlantFigures {
         nominal: step_figures(plant, impulses),
@@ -50,16 +51,17 @@ pub fn plant_figures(plant: &Plant, impulses: &[Impulse]) -> PlantFigures {
     }
 }
 
-/// What a plant does under one command. Lengths are in the unit of the command.
+/// Response of a plant to one command, in the unit of the command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResponseFigures {
-    /// Per mode: residual displacement, the amplitude of its share of the vibration as of the last jump of the command.
+    /// Per mode: residual displacement, which is the amplitude of its share of the vibration at the last jump of the
+    /// command.
     pub residual_displacement: Vec<f64>,
-    /// Highest position, at least the start's 0.
+    /// Highest position; at least 0, where the motion starts.
     pub highest: f64,
-    /// Lowest position, at most the start's 0.
+    /// Lowest position; at most 0, where the motion starts.
     pub lowest: f64,
-    /// Largest distance from the command's end after its last jump. Meaningless for a ramp without end.
+    /// Largest distance from the command's end after its last jump. It is meaningless for a ramp without end.
     pub deviation_after: f64,
 }
 
@@ -126,14 +128,14 @@ pub fn response_curve(plant: &Plant, command: &Trajectory, duration_s: f64, poin
         .collect()
 }
 
-/// A time without a jump of the command.
+/// An interval without a jump of the command.
 struct Stretch<'a> {
     start_s: f64,
     length_s: f64,
     motion: Motion<'a>,
 }
 
-/// Between which positions the plant moves.
+/// Lowest and highest position of the plant.
 #[derive(Debug, Clone, Copy)]
 struct Extremes {
     lowest: f64,
@@ -156,7 +158,7 @@ impl Extremes {
     }
 }
 
-/// The response in stretches: from each jump to the next, and a tail after the last.
+/// Splits the response into intervals: from each jump to the next, and a tail after the last.
 fn stretches<'a>(plant: &'a Plant, command: &Trajectory) -> Vec<Stretch<'a>> {
     let mut motion = Motion::at_rest(plant);
     let pieces = command.pieces();
@@ -178,7 +180,7 @@ fn stretches<'a>(plant: &'a Plant, command: &Trajectory) -> Vec<Stretch<'a>> {
         .collect()
 }
 
-/// Time between two looks at the velocity.
+/// Time between two evaluations of the velocity, s.
 fn look_s(plant: &Plant, stretches: &[Stretch<'_>]) -> f64 {
     let periods_s = plant.modes().iter().map(|m| 1.0 / m.mode.frequency_hz);
     let duration_s: f64 = stretches.iter().map(|s| s.length_s).sum();
@@ -186,7 +188,7 @@ fn look_s(plant: &Plant, stretches: &[Stretch<'_>]) -> f64 {
     (periods_s.fold(f64::INFINITY, f64::min) / LOOKS_PER_PERIOD).max(duration_s / looks_max)
 }
 
-/// How long after the last impulse a peak is looked for.
+/// Time after the last impulse in which a peak is searched, s.
 fn tail_s(plant: &Plant) -> f64 {
     let periods = if plant.modes().len() == 1 { 1.0 } else { TAIL_PERIODS };
     let each = plant.modes().iter().map(|m| {
@@ -197,7 +199,7 @@ fn tail_s(plant: &Plant) -> f64 {
 }
 
 impl Stretch<'_> {
-    /// Lowest and highest position in the stretch, its ends included.
+    /// Lowest and highest position in the interval, its ends included.
     fn extremes(&self, look_s: f64) -> Extremes {
         let looks = (self.length_s / look_s).ceil().clamp(1.0, LOOKS_MAX) as u32;
         let (start, velocity) = self.motion.ahead(0.0);
@@ -216,9 +218,9 @@ impl Stretch<'_> {
         extremes
     }
 
-    /// Position where the velocity changes its sign, between a time before and one after that.
+    /// Position at the instant in an interval at which the velocity changes its sign.
     fn turning_point(&self, mut before_s: f64, mut after_s: f64, rising: bool) -> f64 {
-        // Each round halves the interval: 60 exhaust the digits of a time.
+        // Each round halves the interval; 60 rounds exhaust the digits of a time.
         for _ in 0..60 {
             let middle_s = f64::midpoint(before_s, after_s);
             if (self.motion.ahead(middle_s).1 > 0.0) == rising {
@@ -274,7 +276,7 @@ mod tests {
 
     #[test]
     fn unit_two_modes_peak_between_samples() {
-        // 1 − ½cos t − ½cos 2t is highest at cos t = −1/4: 1 + 1/8 + 7/16.
+        // 1 − ½cos t − ½cos 2t has its maximum at cos t = −1/4: 1 + 1/8 + 7/16.
         let figures = step_figures(&plant(&[(1.0, 0.0, 1.0), (2.0, 0.0, 1.0)]), &UNSHAPED);
         assert!((figures.overshoot - 0.5625).abs() < 1e-12, "{}", figures.overshoot);
     }

@@ -1,11 +1,12 @@
 //! The sequential divider that turns counts and clocks into velocities: `quotient = steps · T · 2^16 / elapsed`.
 //!
-//! The datasheet is `docs/divider.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/divider.md`; the hardware is compared with this reference model.
 //!
-//! - `steps`: counts, 18 bits, two's complement; `elapsed`: clocks that they took, 24 bits; `T`: clocks per tick, fixed when
-//!   the divider is built; `quotient`: Q16.16 counts per tick, truncated toward zero, clamped to ±(2^31 − 1) LSB.
-//! - `elapsed` = 0 stands for one tick: the quotient is `steps · 2^16`, exactly.
-//! - A division takes [`DIVISION_CLOCKS`], whatever the numbers are. One divider serves all channels of a stage in turn.
+//! - `steps`: counts, 18 bits, two's complement; `elapsed`: the clocks in which they came, 24 bits; `T`: clocks per
+//!   tick, fixed when the divider is built; `quotient`: Q16.16 counts per tick, truncated toward zero, clamped to
+//!   ±(2^31 − 1) LSB.
+//! - `elapsed` = 0 stands for one tick: the quotient is then exactly `steps · 2^16`.
+//! - Every division takes [`DIVISION_CLOCKS`]. One divider serves all channels of a stage in turn.
 //!
 //! ```text
 //! clock     0   1   2            100 101 102
@@ -33,36 +34,36 @@
 use super::shaper::wrap;
 use super::{FOREVER, Moore, clocked_block, ports};
 
-/// Width of `steps`.
+/// Width of `steps` in bits.
 pub const STEP_BITS: u32 = 18;
-/// Width of `elapsed`.
+/// Width of `elapsed` in bits.
 pub const ELAPSED_BITS: u32 = 24;
-/// Width of the clocks per tick.
+/// Width of the clocks per tick in bits.
 pub const TICK_BITS: u32 = 17;
-/// Largest quotient in size: it has 32 bits.
+/// Largest magnitude of the quotient, which has 32 bits.
 pub const QUOTIENT_MAX: i64 = (1 << 31) - 1;
-/// Clocks from `start` to `done`: 18 to multiply, 51 to divide, 32 for the sign, and the start.
+/// Clocks from `start` to `done`: 1 for the start, 18 to multiply, 51 to divide and 32 for the sign.
 pub const DIVISION_CLOCKS: u32 = 102;
 
-/// What is fixed when a divider is built.
+/// Build parameters of a divider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DividerConfig {
     tick_clocks: u32,
 }
 
-/// Why no divider can be built.
+/// Why a divider cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum DividerConfigError {
-    /// Too many clocks per tick, or none.
+    /// The clocks per tick are 0 or too many.
     #[error("{0} clocks per tick: the divider is built for 1 to 131071; choose a higher sample rate or a slower clock")]
     TickClocks(u64),
 }
 
 impl DividerConfig {
-    /// A divider for ticks of so many clocks.
+    /// A divider for ticks of this many clocks.
     ///
     /// # Errors
-    /// [`DividerConfigError`] unless that is 1 to 2^17 − 1.
+    /// [`DividerConfigError`] unless it is 1 to 2^17 − 1.
     pub fn new(tick_clocks: u64) -> Result<Self, DividerConfigError> {
         match u32::try_from(tick_clocks) {
             Ok(fits) if (1..1 << TICK_BITS).contains(&fits) => Ok(Self { tick_clocks: fits }),
@@ -70,12 +71,13 @@ impl DividerConfig {
         }
     }
 
-    /// T: clocks per tick.
+    /// Clocks per tick T.
     pub fn tick_clocks(&self) -> u32 {
         self.tick_clocks
     }
 
-    /// The quotient, and whether it was clamped: the fast path, without the clocks. Operands are cut to their widths.
+    /// The quotient, and whether it was clamped, computed at once instead of clock by clock. Operands are cut to
+    /// their widths.
     pub fn divide(&self, steps: i32, elapsed: u32) -> (i64, bool) {
         let steps = wrap(i64::from(steps), STEP_BITS);
         let tick = u64::from(self.tick_clocks);
@@ -83,7 +85,7 @@ impl DividerConfig {
             0 => tick,
             clocks => clocks,
         };
-        // 18 + 17 + 16 bits: no overflow.
+        // The product has 18 + 17 + 16 bits and does not overflow.
         let quotient = ((steps.unsigned_abs() * tick) << 16) / divisor;
         let clamped = quotient.min(QUOTIENT_MAX as u64);
         (clamped as i64 * steps.signum(), clamped != quotient)
@@ -97,11 +99,11 @@ ports! {
     inputs Inputs {
         /// Synchronous reset, active high.
         rst: Bit as bool;
-        /// For one clock: divide `steps` by `elapsed`.
+        /// One clock: starts the division of `steps` by `elapsed`.
         start: Bit as bool;
-        /// Counts.
+        /// Dividend: the counts.
         steps: Signed(18) as i32, "counts";
-        /// Clocks that they took; 0 stands for one tick.
+        /// Divisor: the clocks in which the counts came; 0 stands for one tick.
         elapsed: Bits(24) as u32, "clocks";
         /// Clears `overrun`.
         clear_flags: Bit as bool;
@@ -109,23 +111,23 @@ ports! {
 
     /// The output ports, all of them registers.
     outputs Outputs {
-        /// Counts per tick, Q16.16; holds until the next `done`.
+        /// Counts per tick, Q16.16; holds its value until the next `done`.
         quotient: Signed(32) as i64, "counts per tick, Q16.16";
-        /// For one clock: `quotient` is new.
+        /// One clock: `quotient` is new.
         done: Bit as bool;
-        /// A division runs.
+        /// A division is running.
         busy: Bit as bool;
-        /// `quotient` was clamped; holds with it.
+        /// `quotient` was clamped; changes with it.
         saturated: Bit as bool;
-        /// Sticky: a `start` came while `busy`, and was ignored. Set wins over `clear_flags` in the same clock.
+        /// Sticky: a `start` came while `busy` and was ignored. Setting wins over `clear_flags` in the same clock.
         overrun: Bit as bool;
     }
 }
 
-/// The divider, cycle accurate at its ports.
+/// The cycle-accurate model of the divider.
 pub struct Divider {
     config: DividerConfig,
-    /// Clocks until the division has its result; 0 while none runs.
+    /// Clocks until the division has its result; 0 while none is running.
     clocks_left: u32,
     result: (i64, bool),
     shown: Outputs,
@@ -142,12 +144,12 @@ impl Divider {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         self.shown
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let shown = self.shown;

@@ -1,4 +1,4 @@
-//! One divider for all pulse counters of a stage: their divisions one after the other, in a fixed order.
+//! Shares one divider among all pulse counters of a stage: their divisions run one after the other, in a fixed order.
 //!
 //! ```text
 //! clock             0   1   2        103 104 105      206 207
@@ -9,16 +9,16 @@
 //! quotient_valid_1 __________________________________/‾‾‾\___   one clock after its done
 //! ```
 //!
-//! - `divide` is the clock after a tick: the counters show their operands from then on, until the next tick.
-//! - Channel k has its quotient `(k + 1) ·` [`SHARE_CLOCKS`] clocks after `divide`, always.
-//! - A `divide` while divisions run is ignored: the counters then flag a missed velocity.
+//! - `divide` comes in the clock after a tick: the counters show their operands from then on, until the next tick.
+//! - The quotient of channel k is always valid `(k + 1) ·` [`SHARE_CLOCKS`] clocks after `divide`.
+//! - A `divide` while divisions are running is ignored; the counters then flag a missed velocity.
 
 use super::divider::{DIVISION_CLOCKS, ELAPSED_BITS, STEP_BITS};
 use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
 
-/// Most channels: four axes, each with a scale.
+/// Largest number of channels: four axes, each with a scale.
 pub const MOST_CHANNELS: usize = 8;
-/// Clocks per channel.
+/// Clocks that a channel takes.
 pub const SHARE_CLOCKS: u32 = DIVISION_CLOCKS + 1;
 
 ports! {
@@ -27,44 +27,44 @@ ports! {
     inputs {
         /// Synchronous reset.
         rst: Bit;
-        /// One clock: divide for all channels, one after the other.
+        /// One clock: starts the divisions of all channels, one after the other.
         divide: Bit;
-        /// Of the channel's pulse counter: the dividend.
+        /// Dividend: `steps` of the channel's pulse counter.
         steps_of[C]: Signed(18), "counts";
-        /// Of the channel's pulse counter: the divisor.
+        /// Divisor: `elapsed` of the channel's pulse counter.
         elapsed_of[C]: Bits(24), "clocks";
-        /// Of the divider: its `done`.
+        /// `done` of the divider.
         done: Bit;
     }
 
     outputs {
-        /// To the divider, one clock: its `start`.
+        /// One clock: to `start` of the divider.
         start: Bit;
-        /// To the divider: its `steps`.
+        /// To `steps` of the divider.
         steps: Signed(18), "counts";
-        /// To the divider: its `elapsed`.
+        /// To `elapsed` of the divider.
         elapsed: Bits(24), "clocks";
-        /// One clock: the quotient of the divider is the channel's.
+        /// One clock: the quotient of the divider belongs to this channel.
         quotient_valid[C]: Bit;
     }
 }
 
-/// The sharing, cycle accurate at its ports.
+/// The cycle-accurate model of the divider's share.
 #[derive(Debug, Clone)]
 pub struct DividerShare {
     ports: Vec<Port>,
     channels: usize,
-    /// The channel whose division runs.
+    /// Channel whose division is running.
     turn: Option<usize>,
     start: bool,
     steps: u64,
     elapsed: u64,
-    /// The channel whose quotient is there.
+    /// Channel whose quotient is valid.
     valid: Option<usize>,
 }
 
 impl DividerShare {
-    /// For so many channels, 1 to [`MOST_CHANNELS`], after reset.
+    /// The state after reset, for 1 to [`MOST_CHANNELS`] channels.
     pub fn new(channels: usize) -> Self {
         Self {
             ports: ports(channels),

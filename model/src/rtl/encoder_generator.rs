@@ -1,14 +1,15 @@
-//! The internal encoder: quadrature at a set rate, which can take the place of the pins in front of the pulse counter.
+//! The internal encoder: it generates quadrature at a set rate, which can replace the pins in front of the pulse
+//! counter.
 //!
-//! The datasheet is `docs/encoder_generator.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/encoder_generator.md`; the hardware is compared with this reference model.
 //!
-//! - Every clock `sum += rate`, 64 bits modulo 2^64; `generated_count` is the upper half: the floor of the exact sum. The
-//!   range of `rate` is its limit: less than half a count per clock, so that counts in one direction are at least two clocks
-//!   apart.
-//! - A and B show the count in Gray code, A leads B when it goes up. They change at most in every other clock, whatever the
-//!   rate does: a count that comes and goes within a clock is not shown.
-//! - Z is high for one count in every `index_every`, taken down to a multiple of four: where A and B are both low.
-//! - With `loop_back` the outputs show these lines, else the pins; every output is a register behind the choice.
+//! - Every clock `sum += rate`, 64 bits modulo 2^64; `generated_count` is the upper half, the floor of the exact sum.
+//!   The width of `rate` limits it to less than half a count per clock, so that counts in one direction are at least
+//!   two clocks apart.
+//! - A and B show the count in Gray code; A leads B when it goes up. They change at most in every other clock,
+//!   whatever the rate does: a count that comes and goes within a clock is not shown.
+//! - Z is high for one count in every `index_every`, rounded down to a multiple of four: where A and B are both low.
+//! - With `loop_back` the outputs show these lines, else the pins. Every output is registered after this choice.
 //!
 //! ```text
 //! clock             0   1   2   3        a count passes in clock 0
@@ -31,12 +32,12 @@ use super::{Moore, clocked_block, ports, quiet_at_rest};
 
 /// Fraction bits of `rate`.
 pub const RATE_FRACTION: u32 = 32;
-/// Counts of a period of A and B: an index has a multiple of these.
+/// Counts in a period of A and B; the distance of two indexes is a multiple of it.
 pub const PERIOD_COUNTS: u16 = 4;
 /// Clocks from a pin to its output.
 pub const LATENCY_CLOCKS: u32 = 1;
 
-/// A, B, Z and their complements.
+/// Number of lines: A, B, Z and their complements.
 pub const LINES: usize = 6;
 
 ports! {
@@ -46,23 +47,23 @@ ports! {
     inputs Inputs {
         /// Synchronous reset.
         rst: Bit as bool;
-        /// The outputs are the generator's lines, else the pins.
+        /// High: the outputs show the generator's lines. Low: they show the pins.
         loop_back: Bit as bool;
-        /// Counts per clock; the sign is the direction.
+        /// Rate in counts per clock; its sign is the direction.
         rate: Signed(32) as i32, "counts per clock, Q0.32";
-        /// Counts from index to index, taken down to a multiple of 4; 0 to 3: none.
+        /// Counts from index to index, rounded down to a multiple of 4; 0 to 3: no index.
         index_every: Bits(16) as u16, "counts";
-        /// Pin A, at any time.
+        /// Pin A, asynchronous.
         pin_a: Bit as bool;
-        /// Pin B, at any time.
+        /// Pin B, asynchronous.
         pin_b: Bit as bool;
-        /// Pin Z, at any time.
+        /// Pin Z, asynchronous.
         pin_z: Bit as bool;
-        /// Complement of pin A, where lines are pairs; at any time.
+        /// Complement of pin A for differential lines, asynchronous.
         pin_a_n: Bit as bool;
-        /// Complement of pin B, where lines are pairs; at any time.
+        /// Complement of pin B for differential lines, asynchronous.
         pin_b_n: Bit as bool;
-        /// Complement of pin Z, where lines are pairs; at any time.
+        /// Complement of pin Z for differential lines, asynchronous.
         pin_z_n: Bit as bool;
     }
 
@@ -74,13 +75,13 @@ ports! {
         b: Bit as bool;
         /// Line Z, for the pulse counter.
         z: Bit as bool;
-        /// Complement of A; the generator always has pairs.
+        /// Complement of A, which the generator always provides.
         a_n: Bit as bool;
-        /// Complement of B; the generator always has pairs.
+        /// Complement of B, which the generator always provides.
         b_n: Bit as bool;
-        /// Complement of Z; the generator always has pairs.
+        /// Complement of Z, which the generator always provides.
         z_n: Bit as bool;
-        /// Counts ×4 since the reset, modulo 2^32.
+        /// Generated counts since the reset, modulo 2^32.
         generated_count: Signed(32) as i32, "counts";
     }
 }
@@ -98,7 +99,7 @@ impl Inputs {
         ]
     }
 
-    /// These inputs with other pins: A, B, Z and their complements.
+    /// The inputs with other pins: A, B, Z and their complements.
     pub fn with_pins(self, [pin_a, pin_b, pin_z, pin_a_n, pin_b_n, pin_z_n]: [bool; LINES]) -> Self {
         Self {
             pin_a,
@@ -119,16 +120,16 @@ impl Outputs {
     }
 }
 
-/// The encoder's registers behind the outputs.
+/// Registers of the generated lines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Encoder {
     /// Counts, Q32.32, modulo 2^64.
     sum: i64,
-    /// Periods of A and B since the index.
+    /// Number of periods of A and B since the index.
     period: u16,
-    /// A, B, Z as they are shown.
+    /// Levels of A, B and Z.
     lines: [bool; 3],
-    /// A or B have just changed: they stay for a clock.
+    /// Whether A or B has just changed; they then stay for a clock.
     moved: bool,
 }
 
@@ -163,11 +164,11 @@ impl Encoder {
     }
 }
 
-/// The internal encoder, cycle accurate at its ports.
+/// The cycle-accurate model of the internal encoder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EncoderGenerator {
     encoder: Encoder,
-    /// Pins or lines of the clock before: the only registers that a reset does not clear.
+    /// Pins or lines of the clock before. A reset does not clear these registers.
     shown: [bool; LINES],
 }
 
@@ -186,7 +187,7 @@ impl EncoderGenerator {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         let [a, b, z, a_n, b_n, z_n] = self.shown;
         let generated_count = self.encoder.count();
@@ -201,7 +202,7 @@ impl EncoderGenerator {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();

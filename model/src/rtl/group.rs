@@ -1,4 +1,4 @@
-//! What the axes of a stage have to do with each other: they start in one clock, and when one stops for a fault, all do.
+//! The coupling of a stage's axes: they start in one clock, and when one stops for a fault, all do.
 //!
 //! ```text
 //! clock            0   1   2
@@ -7,17 +7,18 @@
 //! start_refused   ____/‾‾‾\____   and none starts
 //! ```
 //!
-//! - `group_stop_k`: another axis wants all to stop. `group_emergency_stop`: any axis has its emergency stop. Both a clock late.
-//! - Feed hold: the axes of `feed_hold_k` are held, `hold_feed_k`, while all of them rest. So they stand in the same tick or not at
-//!   all, and go on in the same tick. A clock late.
-//! - A start of no axis, or of one that there is not, is refused.
+//! - `group_stop_k`: another axis wants all axes to stop. `group_emergency_stop`: an axis has its emergency stop.
+//!   Both come a clock late.
+//! - Feed hold: the axes of `feed_hold_k` are held by `hold_feed_k` while all of them rest. So they stand in the same
+//!   tick or not at all, and continue in the same tick. It comes a clock late.
+//! - A start of no axis, or of an axis that does not exist, is refused.
 
 use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
 
-/// Lists of inputs, a port per axis.
+/// Number of lists of inputs with a port per axis.
 const LISTS: usize = 5;
 
-/// Most axes of a stage.
+/// Largest number of axes of a stage.
 pub const MOST_AXES: usize = 4;
 
 ports! {
@@ -26,42 +27,42 @@ ports! {
     inputs {
         /// Synchronous reset.
         rst: Bit;
-        /// One clock: the axes in `start_axes` are to start.
+        /// One clock: the axes in `start_axes` shall start.
         start: Bit;
-        /// One bit per axis.
+        /// Axes to start, one bit per axis.
         start_axes: Bits(4);
-        /// Of the axis: its `can_start`.
+        /// `can_start` of the axis.
         can_start[N]: Bit;
-        /// Of the axis: its `wants_group_stop`.
+        /// `wants_group_stop` of the axis.
         wants_group_stop[N]: Bit;
-        /// Of the axis: its `emergency_stop`.
+        /// `emergency_stop` of the axis.
         emergency_stop[N]: Bit;
-        /// The axis is to hold its feed.
+        /// The axis shall hold its feed.
         feed_hold[N]: Bit;
-        /// Of the axis's segments: their `rests`.
+        /// `rests` of the axis's segments.
         rests[N]: Bit;
     }
 
     outputs {
-        /// One clock, to the axis: its `start`.
+        /// One clock: to `start` of the axis.
         axis_start[N]: Bit;
-        /// To the axis: another one wants all to stop.
+        /// To the axis: another axis wants all axes to stop.
         group_stop[N]: Bit;
-        /// To the axis's segments: their `feed_hold`.
+        /// To `feed_hold` of the axis's segments.
         hold_feed[N]: Bit;
         /// To all axes: one of them has its emergency stop.
         group_emergency_stop: Bit;
-        /// One clock: a start that none followed.
+        /// One clock: a start was refused.
         start_refused: Bit;
     }
 }
 
-/// The group, cycle accurate at its ports.
+/// The cycle-accurate model of the group.
 #[derive(Debug, Clone)]
 pub struct Group {
     ports: Vec<Port>,
     axes: usize,
-    /// One bit per axis.
+    /// Axes to start, one bit per axis.
     starts: u64,
     stops: u64,
     holds: u64,
@@ -70,7 +71,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// Of so many axes, 1 to [`MOST_AXES`], after reset.
+    /// The state after reset, for 1 to [`MOST_AXES`] axes.
     pub fn new(axes: usize) -> Self {
         Self {
             ports: ports(axes),
@@ -83,7 +84,7 @@ impl Group {
         }
     }
 
-    /// `can`, `wants`, `emergency`, `feed_hold` and `rests`: one bit per axis.
+    /// Simulates one clock. `can`, `wants`, `emergency`, `feed_hold` and `rests` have one bit per axis.
     fn clock(&mut self, start: Option<u64>, [can, wants, emergency, feed_hold, rests]: [u64; LISTS]) {
         let wanted = start.unwrap_or(0);
         let granted = wanted & !can == 0;
@@ -128,7 +129,7 @@ impl Moore for Group {
     }
 }
 
-/// Of each list of inputs, one bit per axis.
+/// Packs each list of inputs into a word with one bit per axis.
 fn words(inputs: &[u64], axes: usize) -> [u64; LISTS] {
     std::array::from_fn(|list| (0..axes).fold(0, |word, axis| word | (inputs[3 + list * axes + axis] & 1) << axis))
 }
@@ -164,7 +165,7 @@ impl ClockedBlock for Group {
 mod tests {
     use super::*;
 
-    /// Outputs a clock after these inputs.
+    /// Outputs one clock after these inputs.
     fn after(axes: usize, inputs: &[u64]) -> Vec<u64> {
         let mut group = Group::new(axes);
         let mut outputs = vec![0; 2 + 3 * axes];

@@ -1,7 +1,7 @@
-//! Bit-exact, cycle-accurate models of the hardware blocks, one file per block, under the block's name.
+//! Bit-exact, cycle-accurate models of the hardware blocks, one file per block, with the block's name.
 //!
-//! A model, RustHDL's simulation and a Verilated module all look the same from outside: a [`ClockedBlock`]. That is what
-//! lock step compares.
+//! A model, RustHDL's simulation and a Verilated module all have the same interface, [`ClockedBlock`], through which
+//! lock step compares them.
 
 pub mod axis;
 pub mod cascade;
@@ -39,9 +39,9 @@ pub(crate) use ports::{clocked_block, ports};
 /// Direction of a port, seen from the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// Driven from outside.
+    /// Input: driven from outside.
     Input,
-    /// Driven by the block.
+    /// Output: driven by the block.
     Output,
 }
 
@@ -54,26 +54,26 @@ pub struct Port {
     pub direction: Direction,
     /// Width in bits, 1..=64.
     pub width: u32,
-    /// Two's complement?
+    /// Whether the value is a two's complement number.
     pub signed: bool,
 }
 
-/// Why a block could not be stepped: RustHDL's simulator did not settle, for example.
+/// Why a block could not be stepped, for example because RustHDL's simulator did not settle.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct StepError(pub String);
 
-/// Anything with one clock and ports of at most 64 bits that can be stepped.
+/// A block with one clock and ports of at most 64 bits that can be stepped.
 ///
 /// Values are raw bit patterns, right-aligned; bits above a port's width are zero.
 pub trait ClockedBlock {
-    /// The ports, inputs and outputs mixed, in the order of the Verilog's port list.
+    /// The ports, inputs and outputs together, in the order of the Verilog's port list.
     fn ports(&self) -> &[Port];
 
-    /// One clock cycle: applies `inputs` (one value per input port, in port order), puts what the outputs then show,
-    /// just *before* the rising edge, into `outputs` (one value per output port, in port order), then clocks.
+    /// Simulates one clock cycle: applies `inputs` (one value per input port, in port order), writes the outputs just
+    /// *before* the rising edge to `outputs` (one value per output port, in port order), then clocks.
     ///
     /// # Errors
-    /// [`StepError`] where a simulator fails; a model never does.
+    /// [`StepError`] where a simulator fails; a model never fails.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
 }

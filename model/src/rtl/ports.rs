@@ -8,7 +8,7 @@
 //!     inputs Inputs {
 //!         /// Synchronous reset.
 //!         rst: Bit as bool;
-//!         /// Where the count begins anew.
+//!         /// Value at which the count restarts.
 //!         limit: Bits(8) as u8, "counts";             with a unit
 //!         /// What a trace can show.
 //!         signal[16]: Signed(32) as i32;              `signal_0` to `signal_15`, in Rust an array
@@ -21,15 +21,17 @@
 //! }
 //! ```
 //!
-//! An entry is a port's name, its type in the hardware and in Rust, its unit if it has one, and above them, as its
+//! An entry has a port's name, its type in the hardware and in Rust, its unit if it has one, and above them, as its
 //! documentation, its meaning in a sentence. `clk` is not listed. From the list come:
 //!
-//! - the structs `Inputs` and `Outputs` with a field per port, and their raw bit patterns both ways (`from_raw`, `to_raw`);
-//! - `INPUT_PORTS` and `OUTPUT_PORTS`, their numbers, `ports()` for [`ClockedBlock`](super::ClockedBlock), and `PORTS` with
-//!   units and meanings, which the datasheet's table is made of;
-//! - the macro `posicast_model::counter_ports!`, of which `kernel!` in `hdl` makes the kernel's fields and raw ports.
+//! - the structs `Inputs` and `Outputs` with a field per port, and their conversion from and to raw bit patterns
+//!   (`from_raw`, `to_raw`);
+//! - `INPUT_PORTS` and `OUTPUT_PORTS`, the numbers of ports; `ports()` for [`ClockedBlock`](super::ClockedBlock); and
+//!   `PORTS` with units and meanings, from which the datasheet's table is made;
+//! - the macro `posicast_model::counter_ports!`, from which `kernel!` in `hdl` makes the kernel's fields and raw
+//!   ports.
 //!
-//! Where a number of ports, or a width, is a size of the block, the sizes stand behind the list's name, the structs and the
+//! Where a number of ports, or a width, is a size of the block, the sizes follow the list's name, the structs and the
 //! Rust types are left out, and `ports` takes the sizes. The kernel has sizes of the same names:
 //!
 //! ```text
@@ -47,25 +49,26 @@
 //! }
 //! ```
 //!
-//! Where only widths are sizes, the structs and Rust types may stand there too; `from_raw` and `to_raw` then take the sizes.
+//! Where only widths are sizes, the structs and Rust types may be given too; `from_raw` and `to_raw` then take the
+//! sizes.
 //!
-//! [`clocked_block!`] makes a model with such a list a [`ClockedBlock`](super::ClockedBlock). A Rust type of its own, an enum
-//! for example, stands behind `as` once it is a [`PortValue`]; `choices!` makes one of an enum.
+//! [`clocked_block!`] makes a model with such a list a [`ClockedBlock`](super::ClockedBlock). A type that implements
+//! [`PortValue`], an enum for example, may follow `as`; `choices!` implements it for an enum.
 
 use super::{Direction, Port};
 
-/// A port as its block's list describes it; an array of ports is one row.
+/// A port as its block's list describes it. An array of ports is one row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PortRow {
-    /// Name, as in the Verilog; of an array without its index.
+    /// Name, as in the Verilog; for an array without the index.
     pub name: &'static str,
-    /// Number of ports, if it is an array: they are called `name_0`, `name_1`, …
+    /// Number of ports of an array, which are called `name_0`, `name_1`, …; `None` for a single port.
     pub count: Option<usize>,
     /// Direction.
     pub direction: Direction,
     /// Width in bits, 1..=64.
     pub width: u32,
-    /// Two's complement?
+    /// Whether the value is a two's complement number.
     pub signed: bool,
     /// Unit; empty where there is none.
     pub unit: &'static str,
@@ -73,18 +76,18 @@ pub struct PortRow {
     pub meaning: &'static [&'static str],
 }
 
-/// A port of a list with sizes, as the datasheet shows it: as [`PortRow`], with the names of sizes for numbers.
+/// A port of a list with sizes, as the datasheet shows it: like [`PortRow`], with names of sizes in place of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SizedPortRow {
-    /// Name, as in the Verilog; of an array without its index.
+    /// Name, as in the Verilog; for an array without the index.
     pub name: &'static str,
-    /// The size that is the number of ports, if it is an array.
+    /// Name of the size that is the number of ports of an array; `None` for a single port.
     pub count: Option<&'static str>,
     /// Direction.
     pub direction: Direction,
     /// Width in bits: a number, or the name of a size.
     pub width: &'static str,
-    /// Two's complement?
+    /// Whether the value is a two's complement number.
     pub signed: bool,
     /// Unit; empty where there is none.
     pub unit: &'static str,
@@ -141,7 +144,7 @@ pub fn port_notes(list: &[impl DescribedPort]) -> Vec<PortNote> {
 }
 
 impl PortRow {
-    /// Ports that the row stands for.
+    /// Number of ports in the row.
     const fn ports(&self) -> usize {
         match self.count {
             Some(count) => count,
@@ -150,7 +153,7 @@ impl PortRow {
     }
 }
 
-/// Number of ports of a direction.
+/// Number of ports with a direction.
 pub(crate) const fn count(list: &[PortRow], inputs: bool) -> usize {
     let (mut ports, mut row) = (0, 0);
     while row < list.len() {
@@ -162,7 +165,7 @@ pub(crate) const fn count(list: &[PortRow], inputs: bool) -> usize {
     ports
 }
 
-/// The ports of a list, arrays one by one.
+/// The ports of a list, with those of an array one by one.
 pub(crate) fn listed(list: &[PortRow]) -> Vec<Port> {
     let row = |row: &PortRow| {
         let row = *row;
@@ -178,11 +181,11 @@ pub(crate) fn listed(list: &[PortRow]) -> Vec<Port> {
     list.iter().flat_map(row).collect()
 }
 
-/// A value of a port in Rust, beside its raw bit pattern.
+/// Conversion of a port's value between Rust and its raw bit pattern.
 pub(crate) trait PortValue: Copy + Default {
-    /// From a pattern of a port so wide; bits above are ignored.
+    /// Converts the pattern of a port of this width; bits above are ignored.
     fn from_pattern(pattern: u64, width: u32, signed: bool) -> Self;
-    /// The pattern, which may have bits above the port's width.
+    /// The pattern of the value, which may have bits above the port's width.
     fn pattern(self) -> u64;
 }
 
@@ -221,7 +224,7 @@ macro_rules! whole_numbers {
 
 whole_numbers!(u8, u16, u32, u64, i32, i64);
 
-/// Makes an enum a [`PortValue`]. A pattern that none of its values has is the first one.
+/// Implements [`PortValue`] for an enum. A pattern that is no value of it becomes the first value.
 macro_rules! choices {
     ($choice:ident: $first:ident $(, $other:ident)*) => {
         impl $crate::rtl::ports::PortValue for $choice {
@@ -486,11 +489,11 @@ macro_rules! signed {
     };
 }
 
-/// Raw bit patterns of a struct of ports, both ways.
+/// Conversion between a struct of ports and its raw bit patterns.
 macro_rules! raw {
     ($ports:ident $number:ident ($($size:ident),*) $($name:ident: $kind:ident $width:tt [$($count:literal)?];)*) => {
         impl $ports {
-            /// From raw bit patterns, one per port in port order; bits above a port's width are ignored.
+            /// Converts raw bit patterns, one per port in port order; bits above a port's width are ignored.
             #[inline]
             #[allow(non_snake_case, reason = "a size has its name in the kernel")]
             pub fn from_raw(raw: &[u64; $number] $(, $size: usize)*) -> Self {
@@ -504,7 +507,7 @@ macro_rules! raw {
                 }
             }
 
-            /// As raw bit patterns, one per port in port order, each cut to its port's width.
+            /// The raw bit patterns, one per port in port order, each cut to its port's width.
             #[inline]
             #[allow(non_snake_case, reason = "a size has its name in the kernel")]
             pub fn to_raw(&self $(, $size: usize)*) -> [u64; $number] {
@@ -545,8 +548,8 @@ macro_rules! to_raw {
     };
 }
 
-/// Makes a model with `Inputs`, `Outputs` and `step(&Inputs) -> Outputs` a [`ClockedBlock`](super::ClockedBlock); `what` it is
-/// stands in the message for a wrong number of values.
+/// Implements [`ClockedBlock`](super::ClockedBlock) for a model with `Inputs`, `Outputs` and
+/// `step(&Inputs) -> Outputs`. `what` names the model in the message for a wrong number of values.
 macro_rules! clocked_block {
     ($block:ident, $what:literal) => {
         impl $crate::rtl::ClockedBlock for $block {

@@ -1,4 +1,5 @@
-//! Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock late.
+//! Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs come a clock
+//! late.
 //!
 //! ```text
 //! host_strobe, host_start, host_x_0 … ─┐
@@ -14,19 +15,19 @@ ports! {
     inputs {
         /// Synchronous reset.
         rst: Bit;
-        /// The samples come from pins; low: from the host.
+        /// High: the samples come from pins. Low: they come from the host.
         from_pins: Bit;
-        /// Of the host, one clock: its words are a sample.
+        /// One clock, from the host: its words are a sample.
         host_strobe: Bit;
-        /// Of the host: the sample is the first of a motion.
+        /// From the host: the sample is the first of a motion.
         host_start: Bit;
-        /// Of the host: a word per channel.
+        /// From the host: a word per channel.
         host_x[C]: Signed(W);
-        /// As `host_strobe`, from a pin.
+        /// `host_strobe` from a pin.
         pin_strobe: Bit;
-        /// As `host_start`, from a pin.
+        /// `host_start` from a pin.
         pin_start: Bit;
-        /// As `host_x`, from pins.
+        /// `host_x` from pins.
         pin_x[C]: Signed(W);
     }
 
@@ -40,7 +41,7 @@ ports! {
     }
 }
 
-/// The selection, cycle accurate at its ports.
+/// The cycle-accurate model of the selection.
 #[derive(Debug, Clone)]
 pub struct SampleSelect {
     ports: Vec<Port>,
@@ -48,7 +49,7 @@ pub struct SampleSelect {
 }
 
 impl SampleSelect {
-    /// After reset, for words of so many bits and so many channels.
+    /// The state after reset, for words of this many bits and this many channels.
     pub fn new(word_bits: u32, channels: usize) -> Self {
         Self {
             ports: ports(word_bits as usize, channels),

@@ -1,4 +1,4 @@
-//! When the controllers of a stage start: a fixed number of clocks after each tick.
+//! The schedule starts the controllers of a stage a fixed number of clocks after each tick.
 //!
 //! ```text
 //! clock    0   1   2         C   C+1
@@ -6,21 +6,22 @@
 //! control ___________________/‾‾‾\______
 //! ```
 //!
-//! Shapers and divider take different times from tick to tick, depending on tables; the controllers start when the longest
-//! is over, always in the same clock. A tick that comes earlier begins anew.
+//! Shapers and divider take different times from tick to tick, depending on their tables. The controllers start when
+//! the longest of these times is over, always in the same clock after the tick. A tick that comes earlier begins
+//! anew.
 
 use super::{FOREVER, Moore, clocked_block, ports};
 
-/// Bits of the counter.
+/// Width of the counter in bits.
 pub const SCHEDULE_BITS: u32 = 17;
 
-/// What is fixed when it is built.
+/// Build parameter of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScheduleConfig {
     control_clocks: u32,
 }
 
-/// Why no schedule can be built.
+/// Why a schedule cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the controllers start {0} clocks after the tick: 2 to 131070 are possible; shorten the tables, or slow the clock"
@@ -28,10 +29,10 @@ pub struct ScheduleConfig {
 pub struct ScheduleConfigError(pub u32);
 
 impl ScheduleConfig {
-    /// `control` comes so many clocks after each tick.
+    /// A schedule whose `control` comes this many clocks after each tick.
     ///
     /// # Errors
-    /// [`ScheduleConfigError`] unless that is 2 to 2^17 − 2.
+    /// [`ScheduleConfigError`] unless it is 2 to 2^17 − 2.
     pub fn new(control_clocks: u32) -> Result<Self, ScheduleConfigError> {
         match control_clocks {
             2..=131_070 => Ok(Self { control_clocks }),
@@ -63,17 +64,17 @@ ports! {
     }
 }
 
-/// The schedule, cycle accurate at its ports.
+/// The cycle-accurate model of the schedule.
 #[derive(Debug, Clone)]
 pub struct Schedule {
     control_clocks: u32,
-    /// Clocks since the tick; 0 before the first, and after `control`.
+    /// Clocks since the tick; 0 before the first tick, and after `control`.
     since: u32,
     control: bool,
 }
 
 impl Schedule {
-    /// After reset.
+    /// The state after reset.
     pub fn new(config: &ScheduleConfig) -> Self {
         Self {
             control_clocks: config.control_clocks,
@@ -82,7 +83,7 @@ impl Schedule {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let control = self.control;
         self.clock(inputs.rst, inputs.tick);

@@ -1,4 +1,5 @@
-//! The settings of a controller that stands alone: bank 0 a ROM with the machine's, banks 1 and 2 to be loaded.
+//! The settings of a controller that stands alone: bank 0 is a ROM with the machine's settings, banks 1 and 2 can be
+//! loaded.
 //!
 //! ```text
 //! clock        0       1
@@ -13,15 +14,16 @@
 //! setting_loaded     ------------------< word >------   of `setting_bank` and `setting_row` of clock 1
 //! ```
 //!
-//! - A row that was not written since the reset reads as 0, and so does bank 3: a command of 0, whatever the memory holds.
-//! - A write to the active bank, to bank 0 or 3 is refused: `setting_refused` is high in the next clock. So no word is read
-//!   in the clock in which it is written.
-//! - A host reads any bank back, the active one too, as the controller would read it. Its read takes the place of the
-//!   controller's, so it waits while the controller is `busy`, and for a write of the same clock. Bank and row are those of
-//!   the clock in which it is served. A `setting_read` while one waits is the same read; one in the clock in which the word
-//!   is taken is another.
-//! - `busy` must be high from the clock after the controller's start on. The word of a read that is served in the clock of the start stands in
-//!   the first clock of the pass, whose setting no step uses.
+//! - A row that was not written since the reset reads as 0, and so does bank 3: the command is then 0, whatever the
+//!   memory holds.
+//! - A write to the active bank, to bank 0 or to bank 3 is refused: `setting_refused` is high in the next clock. So
+//!   no word is read in the clock in which it is written.
+//! - A host can read back any bank, also the active one, as the controller would read it. Its read takes the place of
+//!   the controller's, so it waits while the controller is `busy`, and for a write of the same clock. Bank and row
+//!   are those of the clock in which it is served. A `setting_read` while a read waits is the same read; one in the
+//!   clock in which the word is taken is another.
+//! - `busy` must be high from the clock after the controller's start on. A read that is served in the clock of the
+//!   start has its word in the first clock of the controller's computation, in which no step uses a setting.
 
 use super::sliding_mode::{SETTINGS, Settings};
 use super::{FOREVER, Moore, clocked_block, ports};
@@ -31,55 +33,55 @@ ports! {
 
     /// The input ports. Bits above a port's width are ignored.
     inputs Inputs {
-        /// Synchronous reset: banks 1 and 2 are forgotten.
+        /// Synchronous reset; the contents of banks 1 and 2 are discarded.
         rst: Bit as bool;
-        /// One clock: `setting_word` goes to its bank and row.
+        /// One clock: writes `setting_word` to `setting_row` of `setting_bank`.
         setting_write: Bit as bool;
-        /// Bank that is written, 1 or 2.
+        /// Bank to write, 1 or 2, or to read back.
         setting_bank: Bits(2) as u8;
-        /// Row that is written.
+        /// Row to write or to read back.
         setting_row: Bits(4) as u8;
-        /// What is written.
+        /// Word to write.
         setting_word: Bits(32) as u32;
-        /// Bank that is read: 0 the machine's, 1 and 2 the loaded ones.
+        /// Bank that the controller reads: 0 is the machine's, 1 and 2 are the loaded ones.
         bank: Bits(2) as u8;
-        /// Row that is read.
+        /// Row that the controller reads.
         row: Bits(4) as u8;
-        /// The controller reads: a host's read waits.
+        /// The controller is reading, so a host's read waits.
         busy: Bit as bool;
-        /// One clock: the word at `setting_bank` and `setting_row` is to be read back.
+        /// One clock: read back the word at `setting_row` of `setting_bank`.
         setting_read: Bit as bool;
     }
 
     /// The output ports, all of them registers.
     outputs Outputs {
-        /// The word that was read, a clock after its bank and row.
+        /// The word read, one clock after its bank and row.
         setting: Bits(32) as u32;
         /// One clock: a write was refused.
         setting_refused: Bit as bool;
-        /// The word that the host read back last; 0 after reset.
+        /// Last word that the host read back; 0 after reset.
         setting_loaded: Bits(32) as u32;
-        /// A host's read was not served yet.
+        /// A host's read waits to be served.
         setting_read_waits: Bit as bool;
     }
 }
 
-/// The banks, cycle accurate at their ports.
+/// The cycle-accurate model of the setting banks.
 #[derive(Debug, Clone)]
 pub struct SettingBanks {
     machine: Settings,
-    /// Banks 1 and 2; `None` was not written since the reset.
+    /// Words of banks 1 and 2; `None` for a row that was not written since the reset.
     loaded: [Option<u32>; 2 * SETTINGS],
     setting: u32,
     refused: bool,
     read_back: u32,
     read_waits: bool,
-    /// `setting` is the host's word in this clock.
+    /// Whether `setting` is the host's word in this clock.
     served: bool,
 }
 
 impl SettingBanks {
-    /// After reset, with the machine's settings in bank 0.
+    /// The state after reset, with the machine's settings in bank 0.
     pub fn new(machine: &Settings) -> Self {
         Self {
             machine: *machine,
@@ -101,7 +103,7 @@ impl SettingBanks {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let shown = self.outputs();
         if inputs.rst {
@@ -169,7 +171,8 @@ mod tests {
 
     const MACHINE: u32 = 0x1111_0000;
 
-    /// What a host reads back of a bank, while the controller reads bank `bank` in every other while of 20 clocks.
+    /// Words that a host reads back from a bank while the controller reads bank `bank` in every other interval of 20
+    /// clocks.
     fn read_bank(banks: &mut SettingBanks, of: u8, bank: u8, clock: &mut u32) -> [u32; SETTINGS] {
         std::array::from_fn(|row| {
             let mut inputs = Inputs {
@@ -211,7 +214,7 @@ mod tests {
                 });
             }
         }
-        // Whichever is in use.
+        // This holds whichever bank is in use.
         for active in 0..3 {
             let mut read = |of| read_bank(&mut banks, of, active, &mut clock);
             assert_eq!(read(0), machine.0);

@@ -1,4 +1,4 @@
-//! The time base of a component that stands alone: ticks at a fixed distance, a clock counter, a tick counter.
+//! The time base of a component that stands alone: ticks at a fixed interval, a clock counter and a tick counter.
 //!
 //! ```text
 //! clock        0   1         T−1  T  T+1 T+2      after a reset
@@ -8,7 +8,8 @@
 //! tick_count  ------- 0 ---------< 1 -------     modulo 2^32
 //! ```
 //!
-//! `edge_stamp` is the lowest 24 bits of `time_stamp`, as the pulse counter wants them. All outputs are registers.
+//! `edge_stamp` is the lowest 24 bits of `time_stamp`, the width of the pulse counter's input. All outputs are
+//! registers.
 
 use super::divider::DividerConfig;
 use super::{Moore, OutputKind, clocked_block, ports};
@@ -37,7 +38,7 @@ ports! {
     }
 }
 
-/// The time base, cycle accurate at its ports.
+/// The cycle-accurate model of the time base.
 #[derive(Debug, Clone)]
 pub struct TimeBase {
     tick_clocks: u32,
@@ -49,7 +50,7 @@ pub struct TimeBase {
 }
 
 impl TimeBase {
-    /// A time base after reset, with the ticks of `divider`.
+    /// A time base after reset, with the clocks per tick of `divider`.
     pub fn new(divider: &DividerConfig) -> Self {
         Self {
             tick_clocks: divider.tick_clocks(),
@@ -71,7 +72,7 @@ impl TimeBase {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let shown = self.outputs();
         self.clock(inputs.rst);

@@ -1,4 +1,4 @@
-//! Command words: what a number of encoder counts is in the hardware's two's complement fixed point.
+//! Command words: encoder counts as two's complement fixed-point numbers of the hardware.
 //!
 //! ```
 //! use posicast_model::rtl::word::WordFormat;
@@ -12,35 +12,35 @@
 
 use fixed::types::I64F64;
 
-/// Signed, `bits` wide, the lowest `fraction` of them behind the point.
+/// A signed format of `bits` bits, the lowest `fraction` of which are behind the binary point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WordFormat {
     bits: u32,
     fraction: u32,
 }
 
-/// Why there is no such word.
+/// Why a command word cannot be made.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum WordError {
-    /// A format that no command has.
+    /// The format is not valid for a command.
     #[error("words of {bits} bits with {fraction} fraction bits: 2 to 32 bits, fewer fraction bits than bits")]
     Format {
-        /// Width found.
+        /// Width in bits.
         bits: u32,
-        /// Fraction bits found.
+        /// Number of fraction bits.
         fraction: u32,
     },
-    /// A number that the word does not hold.
+    /// The word does not hold the number.
     #[error(
         "{found} counts do not fit: words of {bits} bits with {fraction} fraction bits hold {smallest} to {largest}; \
          choose more bits or fewer fraction bits"
     )]
     Range {
-        /// The number.
+        /// The number in counts.
         found: f64,
-        /// Width.
+        /// Width in bits.
         bits: u32,
-        /// Fraction bits.
+        /// Number of fraction bits.
         fraction: u32,
         /// Smallest number that fits.
         smallest: f64,
@@ -61,10 +61,10 @@ impl WordFormat {
         Ok(Self { bits, fraction })
     }
 
-    /// The word nearest to `counts`; halfway, the larger one.
+    /// The word nearest to `counts`; halfway between two words, the larger one.
     ///
     /// # Errors
-    /// [`WordError::Range`] where no word is near: too large, or not a number.
+    /// [`WordError::Range`] for counts that are too large for the word, or not a number.
     pub fn to_word(self, counts: f64) -> Result<i64, WordError> {
         let (smallest, largest) = self.ends();
         I64F64::checked_from_num(counts)
@@ -81,7 +81,7 @@ impl WordFormat {
             })
     }
 
-    /// What a word stands for, exactly.
+    /// The counts that a word stands for, exactly.
     pub fn to_counts(self, word: i64) -> f64 {
         I64F64::from_bits(i128::from(word) << (I64F64::FRAC_NBITS - self.fraction)).to_num()
     }

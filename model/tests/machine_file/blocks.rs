@@ -1,9 +1,9 @@
-//! `[axis.encoder]`, `[axis.pwm]`, `[axis.drive]`, `[axis.controller]` and `modulo`: what they yield, what they refuse.
+//! `[axis.encoder]`, `[axis.pwm]`, `[axis.drive]`, `[axis.controller]` and `modulo`: accepted and refused values.
 
 use crate::machine_file::files::{SMALL, breaks, right, wrong};
 use posicast_model::machine_file::{Controller, DriveMode, Encoder, PwmMode};
 
-/// Every block of a torque axis, a key per line; its tables stand after those of [`SMALL`].
+/// Every block of a torque axis, one key per line; its tables stand after those of [`SMALL`].
 const BLOCKS: &str = r#"[axis.encoder]
 filter_clocks = 8
 index = true
@@ -56,7 +56,7 @@ fn unit_every_block_yields_its_values() {
     let pwm = axis.pwm.unwrap();
     assert_eq!((pwm.mode, pwm.active_low), (PwmMode::HalfBridge, true));
     assert_eq!(pwm.period_clocks(&machine.clock), 2500);
-    // 1.01 µs is 50.5 clocks: rounded up, never below what was asked.
+    // 1.01 µs are 50.5 clocks: rounded up, never below the requested time.
     assert_eq!(
         (
             pwm.dead_time_clocks(&machine.clock),
@@ -119,7 +119,7 @@ fn unit_the_pwm_fits_clock_and_sample() {
                     50000000 Hz and is a multiple of clock.sample_hz = 10000 Hz; the nearest is 20000";
     case("= 20_000", "= 25_000", expected);
     let short = with_blocks().replace("= 20_000", "= 200_000");
-    // 1.48 µs and 1.01 µs are 74 and 51 clocks: a leg of a period of 250 clocks that is late once would stay late.
+    // 1.48 µs and 1.01 µs are 74 and 51 clocks: in a period of 250 clocks, a leg that is late once would stay late.
     let expected = "m.toml:21: axis.pwm.dead_time_s of axis x: found 250 clocks, twice the dead time and the minimum pulse; \
                     allowed: below 250 clocks, the PWM period";
     assert_eq!(wrong(&short.replace("500e-9", "1.48e-6")).to_string(), expected);

@@ -1,4 +1,5 @@
-//! Errors of one key: syntax, unknown, missing, wrong type, out of range, no such word, bad or double name.
+//! Errors of one key: syntax, unknown key, missing key, wrong type, out of range, unknown word, invalid or duplicate
+//! name.
 
 use crate::machine_file::files::{SMALL, breaks, built_kinds, wrong};
 use posicast_model::machine_file::ProblemCause;
@@ -177,7 +178,7 @@ fn unit_names_that_verilog_cannot_hold_are_refused() {
 fn unit_axis_names_are_unique_and_axes_at_most_four() {
     let axis = &SMALL[SMALL.find("[[axis]]").unwrap()..];
     let twice = format!("{SMALL}{axis}");
-    let expected = "m.toml:16: axis.name of axis x: found \"x\", which line 8 already has; allowed: every axis has a name of its own";
+    let expected = "m.toml:16: axis.name of axis x: found \"x\", which line 8 already has; allowed: every axis must have a different name";
     assert_eq!(wrong(&twice).to_string(), expected);
     let beside_x = format!("{SMALL}{}", axis.replace("\"x\"", "\"u\""));
     let expected = "m.toml:16: axis.name of axis u: found \"u\"; allowed: not `u` where another axis is `x` or `y`";

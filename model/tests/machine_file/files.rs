@@ -1,4 +1,4 @@
-//! The files that the tests read and break.
+//! The files that the tests read and modify.
 
 use posicast_model::design::kind::ShaperKind;
 use posicast_model::machine_file::{self, Machine, SpecError};
@@ -8,10 +8,10 @@ pub(crate) const GANTRY: &str = include_str!("../../../examples/gantry.toml");
 pub(crate) const ROBOT_JOINT: &str = include_str!("../../../examples/robot-joint.toml");
 pub(crate) const CUSTOM_SHAPER: &str = include_str!("../../../examples/custom-shaper.toml");
 pub(crate) const CONTOURING_STAGE: &str = include_str!("../../../examples/contouring-stage.toml");
-/// The whole schema, every optional key included.
+/// A file with the whole schema, every optional key included.
 pub(crate) const EVERYTHING: &str = include_str!("everything.toml");
 
-/// A right file of one axis, a key per line, that the tests break in one place each.
+/// A valid file of one axis, one key per line, which the tests change in one place each.
 pub(crate) const SMALL: &str = r#"name = "slide"
 [clock]
 frequency_hz = 50_000_000
@@ -28,7 +28,7 @@ frequency_hz = 40.0
 damping = 0.1
 "#;
 
-/// The names of the kinds that this version builds, as messages list them.
+/// Returns the names of the kinds that this version builds, as messages list them.
 pub(crate) fn built_kinds(wanted: impl Fn(ShaperKind) -> bool) -> String {
     let built = ShaperKind::ALL
         .iter()
@@ -36,12 +36,12 @@ pub(crate) fn built_kinds(wanted: impl Fn(ShaperKind) -> bool) -> String {
     built.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
 }
 
-/// The machine of a right file.
+/// Returns the machine of a valid file.
 pub(crate) fn right(text: &str) -> Machine {
     machine_file::parse("m.toml", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The error of a wrong file.
+/// Returns the error of an invalid file.
 pub(crate) fn wrong(text: &str) -> SpecError {
     machine_file::parse("m.toml", text).expect_err("the file is wrong")
 }

@@ -1,15 +1,15 @@
-//! Remedies: what a wrong value most likely stands for, and the word that a misspelt one was meant to be.
+//! Remedies: what a wrong value most likely means, and the word that a misspelt one was meant to be.
 
 use crate::machine_file::files::{SMALL, wrong};
 
-/// The remedies for a file that has `from` replaced by `to`, line by line.
+/// Returns the remedies, with their lines, for a file that has `from` replaced by `to`.
 fn remedies(from: &str, to: &str) -> Vec<(usize, String)> {
     assert!(SMALL.contains(from), "{from}");
     let error = wrong(&SMALL.replace(from, to));
     error.problems().iter().map(|p| (p.line, p.remedy.clone())).collect()
 }
 
-/// The one remedy.
+/// Returns the only remedy.
 fn remedy(from: &str, to: &str) -> (usize, String) {
     let mut found = remedies(from, to);
     assert_eq!(found.len(), 1, "{found:?}");
@@ -33,7 +33,7 @@ fn unit_a_sample_rate_in_kilohertz_is_asked_for() {
         "10 kHz? Frequencies are in Hz: write `sample_hz = 10_000`".to_owned(),
     );
     assert_eq!(remedy("sample_hz = 10_000", "sample_hz = 10"), expected);
-    // Of a clock of 50 Hz too, 10 Hz are a divisor: only the mode finds that they are too few.
+    // 10 Hz also divide a clock of 50 Hz: only the mode shows that they are too few.
     let slow = "frequency_hz = 50\nsample_hz = 10\n";
     let (line, remedy) = remedy("frequency_hz = 50_000_000\nsample_hz = 10_000\n", slow);
     assert_eq!(line, 13);

@@ -1,4 +1,4 @@
-//! `[axis.limits]`, `[axis.scale]`, `[axis.trace]` and `[stage]`: what they yield, what they refuse.
+//! `[axis.limits]`, `[axis.scale]`, `[axis.trace]` and `[stage]`: accepted and refused values.
 
 use crate::machine_file::files::{EVERYTHING, SMALL, right, wrong};
 use posicast_model::machine_file::{LimitsSection, Scale, ScaleUse, StageSection, TraceSection};
@@ -56,7 +56,8 @@ fn unit_what_is_left_out_has_its_default() {
     assert_eq!(machine.axes[0].limits, Some(LimitsSection::default()));
     assert_eq!((machine.axes[0].scale, machine.axes[0].trace), (None, None));
     assert_eq!(machine.stage, None);
-    // Bits 0 and 1 always; drive lost, following error, deviation, encoder lost and in error, schedule.
+    // Bits 0 and 1 are always set; the others are drive lost, following error, deviation, encoder lost and in error,
+    // schedule.
     assert_eq!(LimitsSection::default().off_causes, 0b1000_1101_1000_0111);
     let monitor = right(&EVERYTHING.replace("use = \"monitor\"\n", "")).axes[0].scale;
     assert_eq!(monitor.unwrap().usage, ScaleUse::Monitor);
@@ -129,7 +130,7 @@ fn unit_the_loop_counts_with_the_counter_that_it_runs_on() {
     assert_eq!(counts(EVERYTHING), 1e6);
     let position = EVERYTHING.replace("\"monitor\"", "\"position\"");
     assert_eq!(counts(&position), 10e6);
-    // ±0.1 m are a million counts of the scale, ±1 m too many.
+    // ±0.1 m are a million counts of the scale, ±1 m are too many.
     let error = wrong(&position.replace("[-0.1, 0.1]", "[-1.0, 1.0]"));
     assert!(
         error.to_string().contains("a travel of up to 10000000 counts"),

@@ -1,8 +1,9 @@
-//! `[axis.mechanics]`: a mode from the data sheets of a screw. Figures are those of the notes on the XY stage, sections 4 and 7.
+//! `[axis.mechanics]`: a mode from the data sheets of a screw. The figures are those of the notes on the XY stage,
+//! sections 4 and 7.
 
 use crate::machine_file::files::{SMALL, right, wrong};
 
-/// X of the XY stage; the damping is that of its identified mode.
+/// Axis X of the XY stage; the damping is that of its identified mode.
 const SCREW: &str = "[axis.mechanics]
 lead_m = 0.005
 screw_diameter_m = 0.012
@@ -27,7 +28,7 @@ current_limit_a = 2.73
 full_scale_a = 3.0
 ";
 
-/// The small file with other tables in the place of its mode.
+/// Returns the small file with other tables instead of its mode.
 fn with(tables: &str) -> String {
     let (head, _) = SMALL.split_once("[[axis.mode]]").unwrap();
     format!("{head}{tables}")
@@ -37,14 +38,14 @@ fn with(tables: &str) -> String {
 fn golden_the_mode_of_the_xy_stage_follows_from_its_data() {
     let machine = right(&with(SCREW));
     let axis = &machine.axes[0];
-    // The notes' 34.2066 N/µm goes on from a stiffness that is printed as 36.44; it is 36.4412.
+    // The notes' 34.2066 N/µm follow from a stiffness that is printed as 36.44; it is 36.4412.
     assert!((axis.mechanics.unwrap().stiffness() / 1e6 - 34.2076).abs() < 1e-4);
     assert_eq!(axis.modes.len(), 1);
     let held = axis.modes[0].mode;
-    // √(34.2076e6 N/m / 50 kg) / 2π
+    // The expected value is √(34.2076e6 N/m / 50 kg) / 2π.
     assert!((held.frequency_hz - 131.6426).abs() < 2e-4, "{held:?}");
     assert!((held.damping - 0.157799066).abs() < 1e-12);
-    // 14.274 kg of motor and screw at the table: √(1 + 50/14.274) times both.
+    // With 14.274 kg of motor and screw at the table, both grow by √(1 + 50/14.274).
     let machine = right(&with(&format!("{SCREW}{TORQUE}")));
     let free = machine.axes[0].modes[0].mode;
     let ratio = (1.0 + 50.0 / 14.2737f64).sqrt();
@@ -121,7 +122,7 @@ fn unit_mechanics_that_cannot_be_are_refused_by_their_key() {
         let error = replaced(from, to);
         assert!(error.contains(expected), "{error}");
     }
-    // What rings with the motor held and not with it free.
+    // This mode rings with the motor held and not with it free.
     let text = SCREW.replace("0.157799066", "0.6");
     right(&with(&text));
     let error = wrong(&with(&format!("{text}{TORQUE}")));

@@ -1,4 +1,4 @@
-//! The machine file as its users meet it.
+//! Tests of the machine file from its users' point of view.
 
 mod blocks;
 mod error_table;

@@ -1,4 +1,4 @@
-//! No text makes the parser panic, and every refusal names a place inside the file.
+//! No text makes the parser panic, and every error names a place inside the file.
 
 use posicast_model::machine_file;
 use proptest::prelude::*;
@@ -14,7 +14,7 @@ const FILES: [&str; 6] = [
     EVERYTHING,
 ];
 
-/// Values that break things: the ends of every number type, nothing at all, and every other type.
+/// Values that often break parsers: the ends of every number type, an empty value, and every other type.
 const VALUES: [&str; 24] = [
     "",
     "0",

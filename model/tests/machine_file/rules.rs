@@ -1,4 +1,4 @@
-//! Errors of keys that are right alone and wrong together.
+//! Errors of keys that are each valid but contradict each other.
 
 use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
 

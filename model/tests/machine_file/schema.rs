@@ -1,4 +1,4 @@
-//! The JSON Schema says what the reader does, and the committed one is that of this version.
+//! The JSON Schema agrees with the reader, and the committed one is that of this version.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Every key below a table of the schema, with the keys that lead to it.
+/// Collects every key below a table of the schema, with the keys that lead to it.
 fn keys(table: &Value, path: &[String], found: &mut Vec<(Vec<String>, Value)>) {
     for (name, key) in table["properties"].as_object().unwrap() {
         let path: Vec<String> = path.iter().cloned().chain([name.clone()]).collect();
@@ -30,7 +30,7 @@ fn all_keys() -> Vec<(Vec<String>, Value)> {
     found
 }
 
-/// The file with every block, with one key replaced; of several axes or modes the first.
+/// Returns the file with every block, with one key replaced; of several axes or modes, the first.
 fn everything_with(path: &[String], value: toml::Value) -> toml::Table {
     let mut file: toml::Table = toml::from_str(EVERYTHING).unwrap();
     let (last, tables) = path.split_last().unwrap();
@@ -51,7 +51,7 @@ fn everything_with(path: &[String], value: toml::Value) -> toml::Table {
     file
 }
 
-/// Values that the schema refuses for a key.
+/// Returns values that the schema refuses for a key.
 fn refused(key: &Value) -> Vec<toml::Value> {
     if let Some(forms) = key["anyOf"].as_array() {
         return forms.iter().flat_map(refused).collect();

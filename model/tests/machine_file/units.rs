@@ -1,4 +1,5 @@
-//! `unit` of `[[axis]]`: the same machine in other units is the same machine, and problems are told in the file's unit.
+//! `unit` of `[[axis]]`: the same machine in other units is the same machine, and problems are reported in the file's
+//! unit.
 
 use crate::machine_file::files::{EVERYTHING, SMALL, breaks, right, wrong};
 use posicast_model::control::{ControlWarning, gains, supervision};
@@ -25,14 +26,14 @@ const KEYS: [(&str, i32); 13] = [
     ("unit", 0),
 ];
 
-/// A number as an engineer would write it in another unit.
+/// Converts a number to the text that an engineer would write in another unit.
 fn converted(number: &str, factor: f64) -> String {
     let number: f64 = number.trim().replace('_', "").parse().unwrap();
     let text = format!("{:.12e}", number * factor);
     text.parse::<f64>().unwrap().to_string()
 }
 
-/// A file in m, with all that is in the axis's unit in another one.
+/// Returns a file in m, with everything that is in the axis's unit converted to another one.
 fn in_unit(text: &str, unit: AxisUnit) -> String {
     let mut lines = Vec::new();
     for line in text.lines().filter(|line| !line.starts_with("unit = ")) {
@@ -64,7 +65,7 @@ fn in_unit(text: &str, unit: AxisUnit) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The machine with another unit's name.
+/// Returns the machine with another unit's name.
 fn named(mut machine: Machine, unit: AxisUnit) -> Machine {
     machine.axes.iter_mut().for_each(|axis| axis.unit = unit);
     machine
@@ -95,7 +96,8 @@ fn unit_every_unit_gives_the_same_tables_gains_and_words() {
     for (unit, _) in AxisUnit::ALL {
         let mut found = stage(&right(&in_unit(text, unit)));
         for (found, expected) in found.1.axes.iter_mut().zip(&metres.1.axes) {
-            // The relative error of the ratio is in no register; the last digits of the converted numbers are in it.
+            // The relative error of the ratio is not in a register, but includes the last digits of the converted
+            // numbers.
             let words = |scale: &StageScale| (scale.ratio.mantissa(), scale.ratio.shift());
             assert_eq!(
                 found.scale.as_ref().map(words),
@@ -163,7 +165,7 @@ fn unit_warnings_of_a_controller_have_the_figures_of_the_file() {
         Some(Controller::SlidingMode { epsilon: 0.5, .. })
     ));
     let mode = axis.drive.as_ref().unwrap().mode;
-    // What is in SI in every file.
+    // These are in SI units in every file.
     assert!(matches!(
         mode,
         DriveMode::Torque {

@@ -1,4 +1,4 @@
-//! What a right file yields: the examples, defaults, and the effective values of each mode.
+//! Values of a valid file: the examples, defaults, and the effective values of each mode.
 
 use crate::machine_file::files::{CUSTOM_SHAPER, GANTRY, ROBOT_JOINT, SMALL, XY_STAGE, right};
 use posicast_model::design::kind::ShaperKind;

@@ -17,7 +17,7 @@ pub(crate) const TORQUE: &str = include_str!("../../../examples/xy-stage-torque.
 const TICK_CLOCKS: u32 = 5_000;
 const PERIOD_CLOCKS: i32 = 2_500;
 
-/// The machine of an example, with its shapers or without.
+/// Returns the machine of an example, with its shapers or without.
 pub(crate) fn machine(text: &str, shaped: bool) -> Machine {
     let mut machine = machine_file::parse("example.toml", text).unwrap_or_else(|error| panic!("{error:?}"));
     if !shaped {
@@ -28,21 +28,21 @@ pub(crate) fn machine(text: &str, shaped: bool) -> Machine {
     machine
 }
 
-/// How closely the hardware is simulated.
+/// Level of detail of the simulated hardware.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Pace {
-    /// PWM and pulse counter clock by clock.
+    /// PWM and pulse counter are simulated clock by clock.
     Clocks,
-    /// Ideal pulses, the plant's own count, and velocities by counts per tick.
+    /// Pulses are ideal, the count is that of the plant, and velocities are counts per tick.
     Ticks,
 }
 
-/// What is written down at a tick.
+/// Values recorded at a tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
-    /// Shaped reference, counts.
+    /// Shaped reference in counts.
     pub(crate) reference: f64,
-    /// The unshaped command has ended.
+    /// Whether the unshaped command has ended.
     pub(crate) ended: bool,
     pub(crate) machine: AxisMotion,
 }
@@ -58,11 +58,11 @@ pub(crate) struct Chain {
     pwm: Pwm,
     pub(crate) pwm_inputs: pwm::Inputs,
     pub(crate) counter: PulseCounter,
-    /// Indices that were latched.
+    /// Number of latched indices.
     pub(crate) indices: u32,
     counter_inputs: pulse_counter::Inputs,
     pub(crate) plant: AxisPlant,
-    /// Drive enabled, brake open.
+    /// Whether the drive is enabled and the brake released.
     pub(crate) powered: bool,
     count_before: i64,
     duty: i32,
@@ -125,7 +125,7 @@ impl Chain {
         }
     }
 
-    /// With the feedback `factor` times as strong.
+    /// Makes the feedback `factor` times as strong.
     pub(crate) fn with_feedback(mut self, factor: f64) -> Self {
         let rows = [
             SettingRow::Damping,
@@ -143,7 +143,8 @@ impl Chain {
         self
     }
 
-    /// Holds the place this many counts away from where it stands: the load's distance from there, counts, at each tick.
+    /// Holds a position this many counts away from the current one. Returns the load's distance from it in counts, at
+    /// each tick.
     pub(crate) fn hold(&mut self, counts: i32, ticks: u32) -> Vec<f64> {
         let distances = (0..ticks).map(|_| {
             self.tick_at_once([counts << 8, 0, 0]);
@@ -152,7 +153,7 @@ impl Chain {
         distances.collect()
     }
 
-    /// Plays entries from rest at 0, and so many ticks at their end.
+    /// Plays entries from rest at 0, and this many ticks after their end.
     pub(crate) fn play(&mut self, entries: &[Entry], settle_ticks: u32) -> Vec<Sample> {
         let mut at = Integrator::default();
         let ticks = entries
@@ -178,7 +179,7 @@ impl Chain {
         samples.collect()
     }
 
-    /// A clock of the hardware and of the machine.
+    /// Advances hardware and machine by a clock.
     pub(crate) fn clock(&mut self) {
         let lines = self.plant.encoder();
         (self.counter_inputs.a, self.counter_inputs.b, self.counter_inputs.z) = (lines.a, lines.b, lines.z);
@@ -196,7 +197,7 @@ impl Chain {
         self.plant.clocks(pins, 1);
     }
 
-    /// From the tick on: capture, divide, control, and the new duty at the PWM's next boundary.
+    /// Runs what follows a tick: capture, divide, control, and the new duty at the PWM's next boundary.
     fn tick_by_clocks(&mut self, shaped: [i32; 3]) {
         let position = self.counter.outputs().position;
         (self.counter_inputs.tick, self.pwm_inputs.sync) = (true, true);
@@ -227,7 +228,7 @@ impl Chain {
         self.pulse();
     }
 
-    /// A period of the PWM with its duty: on one way in the middle, on the other way before and after.
+    /// Plays a period of the PWM with its duty: one polarity in the middle, the other before and after.
     fn pulse(&mut self) {
         let on = ((PERIOD_CLOCKS + self.duty) / 2).clamp(0, PERIOD_CLOCKS) as u64;
         let rest = PERIOD_CLOCKS as u64 - on;

@@ -1,9 +1,9 @@
-//! The computed stability margins against the simulated machine.
+//! The computed stability margins compared with the simulated machine.
 
 use crate::plant_in_loop::chain::{Chain, Pace, TORQUE, VELOCITY, machine};
 use posicast_model::control::{ControlError, DEFAULT_MARGIN, gains, loop_lag_s, sampled::SampledLoop};
 
-/// 5 kg behind a current drive, on a mode of 25 Hz that is lightly damped: what the lag alone allows is unstable.
+/// 5 kg on a current drive, with a lightly damped mode of 25 Hz: gains that the lag alone would allow are unstable.
 const SOFT: &str = r#"
 name = "soft_axis"
 [clock]
@@ -34,20 +34,20 @@ bandwidth_hz = 1000
 kind = "pd"
 "#;
 
-/// A run of the simulated loop: how long, and how many counts from its place at first.
+/// A run of the simulated loop: its duration, and the initial distance from its position in counts.
 #[derive(Clone, Copy)]
 struct Run {
     ticks: u32,
     away: i32,
-    /// Swings of so many counts are the encoder's steps.
+    /// Swings of up to this many counts are the encoder's steps.
     steps: f64,
 }
 
-/// Whether the simulated loop swings no less in the end than before.
+/// Returns whether the simulated loop swings at the end at least as much as before.
 fn swings(text: &str, factor: f64, run: Run) -> bool {
     let mut chain = Chain::new(&machine(text, true), 0, 1.0, Pace::Ticks).with_feedback(factor);
     let distances = chain.hold(run.away, run.ticks);
-    // A part of a period apart: what swings, not what settles.
+    // The two windows are a part of a period apart, so that they show what swings, not what settles.
     let apart = run.ticks as usize / 300;
     let swing = |part: &[f64]| {
         let pairs = part.iter().zip(&part[apart..]);
@@ -60,7 +60,7 @@ fn swings(text: &str, factor: f64, run: Run) -> bool {
 
 #[test]
 fn golden_the_gain_margin_is_where_the_simulated_loop_begins_to_swing() {
-    // Without what is not linear: friction, and a boundary layer as narrow as the swing.
+    // Without nonlinear effects: friction, and a boundary layer as narrow as the swing.
     let linear = [
         ("coulomb = 40.0", "coulomb = 0.0"),
         ("epsilon = 4.0", "epsilon = 40.0"),
@@ -130,7 +130,7 @@ fn unit_gains_that_the_machine_does_not_bear_are_an_error_with_the_margin() {
         let axis = &machine.axes[0];
         gains(axis, machine.clock, loop_lag_s(axis.drive.as_ref().unwrap(), 150e-6))
     };
-    // What the lag alone gave: derivative 0.4/lag.
+    // The lag alone would give a derivative gain of 0.4/lag.
     let error = derive("proportional = 418_000\nderivative = 1293").unwrap_err();
     let ControlError::Unstable {
         gain_margin_db: Some(margin),

@@ -15,27 +15,27 @@ use posicast_model::plant::axis::{ErrorFigures, contour_error, residual_vibratio
 use posicast_model::plant::response::response_figures;
 use posicast_model::rtl::segments::Entry;
 
-/// µm per m.
+/// Number of µm per m.
 const MICRO: f64 = 1e6;
-/// Longest shaper of the examples, in ticks: 10.85 ms and a tap.
+/// Longest shaper of the examples in ticks: 10.85 ms and one tap.
 const SHAPER_TICKS: usize = 110;
 
-/// 5 mm with limits per s, s², s³.
+/// Returns a move of 5 mm with these limits per s, s², s³.
 fn move_of(velocity: f64, acceleration: f64, jerk: f64) -> Vec<Entry> {
     plan_move(0, 5_000 << 8, &TickLimits::new(velocity, acceleration, jerk, 1e6, 1e4)).unwrap()
 }
 
-/// The trapezoid of the notes, 8.5: 0.2 m/s, 8 m/s², its jerk a tick long.
+/// Returns the trapezoid of the notes, section 8.5: 0.2 m/s, 8 m/s², its jerk one tick long.
 fn trapezoid() -> Vec<Entry> {
     move_of(0.2, 8.0, 80_000.0)
 }
 
-/// The move of the examples' limits.
+/// Returns the move with the limits of the examples.
 fn smooth() -> Vec<Entry> {
     move_of(0.25, 8.0, 400.0)
 }
 
-/// Distance of the load from 5 mm, in µm, from so many ticks after the end of the unshaped command on.
+/// Returns the distance of the load from 5 mm in µm, beginning this many ticks after the end of the unshaped command.
 fn residual(samples: &[Sample], after_ticks: usize) -> ErrorFigures {
     let end = samples.iter().position(|sample| sample.ended).unwrap() + after_ticks;
     let load: Vec<f64> = samples[end..]
@@ -45,7 +45,7 @@ fn residual(samples: &[Sample], after_ticks: usize) -> ErrorFigures {
     residual_vibration(&load, 5_000.0)
 }
 
-/// Distance of what the encoder sees from the shaped reference, µm.
+/// Returns the distance of what the encoder sees from the shaped reference in µm.
 fn tracking(samples: &[Sample], seen: impl Fn(&Sample) -> f64) -> ErrorFigures {
     let references: Vec<f64> = samples.iter().map(|sample| sample.reference).collect();
     let positions: Vec<f64> = samples.iter().map(|sample| seen(sample) * MICRO).collect();
@@ -60,7 +60,7 @@ fn run(text: &str, axis: usize, shaped: bool, factor: f64, pace: Pace, entries: 
 
 #[test]
 fn golden_the_trapezoid_of_the_notes_rings_without_shaper_and_not_with_it() {
-    // Notes 8.5 for X: 11.0 µm unshaped, 0 with ZVD; the loop adds the steps of its encoder.
+    // Notes 8.5 give for X 11.0 µm unshaped and 0 with ZVD; the loop adds the steps of its encoder.
     for (axis, notes) in [(0, Some(11.0)), (1, None)] {
         let plant = Plant::of_axis(&machine(VELOCITY, false).axes[axis]).unwrap();
         let closed = response_figures(&plant, &Trajectory::trapezoid(0.005, 0.2, 8.0).unwrap());
@@ -110,7 +110,8 @@ fn unit_sliding_mode_follows_in_spite_of_friction_and_does_not_chatter() {
         let (chain, samples) = run(TORQUE, axis, true, 1.0, Pace::Clocks, &smooth());
         let seen = tracking(&samples, |sample| sample.machine.load);
         assert!(seen.peak < 7.0 && seen.rms < 5.0, "axis {axis}: {seen:?}");
-        // Friction holds it where the law gives less than friction: within the steady error of the notes, and a count.
+        // Friction holds it where the law gives less than friction: within the steady error of the notes, and one
+        // count.
         let left = residual(&samples, 300);
         let allowed = chain.derived.steady_error * MICRO + 1.0;
         assert!(left.peak < allowed, "axis {axis}: {left:?}, {allowed} allowed");
@@ -155,7 +156,8 @@ fn unit_a_stop_in_the_middle_loses_no_count() {
     }
 }
 
-/// Contour error in µm of a circle of 10 mm at 0.1 m/s, with X as it is and with X later by so many ticks.
+/// Returns the contour error in µm of a circle of 10 mm at 0.1 m/s, with X as it is and with X later by this many
+/// ticks.
 fn circle(shaped: bool, x_later_ticks: f64) -> [ErrorFigures; 2] {
     const RADIUS: f64 = 10_000.0;
     let limits = TickLimits::new(0.1, 1.0, 100.0, 1e6, 1e4);
@@ -173,7 +175,7 @@ fn circle(shaped: bool, x_later_ticks: f64) -> [ErrorFigures; 2] {
             let (whole, part) = (later.floor() as usize, later.fract());
             x[tick - whole] * (1.0 - part) + x[tick - whole - 1] * part
         };
-        // From when the shapers are full; the first of the path is at rest.
+        // The points begin when the shapers are full; the first of the path is at rest.
         let points: Vec<(f64, f64)> = (SHAPER_TICKS..x.len()).map(|tick| (x_at(tick), y[tick])).collect();
         contour_error(&points, (-RADIUS, 0.0), RADIUS)
     })
@@ -181,7 +183,8 @@ fn circle(shaped: bool, x_later_ticks: f64) -> [ErrorFigures; 2] {
 
 #[test]
 fn golden_the_circle_is_as_wrong_as_the_delays_differ() {
-    // Notes 6, tangential start: 9.2 µm unshaped, 71.1 µm with ZVD, 4.2 µm with ZVD and delays d = Σ A t + 2ζ/ω made equal.
+    // Notes 6, tangential start: 9.2 µm unshaped, 71.1 µm with ZVD, 4.2 µm with ZVD and the delays d = Σ A t + 2ζ/ω
+    // made equal.
     let [unshaped, _] = circle(false, 0.0);
     let [apart, matched] = circle(true, 13.54);
     for (found, notes) in [(unshaped, 9.2), (apart, 71.1), (matched, 4.2)] {

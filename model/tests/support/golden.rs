@@ -1,8 +1,8 @@
-//! Reading numbers that were computed elsewhere.
+//! Reads numbers that were computed elsewhere.
 
 use serde_json::Value;
 
-/// The list under `key` of a JSON text.
+/// Returns the list under `key` of a JSON text.
 pub(crate) fn rows(text: &str, key: &str) -> Vec<Value> {
     let document: Value = serde_json::from_str(text).unwrap();
     document[key].as_array().unwrap().clone()

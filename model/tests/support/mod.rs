@@ -8,7 +8,8 @@ pub(crate) mod wrong;
 
 use posicast_model::machine_file::{Machine, parse};
 
-/// One axis `x` at `sample_hz`: `shaper` are the lines under `[axis.shaper]`, each mode frequency, damping, further lines.
+/// Returns one axis `x` at `sample_hz`: `shaper` has the lines under `[axis.shaper]`; each mode has a frequency, a
+/// damping and further lines.
 pub(crate) fn machine(sample_hz: u32, digitise: &str, shaper: &str, modes: &[(f64, f64, &str)]) -> Machine {
     let clock_hz = sample_hz * 1000;
     let mut text = format!(
@@ -21,7 +22,7 @@ pub(crate) fn machine(sample_hz: u32, digitise: &str, shaper: &str, modes: &[(f6
     parse("test.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// `kind = "…"` with the tolerance that EI kinds take.
+/// Returns `kind = "…"` with the tolerance that EI kinds need.
 pub(crate) fn shaper(kind: &str, tolerance: f64) -> String {
     let tolerance = if kind.ends_with("ei") {
         format!("tolerance = {tolerance:?}")

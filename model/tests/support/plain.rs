@@ -1,9 +1,9 @@
-//! Every block in every clock: what a composition means, without leaving anything out.
+//! Every block in every clock: the reference for a composition, without skipping anything.
 
 use posicast_model::rtl::composition::{Composition, Connection};
 use posicast_model::rtl::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 
-/// A block, what its inputs are connected to, and the nets of its outputs, with their kinds.
+/// A block, the nets of its inputs, and the nets of its outputs with their kinds.
 struct Part {
     block: Box<dyn Moore>,
     inputs_from: Vec<Connection>,
@@ -13,7 +13,7 @@ struct Part {
 }
 
 impl Part {
-    /// Its inputs, from the nets.
+    /// Reads its inputs from the nets.
     fn read(&mut self, nets: &[u64]) {
         for (input, from) in self.inputs.iter_mut().zip(&self.inputs_from) {
             *input = match from {
@@ -23,7 +23,7 @@ impl Part {
         }
     }
 
-    /// Its outputs, onto the nets.
+    /// Writes its outputs to the nets.
     fn put(&self, nets: &mut [u64]) {
         for ((net, _), value) in self.outputs_to.iter().zip(&self.outputs) {
             nets[*net] = *value;
@@ -31,7 +31,7 @@ impl Part {
     }
 }
 
-/// A composition, clocked block by block.
+/// A composition that is clocked block by block.
 pub(crate) struct Plain {
     composition: Composition,
     parts: Vec<Part>,
@@ -88,7 +88,7 @@ impl ClockedBlock for Plain {
     }
 }
 
-/// As a part of another, it says that it is never quiet.
+/// As a part of another composition, it reports that it is never quiet.
 impl Moore for Plain {
     fn show(&self, outputs: &mut [u64]) {
         let mut nets = self.nets.clone();
@@ -110,7 +110,7 @@ impl Moore for Plain {
         outputs.find(|(to, _)| Some(*to) == net).unwrap().1
     }
 
-    /// Registers first, then, part after part, what depends on inputs.
+    /// Updates registers first, then, part after part, what depends on inputs.
     fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
         self.nets[..inputs.len()].copy_from_slice(inputs);
         for part in &mut self.parts {

@@ -1,4 +1,4 @@
-//! Random inputs for any block: held for a while, strobes rare, with values that get somewhere.
+//! Random inputs for any block: held for a while, with rare strobes and values that reach deep states.
 
 use posicast_model::rtl::{Direction, Port};
 
@@ -23,13 +23,13 @@ impl Random {
     }
 }
 
-/// Values of an input, by its name: one of them is taken.
+/// Values of an input, by its name; one of them is taken.
 pub(crate) type Hints = &'static [(&'static str, &'static [u64])];
 
-/// Clocks per tick: a pass of the controller fits.
+/// Number of clocks per tick; a pass of the controller fits.
 pub(crate) const TICK_CLOCKS: u64 = 800;
 
-/// What random inputs of a stage and its axes are to be, so that axes move and stop.
+/// Values of the inputs of a stage and its axes, chosen such that axes move and stop.
 pub(crate) const STAGE: Hints = &[
     ("write", &[0, 1]),
     ("word", &[0, 1, 2, 3, 3]),
@@ -39,7 +39,7 @@ pub(crate) const STAGE: Hints = &[
     ("clear_flags", &[1]),
     ("tap_write", RARE),
     ("swap", RARE),
-    // One line moves: no step is illegal.
+    // Only one line moves, so that no step is illegal.
     ("a", &[0, 1]),
     ("b", &[0]),
     ("differential", &[0]),
@@ -48,7 +48,7 @@ pub(crate) const STAGE: Hints = &[
     ("divide", RARE),
     ("feed_hold", RARE),
     ("line_mode", &[0]),
-    // Positions are anything: not modulo, they would always be out of range.
+    // Positions are arbitrary: without modulo they would always be out of range.
     ("modulo", &[1]),
     ("emergency_stop_n", USUAL),
     ("limit_plus_n", &[1]),
@@ -105,7 +105,7 @@ pub(crate) struct RandomInputs {
 }
 
 impl RandomInputs {
-    /// Of these ports, the inputs.
+    /// Creates the inputs among these ports.
     pub(crate) fn new(ports: &[Port], hints: Hints) -> Self {
         let inputs = ports.iter().filter(|port| port.direction == Direction::Input);
         let ports: Vec<Port> = inputs.cloned().collect();

@@ -1,4 +1,4 @@
-//! A stage of what there is: a time base and two axes, each a composition of its own.
+//! A stage of existing blocks: a time base and two axes, each of them a composition.
 
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::composition::{Composition, Part};
@@ -16,7 +16,7 @@ use posicast_model::taps::{Tap, TapTable};
 /// A part: its name, its block, and the nets of ports that are not on the net of their own name.
 pub(crate) type Joined = (String, Box<dyn Moore>, Vec<(String, String)>);
 
-/// Joins blocks. What nothing drives is an input of the whole, what nothing reads an output.
+/// Joins blocks. A net without a driver is an input of the whole, a net without a reader an output.
 pub(crate) fn join(blocks: Vec<Joined>) -> (Composition, Vec<Box<dyn Moore>>) {
     let (mut read, mut driven) = (Vec::new(), Vec::new());
     for (_, block, nets) in &blocks {
@@ -84,7 +84,7 @@ pub(crate) fn pwm_config() -> PwmConfig {
     PwmConfig::new(ActiveLow::default(), 2, 3).unwrap()
 }
 
-/// An axis with ticks of so many clocks: its composition, and the models of its blocks.
+/// Returns an axis with ticks of this many clocks: its composition, and the models of its blocks.
 pub(crate) fn axis(tick_clocks: u64) -> (Composition, Vec<Box<dyn Moore>>) {
     join(vec![
         joined(
@@ -167,7 +167,7 @@ pub(crate) fn axis(tick_clocks: u64) -> (Composition, Vec<Box<dyn Moore>>) {
             &[
                 ("enable", "pwm_enable"),
                 ("duty", "pwm_duty"),
-                // An output that depends on an input: `low` follows `low_water`.
+                // This output depends on an input: `low` follows `low_water`.
                 ("feed", "low"),
                 ("sync", "tick"),
                 ("mode", "pwm_mode"),
@@ -192,7 +192,7 @@ pub(crate) fn axis(tick_clocks: u64) -> (Composition, Vec<Box<dyn Moore>>) {
     ])
 }
 
-/// A time base and two axes with pins of their own; `make` makes a block of an axis.
+/// Returns a time base and two axes with pins of their own; `make` makes a block of an axis.
 pub(crate) fn stage(
     tick_clocks: u64,
     make: impl Fn((Composition, Vec<Box<dyn Moore>>)) -> Box<dyn Moore>,

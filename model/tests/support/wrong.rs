@@ -1,8 +1,8 @@
-//! Blocks that say something wrong of their quiet clocks, for tests that must find it.
+//! Blocks that report their quiet clocks wrongly, for tests that must detect it.
 
 use posicast_model::rtl::{ClockedBlock, Moore, OutputKind, Port, StepError};
 
-/// A block that says something wrong.
+/// A block that reports something wrong.
 pub(crate) struct Wrong {
     pub(crate) block: Box<dyn Moore>,
     /// `one more` clock, `no pass`, `ignores` all inputs, or another `kind` of output.

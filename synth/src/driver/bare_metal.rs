@@ -1,9 +1,10 @@
-//! A program without an operating system: first moves of the machine, and what builds it for a RISC-V.
+//! A program without an operating system, which makes the first moves of the machine, and its build files for a
+//! RISC-V.
 
 use super::{DriverFile, StageDriver, file};
 use crate::sopc::STAGE_BASE;
 
-/// Path below the driver's folder, and text in which the machine is filled in.
+/// Path below the driver's folder, and text into which the machine's data are inserted.
 const FILES: [(&str, &str); 5] = [
     ("bare_metal/main.c", include_str!("c/bare_metal/main.c")),
     ("bare_metal/Makefile", include_str!("c/bare_metal/Makefile")),

@@ -1,4 +1,4 @@
-//! The tables of axes whose modes move, in C.
+//! The table families of axes whose modes move, in C.
 
 use super::StageDriver;
 use posicast_model::design::TableFamily;
@@ -6,20 +6,20 @@ use posicast_model::machine_file::Machine;
 use posicast_model::taps::TapTable;
 use std::fmt::Write;
 
-/// The tables of an axis whose modes move.
+/// The table family of an axis whose modes move.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisFamily<'a> {
-    /// Its name.
+    /// Name of the axis.
     axis: &'a str,
-    /// What the modes move with.
+    /// Name of the variable with which the modes move.
     variable: &'a str,
-    /// Values of the machine file per value of the design: its units per m or rad of a position, else 1.
+    /// Values of the machine file per value of the design: for a position its units per m or rad, else 1.
     scale: f64,
     tables: &'a TableFamily,
 }
 
 impl<'a> AxisFamily<'a> {
-    /// Those of a machine.
+    /// The families of a machine.
     pub fn of_machine(machine: &'a Machine, families: &'a [TableFamily]) -> Vec<Self> {
         let families = families.iter().filter_map(|tables| {
             let axis = machine.axes.get(tables.axis)?;
@@ -35,7 +35,7 @@ impl<'a> AxisFamily<'a> {
     }
 }
 
-/// A static array of the taps of a table.
+/// Writes a static array with the taps of a table.
 pub(super) fn taps(text: &mut String, name: &str, table: &TapTable) {
     let _ = write!(text, "\nstatic const posicast_tap {name}[] = {{\n");
     for tap in table.taps() {
@@ -72,7 +72,7 @@ pub(super) fn definitions(driver: &StageDriver<'_>) -> String {
         );
         for (place, member) in family.tables.members.iter().enumerate() {
             let table = &member.tables.table;
-            // An end that is infinite is beyond every number of C.
+            // C cannot write an infinite end, so the largest number stands for it.
             let [value, down, up] =
                 [member.value, member.down, member.up].map(|value| (value * family.scale).clamp(f64::MIN, f64::MAX));
             let _ = writeln!(

@@ -1,4 +1,4 @@
-//! The part of the driver that is the same for every machine: C that stands in `c/`, as it is compiled.
+//! The part of the driver that is the same for every machine: C sources in `c/`, copied as they are.
 
 use super::{DriverFile, file};
 
@@ -38,7 +38,7 @@ const CORE: [Fixed; 23] = [
     ("linux/Makefile", include_str!("c/linux/Makefile")),
 ];
 
-/// Where an axis has the registers for it.
+/// Files for stages whose axes have the bring-up registers.
 const BRING_UP: [Fixed; 2] = [
     ("inc/posicast_bring_up.h", include_str!("c/inc/posicast_bring_up.h")),
     ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),

@@ -1,4 +1,4 @@
-//! The machine's tap tables, limits and controllers, in C.
+//! Writes the machine's tap tables, limits and controllers in C.
 
 use super::{AxisData, DriverFile, StageDriver, family, file};
 use posicast_model::rtl::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
@@ -6,7 +6,7 @@ use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
 use posicast_model::rtl::stage::StageAxis;
 use std::fmt::Write;
 
-/// `machine_NAME.h` and `machine_NAME.c`.
+/// Writes `machine_NAME.h` and `machine_NAME.c`.
 pub(super) fn files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     let name = driver.machine;
     vec![
@@ -19,7 +19,8 @@ fn header(driver: &StageDriver<'_>) -> String {
     let name = driver.machine;
     let upper = name.to_uppercase();
     let mut text = format!(
-        "/* What the machine file says of {name}. Written by posicast. */\n#ifndef MACHINE_{upper}_H\n#define MACHINE_{upper}_H\n\n\
+        "/* Data of {name} from its machine file. Written by posicast. */\n#ifndef MACHINE_{upper}_H\n#define \
+        MACHINE_{upper}_H\n\n\
          #include \"{}\"\n\n/* Axes, as the driver counts them. */\n",
         if driver.families.is_empty() {
             "posicast_machine.h"
@@ -84,16 +85,17 @@ fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
     );
 }
 
-/// A line per row.
+/// A line for each row.
 fn words(settings: &Settings) -> String {
     let line = |row: SettingRow| format!("            {:#x}u, /* {row:?} */\n", settings.word(row as usize));
     SettingRow::ALL.map(line).concat()
 }
 
-/// A limit in LSB of the integrator: cut, so that no move is faster, at least 1, and what the word holds.
+/// A limit in LSB of the integrator: truncated, so that no move is faster, at least 1, and at most what the word
+/// holds.
 fn lsb(limit: f64, bits: u32) -> i64 {
     let largest = (1i64 << (bits - 1)) - 1;
     let scaled = limit * (1u64 << FRACTION_BITS) as f64;
-    // A cast of a number that is too large ends at the largest.
+    // A cast of a number that is too large gives the largest.
     (scaled as i64).clamp(1, largest)
 }

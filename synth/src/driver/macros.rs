@@ -1,27 +1,28 @@
-//! C macros of registers and their fields.
+//! Writes C macros for registers and their fields.
 
 use posicast_model::rtl::registers::{Access, Field, Format, Register};
 use std::fmt::Write;
 
-/// Where a register's word is, in C.
+/// Address of a register's word, in C.
 pub(super) enum Place {
-    /// At the register's offset.
+    /// The register's offset.
     Fixed,
-    /// At its offset in the window of an axis, which the macro takes.
+    /// The register's offset in the window of an axis, which is an argument of the macro.
     Axis,
 }
 
-/// What every header says first, and its guard.
+/// The first lines of every header, with its include guard.
 pub(super) fn head(guard: &str, about: &str) -> String {
     format!(
         "/*\n * {about}\n * Written by posicast from the description of the registers.\n */\n#ifndef {guard}\n#define {guard}\n"
     )
 }
 
-/// How a header ends.
+/// The last line of a header.
 pub(super) const END: &str = "\n#endif\n";
 
-/// The macros of a register: its word, how it is read and written, its fields. `fields` are its own, or those of what it shadows.
+/// The macros of a register: its word, its read and write access, its fields. `fields` are its own, or those of the
+/// register that it shadows.
 pub(super) fn register(text: &mut String, prefix: &str, register: &Register, fields: &[Field], place: &Place) {
     let name = format!("{prefix}_{}", register.name.to_uppercase());
     // Writing to a String cannot fail.

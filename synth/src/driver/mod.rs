@@ -9,9 +9,10 @@
 //! driver/linux/                  user space over UIO, and the overlay of the device tree
 //! ```
 //!
-//! What is the same for every machine stands as C in `c/` and is copied. What depends on the machine is written from its one
-//! description: macros from the [`RegisterMap`], numbers of the command FIFO from the model's constants, tables from the
-//! stage's configuration. No name of an axis is in the core: it works on windows, by number.
+//! Sources that are the same for every machine are in `c/` and copied. Everything that depends on the machine is
+//! derived from one description: macros from the [`RegisterMap`], numbers of the command FIFO from the model's
+//! constants, tables from the stage's configuration. The core contains no name of an axis: it works on windows, by
+//! number.
 //!
 //! `docs/driver.md` says how a program uses it.
 
@@ -34,7 +35,7 @@ use posicast_model::unit::AxisUnit;
 /// Folder of the driver in the output folder.
 pub const FOLDER: &str = "driver";
 
-/// A file to be written.
+/// A file to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DriverFile {
     /// Its path in the output folder, with `/` between the parts.
@@ -43,33 +44,33 @@ pub struct DriverFile {
     pub text: String,
 }
 
-/// What the driver of a stage is written from.
+/// Data from which the driver of a stage is written.
 #[derive(Debug, Clone, Copy)]
 pub struct StageDriver<'a> {
     /// The machine's name.
     pub machine: &'a str,
-    /// The stage's top module: the class that the driver of the HAL is for.
+    /// The stage's top module, which is the class of the HAL's driver.
     pub top: &'a str,
     /// The stage's registers.
     pub map: &'a RegisterMap,
-    /// The stage.
+    /// The stage's configuration.
     pub config: &'a StageConfig,
-    /// Ticks per second.
+    /// Tick rate in Hz.
     pub tick_hz: f64,
-    /// Of each axis of the stage, in its order.
+    /// Data of each axis of the stage, in its order.
     pub axes: &'a [AxisData],
-    /// The tables of the axes whose modes move.
+    /// The table families of the axes whose modes move.
     pub families: &'a [AxisFamily<'a>],
 }
 
-/// What the driver knows of an axis beside its hardware.
+/// Data of an axis for the driver, in addition to its hardware.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisData {
-    /// Of its figures in the machine file.
+    /// Unit of its figures in the machine file.
     pub unit: AxisUnit,
     /// Counts of its loop per unit of the machine file.
     pub counts_per_unit: f64,
-    /// What its moves may ask for.
+    /// Limits of its moves.
     pub limits: TickLimits,
 }
 
@@ -89,7 +90,7 @@ pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     files
 }
 
-/// The macros of a component's registers, under the name of its top module.
+/// The header with the macros of a component's registers, named after its top module.
 pub fn component_header(top: &str, map: &RegisterMap) -> DriverFile {
     file(&format!("inc/{top}_regs.h"), registers::header(top, map))
 }

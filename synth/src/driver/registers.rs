@@ -3,7 +3,7 @@
 use super::macros::{self, END, Place};
 use posicast_model::rtl::registers::RegisterMap;
 
-/// `TOP_regs.h`: IORD and IOWR of every register, offset and mask of every field.
+/// Writes `TOP_regs.h`: IORD and IOWR of every register, offset and mask of every field.
 pub(super) fn header(top: &str, map: &RegisterMap) -> String {
     let prefix = top.to_uppercase();
     let mut text = macros::head(&format!("{prefix}_REGS_H"), map.about());

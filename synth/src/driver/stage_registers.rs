@@ -1,7 +1,8 @@
-//! The header of the stage's registers: those of its own window, and once those of an axis, for every axis.
+//! The header of the stage's registers: those of its own window, and those of an axis, once for all axes.
 //!
-//! The windows of axes are alike: a register stands at the same place in each that has it. Widths of fields may differ, where
-//! the memories of axes do; the masks here are the widest, and the parameters of each axis are registers of its window.
+//! The windows of all axes are alike: a register has the same offset in each window that contains it. Widths of
+//! fields may differ where the memories of axes do; the masks here are the widest, and the parameters of each axis
+//! are registers of its window.
 
 use super::StageDriver;
 use super::macros::{self, END, Place};
@@ -23,11 +24,11 @@ const AXIS: &str = "POSICAST_AXIS";
 struct AxisRegister {
     register: Register,
     fields: Vec<Field>,
-    /// Axes that have it.
+    /// Names of the axes that have it.
     axes: Vec<String>,
 }
 
-/// `posicast_stage_regs.h`.
+/// Writes `posicast_stage_regs.h`.
 pub(super) fn header(driver: &StageDriver<'_>) -> String {
     let map = driver.map;
     let names: Vec<&str> = driver.config.axes.iter().map(|axis| axis.name.as_str()).collect();
@@ -50,7 +51,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     for found in axis_registers(map, &names) {
         let mut register = found.register;
         if found.axes.len() < names.len() {
-            let _ = write!(register.meaning, "; of {} only", found.axes.join(", "));
+            let _ = write!(register.meaning, "; axis {} only", found.axes.join(", "));
         }
         macros::register(&mut text, AXIS, &register, &found.fields, &Place::Axis);
     }
@@ -60,14 +61,14 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     text
 }
 
-/// What is counted in windows, entries and bits.
+/// Writes numbers of windows, entries and bits.
 fn numbers(text: &mut String, map: &RegisterMap) {
     let numbers: [(&str, u32); 19] = [
         ("AXES_MAX", MOST_AXES as u32),
         ("WINDOW_WORDS", WINDOW_WORDS),
         ("STAGE_BYTES", 4 * map.words()),
         ("KICK_WORD", KICK),
-        // That can wait beside the one that plays.
+        // This is the number of entries that can wait in addition to the one being played.
         ("FIFO_ENTRIES", u32::from(ENTRIES_MAX) - 1),
         ("SEGMENTS_STOP", SegmentsState::Stop as u32),
         ("ENTRY_WORDS", ENTRY_WORDS as u32),
@@ -98,7 +99,7 @@ fn numbers(text: &mut String, map: &RegisterMap) {
     text.push_str("#define POSICAST_AXIS_WORD(axis, reg) (POSICAST_WINDOW_WORDS * ((uint32_t)(axis) + 1u) + (reg))\n");
 }
 
-/// Rows of a controller's settings, and the word of a gain.
+/// Writes the rows of a controller's settings, and the format of a gain.
 fn settings(text: &mut String) {
     text.push_str("\n/* Settings of a controller by row: docs/sliding_mode.md. A gain is mantissa * 2^-shift, the mantissa in the lowest bits. */\n");
     for row in SettingRow::ALL {
@@ -110,7 +111,7 @@ fn settings(text: &mut String) {
     let _ = writeln!(text, "#define POSICAST_GAIN_SHIFT_MAX {SHIFT_MAX}u");
 }
 
-/// Which axes have the registers for bringing them up.
+/// Writes which axes have the bring-up registers.
 fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
     let axes = driver.config.axes.iter().enumerate();
     let mask: u32 = axes
@@ -190,7 +191,7 @@ fn interrupts(text: &mut String) {
     );
 }
 
-/// Bits of CAUSES.
+/// Writes the bits of CAUSES.
 fn causes(text: &mut String) {
     text.push_str("\n/* Bits of CAUSES, and their names from the lowest on. */\n");
     let mut names = Vec::new();

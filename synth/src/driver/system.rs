@@ -1,12 +1,12 @@
-//! What a system needs to find the driver: `_sw.tcl` and macros for the HAL, the overlay of a device tree.
+//! Files by which a system finds the driver: `_sw.tcl` and macros for the HAL, and the overlay of a device tree.
 
 use super::{DriverFile, FOLDER, StageDriver, bare_metal, file};
 use posicast_model::rtl::registers::RegisterMap;
 
-/// Name in device trees, before the version of the register map: as the component for Platform Designer has it.
+/// Name in device trees without the version of the register map, as in the component for Platform Designer.
 const COMPATIBLE: &str = "posicast,stage";
 
-/// Version of the register map, as Platform Designer compares that of a driver with that of its hardware: `1.0`.
+/// Version of the register map, for example `1.0`, as Platform Designer compares it between driver and hardware.
 fn version(map: &RegisterMap) -> String {
     let part = |name: &str| {
         let fields = map.register("version").map_or(&[][..], |register| &register.fields);
@@ -18,7 +18,7 @@ fn version(map: &RegisterMap) -> String {
     format!("{}.{}", part("major"), part("minor"))
 }
 
-/// `others`: the rest of the driver, which a system compiles.
+/// Writes the files. `others` is the rest of the driver, which a system compiles.
 pub(super) fn files(driver: &StageDriver<'_>, others: &[DriverFile]) -> Vec<DriverFile> {
     let top = driver.top;
     let hal = file(&format!("HAL/inc/{top}.h"), hal_header(top));
@@ -28,7 +28,7 @@ pub(super) fn files(driver: &StageDriver<'_>, others: &[DriverFile]) -> Vec<Driv
     vec![file(&format!("{top}_sw.tcl"), script), hal, overlay]
 }
 
-/// What `nios2-bsp` and `niosv-bsp` read.
+/// The script that `nios2-bsp` and `niosv-bsp` read.
 fn sw_tcl<'a>(driver: &StageDriver<'_>, paths: impl Iterator<Item = &'a str>) -> String {
     let (top, version) = (driver.top, version(driver.map));
     let inside = paths.filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
@@ -63,7 +63,7 @@ add_sw_property supported_bsp_type UCOSII
     )
 }
 
-/// What `alt_sys_init.c` includes, under the name of the class.
+/// The header that `alt_sys_init.c` includes, named after the class.
 fn hal_header(top: &str) -> String {
     let upper = top.to_uppercase();
     format!(
@@ -82,7 +82,7 @@ fn hal_header(top: &str) -> String {
     )
 }
 
-/// For a stage behind the lightweight bridge of a Cyclone V: another place is another `reg`.
+/// The overlay for a stage behind the lightweight bridge of a Cyclone V; another address is another `reg`.
 fn overlay(driver: &StageDriver<'_>) -> String {
     let bytes = (4 * driver.map.words()).next_power_of_two().max(4096);
     format!(

@@ -1,15 +1,16 @@
-//! The bench of the example: a step through every shaper.
+//! The test bench of the example: a step through every shaper.
 
 use std::fmt::Write;
 
 use super::Kit;
 
-/// A step is a sixteenth of a word: shapers whose partial sums go beyond the command do not saturate.
+/// A step is a sixteenth of a word, so that shapers whose partial sums exceed the command do not saturate.
 const STEP_SHIFT: u32 = 4;
-/// Samples before the step, and after the last tap.
+/// Number of samples before the step, and after the last tap.
 const QUIET_SAMPLES: u32 = 4;
 
-/// The bench: every axis makes a step, must change with it, come to rest at it to the bit, and neither saturate nor overrun.
+/// Writes the bench: every axis makes a step, must change with it, come to rest exactly at it, and neither saturate
+/// nor overrun.
 pub(super) fn bench(kit: &Kit<'_>) -> String {
     let machine = kit.machine;
     let (pass, samples) = (kit.pass_clocks(), kit.longest_delay_samples() + 2 * QUIET_SAMPLES);

@@ -1,4 +1,4 @@
-//! The Verilog that a user copies, or tries first.
+//! Writes the Verilog that a user copies, or tries first.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use super::{Kit, KitShaper, is_input, range};
 use posicast_model::rtl::Port;
 use posicast_model::rtl::shaper::{moving, plain};
 
-/// What is connected to a port of the shaper: nothing, a constant, or what the user has.
+/// Connection of a port of the shaper: none, a constant, or the user's signal.
 enum Connection {
     Yours,
     Idle,
@@ -22,7 +22,7 @@ fn connection(port: &Port) -> Connection {
     }
 }
 
-/// What the list of ports says of it.
+/// Meaning of a port, from the list of ports.
 fn meaning(shaper: &KitShaper<'_>, port: &Port) -> String {
     let list = match shaper.config.motion() {
         Some(_) => moving::PORTS,
@@ -50,13 +50,13 @@ fn header(text: &mut String, kit: &Kit<'_>, about: &str) {
     );
 }
 
-/// An instance of the top, with a line for each port.
+/// Writes an instance of the top, with a line for each port.
 pub(super) fn template(kit: &Kit<'_>) -> String {
     let mut text = String::new();
     header(
         &mut text,
         kit,
-        "An instance to copy into a design: connect what is marked CONNECT, leave the rest as it stands.",
+        "An instance to copy into a design: connect the ports marked CONNECT and leave the rest unchanged.",
     );
     let _ = writeln!(text, "{} u_{} (", kit.machine, kit.machine);
     let mut lines = vec![
@@ -101,7 +101,7 @@ pub(super) fn template(kit: &Kit<'_>) -> String {
     text
 }
 
-/// One strobe per sample.
+/// Writes the module that makes one strobe per sample.
 pub(super) fn strobe(kit: &Kit<'_>) -> String {
     let mut text = String::new();
     header(
@@ -146,7 +146,7 @@ fn word(shaper: &KitShaper<'_>) -> String {
     format!("signed [{}:0]", shaper.config.word_bits() - 1)
 }
 
-/// Strobe and shapers joined.
+/// Writes the module that joins strobe and shapers.
 pub(super) fn example(kit: &Kit<'_>) -> String {
     let machine = kit.machine;
     let mut text = String::new();
@@ -206,7 +206,7 @@ module {machine}_example #(
     text
 }
 
-/// The port of the example that a port of the shaper is connected to.
+/// The port of the example to which a port of the shaper is connected.
 fn connected(shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
     let axis = shaper.axis;
     match port.name.as_str() {

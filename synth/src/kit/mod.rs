@@ -1,4 +1,4 @@
-//! The way of a machine's shapers into a design of one's own: file lists for all, and for machines of shapers alone a
+//! The kit for the user's own design: file lists for all machines, and for machines that have only shapers a
 //! template, a strobe, an example with its bench, and scripts that place it.
 //!
 //! ```text
@@ -20,21 +20,21 @@ mod vendors;
 use posicast_model::rtl::shaper::{ShaperConfig, ports};
 use posicast_model::rtl::{Direction, Port};
 
-/// Clocks from one pass to the next in the bench.
+/// Idle clocks between two samples in the bench.
 const SPARE_CLOCKS: u32 = 4;
 
-/// What the files are written from.
+/// Data from which the files are written.
 #[derive(Debug, Clone, Copy)]
 pub struct Kit<'a> {
-    /// The machine's name, which is that of the top module with its shapers.
+    /// Name of the machine, which is also that of the top module with its shapers.
     pub machine: &'a str,
-    /// The fabric clock.
+    /// Fabric clock in Hz.
     pub clock_hz: f64,
     /// Clocks between two samples.
     pub sample_clocks: u32,
     /// Fraction bits of a command word.
     pub command_fraction: u32,
-    /// All Verilog files, as paths in the folder.
+    /// Paths of all Verilog files in the folder.
     pub files: &'a [String],
     /// The shapers of the top module, where the machine has nothing else.
     pub shapers: &'a [KitShaper<'a>],
@@ -45,7 +45,7 @@ pub struct Kit<'a> {
 pub struct KitShaper<'a> {
     /// Name of the axis.
     pub axis: &'a str,
-    /// What it is built with.
+    /// Its build parameters.
     pub config: &'a ShaperConfig,
 }
 
@@ -58,7 +58,7 @@ impl KitShaper<'_> {
         own.collect()
     }
 
-    /// The name of its port `word`, `x` or `y`, of the position.
+    /// Name of its position port `word`, which is `x` or `y`.
     fn position(&self, word: &str) -> String {
         match self.config.motion() {
             Some(_) => format!("{word}_0"),
@@ -68,7 +68,7 @@ impl KitShaper<'_> {
 }
 
 impl Kit<'_> {
-    /// Clocks that the longest pass takes, and a few more.
+    /// Number of clocks for a sample with the longest table, with a few to spare.
     fn pass_clocks(&self) -> u32 {
         let clocks = self.shapers.iter().map(|shaper| {
             let taps = shaper.config.table().taps().len();
@@ -77,7 +77,7 @@ impl Kit<'_> {
         clocks.max().unwrap_or(SPARE_CLOCKS)
     }
 
-    /// Samples after which a step has gone through every shaper.
+    /// Number of samples after which a step has passed every shaper.
     fn longest_delay_samples(&self) -> u32 {
         let delays = self
             .shapers
@@ -113,12 +113,12 @@ pub fn files(kit: &Kit<'_>) -> Vec<(String, String)> {
     files
 }
 
-/// Whether a port goes into the shaper.
+/// Whether a port is an input of the shaper.
 fn is_input(port: &Port) -> bool {
     port.direction == Direction::Input
 }
 
-/// `signed [31:0] ` for a port, filled to one width.
+/// Range of a port, such as `signed [31:0] `, padded to one width.
 fn range(port: &Port) -> String {
     let sign = if port.signed { "signed " } else { "" };
     let bits = match port.width {

@@ -1,10 +1,10 @@
-//! File lists, scripts and constraints for the tools of vendors.
+//! File lists, scripts and constraints for the vendors' tools.
 
 use std::fmt::Write;
 
 use super::Kit;
 
-/// The Verilog for a Quartus project.
+/// The list of Verilog files for a Quartus project.
 pub(super) fn qip(kit: &Kit<'_>) -> String {
     let line = |file: &String| {
         format!("set_global_assignment -name VERILOG_FILE [file join $::quartus(qip_path) \"{file}\"]\n")
@@ -19,7 +19,7 @@ fn sources(kit: &Kit<'_>) -> Vec<String> {
     rtl.chain(own).collect()
 }
 
-/// Yosys and nextpnr for ECP5.
+/// The script for Yosys and nextpnr on ECP5.
 pub(super) fn lattice(kit: &Kit<'_>) -> String {
     let machine = kit.machine;
     format!(
@@ -49,7 +49,7 @@ clean:
     )
 }
 
-/// Constraints for Lattice: pins are yours to add, a `LOCATE COMP` each.
+/// Constraints for Lattice; the user adds the pins, each with a `LOCATE COMP`.
 pub(super) fn lpf(kit: &Kit<'_>) -> String {
     format!(
         "FREQUENCY PORT \"clk\" {} MHZ;\n# Your pins: LOCATE COMP \"clk\" SITE \"P3\"; IOBUF PORT \"clk\" IO_TYPE=LVCMOS33;\n",
@@ -57,7 +57,7 @@ pub(super) fn lpf(kit: &Kit<'_>) -> String {
     )
 }
 
-/// Vivado without a project.
+/// The script for Vivado without a project.
 pub(super) fn vivado(kit: &Kit<'_>) -> String {
     let machine = kit.machine;
     let mut text = format!(
@@ -86,7 +86,7 @@ report_utilization -file {machine}_utilization.txt
     text
 }
 
-/// Its constraints.
+/// Constraints for Vivado.
 pub(super) fn xdc(kit: &Kit<'_>) -> String {
     format!(
         "create_clock -period {:.3} -name clk [get_ports clk]\n",

@@ -1,4 +1,4 @@
-//! `posicast.json`: which files posicast wrote, and what they were.
+//! `posicast.json`: the files that posicast wrote, with their hashes.
 //!
 //! ```json
 //! {
@@ -9,10 +9,10 @@
 //! }
 //! ```
 //!
-//! `evidence` lists the files that say what a run found out, and `of` is the hash of what it was found out about: path and
-//! hash of `machine.toml` and of every file in `rtl/`, a line each.
+//! `evidence` lists the files with the results of a run, and `of` is the hash of the run's subject: path and hash of
+//! `machine.toml` and of every file in `rtl/`, a line each.
 //!
-//! While files are being replaced, `replaces` lists for each path what may also be found there.
+//! While files are being replaced, `replaces` lists for each path the other contents that may be found there.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -27,7 +27,7 @@ use super::layout::{MANIFEST, STAGING};
 use super::names;
 use super::text::read_text;
 
-/// The file's contents.
+/// Contents of the file.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Manifest {
     /// Version of posicast that wrote the folder.
@@ -41,15 +41,15 @@ pub(super) struct Manifest {
     replaces: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// Which files say what a run found out, and about what.
+/// The files with the results of a run, and its subject.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Evidence {
-    /// [`subject`] of the package that the run was about.
+    /// [`subject`] of the package that was run.
     of: String,
     files: BTreeSet<String>,
 }
 
-/// Hash of what evidence is about: the machine file and the Verilog. `files` is path to hash.
+/// Hash of a run's subject: the machine file and the Verilog. `files` maps paths to hashes.
 fn subject(files: &BTreeMap<String, String>) -> String {
     let counts = |path: &str| path == "machine.toml" || path.starts_with("rtl/");
     let lines = files.iter().filter(|(path, _)| counts(path));
@@ -58,7 +58,8 @@ fn subject(files: &BTreeMap<String, String>) -> String {
 }
 
 impl Manifest {
-    /// A finished package of these files, path to hash, of which `evidence` are evidence about the others.
+    /// The manifest of a finished package. `files` maps paths to hashes; `evidence` names those of them that are
+    /// results about the others.
     pub(super) fn new(machine: &str, files: BTreeMap<String, String>, evidence: BTreeSet<String>) -> Self {
         let evidence = (!evidence.is_empty()).then(|| Evidence {
             of: subject(&files),
@@ -73,13 +74,13 @@ impl Manifest {
         }
     }
 
-    /// The same, while files of `previous` may still be in place.
+    /// The manifest while files of `previous` may still be in place.
     pub(super) fn replacing(&self, previous: &Self) -> Self {
         let mut replaces = previous.replaces.clone();
         for (path, hash) in &previous.files {
             replaces.entry(path.clone()).or_default().insert(hash.clone());
         }
-        // A first run has nothing to replace, and still is unfinished.
+        // A first run has nothing to replace, but is unfinished too.
         for path in self.files.keys() {
             replaces.entry(path.clone()).or_default();
         }
@@ -89,12 +90,12 @@ impl Manifest {
         }
     }
 
-    /// Was the run that wrote it interrupted?
+    /// Whether the run that wrote it was interrupted.
     pub(super) fn unfinished(&self) -> bool {
         !self.replaces.is_empty()
     }
 
-    /// Every path that posicast may have written.
+    /// All paths that posicast may have written.
     pub(super) fn paths(&self) -> impl Iterator<Item = &str> {
         let paths: BTreeSet<&str> = self
             .files
@@ -105,14 +106,14 @@ impl Manifest {
         paths.into_iter()
     }
 
-    /// The paths of the evidence.
+    /// Paths of the evidence.
     pub(super) fn evidence(&self) -> impl Iterator<Item = &str> {
         let evidence = self.evidence.iter().flat_map(|evidence| &evidence.files);
         evidence.map(String::as_str)
     }
 
-    /// The evidence that holds for a package of these files, path to hash, and is still in place. There is none in a folder
-    /// whose last run was interrupted: its files may be of two runs.
+    /// The evidence that is valid for a package of these files, path to hash, and is still in place. A folder whose
+    /// last run was interrupted has none, because its files may be from two runs.
     pub(super) fn evidence_of(&self, files: &BTreeMap<String, String>, root: &Path) -> BTreeMap<String, String> {
         let holds = |evidence: &&Evidence| !self.unfinished() && evidence.of == subject(files);
         let paths = self.evidence.iter().filter(holds).flat_map(|evidence| &evidence.files);
@@ -122,12 +123,12 @@ impl Manifest {
             .collect()
     }
 
-    /// May posicast have written this path?
+    /// Whether posicast may have written this path.
     pub(super) fn names(&self, path: &str) -> bool {
         self.files.contains_key(path) || self.replaces.contains_key(path)
     }
 
-    /// The paths whose files are not what posicast wrote. A file that is gone is not edited.
+    /// The paths whose files were changed since posicast wrote them. A missing file does not count as changed.
     pub(super) fn edited(&self, root: &Path) -> Result<Vec<String>, PackageError> {
         let mut edited = Vec::new();
         for path in self.paths() {
@@ -153,20 +154,20 @@ impl Manifest {
             Ok(text) => text,
             Err(PackageError::Missing(_)) => return Ok(None),
             Err(PackageError::Io { source, .. }) if source.kind() == ErrorKind::InvalidData => {
-                return reject("is no text".to_owned());
+                return reject("is not text".to_owned());
             }
             Err(error) => return Err(error),
         };
         let manifest: Self = match serde_json::from_str(&text) {
             Ok(manifest) => manifest,
-            Err(error) => return reject(format!("is no manifest of posicast ({error})")),
+            Err(error) => return reject(format!("is not a manifest of posicast ({error})")),
         };
-        // Paths in it are removed and compared: one that leads out of the folder must not be followed.
+        // Its paths are removed and compared, so a path that leads out of the folder must not be followed.
         let outside = manifest.paths().find_map(|p| names::check(p).err());
         outside.map_or(Ok(Some(manifest)), |error| reject(error.to_string()))
     }
 
-    /// The text of the file: the same for the same files.
+    /// The text of the file, which is the same for the same files.
     pub(super) fn to_json(&self) -> Result<String, PackageError> {
         let text = serde_json::to_string_pretty(self).map_err(|e| at("write", Path::new(MANIFEST))(e.into()))?;
         Ok(text + "\n")
@@ -176,7 +177,8 @@ impl Manifest {
 /// Hash of a file of the folder, `sha256:` and 64 hexadecimal digits; `None` if it does not exist.
 ///
 /// # Errors
-/// Anything but folders on the way and a plain file at the end: a link could lead out of the folder.
+/// An error for anything other than folders on the way and a plain file at the end: a link could lead out of the
+/// folder.
 pub(super) fn hash_in(root: &Path, relative: &str) -> Result<Option<String>, PackageError> {
     let mut path = root.to_owned();
     let mut parts = relative.split('/').peekable();
@@ -216,13 +218,13 @@ fn hash(path: &Path) -> Result<String, PackageError> {
     Ok(digits(sha.finalize()))
 }
 
-/// `sha256:` and the digits.
+/// `sha256:` with the digits.
 fn digits(hash: impl AsRef<[u8]>) -> String {
     let digits: String = hash.as_ref().iter().map(|byte| format!("{byte:02x}")).collect();
     format!("sha256:{digits}")
 }
 
-/// The manifest of the run before; an empty one for a folder that is missing or empty.
+/// The manifest of the previous run; an empty one for a folder that is missing or empty.
 pub(super) fn inspect(root: &Path) -> Result<Manifest, PackageError> {
     let entries = match fs::read_dir(root) {
         Ok(entries) => entries,

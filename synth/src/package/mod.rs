@@ -1,4 +1,4 @@
-//! The output folder: what posicast writes there, and what of it is posicast's to replace.
+//! The output folder: its files, and which of them posicast may replace.
 //!
 //! ```text
 //! DIR/machine.toml  rtl/*.v  sopc/  driver/ …      the package: what follows from the machine file
@@ -7,16 +7,18 @@
 //! DIR/.posicast-staging/                           while a run is at work
 //! ```
 //!
-//! - A folder is **ours** if it does not exist, is empty, or holds `posicast.json`. Any other is refused.
-//! - Files go to the staging folder first. [`Package::commit`] checks everything, then renames; `posicast.json` comes
-//!   last. A run that fails or is dropped before that leaves the folder as it was.
-//! - A file is replaced or removed only if it is what posicast wrote: its hash is in `posicast.json`. One that was edited
-//!   since is an error that names it, before anything is touched. Files that posicast never wrote stay where they are.
-//! - **Evidence** is about one machine file and one set of Verilog files. A package that is written anew with both unchanged
-//!   keeps it, and also keeps its own hands off a file of that name. With another machine file or other Verilog it goes:
-//!   evidence of another machine beside this one would be a false witness. What went is told ([`Committed`]).
-//! - A run that is killed between two renames leaves a `posicast.json` that knows both generations, so that the next run
-//!   can finish the work; [`read()`] refuses the folder until then.
+//! - A folder is **ours** if it does not exist, is empty, or contains `posicast.json`. Any other is refused.
+//! - Files are written to the staging folder first. [`Package::commit`] checks everything, then renames;
+//!   `posicast.json` comes last. A run that fails or is dropped before that leaves the folder as it was.
+//! - A file is replaced or removed only if it is unchanged since posicast wrote it: its hash is in `posicast.json`. A
+//!   file that was edited since is an error that names it, before anything is touched. Files that posicast never
+//!   wrote are not touched.
+//! - **Evidence** is about one machine file and one set of Verilog files. If a package is written again with both
+//!   unchanged, its evidence is kept, and files with its names are not touched. With another machine file or other
+//!   Verilog it is removed: evidence about another machine would be misleading. Removed evidence is reported
+//!   ([`Committed`]).
+//! - A run that is killed between two renames leaves a `posicast.json` that lists both generations, so that the next
+//!   run can finish the work; [`read()`] refuses the folder until then.
 //! - SIGINT and SIGTERM leave the folder as it was, or complete if they come while files are being put in place.
 //! - Two runs on one folder exclude each other by a lock on the folder.
 //!
@@ -59,7 +61,7 @@ use error::at;
 use manifest::{Manifest, inspect};
 use staging::Staging;
 
-/// An output folder that is being written. Nothing shows in it before [`commit`](Package::commit).
+/// An output folder that is being written. Nothing appears in it before [`commit`](Package::commit).
 #[derive(Debug)]
 pub struct Package {
     root: PathBuf,
@@ -67,16 +69,16 @@ pub struct Package {
     previous: Manifest,
     staging: Staging,
     files: BTreeSet<String>,
-    /// Those of the files that are evidence; `None` where this run makes none.
+    /// The staged files that are evidence; `None` if this run makes none.
     evidence: Option<BTreeSet<String>>,
 }
 
-/// What a commit did.
+/// Result of a commit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Committed {
-    /// Every file that was written, also where it was there before; sorted, the manifest last.
+    /// All files that were written, including those that existed before; sorted, the manifest last.
     pub files: Vec<PathBuf>,
-    /// Evidence of an earlier run that holds for this package too and stayed, relative to the folder.
+    /// Evidence of an earlier run that is valid for this package too and was kept; paths relative to the folder.
     pub kept: Vec<String>,
     /// Evidence of an earlier run that was removed or replaced because it was about another machine file or other Verilog.
     pub outdated: Vec<String>,
@@ -88,12 +90,12 @@ impl Package {
     /// Claims `root` for a run, creating it where it is missing. `machine` is the machine's name.
     ///
     /// # Errors
-    /// The folder is not ours, holds files edited since posicast wrote them, is in use by another run, or cannot be
-    /// written. The folder is then as it was.
+    /// An error if the folder is not ours, contains files edited since posicast wrote them, is in use by another run,
+    /// or cannot be written. The folder is then unchanged.
     pub fn open(root: &Path, machine: &str) -> Result<Self, PackageError> {
         let previous = inspect(root)?;
         let mut edited = previous.edited(root)?;
-        // Whether edited evidence is in the way is known when the package is.
+        // Only the finished package decides whether edited evidence is in the way.
         edited.retain(|path| !previous.evidence().any(|evidence| evidence == path));
         refuse_edited(root, edited)?;
         Ok(Self {
@@ -106,17 +108,17 @@ impl Package {
         })
     }
 
-    /// Says that this run makes evidence, which replaces all that is there.
+    /// Declares that this run makes evidence, which replaces all existing evidence.
     ///
     /// # Errors
-    /// Evidence that is there was edited since posicast wrote it.
+    /// An error if existing evidence was edited since posicast wrote it.
     pub fn with_evidence(mut self) -> Result<Self, PackageError> {
         refuse_edited(&self.root, self.previous.edited(&self.root)?)?;
         self.evidence = Some(BTreeSet::new());
         Ok(self)
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn root(&self) -> &Path {
         &self.root
     }
@@ -124,41 +126,41 @@ impl Package {
     /// Adds a file. `relative` is its path in the folder, with `/` between the parts.
     ///
     /// # Errors
-    /// A path that leaves the folder or was added before; a file that cannot be written.
+    /// An error for a path that leaves the folder or was added before, and for a file that cannot be written.
     pub fn add(&mut self, relative: &str, bytes: &[u8]) -> Result<(), PackageError> {
         let path = self.stage(relative)?;
         fs::write(&path, bytes).map_err(at("write", &path))
     }
 
-    /// As [`add`](Package::add), a file of evidence.
+    /// Adds a file of evidence, as [`add`](Package::add) does.
     ///
     /// # Errors
-    /// As [`add`](Package::add).
+    /// Those of [`add`](Package::add).
     pub fn add_evidence(&mut self, relative: &str, bytes: &[u8]) -> Result<(), PackageError> {
         let path = self.stage_evidence(relative)?;
         fs::write(&path, bytes).map_err(at("write", &path))
     }
 
-    /// As [`stage`](Package::stage), a file of evidence.
+    /// Announces a file of evidence, as [`stage`](Package::stage) does.
     ///
     /// # Errors
-    /// As [`stage`](Package::stage).
+    /// Those of [`stage`](Package::stage).
     pub fn stage_evidence(&mut self, relative: &str) -> Result<PathBuf, PackageError> {
         let path = self.stage(relative)?;
         self.evidence.get_or_insert_default().insert(relative.to_owned());
         Ok(path)
     }
 
-    /// Announces a file that the caller writes itself, and returns where: for files too large to hold in memory. The
-    /// folders on the way exist.
+    /// Announces a file that the caller writes itself, because it is too large to hold in memory, and returns its
+    /// path. The folders of the path exist then.
     ///
     /// # Errors
-    /// As [`add`](Package::add).
+    /// Those of [`add`](Package::add).
     pub fn stage(&mut self, relative: &str) -> Result<PathBuf, PackageError> {
         names::check(relative)?;
         let path = self.staging.path().join(relative);
         if let Some(parent) = path.parent() {
-            // Not behind a signal, which removes the staging folder.
+            // A signal, which removes the staging folder, must not come before this.
             interrupt::uninterrupted(|| fs::create_dir_all(parent)).map_err(at("create", parent))?;
         }
         if !self.files.insert(relative.to_owned()) {
@@ -170,8 +172,9 @@ impl Package {
     /// Puts the files in place, removes those of the earlier run that are no longer produced, and writes the manifest.
     ///
     /// # Errors
-    /// A staged file that was never written; a file in the way that posicast did not write or that was edited: the folder
-    /// is then as it was. A rename that fails midway leaves a folder that the next run completes.
+    /// An error for a staged file that was never written, and for a file in the way that posicast did not write or
+    /// that was edited: the folder is then unchanged. A rename that fails midway leaves a folder that the next run
+    /// completes.
     pub fn commit(mut self) -> Result<Committed, PackageError> {
         let plan = self.plan()?;
         interrupt::uninterrupted(|| self.carry_out(&plan))?;
@@ -194,7 +197,7 @@ impl Package {
         })
     }
 
-    /// Decides what happens to every file, and refuses to touch what is not posicast's.
+    /// Decides what happens to every file, and refuses to touch files that are not posicast's.
     fn plan(&self) -> Result<Plan, PackageError> {
         let mut hashes = self.hash_staged()?;
         let kept = match self.evidence {
@@ -234,7 +237,7 @@ impl Package {
         })
     }
 
-    /// From the first rename to the last, the manifest names both generations.
+    /// Carries out the plan. From the first rename to the last, the manifest lists both generations.
     fn carry_out(&self, plan: &Plan) -> Result<(), PackageError> {
         let evidence = match &self.evidence {
             Some(evidence) => evidence.clone(),
@@ -271,7 +274,7 @@ impl Package {
         fs::rename(self.staging.path().join(relative), &target).map_err(at("write", &target))
     }
 
-    /// Removes a file of the earlier run, and the folders that it leaves empty.
+    /// Removes a file of an earlier run, and the folders that become empty.
     fn remove(&self, relative: &str) -> Result<(), PackageError> {
         let path = self.root.join(relative);
         match fs::remove_file(&path) {
@@ -295,13 +298,13 @@ impl Package {
     }
 }
 
-/// What a commit does, all paths relative to the folder.
+/// Actions of a commit; all paths are relative to the folder.
 struct Plan {
-    /// Every file that was staged and is to be in place, with its hash.
+    /// Staged files that must be in place afterwards, with their hashes.
     hashes: BTreeMap<String, String>,
-    /// Evidence of an earlier run that stays, with its hash.
+    /// Evidence of an earlier run that is kept, with its hashes.
     kept: BTreeMap<String, String>,
-    /// Of the staged files those that are not in place yet.
+    /// Staged files that are not in place yet.
     changed: Vec<String>,
     /// Files of the earlier run that are no longer produced.
     obsolete: Vec<String>,

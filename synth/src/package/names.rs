@@ -1,9 +1,10 @@
-//! Which paths lie inside an output folder.
+//! Rules for paths inside an output folder.
 
 use super::error::PackageError;
 use super::layout::{MANIFEST, STAGING};
 
-/// Accepts paths relative to the folder, parts divided by `/`, that neither leave it nor meet posicast's own files.
+/// Accepts a path relative to the folder, with parts separated by `/`, that neither leaves it nor is one of
+/// posicast's own files.
 pub(super) fn check(relative: &str) -> Result<(), PackageError> {
     let refuse = |reason| {
         Err(PackageError::Path {

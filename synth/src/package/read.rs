@@ -1,4 +1,4 @@
-//! Reading an output folder back: `verify DIR` and `synth DIR` work on the Verilog as it lies there.
+//! Reads an output folder: `verify DIR` and `synth DIR` work on the Verilog as it is there.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -8,28 +8,29 @@ use super::error::{PackageError, at};
 use super::manifest::{Manifest, inspect};
 use super::text::read_text;
 
-/// What lies in an output folder.
+/// Contents of an output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Contents {
     /// Version of posicast that wrote it.
     pub version: String,
-    /// Name of the machine; also of the top module.
+    /// Name of the machine, which is also that of the top module.
     pub machine: String,
     /// Path of `machine.toml`.
     pub machine_path: PathBuf,
     /// Text of `machine.toml`.
     pub machine_toml: String,
-    /// `rtl/*.v` as they are now, sorted: at least one.
+    /// Paths of the present `rtl/*.v`, sorted: at least one.
     pub rtl: Vec<PathBuf>,
-    /// Files that posicast wrote and that are not as it wrote them: paths below the folder.
+    /// Files that were changed since posicast wrote them, as paths below the folder.
     pub edited: Vec<String>,
 }
 
-/// Reads an output folder. Files may have been edited since posicast wrote them; that is what one verifies.
+/// Reads an output folder. Files may have been edited since posicast wrote them, because that is what a user
+/// verifies.
 ///
 /// # Errors
-/// A path that is no folder, was not written by posicast or not completely, or lacks `machine.toml` or one of the files in
-/// `rtl/` that posicast wrote: a component that is gone would go unnoticed.
+/// An error for a path that is not a folder, was not written by posicast or not completely, or lacks `machine.toml`
+/// or one of the files in `rtl/` that posicast wrote: a missing component would go unnoticed.
 pub fn read(root: &Path) -> Result<Contents, PackageError> {
     if !root.exists() {
         return Err(PackageError::Missing(root.to_owned()));

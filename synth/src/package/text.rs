@@ -6,10 +6,10 @@ use std::path::Path;
 
 use super::error::{PackageError, at};
 
-/// Largest text file that is read, in bytes: far above any machine file, far below what hurts.
+/// Largest text file that is read, in bytes: far above any machine file.
 const TEXT_LIMIT_BYTES: u64 = 16 << 20;
 
-/// Text of a file of bounded size.
+/// Reads the text of a file of bounded size.
 pub(super) fn read_text(path: &Path) -> Result<String, PackageError> {
     match fs::metadata(path) {
         Ok(metadata) if metadata.is_file() => {}

@@ -1,15 +1,15 @@
-//! Register maps as documents that other tools read.
+//! Writes register maps as documents that other tools read.
 //!
 //! | file | format | for |
 //! |---|---|---|
 //! | `docs/TOP.md` | Markdown | people |
-//! | `docs/TOP.rdl` | SystemRDL 2.0 | PeakRDL and its kin: HTML, UVM, IP-XACT |
+//! | `docs/TOP.rdl` | SystemRDL 2.0 | PeakRDL and similar tools: HTML, UVM, IP-XACT |
 //! | `docs/TOP.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
 //!
-//! All three come from the one [`RegisterMap`]. IP-XACT is not written: PeakRDL makes it from the SystemRDL, and it would say
-//! nothing that the other two do not.
+//! All three come from the one [`RegisterMap`]. IP-XACT is not written, because PeakRDL makes it from the SystemRDL,
+//! and it would contain nothing that the other two do not.
 //!
-//! On the bus a word has an address of its own; in these formats, addresses are bytes: word · 4.
+//! On the bus each word has an address of its own; in these formats addresses count bytes: word · 4.
 
 mod svd;
 mod systemrdl;
@@ -17,7 +17,7 @@ mod systemrdl;
 use crate::datasheets::FOLDER;
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, markdown};
 
-/// Bytes of a word.
+/// Bytes per word.
 const WORD_BYTES: u32 = 4;
 
 /// The documents of a component's registers, as path in the output folder and text. `top` is its top module.
@@ -30,12 +30,12 @@ pub fn files(top: &str, map: &RegisterMap) -> [(String, String); 3] {
     ]
 }
 
-/// What software may do with a register.
+/// Access of software to a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Software {
     Read,
     ReadWrite,
-    /// Reads flags; a one clears.
+    /// Reads flags; writing one clears them.
     ReadClear,
     Write,
 }
@@ -53,7 +53,7 @@ fn software(access: &Access) -> Software {
     }
 }
 
-/// Its fields; one of the whole word where a write of any value counts.
+/// Its fields; one for the whole word where a write of any value has an effect.
 fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
     match map.fields(register) {
         [] => vec![Field::new("any", 0, 32, "any value: the write itself counts")],
@@ -61,12 +61,12 @@ fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
     }
 }
 
-/// Its value after reset, where it has one that software can rely on.
+/// Its value after reset, if it has one that software can rely on.
 fn has_reset(access: &Access) -> bool {
     !matches!(access, Access::Live | Access::Shadow { .. }) && software(access) != Software::Write
 }
 
-/// What a field is, with its unit.
+/// Meaning of a field, with its unit.
 fn meaning(field: &Field) -> String {
     match field.unit.as_str() {
         "" => field.meaning.clone(),

@@ -1,12 +1,12 @@
 //! A register map as CMSIS-SVD, schema version 1.3: a device with one peripheral.
 //!
-//! The peripheral stands at 0, since its address is the system's to say: add the component's base.
+//! The peripheral is at address 0, because the system determines its address: add the component's base.
 
 use super::{Software, WORD_BYTES, fields, has_reset, meaning, software};
 use posicast_model::rtl::registers::{Field, Format, Register, RegisterMap};
 use std::fmt::Write;
 
-/// The map as a device.
+/// Writes the map as a device.
 pub(super) fn document(top: &str, map: &RegisterMap) -> String {
     let about = escaped(map.about());
     let mut text = format!(

@@ -4,7 +4,7 @@ use super::{Software, WORD_BYTES, fields, has_reset, meaning, software};
 use posicast_model::rtl::registers::{Access, Field, Format, Register, RegisterMap};
 use std::fmt::Write;
 
-/// Words that may not be a name as they are (Accellera SystemRDL 2.0, table 3 and what it reserves).
+/// Words that cannot be used as a name unescaped (Accellera SystemRDL 2.0, table 3 and its reserved words).
 const KEYWORDS: &str = "
 abstract accesstype addressingtype addrmap alias all arbiter async bbv bit boolean bothedge bridge componentwidth compact
 constraint counter cpuif_reset default disable dontcompare donttest encode enable enum errextbus external false field
@@ -15,7 +15,7 @@ wr wset wuser wzc wzs wzt xored activehigh activelow anded ored bigendian single
 width threshold saturate rsvdset rsvdsetX reset sharedextbus paritycheck onread onwrite nonrsvd incr decr
 ";
 
-/// The map as one `addrmap`.
+/// Writes the map as one `addrmap`.
 pub(super) fn document(top: &str, map: &RegisterMap) -> String {
     let mut text = format!(
         "// Registers of {top}. Written by posicast.\naddrmap {top} {{\n    name = {};\n    desc = {};\n    \
@@ -84,7 +84,7 @@ fn of_field(text: &mut String, register: &Register, field: &Field) {
     );
 }
 
-/// What the register is for, and how it is written where that is not plain.
+/// Meaning of the register, with restrictions on writes.
 fn about(register: &Register) -> String {
     let how = match &register.access {
         Access::Guarded { while_low } => format!("; written only while `{while_low}` is low"),

@@ -1,19 +1,19 @@
-//! The boards that a project is written for: facts of board and device.
+//! The boards for which a project is written: facts of board and device.
 //!
-//! Sources. Pins of the DE1: Altera's board package `::qboard::de1` and a generator of DE1 projects, both public, which agree
-//! in all 72 header pins, clock, key and serial line. Pins of the DE1-SoC: the assignments that Terasic's System Builder writes
-//! and a second public project, which agree in all header pins; clock and the first two header pins also in `litex-boards`
-//! (`platforms/de1soc.py`). Capacities: [`Family::device`].
+//! Sources. Pins of the DE1: Altera's board package `::qboard::de1` and a generator of DE1 projects, both public,
+//! which agree in all 72 header pins, clock, key and serial line. Pins of the DE1-SoC: the assignments that Terasic's
+//! System Builder writes and a second public project, which agree in all header pins; clock and the first two header
+//! pins are also in `litex-boards` (`platforms/de1soc.py`). Capacities: [`Family::device`].
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::yosys::Family;
 
-/// A board, under its name in the machine file.
+/// A board, with its name in the machine file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Board {
-    /// Terasic DE1 with a Cyclone II: the board of the XY stage's paper.
+    /// Terasic DE1 with a Cyclone II, the board of the XY stage's paper.
     De1,
     /// Terasic DE1-SoC with a Cyclone V.
     De1Soc,
@@ -28,38 +28,38 @@ pub(super) enum Processor {
     NiosV,
 }
 
-/// What is fixed on a board.
+/// Facts of a board.
 #[derive(Debug)]
 pub(super) struct Facts {
-    /// What people call it.
+    /// Common name of the board.
     pub(super) title: &'static str,
-    /// The device's family, as Quartus calls it.
+    /// Family of the device, as Quartus calls it.
     pub(super) quartus_family: &'static str,
-    /// The version of Quartus that the project is for.
+    /// Version of Quartus for which the project is written.
     pub(super) quartus: &'static str,
-    /// Of that version, as `.qpf` and `package require` want it.
+    /// That version, as `.qpf` and `package require` need it.
     pub(super) quartus_version: &'static str,
     /// Version of the `qsys` package of its system's script.
     pub(super) script_version: &'static str,
     pub(super) processor: Processor,
     /// On-chip memory for program and data, bytes.
     pub(super) memory_bytes: u32,
-    /// Its oscillator, Hz.
+    /// Frequency of its oscillator in Hz.
     pub(super) oscillator_hz: f64,
     pub(super) clock_pin: &'static str,
-    /// The push button that resets, low while pressed, with its name on the board.
+    /// Pin and board name of the push button for the reset, which is low while pressed.
     pub(super) reset_pin: (&'static str, &'static str),
-    /// Receive and transmit of a serial line on the board, where the fabric has one.
+    /// Pins for receive and transmit of a serial line on the board; `None` where the fabric has none.
     pub(super) uart_pins: Option<[&'static str; 2]>,
-    /// Expansion headers `GPIO_0` and `GPIO_1`, pins `[0]` to `[35]`.
+    /// Pins `[0]` to `[35]` of the expansion headers `GPIO_0` and `GPIO_1`.
     pub(super) headers: [[&'static str; 36]; 2],
 }
 
-/// A board that nobody knows.
+/// The board is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown board {found:?}; known: {known}; leave the key out for projects of all of them", known = known())]
 pub struct UnknownBoard {
-    /// The name found.
+    /// Name that was found.
     pub found: String,
 }
 
@@ -72,7 +72,7 @@ impl Board {
     /// All boards.
     pub const ALL: [Self; 2] = [Self::De1, Self::De1Soc];
 
-    /// The name in the machine file.
+    /// Name of the board in the machine file.
     pub fn name(self) -> &'static str {
         match self {
             Self::De1 => "de1",
@@ -80,7 +80,7 @@ impl Board {
         }
     }
 
-    /// The family of its device; the device is [`Family::device`].
+    /// Family of its device; [`Family::device`] gives the device.
     pub fn family(self) -> Family {
         match self {
             Self::De1 => Family::Cyclone2,
@@ -119,7 +119,7 @@ static DE1: Facts = Facts {
     quartus_version: "13.0",
     script_version: "13.0",
     processor: Processor::Nios2,
-    // 16 of the 52 M4K blocks.
+    // This takes 16 of the 52 M4K blocks.
     memory_bytes: 8 << 10,
     oscillator_hz: 50e6,
     clock_pin: "L1",
@@ -151,7 +151,7 @@ static DE1_SOC: Facts = Facts {
     oscillator_hz: 50e6,
     clock_pin: "AF14",
     reset_pin: ("AA14", "KEY[0]"),
-    // Its serial line is the hard processor's.
+    // The serial line belongs to the hard processor.
     uart_pins: None,
     headers: [
         [

@@ -1,20 +1,23 @@
-//! `TOP_hw.tcl`: a component for Platform Designer (Qsys).
+//! Writes `TOP_hw.tcl`, a component for Platform Designer (Qsys).
 //!
-//! Written for Quartus II 13.0sp1, the last that knows Cyclone II; newer ones read it as well. So: `package require` of 13.0,
-//! `avalon end`, no attribute that came later (`TOP_LEVEL_FILE`, `CMSIS_SVD_FILE`, `minimumResponseLatency` …).
+//! It is written for Quartus II 13.0sp1, the last that knows Cyclone II; newer versions read it too. It therefore
+//! uses `package require` of 13.0, `avalon end`, and no attribute that came later (`TOP_LEVEL_FILE`,
+//! `CMSIS_SVD_FILE`, `minimumResponseLatency` …).
 //!
-//! - Parameters are what the hardware was built with. They are shown and cannot be changed: one value is allowed, and the
-//!   field is greyed.
+//! - Parameters show how the hardware was built and cannot be changed: one value is allowed, and the field is greyed
+//!   out.
 //! - Reset is synchronous at both edges, as in the RTL.
-//! - The agent has read latency 1 and no wait states, as the bank of every register map (`docs/registers.md`).
-//! - `embeddedsw.CMacro.*` become macros of the instance in `system.h`; `embeddedsw.dts.*` its node in a device tree.
+//! - The agent has read latency 1 and no wait states, as the register bank of every map does (`docs/registers.md`).
+//! - `embeddedsw.CMacro.*` become macros of the instance in `system.h`, and `embeddedsw.dts.*` its node in a device
+//!   tree.
 
 use std::fmt::Write;
 
 use super::tcl::word;
 use super::unit::{Interface, Kind, Unit};
 
-/// Properties of the agent beside its clock and reset: word addresses, bytes of 8 bits, read latency 1, never a wait.
+/// Properties of the agent in addition to its clock and reset: word addresses, bytes of 8 bits, read latency 1, no
+/// wait states.
 const AGENT_PROPERTIES: [(&str, &str); 10] = [
     ("addressUnits", "WORDS"),
     ("bitsPerSymbol", "8"),
@@ -31,8 +34,8 @@ const AGENT_PROPERTIES: [(&str, &str); 10] = [
 /// Vendor in device trees.
 const VENDOR: &str = "posicast";
 
-/// The name by which a device tree, and a driver, find the component: `posicast,stage-1.0`, with the version of its register
-/// map.
+/// The name by which a device tree and a driver find the component, `posicast,stage-1.0` with the version of its
+/// register map.
 pub fn compatible(unit: &Unit<'_>) -> String {
     format!("{VENDOR},{}-{}", unit.component.name(), unit.version())
 }

@@ -1,4 +1,4 @@
-//! What an engineer opens in Quartus: components for Platform Designer, a system with a processor, and a project per board.
+//! Files for Quartus: components for Platform Designer, a system with a processor, and a project per board.
 //!
 //! ```text
 //! DIR/README.md                                 what to do, step by step
@@ -7,14 +7,17 @@
 //! DIR/sopc/quartus/BOARD/MACHINE_BOARD.qpf …    its project: .qpf, .qsf, .sdc, top level
 //! ```
 //!
-//! - Everything follows from the components' register maps and ports ([`Unit`]) and from the facts of the boards ([`Board`]).
-//! - Systems and projects are there for a machine with a stage. Blocks that stand alone are components for systems of one's own.
-//! - A board whose oscillator has not the machine's clock gets no project: the README says so. There is no PLL in ours.
-//! - Cyclone II ends with Quartus II 13.0sp1. What is written for it, and the components, which all boards share, keep to what
+//! - Everything is derived from the components' register maps and ports ([`Unit`]) and from the facts of the boards
+//!   ([`Board`]).
+//! - Systems and projects are written for a machine with a stage. Blocks that stand alone are components for the
+//!   user's own systems.
+//! - A board whose oscillator does not have the machine's clock gets no project, and the README says so: these
+//!   systems have no PLL.
+//! - Cyclone II ends with Quartus II 13.0sp1. Its files, and the components, which all boards share, use only what
 //!   that version knows.
 //!
-//! What this does not show: Quartus itself. Its commands are checked against lists of what 13.0 knows (`cli/tests`), its
-//! results are not.
+//! Quartus itself is not exercised. The commands are checked against lists of what 13.0 knows (`cli/tests`); their
+//! results are not checked.
 
 mod board;
 mod hw_tcl;
@@ -31,18 +34,18 @@ pub use hw_tcl::compatible;
 pub(crate) use system::STAGE_BASE;
 pub use unit::Unit;
 
-/// What the package of a machine is made from.
+/// Data from which the package of a machine is made.
 #[derive(Debug, Clone)]
 pub struct Design<'a> {
     /// Name of the machine.
     pub machine: &'a str,
-    /// Its clock in Hz.
+    /// Fabric clock in Hz.
     pub clock_hz: f64,
-    /// Its board, where the machine file names one: the README begins with it.
+    /// Its board, where the machine file names one: the README lists it first.
     pub board: Option<Board>,
     /// Its stage, if it has one.
     pub stage: Option<Unit<'a>>,
-    /// The axes whose gates are off at a high level, out of those of the stage.
+    /// The axes of the stage whose gates are off at a high level.
     pub active_low_axes: Vec<&'a str>,
     /// The blocks that stand alone.
     pub components: Vec<Unit<'a>>,
@@ -53,14 +56,14 @@ pub struct Design<'a> {
 pub struct ProjectFile {
     /// Path in the folder, with `/`.
     pub path: String,
-    /// Contents.
+    /// Text of the file.
     pub text: String,
 }
 
-/// Why there is no package.
+/// Why the package cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SopcError {
-    /// More lines than a board has pins for.
+    /// The board has fewer pins than the stage has lines.
     #[error(
         "{board}: the stage has {needed} lines for the expansion headers, which have {available} pins: leave out an axis or a \
          scale, or take a board of your own (the component does not depend on one)"
@@ -68,24 +71,24 @@ pub enum SopcError {
     Pins {
         /// The board.
         board: Board,
-        /// Pins needed.
+        /// Number of pins that are needed.
         needed: usize,
-        /// Pins there are.
+        /// Number of pins of the headers.
         available: usize,
     },
-    /// A port that is no line.
+    /// A port has more than one bit.
     #[error("port {port} of the stage has more than one bit: a board has no place for it")]
     Wide {
-        /// The port.
+        /// Name of the port.
         port: String,
     },
 }
 
 impl Design<'_> {
-    /// The files, in no order that matters.
+    /// The files, in no particular order.
     ///
     /// # Errors
-    /// [`SopcError`] for a stage that a board has no pins for.
+    /// [`SopcError`] for a stage that does not fit the pins of a board.
     pub fn files(&self) -> Result<Vec<ProjectFile>, SopcError> {
         let mut files = Vec::new();
         let mut add = |path: String, text: String| files.push(ProjectFile { path, text });
@@ -120,12 +123,12 @@ impl Design<'_> {
         self.stage.iter().chain(&self.components)
     }
 
-    /// Can the board run the machine as it is?
+    /// Whether the board can run the machine without changes.
     pub fn runs_on(&self, board: Board) -> bool {
         (board.facts().oscillator_hz - self.clock_hz).abs() < 0.5
     }
 
-    /// The boards with a project, the machine's own first.
+    /// The boards with a project; the machine's own comes first.
     fn projects(&self) -> Vec<(Board, &Unit<'_>)> {
         let Some(stage) = &self.stage else {
             return Vec::new();

@@ -1,31 +1,32 @@
-//! Which pin of a board every port of its top level is on.
+//! Assigns the ports of the top level to pins of a board.
 //!
-//! Clock, reset and, where the fabric has one, the serial line are where the board has them. All others are on the expansion
-//! headers, `GPIO_0[0]` upwards, in the order of the stage's ports: first what belongs to no axis, then axis by axis.
+//! Clock, reset and, where the fabric has one, the serial line have fixed pins on the board. All others are on the
+//! expansion headers from `GPIO_0[0]` upwards, in the order of the stage's ports: first those that belong to no axis,
+//! then axis by axis.
 
 use super::SopcError;
 use super::board::Board;
 use super::unit::{PINS, Unit};
 
-/// Ports of the stage that do not leave the device: the tick is for a trace, and there is no PLL to watch.
+/// Ports of the stage that do not leave the device: the tick is for a trace, and there is no PLL to monitor.
 const INSIDE: [&str; 2] = ["tick", "pll_locked"];
 
-/// How the ports end that start an ADC's conversion: the ADC's own logic is in the device, and these boards' headers have no pins to
-/// spare for four axes.
+/// Suffix of the ports that start an ADC's conversion. The ADC's own logic is in the device, and these boards'
+/// headers have no pins to spare for four axes.
 const ADC_TRIGGER: &str = "_pwm_trigger";
 
-/// Whether a port of the stage has no pin.
+/// Returns whether a port of the stage has no pin.
 pub(super) fn stays_inside(port: &str) -> bool {
     INSIDE.contains(&port) || port.ends_with(ADC_TRIGGER)
 }
 
-/// Ports of the top level beside those of the stage.
+/// Ports of the top level in addition to those of the stage.
 pub(super) const CLOCK: &str = "clock_50";
 pub(super) const RESET: &str = "reset_button_n";
 pub(super) const UART_RECEIVE: &str = "uart_rxd";
 pub(super) const UART_TRANSMIT: &str = "uart_txd";
 
-/// What a port of the top level is for.
+/// Purpose of a port of the top level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
     Clock,
@@ -35,21 +36,21 @@ pub(super) enum Use {
     Stage,
 }
 
-/// A port of the top level, one bit, on its pin.
+/// A one-bit port of the top level with its pin.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Pin {
     pub(super) port: String,
     pub(super) is_input: bool,
     pub(super) purpose: Use,
-    /// Of the device, without `PIN_`.
+    /// Pin of the device, without `PIN_`.
     pub(super) location: &'static str,
-    /// What the board calls it.
+    /// Name on the board.
     pub(super) on_board: String,
-    /// Of a port of the stage: conduit and role.
+    /// For a port of the stage its conduit and role.
     pub(super) conduit: Option<(String, String)>,
 }
 
-/// The pins of a stage on a board.
+/// Assigns the pins of a stage on a board.
 ///
 /// # Errors
 /// [`SopcError::Pins`] where the headers have fewer than it needs, [`SopcError::Wide`] for a port of more than one bit.

@@ -1,4 +1,4 @@
-//! The Quartus project of a machine on a board: `.qpf`, `.qsf` with device and pins, `.sdc` with the timing.
+//! Writes the Quartus project of a machine on a board: `.qpf`, `.qsf` with device and pins, `.sdc` with the timing.
 
 use std::fmt::Write;
 
@@ -7,12 +7,12 @@ use super::pins::{self, Pin, Use};
 use super::unit::Unit;
 use super::{system, top};
 
-/// Standard of all pins.
+/// I/O standard of all pins.
 const IO_STANDARD: &str = "3.3-V LVTTL";
-/// Delays outside of the device that the constraints begin with, in ns.
+/// Initial external delays of the constraints, in ns.
 const OUTSIDE_NS: [f64; 2] = [0.0, 5.0];
 
-/// The `.qpf`.
+/// Writes the `.qpf`.
 pub(super) fn project(machine: &str, board: Board) -> String {
     format!(
         "QUARTUS_VERSION = \"{}\"\nPROJECT_REVISION = \"{}\"\n",
@@ -21,7 +21,7 @@ pub(super) fn project(machine: &str, board: Board) -> String {
     )
 }
 
-/// The `.qsf`. Every pin is in one line of its own: who wires otherwise changes the lines of the locations and nothing else.
+/// Writes the `.qsf`. Every pin has a line of its own: a user with other wiring changes only the location lines.
 pub(super) fn settings(machine: &str, board: Board, pins: &[Pin]) -> String {
     let facts = board.facts();
     let name = top::name(machine, board);
@@ -83,8 +83,8 @@ set_global_assignment -name STRATIX_DEVICE_IO_STANDARD \"{IO_STANDARD}\"
     text
 }
 
-/// The `.sdc`: clock, delays of the pins, and false paths to first flip-flops of synchronisers and to the fault latches, which
-/// have no clock to be in time for. Nothing else is excluded.
+/// Writes the `.sdc`: clock, delays of the pins, and false paths to the first flip-flops of synchronisers and to the
+/// fault latches, which are asynchronous. Nothing else is excluded.
 pub(super) fn timing(machine: &str, board: Board, stage: &Unit<'_>, pins: &[Pin]) -> String {
     let facts = board.facts();
     let clock = pins::CLOCK;
@@ -114,7 +114,7 @@ set_clock_groups -asynchronous -group {{altera_reserved_tck}} -group {{{clock}}}
         posicast = env!("CARGO_PKG_VERSION"),
         period = 1e9 / facts.oscillator_hz,
     );
-    // TimeQuest of 13.0 knows no uncertainty of a Cyclone II.
+    // TimeQuest of 13.0 has no clock uncertainty for Cyclone II.
     if facts.quartus_version != "13.0" {
         text.push_str("derive_clock_uncertainty\n");
     }
@@ -146,15 +146,15 @@ set_false_path -from [get_ports {{{trips}}}] -to [get_registers {{*|armed}}]
     text
 }
 
-/// Patterns of the flip-flops that lines end in: the first of a synchroniser, or a pin register that stands before it, as the
-/// encoder generator and `drive_command` have.
+/// Patterns of the flip-flops at which lines end: the first of a synchroniser, or a pin register in front of it, as
+/// in the encoder generator and `drive_command`.
 fn first_registers(stage: &Unit<'_>) -> String {
     let has_pin_register = stage.modules.iter().any(|name| name.ends_with("_pin_register"));
     let pin_register = has_pin_register.then_some(" *|pin_register_q");
     format!("*synchroniser_first{}", pin_register.unwrap_or_default())
 }
 
-/// Does this pin trip a PWM without a clock?
+/// Returns whether this pin trips a PWM asynchronously.
 fn trips(stage: &Unit<'_>, pin: &Pin) -> bool {
     let of_axis = stage.axis_of(&pin.port);
     pin.purpose == Use::Stage && of_axis.is_some_and(|(_, role)| role == "fault_n")

@@ -1,4 +1,4 @@
-//! `README.md` of the folder: what is in it, and what to do with it in Quartus.
+//! Writes `README.md` of the folder: its contents, and what to do with it in Quartus.
 
 use std::fmt::Write;
 
@@ -7,13 +7,13 @@ use super::pins::{Pin, Use};
 use super::unit::Unit;
 use super::{Design, system, top};
 
-/// The text. `projects` are the boards with a project and their pins.
+/// The text. `projects` are the boards with a project, and their pins.
 pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> String {
     let mut text = String::new();
     contents(&mut text, design);
     if design.units().next().is_none() {
         text.push_str(
-            "\nThe machine has shapers alone: no component with registers, so nothing for Platform Designer. `kit/README.md` \
+            "\nThe machine has only shapers: without a component with registers, there is nothing for Platform Designer. `kit/README.md` \
              says how the top module goes into a design of your own.\n",
         );
         return text;
@@ -21,7 +21,7 @@ pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> Strin
     components(&mut text, design);
     if design.stage.is_none() {
         text.push_str(
-            "\nThe machine has no stage (that takes a complete loop on every axis), so there is no system and no project. Add the \
+            "\nThe machine has no stage (which requires a complete loop on every axis), so there is neither a system nor a project. Add the \
              components to a system of your own: in Platform Designer, add the folder `sopc/` to the search path.\n",
         );
         return text;
@@ -170,7 +170,7 @@ With {quartus}, in its {shell}, from this folder:
     text.push_str(&generate_step(board, &system));
     let position = match facts.processor {
         Processor::Nios2 => "",
-        // The hard processor is the first device of the chain.
+        // The hard processor is the first device of the JTAG chain.
         Processor::NiosV => "@2",
     };
     let _ = write!(
@@ -206,7 +206,7 @@ fn generate_step(board: Board, system: &str) -> String {
     }
 }
 
-/// How software is made for the system.
+/// How to build software for the system.
 fn software(processor: Processor, system: &str) -> String {
     match processor {
         Processor::Nios2 => format!(

@@ -1,4 +1,5 @@
-//! The system around a stage, as a script for `qsys-script`: processor, memory, JTAG UART, timer, UART, system ID, stage.
+//! Writes the system around a stage as a script for `qsys-script`: processor, memory, JTAG UART, timer, UART, system
+//! ID, stage.
 //!
 //! ```text
 //!  clk ─┬────────┬───────┬────────┬────────┬───────┬───────┐
@@ -6,34 +7,36 @@
 //!             memory    timer    uart   jtag_uart sysid   stage ── conduits to the top level
 //! ```
 //!
-//! Base addresses are fixed, so that software built for one machine finds its stage in the next. The script for a board of
-//! Quartus II 13.0sp1 keeps to what that version knows: `altera_nios2_qsys`, `clock_source`, a `qsys` package of 13.0.
+//! Base addresses are fixed, so that software built for one machine finds the stage of another. The script for a
+//! board of Quartus II 13.0sp1 uses only what that version knows: `altera_nios2_qsys`, `clock_source`, a `qsys`
+//! package of 13.0.
 
 use std::fmt::Write;
 
 use super::board::{Board, Processor};
 use super::unit::Unit;
 
-/// Instance of the stage; in `system.h` its facts begin with it.
+/// Instance name of the stage, with which its macros in `system.h` begin.
 pub(super) const STAGE: &str = "stage";
-/// Where the stage stands on the bus. Its span is at most 8 KiB.
+/// Base address of the stage. Its span is at most 8 KiB.
 pub(crate) const STAGE_BASE: u32 = 0x0002_0000;
-/// The memory: program and data from address 0 on.
+/// Base address of the memory for program and data.
 const MEMORY_BASE: u32 = 0;
 const DEBUG_BASE: u32 = 0x0003_0000;
 const TIMER_BASE: u32 = 0x0003_1000;
 const UART_BASE: u32 = 0x0003_1020;
 const JTAG_UART_BASE: u32 = 0x0003_1040;
 const SYSID_BASE: u32 = 0x0003_1048;
-/// Timer and software interrupt of a Nios V.
+/// Addresses of timer and software interrupt of a Nios V.
 const MACHINE_TIMER_BASE: u32 = 0x0003_1080;
 const NIOS_V_DEBUG_BASE: u32 = 0x0010_0000;
-/// Bits per second of the UART: 8 data bits, no parity, one stop bit.
+/// Bit rate of the UART: 8 data bits, no parity, one stop bit.
 pub(super) const BAUD: u32 = 115_200;
-/// Period of the timer.
+/// Period of the timer in ms.
 const TIMER_MILLISECONDS: u32 = 1;
 
-/// What stands on the data bus beside memory and processor: instance, type, agent, base address, interrupt and its number.
+/// Peripherals on the data bus in addition to memory and processor: instance, type, agent, base address, interrupt
+/// and its number.
 const PERIPHERALS: [Peripheral; 4] = [
     ("timer", "altera_avalon_timer", "s1", TIMER_BASE, Some(1)),
     ("uart", "altera_avalon_uart", "s1", UART_BASE, Some(2)),
@@ -47,20 +50,21 @@ const PERIPHERALS: [Peripheral; 4] = [
     ("sysid", "altera_avalon_sysid_qsys", "control_slave", SYSID_BASE, None),
 ];
 type Peripheral = (&'static str, &'static str, &'static str, u32, Option<u32>);
-/// The stage comes first.
+/// Interrupt number of the stage, the highest priority.
 const STAGE_INTERRUPT: u32 = 0;
 
 /// Names that differ between the processors.
 struct Names {
-    /// Source of the clock, and sources of the reset: a debugger's resets the stage too, so that its gates go off.
+    /// Source of the clock, and sources of the reset: the debugger's reset also resets the stage, so that its gates
+    /// go off.
     clock: &'static str,
     resets: &'static [&'static str],
-    /// The processor's reset input, its masters, its interrupt receiver.
+    /// The processor's reset input, its masters and its interrupt receiver.
     cpu_reset: &'static str,
     data: &'static str,
     instructions: &'static str,
     interrupts: &'static str,
-    /// What else the script exports the clock and the reset from.
+    /// Interfaces from which the script exports the clock and the reset.
     exports: [&'static str; 2],
 }
 
@@ -84,12 +88,12 @@ const NIOS_V: Names = Names {
     exports: ["clock.in_clk", "reset_bridge.in_reset"],
 };
 
-/// Name of the system of a machine on a board; also of its module.
+/// Name of the system of a machine on a board, which is also that of its module.
 pub(super) fn name(machine: &str, board: Board) -> String {
     format!("{machine}_{board}_system")
 }
 
-/// The script.
+/// Writes the script.
 pub(super) fn script(machine: &str, board: Board, stage: &Unit<'_>, clock_hz: f64) -> String {
     let mut script = Script(String::new());
     let facts = board.facts();
@@ -127,7 +131,7 @@ set_project_property DEVICE {device}
     script.0
 }
 
-/// The text so far.
+/// The text of the script so far.
 struct Script(String);
 
 impl Script {
@@ -145,7 +149,7 @@ impl Script {
         let _ = writeln!(self.0, "add_connection {start} {end}");
     }
 
-    /// An agent on the bus of a master.
+    /// Connects an agent to the bus of a master.
     fn on_bus(&mut self, master: &str, agent: &str, base: u32) {
         self.connect(master, agent);
         let _ = writeln!(
@@ -249,7 +253,7 @@ impl Script {
         self.interrupt(names, &format!("{STAGE}.irq"), STAGE_INTERRUPT);
     }
 
-    /// A clock input and a reset input, on their sources.
+    /// Connects a clock input and a reset input to their sources.
     fn clocked(&mut self, names: &Names, clock: &str, reset: &str) {
         self.connect(names.clock, clock);
         for source in names.resets {

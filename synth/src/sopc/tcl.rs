@@ -1,6 +1,6 @@
-//! Words of Tcl, for the files that Platform Designer and Quartus read.
+//! Quoting for the Tcl files that Platform Designer and Quartus read.
 
-/// One word of a Tcl command that stands for this text, whatever is in it.
+/// Quotes any text as one word of a Tcl command.
 pub(super) fn word(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_./:-".contains(c);
     if !text.is_empty() && text.chars().all(plain) {

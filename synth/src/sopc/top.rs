@@ -1,4 +1,4 @@
-//! The top level of a project: the system, a synchroniser for its reset, and nothing else. Verilog-2001.
+//! Writes the top level of a project in Verilog-2001: the system and a synchroniser for its reset, nothing else.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! A component as Platform Designer sees it: which of its ports belong to which interface.
+//! A component as Platform Designer sees it: assigns its ports to interfaces.
 //!
 //! | interface | kind | ports |
 //! |---|---|---|
@@ -6,10 +6,11 @@
 //! | `reset` | reset, synchronous | `rst` |
 //! | `avs` | Avalon-MM agent | `avs_ROLE` |
 //! | `irq` | interrupt | `irq`, where the map has interrupts |
-//! | `pins` | conduit | what belongs to no axis: all pins of a block that stands alone |
+//! | `pins` | conduit | ports that belong to no axis: all pins of a block that stands alone |
 //! | `axis_NAME` | conduit | of a stage: `NAME_ROLE`, for each axis |
 //!
-//! Every port is in one interface. The rule reads the ports of the model's composition, which are those of the Verilog.
+//! Every port is in exactly one interface. The rule uses the ports of the model's composition, which are those of the
+//! Verilog.
 
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::registers::{Access, Field, Format};
@@ -20,11 +21,11 @@ use posicast_model::rtl::{Direction, Port};
 pub struct Unit<'a> {
     /// Name of its top module.
     pub top: &'a str,
-    /// What it is.
+    /// The component.
     pub component: &'a Component,
-    /// Its Verilog modules, each a file `rtl/NAME.v` of the package, the top last.
+    /// Names of its Verilog modules, each a file `rtl/NAME.v` of the package, the top last.
     pub modules: Vec<String>,
-    /// The axes whose ports begin with their names: those of a stage, none of a block that stands alone.
+    /// The axes with whose names ports begin: those of a stage; none for a block that stands alone.
     pub axes: Vec<&'a str>,
 }
 
@@ -38,7 +39,7 @@ pub(super) enum Kind {
     Conduit,
 }
 
-/// Some ports that go together.
+/// An interface with its ports.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Interface {
     pub(super) name: String,
@@ -50,20 +51,20 @@ pub(super) struct Interface {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Signal {
     pub(super) port: String,
-    /// What it is in the interface; in a conduit a name of its own.
+    /// Role in the interface; in a conduit a name of its own.
     pub(super) role: String,
     pub(super) is_input: bool,
-    /// In bits.
+    /// Width in bits.
     pub(super) width: u32,
 }
 
-/// Name of the conduit of what belongs to no axis.
+/// Name of the conduit for ports that belong to no axis.
 pub(super) const PINS: &str = "pins";
-/// What the conduit of an axis is called begins with; the axis's name follows.
+/// Prefix of an axis's conduit, before the axis's name.
 const AXIS_PREFIX: &str = "axis_";
 
 impl Unit<'_> {
-    /// Its interfaces, each with at least one port; together they have every port of the top module once.
+    /// Its interfaces, each with at least one port; together they contain every port of the top module once.
     pub(super) fn interfaces(&self) -> Vec<Interface> {
         let clk = Signal {
             port: "clk".to_owned(),
@@ -98,7 +99,7 @@ impl Unit<'_> {
         interfaces
     }
 
-    /// Interface, its kind, and role of a port.
+    /// Interface, kind and role of a port.
     fn place<'p>(&self, port: &'p str) -> (String, Kind, &'p str) {
         if let Some(role) = port.strip_prefix("avs_") {
             return ("avs".to_owned(), Kind::Agent, role);
@@ -113,7 +114,8 @@ impl Unit<'_> {
         }
     }
 
-    /// The axis that a port belongs to, and the rest of its name. Of axes `x` and `x_2`, `x_2_home` is the second's.
+    /// The axis to which a port belongs, and the rest of its name. With the axes `x` and `x_2`, `x_2_home` belongs to
+    /// the second.
     pub(super) fn axis_of<'p>(&self, port: &'p str) -> Option<(&str, &'p str)> {
         let of_axis = |axis: &&str| {
             port.strip_prefix(*axis)?
@@ -125,21 +127,22 @@ impl Unit<'_> {
         Some((axis, of_axis(axis)?))
     }
 
-    /// What it was built with: the constants of its register map behind magic and version.
+    /// Parameters of its build: the constants of its register map after magic and version.
     pub(super) fn parameters(&self) -> impl Iterator<Item = &Field> {
         let registers = self.component.map().registers().iter();
         let constants = registers.filter(|register| register.access == Access::Constant && register.offset > 1);
         constants.flat_map(|register| &register.fields)
     }
 
-    /// Reset value of the field of the constants `magic` and `version`; 0 where the map has none of that name.
+    /// Reset value of a field of the constants `magic` and `version`; 0 where the map has no field with this name.
     pub(super) fn constant(&self, register: &str, field: &str) -> u32 {
         let register = self.component.map().register(register);
         let field = register.and_then(|register| register.fields.iter().find(|other| other.name == field));
         field.map_or(0, |field| field.reset)
     }
 
-    /// The law that a controller has after reset, as people call it: the name of its module says `sliding_mode`, whatever the law.
+    /// Common name of the law that a controller has after reset: its module is called `sliding_mode`, whatever the
+    /// law.
     pub(super) fn law(&self) -> Option<String> {
         if self.component.name() != "sliding_mode" {
             return None;
@@ -156,7 +159,7 @@ impl Unit<'_> {
         })
     }
 
-    /// What it is called where people choose it: its block, of a controller its law.
+    /// Name shown where people choose a component: its block, or a controller's law.
     pub(super) fn title(&self) -> String {
         match self.law() {
             Some(law) => format!("controller ({law})"),
@@ -173,7 +176,7 @@ impl Unit<'_> {
         )
     }
 
-    /// Bytes that its agent takes on the bus.
+    /// Bytes of its span on the bus.
     pub(super) fn span_bytes(&self) -> u32 {
         4 << self.component.map().address_bits()
     }

@@ -1,19 +1,19 @@
-//! A block by itself: in a module without logic, so that all of it is one row of the estimate.
+//! Estimates a block by itself, in a module without logic, so that all of it is one row.
 
 use super::{Estimate, Family, Yosys, YosysError, process};
 use posicast_model::rtl::{Direction, Port};
 use std::fs;
 use std::path::PathBuf;
 
-/// The module around the block.
+/// Name of the module around the block.
 const AROUND: &str = "block_alone";
 
 impl Yosys {
-    /// Estimates what one block costs by itself, mapped as a whole: its Verilog, its top module, and that one's ports beside
-    /// the clock, which is `clk`.
+    /// Estimates the resources of one block by itself, mapped as a whole, from its Verilog, its top module, and the
+    /// top's ports except the clock `clk`.
     ///
     /// # Errors
-    /// As [`estimate`](Yosys::estimate).
+    /// Those of [`estimate`](Yosys::estimate).
     pub fn estimate_alone(
         &self,
         files: &[PathBuf],

@@ -1,9 +1,10 @@
-//! Counting a mapped netlist, as Yosys's `write_json` describes it.
+//! Counts the resources of a mapped netlist, which Yosys's `write_json` describes.
 //!
-//! - Logic elements: LUTs, a bit of a carry chain being one, plus the flip-flops that cannot share a LUT's element
-//!   (`logic_elements`). Those that are a multiplier's own registers take no element (`multiplier_registers`).
-//! - ALMs: a 6-input LUT fills one, two smaller LUTs share one; one for every four flip-flops where those need more.
-//! - Memory bits and multipliers: from the sizes of the black boxes (`cells.v`), the same for every tool version.
+//! - Logic elements: LUTs, where a bit of a carry chain counts as one, plus the flip-flops that cannot share a LUT's
+//!   element (`logic_elements`). A multiplier's own registers take no element (`multiplier_registers`).
+//! - ALMs: a 6-input LUT fills one, two smaller LUTs share one; one ALM per four flip-flops where those need more.
+//! - Memory bits and multipliers: from the sizes of the black boxes (`cells.v`), the same for every version of the
+//!   tool.
 
 use std::ops::AddAssign;
 
@@ -13,24 +14,24 @@ use super::family::{Cell, Family};
 use super::netlist::{Module, Netlist, NetlistCell};
 use super::{logic_elements, m4k, multiplier_registers};
 
-/// What a block takes of a device.
+/// Resources of a device that a block takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Resources {
-    /// Logic cells, in the unit of the device.
+    /// Number of logic cells, in the unit of the device.
     pub cells: u64,
-    /// Flip-flops.
+    /// Number of flip-flops.
     pub registers: u64,
     /// Bits of block memory, without those that never change.
     pub memory_bits: u64,
-    /// Multipliers of 18 × 18 bits.
+    /// Number of multipliers of 18 × 18 bits.
     pub multipliers: u64,
-    /// The LUTs among `cells`; not counted for Cyclone V, and no part of the document.
+    /// Number of LUTs among `cells`; not counted for Cyclone V, and not in the document.
     #[serde(skip)]
     pub luts: u64,
-    /// `cells` if no register were packed with a LUT that does not drive it; as `luts`, no part of the document.
+    /// `cells` if no register were packed with a LUT that does not drive it; like `luts` not in the document.
     #[serde(skip)]
     pub unpacked_cells: u64,
-    /// Blocks of 4,608 bits that the memory would take in Cyclone II; no part of the document.
+    /// Blocks of 4,608 bits that the memory would take in Cyclone II; not in the document.
     #[serde(skip)]
     pub m4k_blocks: u64,
 }
@@ -47,20 +48,20 @@ impl AddAssign for Resources {
     }
 }
 
-/// What one instance takes.
+/// Resources of one instance.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BlockEstimate {
     /// Name of the instance in the top module; the top module's own name for the logic between its instances.
     pub name: String,
-    /// What it takes.
+    /// Its resources.
     #[serde(flatten)]
     pub resources: Resources,
 }
 
-/// One row per instance in `top`, sorted by name, then one for the logic of `top` itself unless that is nothing.
+/// One row per instance in `top`, sorted by name, then one for the logic of `top` itself if there is any.
 ///
 /// # Errors
-/// What the netlist holds that cannot be counted.
+/// Description of a cell that cannot be counted.
 pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec<BlockEstimate>, String> {
     let module = netlist
         .modules
@@ -86,7 +87,7 @@ pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec
     Ok(blocks)
 }
 
-/// The cells of one flat module; instances of other modules are not its own.
+/// Counts the cells of one flat module, without its instances of other modules.
 fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources, String> {
     let mut total = Resources::default();
     let mut wide_luts = 0;
@@ -108,7 +109,7 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
             kind if kind.starts_with("MISTRAL_ALUT") => half_luts += 1,
             "posicast_memory" => {
                 let (reads, writes) = (size(cell, "RD_PORTS")?, size(cell, "WR_PORTS")?);
-                // A block RAM has two ports; more readers than that need a copy each.
+                // A block RAM has two ports; with more readers each needs a copy.
                 let copies = if reads.saturating_add(writes) <= 2 { 1 } else { reads };
                 let (words, width) = (size(cell, "SIZE")?, size(cell, "WIDTH")?);
                 let bits = words.saturating_mul(width);
@@ -120,7 +121,7 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
                 let of_18_bits = multipliers(size(cell, "A_WIDTH")?, size(cell, "B_WIDTH")?, family);
                 total.multipliers = total.multipliers.saturating_add(of_18_bits);
             }
-            // Inverters vanish in the LUT or flip-flop that they feed; the rest describes and costs nothing.
+            // Inverters are absorbed by the LUT or flip-flop that they feed; the other types cost nothing.
             "$not" | "MISTRAL_NOT" | "GND" | "VCC" | "$scopeinfo" => {}
             kind if netlist.design_module(kind).is_some() => {}
             kind => return Err(format!("cell {name} of type {kind} is left, which no estimate counts")),
@@ -141,7 +142,7 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
     Ok(total)
 }
 
-/// 18-bit multipliers for one product. Cyclone V can join two to one of 27 × 27 bits.
+/// Number of 18-bit multipliers for one product. Cyclone V can join two to one of 27 × 27 bits.
 fn multipliers(a_width: u64, b_width: u64, family: Family) -> u64 {
     let grid = |bits: u64| a_width.div_ceil(bits).saturating_mul(b_width.div_ceil(bits));
     match family {
@@ -150,11 +151,11 @@ fn multipliers(a_width: u64, b_width: u64, family: Family) -> u64 {
     }
 }
 
-/// A size parameter: Yosys writes 32 binary digits, other versions a number.
+/// A size parameter, which Yosys writes as 32 binary digits and other versions as a number.
 fn size(cell: &NetlistCell, parameter: &str) -> Result<u64, String> {
     let value = cell.parameters.get(parameter);
     let number = value.and_then(|v| v.as_u64().or_else(|| u64::from_str_radix(v.as_str()?, 2).ok()));
-    number.ok_or_else(|| format!("parameter {parameter} of a {} is no size: {value:?}", cell.kind))
+    number.ok_or_else(|| format!("parameter {parameter} of a {} is not a size: {value:?}", cell.kind))
 }
 
 #[cfg(test)]

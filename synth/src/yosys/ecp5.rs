@@ -1,4 +1,5 @@
-//! A netlist for Lattice ECP5, which open tools can place and route, and the ports that it is wrapped by.
+//! Makes a netlist for Lattice ECP5, which open tools can place and route, and reads the ports of a top for its
+//! wrapper.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,19 +12,19 @@ use super::{Yosys, YosysError, module_name};
 /// A port of a top module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TopPort {
-    /// Its name.
+    /// Name of the port.
     pub name: String,
-    /// Else an output.
+    /// Whether it is an input; else it is an output.
     pub is_input: bool,
-    /// Its bits.
+    /// Width in bits.
     pub width: u32,
 }
 
 impl Yosys {
-    /// The ports of `top`, in the order of their names.
+    /// The ports of `top`, sorted by name.
     ///
     /// # Errors
-    /// As [`check`](Yosys::check).
+    /// Those of [`check`](Yosys::check).
     pub fn ports(&self, files: &[PathBuf], top: &str) -> Result<Vec<TopPort>, YosysError> {
         let top = module_name(top)?;
         let scratch = scratch()?;
@@ -46,10 +47,10 @@ impl Yosys {
         Ok(ports.iter().map(port).collect())
     }
 
-    /// Writes `top`, mapped to ECP5, into `output`, as nextpnr reads it.
+    /// Maps `top` to ECP5 and writes the netlist into `output`, in the format that nextpnr reads.
     ///
     /// # Errors
-    /// As [`check`](Yosys::check).
+    /// Those of [`check`](Yosys::check).
     pub fn ecp5_netlist(&self, files: &[PathBuf], top: &str, output: &Path) -> Result<(), YosysError> {
         let top = module_name(top)?;
         let scratch = scratch()?;

@@ -1,4 +1,4 @@
-//! The device families that an estimate knows, and one device of each to measure against.
+//! The device families that can be estimated, with one device of each for comparison.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,23 +7,23 @@ use posicast_model::machine_file::FAMILIES;
 use posicast_model::spelling::did_you_mean;
 use serde::{Serialize, Serializer};
 
-/// A device family, under its name in the machine file.
+/// A device family, with its name in the machine file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Family {
-    /// Cyclone II. Yosys has no such target; Cyclone IV E has the same logic element, so it stands in.
+    /// Cyclone II. Yosys has no such target, so Cyclone IV E, which has the same logic element, represents it.
     Cyclone2,
     /// Cyclone IV E.
     Cyclone4e,
-    /// Cyclone 10 LP: the logic element of Cyclone IV E.
+    /// Cyclone 10 LP, with the logic element of Cyclone IV E.
     Cyclone10lp,
-    /// Cyclone V: the family that Yosys maps best, so the default where a machine file names none.
+    /// Cyclone V, which Yosys maps best. It is the default where a machine file names no family.
     #[default]
     Cyclone5,
-    /// MAX 10: the logic element of Cyclone IV E.
+    /// MAX 10, with the logic element of Cyclone IV E.
     Max10,
 }
 
-/// The unit that a family's logic is counted in.
+/// Unit in which a family's logic is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Cell {
     /// Logic element: a 4-input LUT and a flip-flop.
@@ -34,28 +34,28 @@ pub enum Cell {
     AdaptiveLogicModule,
 }
 
-/// What a device holds.
+/// Resources of a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct FpgaDevice {
     /// Order code.
     pub name: &'static str,
     /// Unit of `cells`.
     pub cell: Cell,
-    /// Logic cells.
+    /// Number of logic cells.
     pub cells: u64,
-    /// Flip-flops of those cells.
+    /// Number of flip-flops in those cells.
     pub registers: u64,
     /// Bits of block memory.
     pub memory_bits: u64,
-    /// Multipliers of 18 × 18 bits.
+    /// Number of multipliers of 18 × 18 bits.
     pub multipliers: u64,
 }
 
-/// A family that nobody knows.
+/// The device family is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown device family {found:?}; known: {}{}", FAMILIES.join(", "), question(.found))]
 pub struct UnknownFamily {
-    /// The name found.
+    /// Name that was found.
     pub found: String,
 }
 
@@ -69,7 +69,7 @@ impl Family {
         Self::Max10,
     ];
 
-    /// The name in the machine file.
+    /// Name of the family in the machine file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cyclone2 => "cyclone2",
@@ -80,8 +80,8 @@ impl Family {
         }
     }
 
-    /// The device that an estimate is measured against: that of the family's most used board. Capacities as in the
-    /// device handbooks and in Quartus's fitter reports.
+    /// The device with which an estimate is compared: that of the family's most common board. Capacities are from the
+    /// device handbooks and Quartus's fitter reports.
     pub fn device(self) -> FpgaDevice {
         match self {
             // DE1. 52 M4K blocks of 4,608 bits.
@@ -104,7 +104,7 @@ impl Family {
         }
     }
 
-    /// Yosys's name of the target that the family is mapped to.
+    /// Yosys's name of the target to which the family is mapped.
     pub fn mapped_as(self) -> &'static str {
         match self.device().cell {
             Cell::LogicElement => "cycloneive",
@@ -124,7 +124,7 @@ fn logic_elements(name: &'static str, cells: u64, memory_bits: u64, multipliers:
     }
 }
 
-/// The question after a name that is nearly right.
+/// A question about a name that is nearly right.
 fn question(found: &str) -> String {
     did_you_mean(found, &FAMILIES, '"').map_or_else(String::new, |question| format!("; {question}"))
 }

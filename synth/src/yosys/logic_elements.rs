@@ -1,10 +1,11 @@
-//! How many logic elements of Cyclone II to IV, Cyclone 10 LP and MAX 10 hold these LUTs and flip-flops.
+//! Counts the logic elements of Cyclone II to IV, Cyclone 10 LP and MAX 10 that hold LUTs and flip-flops.
 //!
-//! An element has a LUT of four inputs and a flip-flop. The flip-flop takes its data from the LUT, or, where the LUT leaves
-//! the third input free, from that input: then both serve unrelated functions, which the handbooks call register packing
-//! (Cyclone IV Device Handbook, "LE Features"; Intel Cyclone 10 LP Core Fabric Handbook, 1.1.1). Quartus does as much of it
-//! as the design needs to fit (Settings File Reference Manual, `QII_AUTO_PACKED_REGISTERS`, "Auto"). Nobody is packed
-//! here with a bit of a carry chain, although some of these handbooks allow it.
+//! An element has a LUT of four inputs and a flip-flop. The flip-flop takes its data from the LUT, or, where the LUT
+//! leaves the third input free, from that input: then both serve unrelated functions, which the handbooks call
+//! register packing (Cyclone IV Device Handbook, "LE Features"; Intel Cyclone 10 LP Core Fabric Handbook, 1.1.1).
+//! Quartus does as much of it as the design needs to fit (Settings File Reference Manual,
+//! `QII_AUTO_PACKED_REGISTERS`, "Auto"). Here no flip-flop is packed with a bit of a carry chain, although some of
+//! these handbooks allow it.
 
 use std::collections::BTreeSet;
 
@@ -12,16 +13,16 @@ use super::netlist::{Bit, NetlistCell};
 
 const INPUTS: [&str; 4] = ["dataa", "datab", "datac", "datad"];
 
-/// What LUTs and flip-flops take together.
+/// Number of logic elements for LUTs and flip-flops together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LogicElements {
-    /// With register packing: the fewest that hold them.
+    /// With register packing: the smallest number that holds them.
     pub(super) packed: u64,
-    /// A flip-flop only shares the element of the LUT that drives it.
+    /// Without: a flip-flop only shares the element of the LUT that drives it.
     pub(super) unpacked: u64,
 }
 
-/// Counts for `cycloneive_lcell_comb` and `dffeas`.
+/// Counts the elements for `cycloneive_lcell_comb` and `dffeas`.
 pub(super) fn count(luts: &[&NetlistCell], flip_flops: &[&NetlistCell]) -> LogicElements {
     let data: BTreeSet<u64> = flip_flops.iter().filter_map(|cell| wire(cell, "d")).collect();
     let (driving, others): (Vec<&NetlistCell>, Vec<&NetlistCell>) = luts
@@ -35,14 +36,14 @@ pub(super) fn count(luts: &[&NetlistCell], flip_flops: &[&NetlistCell]) -> Logic
     }
 }
 
-/// Whether a flip-flop of another function fits beside the LUT.
+/// Whether the element of the LUT has room for a flip-flop of another function.
 fn has_room(lut: &NetlistCell) -> bool {
     let inputs: BTreeSet<u64> = INPUTS.iter().filter_map(|input| wire(lut, input)).collect();
     let in_carry_chain = lut.parameters.get("sum_lutc_input").is_some_and(|value| value == "cin");
     inputs.len() < INPUTS.len() && !in_carry_chain
 }
 
-/// The wire at a port of one bit; nothing if it is a constant.
+/// The wire at a port of one bit; `None` if it is a constant.
 fn wire(cell: &NetlistCell, port: &str) -> Option<u64> {
     match cell.connections.get(port).map(Vec::as_slice) {
         Some([Bit::Wire(wire)]) => Some(*wire),

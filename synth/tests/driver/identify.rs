@@ -1,4 +1,5 @@
-//! A machine is measured through its own loop: the driver shakes an axis and reads its trace, and the modes come out.
+//! A machine is measured through its own loop: the driver excites an axis and reads its trace, and the modes are
+//! identified.
 
 use crate::driver::bridge::Bridge;
 use crate::driver::support::Driver;
@@ -7,7 +8,7 @@ use posicast_identify::position;
 use posicast_model::machine_file::{self, Machine};
 use std::fmt::Write;
 
-/// The example with a scale at its load, a trace, and room to be shaken.
+/// Returns the example with a scale at its load, a trace, and room for an excitation.
 fn measured_machine() -> Machine {
     let text = include_str!("../../../examples/xy-stage.toml");
     let scale = "[axis.scale]\ncounts_per_unit = 10_000_000\nuse = \"monitor\"\n";
@@ -30,7 +31,7 @@ fn unit_the_stages_own_trace_tells_its_mode() {
     let mut bridge = Bridge::new(&driver, "identify.c", false);
     let said = bridge.talk(&[]);
     assert_eq!(said["causes"], 0, "{said:?}");
-    // As a program would write it: every second tick of 100 µs.
+    // The lines are as a program would write them: every second tick of 100 µs.
     let mut csv = String::from("time_s,captured_position,deviation\n");
     for row in 0..said["rows"] {
         let word = |name: &str| said[&format!("{name}_{row}")];

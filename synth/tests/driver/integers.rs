@@ -1,11 +1,11 @@
-//! The integrator and the planner in C against the model's arithmetic.
+//! The integrator and the planner in C compared with the model's arithmetic.
 
 use crate::driver::support::{Driver, beside};
 use posicast_model::rtl::segments::{ACCELERATION_BITS, CUBIC, Cubic, Entry, EntryMotion, Integrator, Point};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-/// What the program says to these lines, in numbers.
+/// Returns the program's numeric answers to these lines.
 fn answers(driver: &Driver, input: &str) -> Vec<Vec<i64>> {
     let program = driver.program("integers", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("integers.c")]);
     let mut child = Command::new(program)
@@ -24,7 +24,7 @@ fn answers(driver: &Driver, input: &str) -> Vec<Vec<i64>> {
     text.lines().map(numbers).collect()
 }
 
-/// A state as the program prints it.
+/// Returns a state as the program prints it.
 fn shown(fits: bool, at: &Integrator) -> Vec<i64> {
     let words = at.rounded().map(i64::from);
     [
@@ -46,7 +46,7 @@ impl Numbers {
         self.0
     }
 
-    /// Two's complement in so many bits; as often short as long.
+    /// Returns a two's complement number of up to this many bits, as often short as long.
     fn signed(&mut self, bits: u32) -> i64 {
         let length = self.next() % u64::from(bits) + 1;
         (self.next() as i64) >> (64 - length)
@@ -116,10 +116,11 @@ fn prop_the_integrator_in_c_gives_the_integers_of_the_model() {
     }
 }
 
-/// Moves of the planner, played by the model: on target, at rest, within the limits.
+/// Moves of the planner, played by the model, end on target, at rest, within the limits.
 #[test]
 fn prop_a_plan_in_c_ends_at_rest_on_target_within_its_limits() {
-    // The XY stage's, a slow machine's, one whose velocity comes before its acceleration, and one that jumps.
+    // The limits of the XY stage, of a slow machine, of one that reaches its velocity before its acceleration, and of
+    // one that jumps.
     let limits: [[i64; 3]; 5] = [
         [107_374_182_400, 343_597_383, 1_717_986],
         [4_294_967, 42_949, 4_294],
@@ -160,7 +161,7 @@ fn prop_a_plan_in_c_ends_at_rest_on_target_within_its_limits() {
             let ticks = words[3] & 0xff_ffff;
             assert_eq!((words[3] >> 31 & 1 == 1, words[3] >> 30 & 1 == 1), (last, last));
             if last {
-                // What the segments leave is less than half an LSB of the command word, and nothing moves.
+                // The segments leave less than half an LSB of the command word, and nothing moves.
                 let missing = (i64::from(end) << 24) - at.position;
                 assert!(
                     at.at_rest() && missing.abs() < 1 << 23,
@@ -180,11 +181,11 @@ fn prop_a_plan_in_c_ends_at_rest_on_target_within_its_limits() {
                     largest = [0, 1, 2].map(|k: usize| largest[k].max(now[k].abs()));
                 }
             }
-            // The program came to the same state by itself.
+            // The program reached the same state by itself.
             assert_eq!(lines.next().unwrap(), &shown(true, &at));
         }
         for (found, limit) in largest.into_iter().zip(limits) {
-            // Corrections lay some LSB of jerk on top.
+            // Corrections add some LSB of jerk.
             assert!(
                 found as f64 <= limit as f64 * 1.001 + 64.0,
                 "{start} to {end}: {found} above {limit}"

@@ -1,4 +1,5 @@
-//! The C driver: compiled by gcc and for a RISC-V, its integers against the model's, and run against the stage's Verilog.
+//! The C driver: compiled by gcc and for a RISC-V, its integers compared with the model's, and run against the
+//! stage's Verilog.
 
 mod bridge;
 mod error_table;
@@ -36,7 +37,7 @@ fn unit_the_core_needs_no_library_and_no_operating_system() {
         &driver,
         &driver.core(),
     );
-    // What a Nios V is; the nearest there is to a Nios II.
+    // This is the instruction set of a Nios V, and the closest available to a Nios II.
     let riscv = ["-O2", "-ffreestanding", "-march=rv32im", "-mabi=ilp32"];
     compile(
         Command::new("riscv64-unknown-elf-gcc").args(STRICT).args(riscv),
@@ -103,7 +104,7 @@ fn unit_the_bare_metal_program_builds() {
     );
 }
 
-/// Each axis goes there and back, and is off at the end.
+/// Each axis moves there and back, and is off at the end.
 #[test]
 fn lockstep_the_bare_metal_program_moves_every_axis() {
     let driver = Driver::write();
@@ -129,7 +130,7 @@ fn lockstep_the_bare_metal_program_moves_every_axis() {
     }
 }
 
-/// `alt_sys_init` and an interrupt, on headers that stand for the HAL's.
+/// `alt_sys_init` and an interrupt, with headers that replace those of the HAL.
 #[test]
 fn unit_the_hal_finds_the_stage_and_takes_its_interrupt() {
     let driver = Driver::write();
@@ -140,7 +141,7 @@ fn unit_the_hal_finds_the_stage_and_takes_its_interrupt() {
     run(&mut Command::new(program));
 }
 
-/// `_sw.tcl` under a Tcl that knows its two commands: every file that it names is there, and every C file is named.
+/// `_sw.tcl` in a Tcl that knows its two commands: every file that it names exists, and every C file is named.
 #[test]
 fn unit_the_bsp_finds_every_file() {
     let driver = Driver::of(traced_machine());
@@ -168,20 +169,20 @@ fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
     let driver = Driver::write();
     let mut bridge = Bridge::new(&driver, "scenario.c", true);
     let said = bridge.talk(&[]);
-    // 40 and -25 counts, from 0: the command to the last bit, the motor to its count.
+    // The moves are 40 and -25 counts from 0: the command agrees to the last bit, the motor to its count.
     assert_eq!(
         (said["command_x"], said["command_y"]),
         (40 * 256, -25 * 256),
         "{said:?}"
     );
     assert!((said["x"] - 40).abs() <= 1 && (said["y"] + 25).abs() <= 1, "{said:?}");
-    // Held in RUN at the far end, and back to the last bit.
+    // It is held in RUN at the far end, and returns to the last bit.
     assert_eq!((said["held_at"], said["held_state"]), (60 * 256, 3), "{said:?}");
     assert_eq!((said["resumed_to"], said["held_causes"]), (40 * 256, 0), "{said:?}");
     assert_eq!(said["after_fault_x"], 90 * 256);
     let at = bridge.bench.plant(0).count();
     assert!((at - 90).abs() <= 1, "{at}");
-    // PWM tripped; group stop.
+    // The PWM tripped, and the group stopped.
     assert_eq!(
         (said["causes_x"], said["causes_y"], said["causes_after"]),
         (1 << 1, 1 << 14, 0)
@@ -251,7 +252,7 @@ fn unit_settings_change_between_two_ticks() {
     assert_eq!(Gain::from_word(said["gain_3_2"] as u32), wanted);
 }
 
-/// The home switch is pressed from 30 counts on, the index before it.
+/// The home switch is pressed from 30 counts on; the index comes before it.
 #[test]
 fn unit_an_axis_is_homed_and_looked_at() {
     let driver = Driver::of(traced_machine());
@@ -260,7 +261,7 @@ fn unit_an_axis_is_homed_and_looked_at() {
         let is_pressed = bench.plant(0).count() >= 30;
         bench.set("x_home", is_pressed.into()).unwrap();
     });
-    // The index to the count, the switch within the speed of the search.
+    // The index agrees to the count, the switch within the speed of the search.
     assert_eq!(
         (said["origin_by_index"], said["index_setup"]),
         (INDEX_AT - 1000, 0),
@@ -274,7 +275,7 @@ fn unit_an_axis_is_homed_and_looked_at() {
         (800 << 8, 1200 << 8),
         "{said:?}"
     );
-    // 64 rows of four signals; a square of 3 counts, which the axis follows.
+    // There are 64 rows of four signals, and a square of 3 counts, which the axis follows.
     assert_eq!((said["rows"], said["trigger_row"]), (64, 0), "{said:?}");
     assert_eq!((said["most"], said["least"]), (3 << 8, -(3 << 8)), "{said:?}");
     assert!(said["moved"] >= 4, "{said:?}");
@@ -286,7 +287,7 @@ fn unit_the_driver_does_not_hang_where_nothing_answers() {
     let driver = Driver::write();
     let program = driver.program("absent", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("scenario.c")]);
     bridge::talk(&program, &["absent"], &mut |_| Some(0));
-    // Only constants: the clock stands still.
+    // This program reads only constants: the clock stands still.
     let machine = machine();
     let component = posicast_model::rtl::component::Component::stage(&stage(&machine).config).unwrap();
     bridge::talk(&program, &["dead"], &mut |asked| match asked {

@@ -9,36 +9,36 @@ use posicast_synth::driver::{AxisData, AxisFamily, FOLDER, StageDriver, componen
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What every file of the driver must pass.
+/// Compiler options that every file of the driver must pass.
 pub(crate) const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
 
-/// The example.
+/// Returns the machine of the example.
 pub(crate) fn machine() -> Machine {
     machine_file::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap()
 }
 
-/// The example with a trace memory of 256 samples, and test signals, for its first axis.
+/// Returns the example with a trace memory of 256 samples, and test signals, for its first axis.
 pub(crate) fn traced_machine() -> Machine {
     let text = include_str!("../../../examples/xy-stage.toml");
     let text = text.replacen("[axis.pwm]", "[axis.trace]\nsamples = 256\n[axis.pwm]", 1);
     machine_file::parse("xy-stage.toml", &text).unwrap()
 }
 
-/// Its stage.
+/// Returns the machine's stage.
 pub(crate) fn stage(machine: &Machine) -> MachineStage {
     hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap()
 }
 
-/// Its driver, written into a folder.
+/// The driver of a machine, written into a folder.
 pub(crate) struct Driver {
     pub(crate) machine: Machine,
     folder: tempfile::TempDir,
 }
 
 impl Driver {
-    /// That of the example.
+    /// Writes the driver of the example.
     pub(crate) fn write() -> Self {
         Self::of(machine())
     }
@@ -78,7 +78,7 @@ impl Driver {
         self.folder.path().join(FOLDER)
     }
 
-    /// The C files of its core.
+    /// Returns the C files of the driver's core.
     pub(crate) fn core(&self) -> Vec<PathBuf> {
         let files = std::fs::read_dir(self.path().join("src")).unwrap();
         let mut files: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
@@ -101,19 +101,19 @@ impl Driver {
     }
 }
 
-/// A component beside the stage.
+/// Returns a component that is not the stage.
 pub(crate) fn pwm() -> Component {
     use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
     Component::pwm(config, BridgeMode::HalfBridge, 2500).unwrap()
 }
 
-/// A file beside this one.
+/// Returns the path of a file beside this one.
 pub(crate) fn beside(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver").join(name)
 }
 
-/// Runs it, and gives its output.
+/// Runs a command, and returns its output.
 pub(crate) fn run(command: &mut Command) -> String {
     let output = command.output();
     let output = output.unwrap_or_else(|error| panic!("{command:?}: {error}; scripts/install-tools installs it"));

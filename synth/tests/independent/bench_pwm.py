@@ -1,4 +1,4 @@
-"""The PWM component under cocotb, its bus driven by cocotb-bus; word addresses and constants come from its SVD."""
+"""Tests the PWM component with cocotb and cocotb-bus; word addresses and constants come from its SVD."""
 
 import os
 from xml.etree import ElementTree
@@ -34,7 +34,7 @@ class Registers:
 
 
 async def begin(dut):
-    """A reset of four clocks, all lines healthy."""
+    """Resets for four clocks, with all lines healthy."""
     cocotb.start_soon(Clock(dut.clk, CLOCK_NS, unit="ns").start())
     for pin in (dut.feed, dut.duty, dut.sync):
         pin.value = 0
@@ -51,7 +51,7 @@ async def begin(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def constants_and_configuration(dut):
-    """Constants read as the document says, configuration as it was written, commands and holes as 0."""
+    """Constants read as the document says, configuration reads as it was written, commands and holes read as 0."""
     registers = await begin(dut)
     assert (await registers.read("MAGIC")).to_bytes(4, "little") == b"PWM1"
     for name in ("MAGIC", "VERSION", "CONTROL", "PERIOD", "TIMES", "MAX_DUTY"):
@@ -62,7 +62,7 @@ async def constants_and_configuration(dut):
     assert await registers.read("PHASE") == 0x12345678
     assert await registers.read("CLEAR_TRIP") == 0
     assert int(await registers.bus.read(0xF0)) == 0
-    # Below its floor: refused, and flagged.
+    # A value below its floor is refused and flagged.
     await registers.write("TIMES", 0)
     assert await registers.read("TIMES") == registers.reset["TIMES"]
     assert await registers.read("FLAGS") == 1 << 5
@@ -72,7 +72,7 @@ async def constants_and_configuration(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_period(dut):
-    """Tripped after reset; then leg A is high for duty less dead time, and low for the rest less two dead times."""
+    """After reset it is tripped; then leg A is high for duty less dead time, and low for the rest less two dead times."""
     registers = await begin(dut)
     assert await registers.read("STATUS") & 2
     await registers.write("CLEAR_TRIP", 0)
@@ -95,7 +95,7 @@ async def a_period(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_raw_fault(dut):
-    """The pins are off with the fault, without a clock; the trip stays until it is cleared."""
+    """The fault turns the pins off without a clock; the trip stays until it is cleared."""
     registers = await begin(dut)
     await registers.write("CLEAR_TRIP", 0)
     await registers.write("DUTY", DUTY)

@@ -1,7 +1,7 @@
-//! What is generated, before tools that know nothing of posicast: systemrdl-compiler, the schema of CMSIS-SVD and its parser,
-//! FuseSoC with Verilator and Icarus, and cocotb with the bus driver of cocotb-bus.
+//! Checks generated files with independent tools: systemrdl-compiler, the schema of CMSIS-SVD and its parser, FuseSoC
+//! with Verilator and Icarus, and cocotb with the bus driver of cocotb-bus.
 //!
-//! They are Python, in `.venv` of the repository, which `scripts/install-tools` makes.
+//! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// A tool of the virtual environment.
+/// Returns a tool of the virtual environment.
 fn tool(name: &str) -> Command {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin").join(name);
     assert!(
@@ -37,7 +37,7 @@ fn python(script: &str) -> Command {
     python
 }
 
-/// What it prints, if it ends well.
+/// Returns what a command prints, if it succeeds.
 fn output(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -65,13 +65,13 @@ fn write(folder: &Path, path: &str, text: &str) -> PathBuf {
     path
 }
 
-/// The documents of a component in a folder: paths of SystemRDL and SVD.
+/// Writes the documents of a component into a folder; returns the paths of SystemRDL and SVD.
 fn documents(folder: &TempDir, top: &str, map: &RegisterMap) -> [PathBuf; 2] {
     let [_, rdl, svd] = register_documents::files(top, map).map(|(path, text)| write(folder.path(), &path, &text));
     [rdl, svd]
 }
 
-/// A line per field, as the Python programs print them. `array`: how a word of several is named.
+/// Returns a line per field, as the Python programs print them. `array` returns the name of a word of several.
 fn fields(map: &RegisterMap, array: fn(&str, u32) -> String) -> Vec<String> {
     let mut lines = Vec::new();
     for register in map.registers() {
@@ -160,7 +160,7 @@ fn unit_fusesoc_runs_lint_and_sim() {
     run("lint");
     let said = run("sim");
     assert!(said.contains("PASS"), "{said}");
-    // A constant that is not what the map says stops it.
+    // A constant that differs from the map stops the testbench.
     let bench = folder.path().join("sim/xy_stage_stage_bench.v");
     let text = std::fs::read_to_string(&bench).unwrap();
     std::fs::write(&bench, text.replacen("45475453", "45475454", 1)).unwrap();

@@ -1,4 +1,4 @@
-"""Compiles SystemRDL with systemrdl-compiler and prints what it says: one line per field, as the test expects them."""
+"""Compiles SystemRDL with systemrdl-compiler and prints one line per field, as the test expects them."""
 
 import sys
 

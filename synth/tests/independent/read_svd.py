@@ -1,4 +1,4 @@
-"""Validates CMSIS-SVD against the published schema, reads it with cmsis-svd, and prints it as read_rdl.py does."""
+"""Validates CMSIS-SVD with the published schema, reads it with cmsis-svd, and prints it as read_rdl.py does."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,5 @@
-//! Which names a command may write to. Asked before the work begins, so that nothing is computed for nothing.
+//! The names to which a command may write. They are claimed before the work begins, so that nothing is computed in
+//! vain.
 
 use std::fs::Metadata;
 use std::io::{self, ErrorKind};
@@ -7,71 +8,71 @@ use std::path::{Path, PathBuf};
 use super::seal::is_ours;
 use super::target::Target;
 
-/// Why a command does not write to a name. Every variant leaves what is there untouched.
+/// Why a command does not write to a name. With every variant, existing files stay untouched.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The name is that of a file which the command reads.
+    /// The name is that of a file that the command reads.
     #[error("{option} {}: that is {input}, and an input is never replaced: name another file", .path.display())]
     Input {
-        /// The option.
+        /// The option that gave the name.
         option: String,
-        /// Its value.
+        /// The name.
         path: PathBuf,
-        /// What the command reads there, in words.
+        /// Description of the input.
         input: &'static str,
     },
-    /// A file is there that posicast did not write, or that was changed since.
+    /// There is a file that posicast did not write, or that was changed since.
     #[error(
         "{option} {}: there is a file that posicast did not write, or that was changed since: name another file, or replace it \
          with --force", .path.display()
     )]
     Foreign {
-        /// The option.
+        /// The option that gave the name.
         option: String,
-        /// Its value.
+        /// The name.
         path: PathBuf,
     },
-    /// The same command writes something else there.
+    /// The same command writes something else to this name.
     #[error("{option} {}: {other} of the same command is written there: name another file", .path.display())]
     Twice {
-        /// The option.
+        /// The option that gave the name.
         option: String,
-        /// Its value.
+        /// The name.
         path: PathBuf,
-        /// The option that came first.
+        /// The option that claimed the name first.
         other: String,
     },
-    /// A folder is there.
+    /// There is a folder with this name.
     #[error("{option} {}: that is a folder: name a file", .path.display())]
     Folder {
-        /// The option.
+        /// The option that gave the name.
         option: String,
-        /// Its value.
+        /// The name.
         path: PathBuf,
     },
-    /// The folder in which the file would be is not there.
-    #[error("{option} {}: there is no folder {}: make it, or name a file elsewhere", .path.display(), .folder.display())]
+    /// The folder of the file does not exist.
+    #[error("{option} {}: the folder {} does not exist: create it, or name a file elsewhere", .path.display(), .folder.display())]
     NoFolder {
-        /// The option.
+        /// The option that gave the name.
         option: String,
-        /// Its value.
+        /// The name.
         path: PathBuf,
-        /// The folder.
+        /// The missing folder.
         folder: PathBuf,
     },
-    /// The operating system refuses.
+    /// The operating system reported an error.
     #[error("{option} {}: cannot write there: {source}: name another file", .path.display())]
     Io {
-        /// The option.
+        /// The option that gave the name.
         option: String,
-        /// Its value.
+        /// The name.
         path: PathBuf,
-        /// Its reason.
+        /// The error.
         source: io::Error,
     },
 }
 
-/// What a command reads and writes.
+/// The files that a command reads and writes.
 #[derive(Debug, Clone, Default)]
 pub struct OutputFiles {
     force: bool,
@@ -80,7 +81,7 @@ pub struct OutputFiles {
 }
 
 impl OutputFiles {
-    /// Of a command that reads nothing yet. With `force` it replaces files that posicast did not write; never its inputs.
+    /// Starts without files. With `force`, files that posicast did not write are replaced, but never inputs.
     pub fn new(force: bool) -> Self {
         Self {
             force,
@@ -88,15 +89,15 @@ impl OutputFiles {
         }
     }
 
-    /// Adds a file that the command reads: `what` in words, for the message.
+    /// Adds a file that the command reads; `what` describes it for messages.
     pub fn input(&mut self, what: &'static str, path: &Path) {
         self.inputs.push((what, path.to_owned()));
     }
 
-    /// Asks for a name to write to. `option` is how the user gave it, for the message.
+    /// Claims a name to write to. `option` is the option that gave it, for messages.
     ///
     /// # Errors
-    /// [`OutputError`], see there.
+    /// [`OutputError`] says why the name cannot be used.
     pub fn claim(&mut self, option: &str, path: &Path) -> Result<(), OutputError> {
         let (option, owned) = (option.to_owned(), path.to_owned());
         let target = match Target::of(path) {
@@ -162,7 +163,7 @@ fn folder_of(file: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
-/// Whether two names that need not exist lead to one file.
+/// Whether two names, which need not exist, lead to the same file.
 fn same_target(a: &Target, b: &Target) -> bool {
     match (a, b) {
         (Target::Existing(a), Target::Existing(b)) => same(a, b),
@@ -171,7 +172,8 @@ fn same_target(a: &Target, b: &Target) -> bool {
     }
 }
 
-/// Whether two names lead to one file or folder, also by links and hard links. Nothing is opened: one may be a pipe.
+/// Whether two names lead to the same file or folder, also through links and hard links. Nothing is opened, because
+/// one may be a pipe.
 fn same(a: &Path, b: &Path) -> bool {
     match (a.metadata(), b.metadata()) {
         (Ok(of_a), Ok(of_b)) => {

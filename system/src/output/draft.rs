@@ -1,4 +1,4 @@
-//! A file that appears under its name only when it is complete.
+//! A file that appears with its name only when it is complete.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, ErrorKind, Seek, SeekFrom, Write};
@@ -10,7 +10,7 @@ use super::seal;
 use super::target::Target;
 use crate::scratch::{self, Beside};
 
-/// A file that is being written. Dropped before [`put`](Draft::put), it leaves nothing.
+/// A file that is being written. If it is dropped before [`put`](Draft::put), it leaves nothing behind.
 #[derive(Debug)]
 pub struct Draft {
     place: Option<Place>,
@@ -19,17 +19,18 @@ pub struct Draft {
 
 #[derive(Debug)]
 enum Place {
-    /// Beside the file that it becomes.
+    /// A file in the folder of the final file, with that file's path.
     File(Beside, PathBuf),
-    /// Copied into the stream at the end: a seal is filled in where the file was written already. `None` is the standard output.
+    /// A file that is copied into the stream at the end, because a seal is filled in at a place that was written
+    /// before. `None` is the standard output.
     Stream(File, Option<PathBuf>),
 }
 
 impl Draft {
-    /// Starts a file that will be put in the place of `path`; `-` is the standard output.
+    /// Starts a file that will replace `path`; `-` is the standard output.
     ///
     /// # Errors
-    /// `path` is a folder, or its folder cannot be written.
+    /// An error if `path` is a folder, or its folder cannot be written.
     pub fn new(path: &Path) -> io::Result<Self> {
         let place = match Target::of(path)? {
             Target::Existing(path) | Target::New(path) => {
@@ -45,10 +46,10 @@ impl Draft {
         })
     }
 
-    /// Fills its seal in, if it has a blank one, and puts the file in its place.
+    /// Fills in its seal, if it has a blank one, and gives the file its name.
     ///
     /// # Errors
-    /// The file cannot be written or renamed, or was put in its place already.
+    /// An error if the file cannot be written or renamed, or was already put in its place.
     pub fn put(&mut self) -> io::Result<()> {
         let place = self.place.take().ok_or_else(gone)?;
         let hash = std::mem::take(&mut self.hash);
@@ -66,14 +67,14 @@ impl Draft {
                         let mut to = io::stdout().lock();
                         io::copy(&mut from, &mut to).and_then(|_| to.flush())
                     }
-                    // Behind what is there already, where the stream turns out to be a file.
+                    // If the stream turns out to be a file, this appends to it.
                     Some(path) => {
                         let to = OpenOptions::new().append(true).open(path);
                         to.and_then(|mut to| io::copy(&mut from, &mut to).map(drop))
                     }
                 };
                 match copied {
-                    // A reader that has gone wants no more.
+                    // A reader that has ended wants no more.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                     other => other,
                 }
@@ -106,12 +107,12 @@ impl Write for Draft {
     }
 }
 
-/// Writes a text with a seal, complete or not at all. The seal is a comment of XML where the text begins with `<`, of GTKWave's
-/// session files where it begins with `[`, of JSON (the key `$comment`) where it begins with `{`, of man pages where it begins
-/// with `.`, else a second line that begins with `#`.
+/// Writes a text with a seal, completely or not at all. The seal is a comment of XML where the text begins with `<`,
+/// of GTKWave's session files where it begins with `[`, of JSON (the key `$comment`) where it begins with `{`, of man
+/// pages where it begins with `.`, else a second line that begins with `#`.
 ///
 /// # Errors
-/// As [`Draft::new`] and [`Draft::put`].
+/// Those of [`Draft::new`] and [`Draft::put`].
 pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
     let mut draft = Draft::new(path)?;
     draft.write_all(seal::with_blank(text).as_bytes())?;

@@ -1,4 +1,4 @@
-//! A file under a name that a user gave.
+//! Files with names that a user gave.
 //!
 //! ```text
 //!  OutputFiles::claim   before the work: may this name be written?      no: OutputError, exit status 2
@@ -6,10 +6,10 @@
 //!  Draft::put       at the end: sealed and renamed, complete or not at all
 //! ```
 //!
-//! - **An input is never replaced**, under whatever name: another path, a link, a hard link.
-//! - **Another file is replaced only if posicast wrote it**, and nobody has changed it since: its [`seal`] says so. `--force`
-//!   replaces it all the same.
-//! - A link is followed: the file behind it is replaced, the link stays.
+//! - **An input is never replaced**, whatever its name: another path, a link, a hard link.
+//! - **Another file is replaced only if posicast wrote it** and nobody has changed it since, which its [`seal`]
+//!   proves. `--force` replaces it all the same.
+//! - A link is followed: the file to which it leads is replaced, and the link stays.
 //! - `-` is the standard output. That, a pipe or a device is written to at the end; nothing is replaced there.
 //!
 //! ```

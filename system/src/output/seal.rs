@@ -1,13 +1,13 @@
-//! How posicast knows a file that it wrote.
+//! The seal by which posicast recognises a file that it wrote.
 //!
-//! Near its beginning, in a comment of its format, such a file says
+//! Near its beginning, in a comment of its format, such a file contains
 //!
 //! ```text
 //! written by posicast 0.1.0 sha256:5f70bf18a086007016e948b04aed3b82103a36bea41755b6cddfaf10ace3c6ef
 //! ```
 //!
-//! The digits are the SHA-256 of the whole file with 64 zeros in their place. So a file that only mentions posicast is not ours,
-//! nor is one that was edited since: both are somebody's work.
+//! The digits are the SHA-256 of the whole file with 64 zeros in their place. So a file that only mentions posicast
+//! is not ours, nor is one that was edited since: both are the user's work.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -15,25 +15,26 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-/// The seal stands within so many bytes from the beginning.
+/// The seal lies within this many bytes from the beginning.
 const HEAD_BYTES: usize = 4096;
 const DIGITS: usize = 64;
 const NAME: &str = "written by posicast ";
 const HASH: &str = " sha256:";
 
-/// What to write into a comment: the seal, still with zeros. [`Draft::put`](super::Draft::put) fills them in.
+/// The seal with zeros, to be written into a comment. [`Draft::put`](super::Draft::put) fills in the digits.
 pub fn blank() -> String {
     format!("{NAME}{}{HASH}{}", env!("CARGO_PKG_VERSION"), "0".repeat(DIGITS))
 }
 
-/// The text with a blank seal in a comment: of XML where it begins with `<`, of GTKWave's session files where it begins with
-/// `[`, of JSON (the key `$comment`) where it begins with `{`, of man pages where it begins with `.`, else a second line that
-/// begins with `#`.
+/// The text with a blank seal in a comment: of XML where it begins with `<`, of GTKWave's session files where it
+/// begins with `[`, of JSON (the key `$comment`) where it begins with `{`, of man pages where it begins with `.`,
+/// else a second line that begins with `#`.
 pub(super) fn with_blank(text: &str) -> String {
     let seal = blank();
     match text.as_bytes().first() {
         Some(b'<') => {
-            // Behind the declaration, else in the root element: readers look for either at the very beginning.
+            // The seal follows the declaration, or is inside the root element: readers expect either at the very
+            // beginning.
             let end = if text.starts_with("<?") { "?>" } else { ">" };
             let (before, after) = text.split_at(text.find(end).map_or(0, |at| at + end.len()));
             format!("{before}\n<!-- {seal} -->\n{}", after.trim_start_matches('\n'))
@@ -41,7 +42,7 @@ pub(super) fn with_blank(text: &str) -> String {
         Some(b'[') => format!("[*] {seal}\n{text}"),
         Some(b'{') => format!("{{\n  \"$comment\": \"{seal}\",{}", text.trim_start_matches('{')),
         Some(b'.') => format!(".\\\" {seal}\n{text}"),
-        // Behind the first line: what it says is what a reader looks for.
+        // The seal follows the first line, which a reader of the file looks for first.
         _ => {
             let (before, after) = text.split_at(text.find('\n').map_or(text.len(), |at| at + 1));
             format!("{before}# {seal}\n{after}")
@@ -49,7 +50,7 @@ pub(super) fn with_blank(text: &str) -> String {
     }
 }
 
-/// Where the digits stand in the beginning of a file.
+/// Range of the digits in the beginning of a file.
 fn place(head: &[u8]) -> Option<usize> {
     let find = |from: usize, what: &str| {
         let windows = head.get(from..)?.windows(what.len());
@@ -74,7 +75,7 @@ fn text_of(hash: Sha256) -> String {
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Fills the seal of a file in, if it has a blank one. `hash` has seen all of the file.
+/// Fills in the seal of a file, if it has a blank one. `hash` has seen all of the file.
 pub(super) fn fill_in(file: &mut File, hash: Sha256) -> io::Result<()> {
     let head = head(file)?;
     let Some(at) = place(&head).filter(|at| head[*at..at + DIGITS].iter().all(|digit| *digit == b'0')) else {
@@ -84,10 +85,10 @@ pub(super) fn fill_in(file: &mut File, hash: Sha256) -> io::Result<()> {
     file.write_all(text_of(hash).as_bytes())
 }
 
-/// Whether posicast wrote the file, and nobody changed it since. `path` is a plain file.
+/// Whether posicast wrote the file and nobody changed it since. `path` is a plain file.
 ///
 /// # Errors
-/// The file cannot be read.
+/// An error if the file cannot be read.
 pub fn is_ours(path: &Path) -> io::Result<bool> {
     let mut file = File::open(path)?;
     let mut head = head(&mut file)?;

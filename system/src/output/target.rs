@@ -1,23 +1,23 @@
-//! Where a name leads: to a file, to the standard output, or into a pipe or a device.
+//! Resolves a name: it leads to a file, to the standard output, or to a pipe or a device.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Links that are followed before they count as a circle.
+/// Largest number of links that are followed before they count as a circle.
 const MOST_LINKS: u32 = 40;
-/// The name of the standard output.
+/// Name of the standard output.
 const DASH: &str = "-";
 
-/// Where a name leads.
+/// What a name leads to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A file that is there, behind all links.
+    /// An existing file, after following all links.
     Existing(PathBuf),
-    /// A file that is not there yet.
+    /// A file that does not exist yet.
     New(PathBuf),
     /// The standard output.
     Stdout,
-    /// Something that is written to and not replaced.
+    /// A pipe or device, which is written to and not replaced.
     Stream(PathBuf),
 }
 
@@ -25,7 +25,7 @@ impl Target {
     /// Follows the name.
     ///
     /// # Errors
-    /// A folder ([`ErrorKind::IsADirectory`]), links in a circle, or what the system refuses.
+    /// An error for a folder ([`ErrorKind::IsADirectory`]), for links in a circle, or from the system.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         if path == Path::new(DASH) {
             return Ok(Self::Stdout);
@@ -58,7 +58,7 @@ impl Target {
     }
 }
 
-/// The number of an open file of this process, where the system has a name for it: `/dev/fd/3`, `/proc/self/fd/3`.
+/// Number of an open file of this process, where the system has a name for it: `/dev/fd/3`, `/proc/self/fd/3`.
 fn descriptor(path: &Path) -> Option<u32> {
     let folder = path.parent()?;
     let is_list = folder == Path::new("/dev/fd") || (folder.starts_with("/proc") && folder.ends_with("fd"));

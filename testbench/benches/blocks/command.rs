@@ -1,4 +1,4 @@
-//! What is commanded: segments, and shapers for them.
+//! The blocks of the command: segments, and shapers for them.
 
 use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
 use posicast_hdl::{cascade, segments, shaper};
@@ -10,7 +10,7 @@ use posicast_model::rtl::shaper::{
 use posicast_model::taps::{Tap, TapTable};
 use std::hint::black_box;
 
-/// Six taps: ZVD digitised with two taps per impulse.
+/// Returns a configuration with six taps: ZVD digitised with two taps per impulse.
 fn shaper_config() -> ShaperConfig {
     let taps = [(0, 25431), (38, 12000), (39, 18787), (77, 4000), (78, 5317), (79, 1)];
     let tap = |(delay_samples, coefficient)| Tap {
@@ -20,17 +20,17 @@ fn shaper_config() -> ShaperConfig {
     ShaperConfig::new(32, TapTable::new(16, taps.map(tap).to_vec()).unwrap()).unwrap()
 }
 
-/// The command of a tick: a ramp.
+/// Returns the command of a tick, which is a ramp.
 fn command(tick: u64) -> i64 {
     12_345 * tick as i64
 }
 
-/// Strobes are at the first clock of a tick.
+/// Returns whether a clock has a strobe: the first one of a tick has.
 fn strobe(clock: u64) -> bool {
     clock.is_multiple_of(TICK_CLOCKS)
 }
 
-/// One sample per tick.
+/// Returns a shaper with one sample per tick.
 pub(crate) fn shaper() -> Block {
     let config = shaper_config();
     let row = |clock| {
@@ -51,7 +51,7 @@ pub(crate) fn shaper() -> Block {
     }
 }
 
-/// Position, velocity and acceleration, one sample per tick.
+/// Returns a shaper of position, velocity and acceleration with one sample per tick.
 pub(crate) fn shaper_in_motion() -> Block {
     let motion = ShaperMotion {
         channels: 3,
@@ -86,7 +86,7 @@ pub(crate) fn shaper_in_motion() -> Block {
     }
 }
 
-/// Four half sums, one sample per tick.
+/// Returns a cascade of four half-sum stages with one sample per tick.
 pub(crate) fn cascade() -> Block {
     let config = CascadeConfig::new(32, vec![20, 30, 40, 50]).unwrap();
     let row = |clock| {
@@ -107,7 +107,7 @@ pub(crate) fn cascade() -> Block {
     }
 }
 
-/// Back and forth: an entry of one tick in every tick.
+/// Returns segments that move back and forth, with an entry of one tick in every tick.
 pub(crate) fn segments() -> Block {
     let input = |clock: u64| {
         let (tick, clock) = (clock / TICK_CLOCKS, clock % TICK_CLOCKS);
@@ -122,7 +122,7 @@ pub(crate) fn segments() -> Block {
             .then(|| clock as usize - 100);
         let (write, data) = word.map_or((0, 0), |word| (1, u64::from(entry.words()[word])));
         let tick = u64::from(clock == 0 && tick > 0);
-        // rst, tick, enable, write, word, data, then settings.
+        // The inputs are rst, tick, enable, write, word, data, then the settings.
         let word = word.unwrap_or(0) as u64;
         [0, tick, 1, write, word, data, 0, 0, 0, 0, 0, 1 << 24, 0, 0, 0, 0, 0]
     };

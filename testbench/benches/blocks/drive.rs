@@ -1,4 +1,4 @@
-//! What drives: the controller and the bridge.
+//! The blocks of the drive: the controller and the bridge.
 
 use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
 use posicast_hdl::{pwm, sliding_mode};
@@ -8,7 +8,7 @@ use posicast_model::rtl::sliding_mode::{
 };
 use std::hint::black_box;
 
-/// Sliding mode, a pass per tick.
+/// Returns the sliding-mode controller with one pass per tick.
 pub(crate) fn sliding_mode() -> Block {
     let mut settings = Settings::default();
     for (row, gain) in [
@@ -55,7 +55,7 @@ pub(crate) fn sliding_mode() -> Block {
 
 const LAW: Law = Law::SlidingMode;
 
-/// A full bridge at 20 kHz; a new duty in every tick.
+/// Returns the PWM of a full bridge at 20 kHz with a new duty in every tick.
 pub(crate) fn pwm() -> Block {
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
     let input = |clock: u64| pwm_model::Inputs {

@@ -1,13 +1,14 @@
-//! Clocks per second of every block: Verilator, the model's `step`, the model's fast path, on the same inputs.
+//! Clocks per second of every block in Verilator, in the model's `step` and in the model's fast path, on the same
+//! inputs.
 //!
 //! ```text
 //! cargo bench -p posicast-testbench --bench blocks                 all
 //! cargo bench -p posicast-testbench --bench blocks -- divider      one block
 //! ```
 //!
-//! Verilator and `step` are called once per clock through [`ClockedBlock`], with raw values for all ports: the same call
-//! for both. The fast path gets the same inputs as events and leaves out the clocks between them. Before anything is
-//! measured, Verilator and `step` run side by side and must agree in every clock.
+//! Verilator and `step` are called once per clock through [`ClockedBlock`], with raw values for all ports. The fast
+//! path gets the same inputs as events and skips the clocks between them. Before anything is measured, Verilator and
+//! `step` run side by side and must agree in every clock.
 #![allow(
     missing_docs,
     clippy::unwrap_used,
@@ -27,25 +28,25 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Clocks per tick: 10 kHz from 50 MHz.
+/// Number of clocks per tick: 10 kHz from 50 MHz.
 const TICK_CLOCKS: u64 = 5000;
-/// Ticks of a run.
+/// Number of ticks of a run.
 const TICKS: u64 = 20;
 const CLOCKS: u64 = TICKS * TICK_CLOCKS;
 
-/// A block with inputs for it, what it does all day. A new block is one more function and its name in [`blocks`].
+/// A block with inputs of normal operation. A new block needs one more function and its name in [`blocks`].
 struct Block {
     name: &'static str,
-    /// Its Verilog, the top last.
+    /// Its Verilog modules, the top module last.
     modules: Vec<Module>,
     model: Box<dyn ClockedBlock>,
-    /// One row per clock, one value per input port.
+    /// One row per clock with one value per input port.
     inputs: Vec<u64>,
-    /// The same inputs by the fast path; returns something that depends on all results.
+    /// Runs the same inputs through the fast path; returns a value that depends on all results.
     fast: Box<dyn FnMut() -> i64>,
 }
 
-/// Inputs, and for how many clocks they stay.
+/// Groups equal inputs: each with the number of clocks for which it stays.
 fn hold<T: PartialEq>(inputs: impl Iterator<Item = T>) -> Vec<(T, u64)> {
     let mut events: Vec<(T, u64)> = Vec::new();
     for inputs in inputs {

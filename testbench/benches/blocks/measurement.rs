@@ -1,4 +1,4 @@
-//! What is measured: an encoder's edges, and the divisions for its velocity.
+//! The blocks of the measurement: an encoder's edges, and the divisions for its velocity.
 
 use crate::{Block, CLOCKS, TICK_CLOCKS};
 use posicast_hdl::{divider, pulse_counter};
@@ -6,7 +6,8 @@ use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
 use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
 use std::hint::black_box;
 
-/// An encoder with an edge every 230 to 370 clocks, glitches of two clocks, and a reversal; a divider that answers.
+/// Returns a pulse counter with an encoder that has an edge every 230 to 370 clocks, glitches of two clocks, and a
+/// reversal; a divider answers it.
 pub(crate) fn pulse_counter() -> Block {
     let events = encoder();
     let mut inputs = Vec::new();
@@ -32,7 +33,7 @@ pub(crate) fn pulse_counter() -> Block {
     }
 }
 
-/// Inputs, and for how many clocks.
+/// Returns the inputs, each with the number of clocks for which it stays.
 fn encoder() -> Vec<(Inputs, u64)> {
     let config = DividerConfig::new(TICK_CLOCKS).unwrap();
     let mut counter = PulseCounter::new();
@@ -48,7 +49,7 @@ fn encoder() -> Vec<(Inputs, u64)> {
     let mut clock = 0;
     while clock < CLOCKS {
         if clock == edge_at {
-            // Up in the first half, down in the second.
+            // The encoder counts up in the first half and down in the second.
             angle += if clock < CLOCKS / 2 { 1 } else { 3 };
             (inputs.a, inputs.b) = [(false, false), (true, false), (true, true), (false, true)][angle % 4];
             edge_at += 230 + clock % 141;
@@ -74,7 +75,7 @@ fn same_but_for_time(held: &Inputs, inputs: &Inputs) -> bool {
     Inputs { time_stamp, ..*inputs } == *held
 }
 
-/// Four channels' divisions after every tick.
+/// Returns a divider with the divisions of four channels after every tick.
 pub(crate) fn divider() -> Block {
     let config = DividerConfig::new(TICK_CLOCKS).unwrap();
     let operands = |clock: u64| {

@@ -1,4 +1,5 @@
-//! The blocks that stand alone on a bus: written to at the start, then read once per 1000 clocks; their work is at the pins.
+//! The blocks with a bus of their own: the host writes at the start and then reads once per 1000 clocks; the pins do
+//! the rest.
 
 use crate::pins::encoder;
 use crate::{TICK_CLOCKS, Whole, stage};
@@ -74,7 +75,8 @@ pub(crate) fn all() -> [Whole; 4] {
     ]
 }
 
-/// `writes`: register, a field of it or none, and the field's value; a later write keeps the fields of an earlier one.
+/// Builds a composition. `writes` holds the register, one of its fields or `None`, and the value; a later write keeps
+/// the fields of an earlier one.
 fn whole(
     name: &'static str,
     component: Component,
@@ -111,7 +113,7 @@ fn whole(
     }
 }
 
-/// Place and value of a register whose field has this value; the others have those of a reset.
+/// Returns the offset and value of a register whose field has this value; its other fields have their reset values.
 fn word(map: &RegisterMap, (register, field, value): (&str, &str, u32)) -> (u64, u64) {
     let register = map.register(register).unwrap();
     let field = register.fields.iter().find(|own| own.name == field);

@@ -1,13 +1,14 @@
-//! Clocks per second of compositions: Verilator, the model's `step`, the model's `hold`, on the same inputs.
+//! Clocks per second of compositions in Verilator, in the model's `step` and in the model's `hold`, on the same
+//! inputs.
 //!
 //! ```text
 //! cargo bench -p posicast-testbench --bench compositions                 all
 //! cargo bench -p posicast-testbench --bench compositions -- stage        one
 //! ```
 //!
-//! Verilator and `step` are called once per clock, with raw values for all ports. `hold` gets the same inputs as events, and
-//! returns at each change of an output. Before anything is measured, all three run side by side and must agree in every
-//! clock.
+//! Verilator and `step` are called once per clock, with raw values for all ports. `hold` gets the same inputs as
+//! events, and returns at each change of an output. Before anything is measured, all three run side by side and must
+//! agree in every clock.
 #![allow(
     missing_docs,
     clippy::unwrap_used,
@@ -28,26 +29,26 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Clocks per tick: 10 kHz from 50 MHz.
+/// Number of clocks per tick: 10 kHz from 50 MHz.
 const TICK_CLOCKS: u64 = 5000;
 const CLOCKS: u64 = 20 * TICK_CLOCKS;
-/// Clocks in which an output changes, at least: two per tick.
+/// Least number of clocks in which an output must change: two per tick.
 const LEAST_CHANGES: usize = 40;
 
-/// The value of an input in a clock.
+/// Returns the value of an input in a clock.
 type Input = Box<dyn Fn(&str, u64) -> u64>;
 
-/// A composition with inputs for it, what it does all day.
+/// A composition with inputs of normal operation.
 struct Whole {
     name: &'static str,
-    /// Its Verilog, the top last.
+    /// Its Verilog modules, the top module last.
     modules: Vec<Module>,
     model: Composed,
-    /// The value of the input of that name in that clock.
+    /// Returns the value of an input, given its name and the clock.
     input: Input,
 }
 
-/// Inputs, and for how many clocks they stay.
+/// Inputs, each with the number of clocks for which they stay.
 type Events = Vec<(Vec<u64>, u64)>;
 
 fn compositions(criterion: &mut Criterion) {
@@ -81,7 +82,7 @@ fn measure(criterion: &mut Criterion, mut whole: Whole) {
         "{}: {changes} changes are rest, not work",
         whole.name
     );
-    // Again, by `hold`, from a reset on.
+    // The same check with `hold`, starting from a reset.
     whole.model.step(&events[0].0, &mut shown).unwrap();
     let mut expected = expected.iter();
     for (row, clocks) in &events {
@@ -128,7 +129,7 @@ fn measure(criterion: &mut Criterion, mut whole: Whole) {
     group.finish();
 }
 
-/// The inputs of all clocks; those of the first are a reset.
+/// Returns the inputs of all clocks; those of the first are a reset.
 fn events(whole: &Whole) -> Events {
     let inputs = whole
         .model

@@ -1,6 +1,6 @@
-//! What the pins of a machine do: an encoder that moves.
+//! Pins of a machine: an encoder that moves.
 
-/// A and B of an encoder with an edge every 300 clocks, up, and down in every other hundred edges.
+/// Returns A and B of an encoder with an edge every 300 clocks, which counts up for a hundred edges, then down.
 pub(crate) fn encoder(clock: u64) -> [u64; 2] {
     let edge = clock / 300;
     let angle = if (edge / 100).is_multiple_of(2) {

@@ -1,4 +1,4 @@
-//! The XY stage of the example, with a host that makes it move.
+//! The XY stage of the example, with a host that moves it.
 
 use crate::pins::encoder;
 use crate::{TICK_CLOCKS, Whole};
@@ -11,7 +11,7 @@ use posicast_model::rtl::segments::{Entry, EntryMotion};
 use posicast_model::rtl::stage::StageConfig;
 use std::collections::HashMap;
 
-/// The example's.
+/// Returns the configuration of the example.
 pub(crate) fn config() -> StageConfig {
     let machine = machine_file::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
@@ -29,7 +29,8 @@ pub(crate) fn stage() -> Whole {
     }
 }
 
-/// Address and data by clock: both axes are cleared, switched on, and move back and forth by an entry per tick.
+/// Returns the address and the data per clock: both axes are cleared, switched on, and move back and forth by one
+/// entry per tick.
 fn writes(component: &Component) -> HashMap<u64, (u64, u64)> {
     let at = |register: &str| u64::from(component.map().register(register).unwrap().offset);
     let mut writes = HashMap::new();

@@ -1,4 +1,4 @@
-//! Why something is not reached: the table `testbench/coverage/holes.txt`.
+//! Explanations of what is not reached: the table `testbench/coverage/holes.txt`.
 //!
 //! ```text
 //! BLOCK | MODULE | line, toggle or bin | WHAT | reason
@@ -13,17 +13,17 @@ use std::fmt;
 use super::point::CoveragePoint;
 use crate::Error;
 
-/// The table, as it stands in the project.
+/// The project's table.
 const TABLE: &str = include_str!("../../coverage/holes.txt");
 
-/// Something that was not reached.
+/// A coverage point that was not reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hole {
-    /// The module; of a bin, the block.
+    /// Name of the module; for a bin, of the block.
     pub module: String,
-    /// `line`, `toggle` or `bin`.
+    /// Kind: `line`, `toggle` or `bin`.
     pub kind: &'static str,
-    /// The point of coverage that is meant.
+    /// Description of the point.
     pub what: String,
 }
 
@@ -62,7 +62,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Whether it speaks of this block, by name and instance.
+    /// Whether it applies to this block, by name and instance.
     pub fn concerns(&self, block: &str) -> bool {
         fits(&self.block, block)
     }
@@ -101,27 +101,27 @@ impl fmt::Display for Explanation {
 /// The project's table.
 ///
 /// # Errors
-/// [`Error::Option`] where a row is not as above.
+/// [`Error::Option`] where a row does not have the format above.
 pub fn all() -> Result<Vec<Explanation>, Error> {
     parse(TABLE)
 }
 
-/// A table.
+/// Parses a table.
 ///
 /// # Errors
-/// As [`all`].
+/// Those of [`all`].
 pub fn parse(table: &str) -> Result<Vec<Explanation>, Error> {
     let rows = table.lines().zip(1..);
     let rows = rows.filter(|(row, _)| !row.trim().is_empty() && !row.starts_with('#'));
     rows.map(|(row, number)| {
-        // What may have a bar of its own.
+        // The description of the point may contain a bar.
         let mut front = row.splitn(4, " | ").map(str::trim);
         let mut next = || front.next().filter(|cell| !cell.is_empty()).map(str::to_owned);
         let cells = (|| Some((next()?, next()?, next()?, next()?)))();
         let found = cells.and_then(|(block, module, kind, rest)| {
             let (what, reason) = rest.rsplit_once(" | ")?;
             let known = ["line", "toggle", "bin"].contains(&kind.as_str());
-            // A reason that ends with a bar is one without words.
+            // If the reason ends with a bar it is empty.
             (known && !reason.ends_with('|')).then(|| Explanation {
                 what: what.trim().to_owned(),
                 reason: reason.trim().to_owned(),
@@ -136,7 +136,7 @@ pub fn parse(table: &str) -> Result<Vec<Explanation>, Error> {
     .collect()
 }
 
-/// Whether a number is this one, or in this range.
+/// Whether `part` is this number, or a range that contains it.
 fn is_among(part: &str, bit: u32) -> bool {
     let (low, high) = part.split_once('-').unwrap_or((part, part));
     match (low.trim().parse::<u32>(), high.trim().parse::<u32>()) {
@@ -145,11 +145,11 @@ fn is_among(part: &str, bit: u32) -> bool {
     }
 }
 
-/// Whether a text fits a pattern.
+/// Whether a text matches a pattern.
 fn fits(pattern: &str, text: &str) -> bool {
     let (pattern, text) = (pattern.as_bytes(), text.as_bytes());
     let (mut at, mut read) = (0, 0);
-    // Where to go on with one character more for the last `*`.
+    // Position at which the last `*` takes one more character.
     let mut retry: Option<(usize, usize)> = None;
     while read < text.len() {
         match pattern.get(at) {

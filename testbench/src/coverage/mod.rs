@@ -1,4 +1,4 @@
-//! Which lines, nets and situations of the emitted Verilog the lock step reaches.
+//! Measures which lines, nets and situations of the emitted Verilog the lock step reaches.
 //!
 //! ```text
 //! block ─► Verilog ─► Verilator --coverage-line --coverage-toggle ─► lock step with the block's own stimuli
@@ -7,12 +7,13 @@
 //! testbench/coverage/holes.txt: explanations ────────────────────────────────────────────────────┴─► table, or errors
 //! ```
 //!
-//! - **Line**: the body that begins in a line was run; of an `if`, the other way counts too.
+//! - **Line**: the body that begins in a line was run; for an `if`, the other branch counts too.
 //! - **Toggle**: a bit of a net changed. Memories have no toggles.
-//! - **Bins** are what the block's bench counts: saturation at each side, every flag, every state ([`Bins`](crate::blocks::Bins)).
-//! - Toggles in the first clocks are not counted: there all nets leave their random start.
-//! - A hole without an [explanation] is an error, and so is an explanation that no longer fits any hole.
-//! - A module that stands in a block several times is counted once, all its instances together.
+//! - **Bins** are what the block's bench counts: saturation at each side, every flag, every state
+//!   ([`Bins`](crate::blocks::Bins)).
+//! - Toggles in the first clocks are not counted, because all nets leave their random start there.
+//! - A hole without an [explanation] is an error, and so is an explanation that no longer matches any hole.
+//! - A module that a block contains several times is counted once, over all its instances.
 
 pub mod explanation;
 pub mod point;
@@ -27,51 +28,52 @@ use crate::stimuli::Stimuli;
 use explanation::{Explanation, Hole};
 use point::{CoveragePoint, PointKind};
 
-/// Clocks of a measurement: those of the explanations, for with fewer there are other holes.
+/// Number of clocks of a measurement, for which the explanations hold: with fewer there are other holes.
 pub const CLOCKS: u64 = 1_000_000;
 /// Seed of a measurement.
 pub const SEED: u64 = 1;
-/// Clocks at the beginning that do not count.
+/// Number of clocks at the beginning that do not count.
 const BEGINNING_CLOCKS: u64 = 3;
 
-/// Dead time and minimum pulse that a host cannot go below, in clocks.
+/// Dead time and minimum pulse below which a host cannot go, in clocks.
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
-/// What the instances of components and of the stage end with.
+/// Suffix of the instances of components and of the stage.
 const ON_A_BUS: &str = ", Avalon";
 
 /// How much of something was reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Share {
-    /// That many.
+    /// Number that was reached.
     pub reached: usize,
-    /// Of that many.
+    /// Number of all.
     pub all: usize,
 }
 
 /// What the lock step of a block reached.
 #[derive(Debug, Clone)]
 pub struct Measured {
-    /// The block's name.
+    /// Name of the block.
     pub block: String,
-    /// And which of them.
+    /// Its instance.
     pub instance: String,
-    /// Bodies of lines.
+    /// Lines of code.
     pub lines: Share,
     /// Bits of nets.
     pub toggles: Share,
     /// Bins of the bench.
     pub bins: Share,
-    /// What was not reached, in the order of the files.
+    /// Points that were not reached, in the order of the files.
     pub holes: Vec<Hole>,
-    /// Wrong values in the lock step.
+    /// Number of wrong values in the lock step.
     pub mismatches: u64,
 }
 
-/// The blocks that are measured: those of the [`library`] that stand alone. Components and the stage are joined from these,
-/// and what joins them is compared in their lock step. The PWM has low floors here, so that its short stimuli get above them.
+/// The blocks that are measured: those of the [`library`] that stand alone. Components and the stage are joined from
+/// these, and their connections are compared in their lock step. The PWM has low limits here, so that its short
+/// stimuli exceed them.
 ///
 /// # Errors
-/// As [`library`].
+/// Those of [`library`].
 pub fn subjects() -> Result<Vec<Box<dyn Block>>, Error> {
     let mut blocks = library()?;
     blocks.retain(|block| !block.instance().ends_with(ON_A_BUS));
@@ -84,18 +86,18 @@ pub fn subjects() -> Result<Vec<Box<dyn Block>>, Error> {
     Ok(blocks)
 }
 
-/// Measures a block under its own stimuli.
+/// Measures a block with its own stimuli.
 ///
 /// # Errors
-/// As [`blocks::compare`]; [`Error::File`] where the counts cannot be read.
+/// Those of [`blocks::compare`], and [`Error::File`] where the counts cannot be read.
 pub fn measure(block: &dyn Block, clocks: u64) -> Result<Measured, Error> {
     measure_with(block, &|| block.stimuli(clocks, SEED), clocks)
 }
 
-/// Measures a block under other stimuli, which are made twice.
+/// Measures a block with other stimuli, which are made twice.
 ///
 /// # Errors
-/// As [`measure`].
+/// Those of [`measure`].
 pub fn measure_with<'a>(
     block: &dyn Block,
     stimuli: &dyn Fn() -> Box<dyn Stimuli + 'a>,
@@ -115,7 +117,8 @@ pub fn measure_with<'a>(
     let (_, beginning) = run(BEGINNING_CLOCKS)?;
     let (run, mut points) = run(clocks)?;
     for (point, before) in points.iter_mut().zip(&beginning) {
-        // A line is run or not, whatever nets begin with; Verilator runs what depends on no input only once.
+        // A line is run or not, independent of the nets' random start; Verilator runs what depends on no input only
+        // once.
         if point.kind == PointKind::Toggle {
             point.count -= before.count.min(point.count);
         }
@@ -153,7 +156,7 @@ impl Measured {
         }
     }
 
-    /// What is wrong with it: holes that nothing explains, and wrong values.
+    /// Problems of the measurement: holes that nothing explains, and wrong values.
     pub fn problems(&self, explanations: &[Explanation]) -> Vec<String> {
         let name = format!("{} {}", self.block, self.instance);
         let unexplained = self
@@ -170,7 +173,7 @@ impl Measured {
     }
 }
 
-/// The explanations of these blocks that fit no hole of them: what they speak of is reached now, or has another name.
+/// The explanations of these blocks that match no hole of them: their points are reached now, or have another name.
 pub fn outdated(measured: &[Measured], explanations: &[Explanation]) -> Vec<String> {
     let mut outdated = Vec::new();
     for explanation in explanations {

@@ -1,30 +1,30 @@
-//! What Verilator counted: its file, read.
+//! Reads Verilator's coverage file.
 //!
 //! ```text
 //! C '\x01KEY\x02VALUE\x01KEY\x02VALUE…' COUNT      one line per point, the letters here being the characters 1 and 2
 //! ```
 //!
-//! Keys: `f` file, `l` line, `page` kind and module, `o` what (a branch, or a net's bit). A module that stands in a block
-//! several times is counted once, all its instances together.
+//! Its keys are `f` for the file, `l` for the line, `page` for kind and module, and `o` for the point (a branch, or a
+//! net's bit). A module that a block contains several times is counted once, over all its instances.
 
 use std::path::{Path, PathBuf};
 
 use crate::Error;
 
-/// Something of a module that may happen, and how often it did.
+/// A coverage point of a module, and how often it was reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CoveragePoint {
-    /// The module, as in the Verilog.
+    /// Name of the module, as in the Verilog.
     pub module: String,
-    /// Line or toggle.
+    /// Kind: line or toggle.
     pub kind: PointKind,
-    /// Of a line: its text in the Verilog. Of a toggle: the net, with its bit if it has several.
+    /// For a line its text in the Verilog; for a toggle the net, with its bit if it has several.
     pub what: String,
-    /// How often.
+    /// How often it was reached.
     pub count: u64,
 }
 
-/// What is counted.
+/// Kind of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PointKind {
     /// The body that begins in a line was run.
@@ -34,7 +34,7 @@ pub enum PointKind {
 }
 
 impl PointKind {
-    /// Its name in the table of holes.
+    /// Name of the kind in the table of holes.
     pub fn name(self) -> &'static str {
         match self {
             Self::Line => "line",
@@ -43,13 +43,13 @@ impl PointKind {
     }
 }
 
-/// The points in the file at `path`; lines are looked up in these Verilog files, by their names: the folder in Verilator's
-/// file is the one in which the simulation was built once.
+/// The points in the file at `path`. Lines are looked up in these Verilog files by file name, because the folder in
+/// Verilator's file is the one in which the simulation was built.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be read, [`Error::Option`] where a line is not as above.
 pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<CoveragePoint>, Error> {
-    let text = std::fs::read_to_string(path).map_err(Error::file(path, "read what Verilator counted in"))?;
+    let text = std::fs::read_to_string(path).map_err(Error::file(path, "read Verilator's counts in"))?;
     let mut verilog = Verilog {
         files,
         path: PathBuf::new(),
@@ -64,7 +64,7 @@ pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<CoveragePoint>, Error>
 }
 
 fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<CoveragePoint, Error> {
-    let strange = || Error::Option(format!("`{line}` is no line of Verilator's coverage file"));
+    let strange = || Error::Option(format!("`{line}` is not a line of Verilator's coverage file"));
     let (keys, count) = line
         .strip_prefix("C '")
         .and_then(|rest| rest.rsplit_once("' "))
@@ -87,7 +87,7 @@ fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<CoveragePoint, Error> 
         PointKind::Line => {
             let number = value("l")?.parse().map_err(|_| strange())?;
             let text = verilog.line(Path::new(value("f")?), number)?;
-            // Where the condition of an `if` stands for its other branch.
+            // The condition of an `if` may stand for its other branch.
             match value("o")? {
                 "else" => format!("not {text}"),
                 _ => text,
@@ -102,7 +102,7 @@ fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<CoveragePoint, Error> 
     })
 }
 
-/// The Verilog files, and the one that was read last.
+/// The Verilog files, with the text of the one that was read last.
 struct Verilog<'a> {
     files: &'a [PathBuf],
     path: PathBuf,

@@ -1,11 +1,11 @@
-//! The table of `docs/verification.md`, between its marks.
+//! The coverage table of `docs/verification.md`, between its marks.
 
 use super::explanation::Explanation;
 use super::{Measured, Share};
 use crate::blocks::Block;
 use crate::page::Marks;
 
-/// Where the table stands.
+/// Marks of the table.
 pub const MARKS: Marks = Marks {
     begin: "<!-- coverage: written by `--example coverage -- --write` -->",
     end: "<!-- coverage: end -->",
@@ -36,13 +36,13 @@ pub fn markdown(measured: &[Measured], explanations: &[Explanation]) -> String {
     table
 }
 
-/// Rounded down, so that 100 % is all.
+/// Percentage rounded down, so that 100 % means all.
 fn percent(share: Share) -> String {
     let tenths = (share.reached * 1000).checked_div(share.all).unwrap_or(1000);
     format!("{}.{} % of {}", tenths / 10, tenths % 10, share.all)
 }
 
-/// A row of `new` for each of these blocks, else that of `old`.
+/// For each of these blocks its row of `new`, else that of `old`.
 pub fn merged(old: &str, new: &str, subjects: &[Box<dyn Block>]) -> String {
     let row_of = |block: &dyn Block| {
         let first_cells = format!("| {} | {} |", block.name(), block.instance());

@@ -1,4 +1,4 @@
-//! A case: a fault at a random clock of a move, all from one seed.
+//! A case: a fault at a random clock of a move; everything derives from one seed.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -6,42 +6,42 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::expectation::{Hit, Lasts};
 use super::kind::{FaultRow, TABLE};
 
-/// Most counts of a move; least are half of it.
+/// Largest distance of a move in counts; the smallest is half of it.
 const MOST_COUNTS: i64 = 300;
-/// One in so many faults of an axis is at both.
+/// One in this many faults of an axis hits both axes.
 const BOTH_ONE_IN: u32 = 8;
 
-/// A fault in a move of both axes.
+/// A fault during a move of both axes.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
-    /// Its place in the campaign.
+    /// Number of the case in the campaign.
     pub number: u64,
-    /// Kind and what is demanded.
+    /// Kind of the fault, with its expectation.
     pub row: &'static FaultRow,
-    /// The axes that are hit, a bit each.
+    /// Axes that are hit, a bit each.
     pub axes: u32,
-    /// Counts of the move of both axes.
+    /// Distance of the move of each axis in counts.
     pub counts: [i64; 2],
-    /// When it comes, in ten thousandths of the move.
+    /// Time of the fault, in ten thousandths of the move.
     pub when: u64,
-    /// Clocks within that tick.
+    /// Clock within that tick.
     pub clock_of_tick: u64,
-    /// Clocks that it lasts; `None`: until the axes have stopped.
+    /// Duration in clocks; `None`: until the axes have stopped.
     pub lasts: Option<u64>,
-    /// What follows from which cause.
+    /// The word `off_causes`, with the reaction to each cause.
     pub off_causes: u16,
-    /// For what a kind leaves open: a level, a line, a value.
+    /// Random choice for what a kind leaves open: a level, a line, a value.
     pub choice: u32,
 }
 
 impl Case {
-    /// The case of that number: kinds take turns.
+    /// The case with this number; the kinds alternate.
     pub fn new(number: u64, seed: u64) -> Self {
         let row = &TABLE[(number % TABLE.len() as u64) as usize];
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let expects = &row.expects;
         let size = rng.random_range(MOST_COUNTS / 2..=MOST_COUNTS);
-        // Both take as long, so that a group stop finds the other in motion.
+        // Both moves take the same time, so that a group stop finds the other axis in motion.
         let counts = [0, 1].map(|_| if rng.random::<bool>() { size } else { -size });
         let axes = match expects.hit {
             Hit::Stage => 3,
@@ -71,7 +71,7 @@ impl Case {
         }
     }
 
-    /// Is this axis hit?
+    /// Whether this axis is hit.
     pub fn hits(&self, axis: usize) -> bool {
         self.axes >> axis & 1 != 0
     }

@@ -1,20 +1,21 @@
-//! What is demanded of a fault: data, one [`Expectation`] per kind, with the times of `docs/axis.md` and its neighbours.
+//! The expectation for a fault as data: one [`Expectation`] per kind, with the times of `docs/axis.md` and related
+//! pages.
 
 use posicast_model::rtl::axis::{Cause, WATCH_CLOCKS};
 
-/// Which axes a fault is at.
+/// Axes that a fault hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hit {
-    /// One, or both at once.
+    /// One axis, or both at the same time.
     Axis,
-    /// All: a shared line.
+    /// All axes, by a shared line.
     Stage,
 }
 
-/// What follows on the axes that are hit.
+/// Reaction of the axes that are hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reaction {
-    /// Nothing: the move ends on target.
+    /// None: the move ends on target.
     Nothing,
     /// By `off_causes`: FAULT with the outputs off at once, or QUICK_STOP, standstill, brake, then FAULT.
     Fault,
@@ -22,42 +23,41 @@ pub enum Reaction {
     Halt,
     /// QUICK_STOP without a cause, then HOLD, brake, READY.
     Disable,
-    /// All registers as after power-up.
+    /// All registers are as after power-up.
     Reset,
 }
 
-/// What the axes that are not hit do.
+/// Reaction of the axes that are not hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Others {
-    /// The group stop: QUICK_STOP two clocks later, then HOLD, with no cause but the group stop's.
+    /// The group stop: QUICK_STOP two clocks later, then HOLD, with no cause except the group stop's.
     Stop,
-    /// Their move ends on target.
+    /// None: their move ends on target.
     GoOn,
 }
 
-/// What a fault is seen by at a tick.
+/// Condition by which a fault is detected at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seen {
-    /// |e| above its limit.
+    /// |e| exceeds its limit.
     FollowingError,
-    /// |motor − scale| above its limit.
+    /// |motor − scale| exceeds its limit.
     Deviation,
-    /// The command was cut for `SATURATION_TICKS`, or there was no count under a command
-    /// for `LOST_TICKS`.
+    /// The command was clamped for `SATURATION_TICKS`, or there was no count under a command for `LOST_TICKS`.
     Stuck,
     /// [`Stuck`](Self::Stuck) or [`Deviation`](Self::Deviation).
     Lost,
     /// The shaped position is beyond the soft limit that was moved.
     SoftLimit,
-    /// The flag of the segments: underrun or overflow.
+    /// A flag of the segments is set: underrun or overflow.
     Segments,
-    /// The controller's flag: e was cut to its word.
+    /// A flag of the controller is set: e was saturated to its word.
     Range,
 }
 
 impl Seen {
-    /// Clocks from then to the state: a flag is a cause and then acts, or has left the range and then is a cause that acts at
-    /// once; the rest is compared first.
+    /// Clocks from the condition to the state: a flag becomes a cause and then acts; a position outside its range
+    /// becomes a cause that acts at once; the others are compared first.
     pub(super) fn clocks(self) -> u64 {
         match self {
             Self::Segments | Self::Range => 2,
@@ -66,63 +66,63 @@ impl Seen {
     }
 }
 
-/// When the state has changed at the latest.
+/// Latest time at which the state must have changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Due {
-    /// So many clocks after the fault.
+    /// This many clocks after the fault.
     Clocks(u64),
-    /// So many clocks after the fault comes the first of so many ticks, then [`WATCH_CLOCKS`].
+    /// [`WATCH_CLOCKS`] after a tick: this many clocks after the fault, this many ticks are counted.
     Ticks {
-        /// Clocks.
+        /// Number of clocks.
         clocks: u64,
-        /// Ticks.
+        /// Number of ticks.
         ticks: u64,
     },
-    /// `Seen::clocks` after it is seen.
+    /// `Seen::clocks` after the condition is detected.
     Seen(Seen),
 }
 
-/// How long a fault lasts.
+/// Duration of a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lasts {
     /// Until the axes have stopped.
     Held,
-    /// So many clocks at least and at most.
+    /// At least and at most this many clocks.
     Clocks(u64, u64),
     /// Either of these.
     HeldOrClocks(u64, u64),
 }
 
-/// What is demanded.
+/// The expectation for a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Expectation {
-    /// Where it is.
+    /// Axes that it hits.
     pub hit: Hit,
-    /// What follows.
+    /// Reaction of these axes.
     pub reaction: Reaction,
-    /// Causes of which at least one must be there.
+    /// Causes of which at least one must be set.
     pub causes: u32,
-    /// Causes that may be there too: what the first one leads to.
+    /// Causes that may also be set, as consequences of the first one.
     pub also: u32,
-    /// When the state has changed.
+    /// Time at which the state must have changed.
     pub due: Due,
-    /// The gates are off in the clock of the fault itself, without waiting for the state.
+    /// Whether the gates must be off in the clock of the fault itself, before the state changes.
     pub gates_at_once: bool,
     /// Register and field that must be set.
     pub flag: Option<(&'static str, &'static str)>,
-    /// What the others do.
+    /// Reaction of the other axes.
     pub others: Others,
-    /// The counter is never away from the plant. Not so if the encoder's lines themselves are corrupted.
+    /// Whether the counter must never deviate from the plant; false if the encoder's lines themselves are corrupted.
     pub position_known: bool,
-    /// How long the fault lasts.
+    /// Duration of the fault.
     pub lasts: Lasts,
-    /// It comes in HOLD, without a move.
+    /// Whether it comes in HOLD, without a move.
     pub in_hold: bool,
-    /// When it comes, in percent of the move.
+    /// Range of its time, in percent of the move.
     pub within_percent: [u64; 2],
 }
 
-/// A fault of an axis: the others stop.
+/// A fault of an axis, for which the others stop.
 pub(super) const FAULT: Expectation = Expectation {
     hit: Hit::Axis,
     reaction: Reaction::Fault,
@@ -138,14 +138,14 @@ pub(super) const FAULT: Expectation = Expectation {
     within_percent: [0, 85],
 };
 
-/// What must do nothing.
+/// A fault that must have no effect.
 pub(super) const NOTHING: Expectation = Expectation {
     reaction: Reaction::Nothing,
     others: Others::GoOn,
     ..FAULT
 };
 
-/// Bits of causes.
+/// Mask of causes.
 pub(super) const fn bits(causes: &[Cause]) -> u32 {
     let mut bits = 0;
     let mut at = 0;

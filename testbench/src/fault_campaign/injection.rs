@@ -1,4 +1,4 @@
-//! How each kind of fault is put in, and taken away again.
+//! Injects each kind of fault, and removes it again.
 
 use posicast_model::plant::axis::EncoderPins;
 use posicast_model::rtl::axis::KICK;
@@ -9,29 +9,29 @@ use super::kind::FaultKind;
 use crate::Error;
 use crate::stage_bench::{StageBench, Wire};
 
-/// Ticks of the watchdog.
+/// Number of ticks of the watchdog.
 const WATCHDOG_TICKS: u32 = 5;
-/// A velocity that does not fit after a few ticks, Q8.32 counts per tick³.
+/// Jerk after which the velocity exceeds its word within a few ticks, Q8.32 counts per tick³.
 const HUGE_JERK: i64 = 127 << 32;
-/// More entries than the FIFO takes.
+/// Number of entries, more than the FIFO takes.
 const MANY_ENTRIES: usize = 70;
-/// Handover to bank 1: `swap_bank` and `swap_how`.
+/// Value for a handover to bank 1: `swap_bank` and `swap_how`.
 const SWAP_TO_1: u32 = 1 | 1 << 4;
-/// The register `law`: PD with the settings of bank 3, which are all 0.
+/// Value of the register `law`: PD with the settings of bank 3, which are all 0.
 const NO_SETTINGS: u32 = 1 | 3 << 8;
-/// The entry after which the velocity does not fit.
+/// The entry after which the velocity exceeds its word.
 const OVERFLOWING: Entry = Entry {
     ticks: 100,
     motion: EntryMotion::Jerk(HUGE_JERK),
     notify: false,
 };
 
-/// Counts of a disturbance.
+/// Size of a disturbance in counts.
 const PUSH_COUNTS: f64 = 3.0;
-/// Counts to a point that is far away, but within the position's word: e does not fit its own.
+/// Distance in counts to a point that is within the position word, but so far away that e exceeds its own word.
 const FAR_COUNTS: i32 = 4_000_000;
 
-/// What the entries of a move end in, for a kind that is an entry.
+/// The last entry of a move, for a kind that is an entry.
 pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
     let side = case.counts[axis].signum() as i32;
     match case.row.kind {
@@ -49,7 +49,7 @@ pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
     }
 }
 
-/// The line of a kind that is one, with the level that is the fault; shared lines have no axis before their name.
+/// For a kind that is a line, its name and the level that is the fault; names of shared lines have no axis.
 fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
     let forward = case.counts[axis] > 0;
     Some(match case.row.kind {
@@ -65,7 +65,7 @@ fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
     })
 }
 
-/// The shared line of a kind that is one; low is the fault.
+/// For a kind that is a shared line its name; low is the fault.
 fn shared_line(kind: FaultKind) -> Option<&'static str> {
     match kind {
         FaultKind::EmergencyStop | FaultKind::EmergencyStopGlitch => Some("emergency_stop_n"),
@@ -74,7 +74,7 @@ fn shared_line(kind: FaultKind) -> Option<&'static str> {
     }
 }
 
-/// Puts the fault in: from the next clock on, or with writes that begin in it.
+/// Injects the fault from the next clock on, or by writes that begin in it.
 pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<(), Error> {
     if let Some(line) = shared_line(case.row.kind) {
         return bench.set(line, 0);
@@ -97,7 +97,7 @@ pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<(), Error> {
     Ok(())
 }
 
-/// What is not a line, at an axis.
+/// Injects, at an axis, a fault that is not a line.
 fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Result<(), Error> {
     let register = |register: &str| format!("{name}_{register}");
     let lines = bench.plant(axis).encoder();
@@ -185,13 +185,13 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
     Ok(())
 }
 
-/// The wires of A exchanged, and a disturbance that the loop then makes larger.
+/// Exchanges the wires of A, and adds a disturbance, which the loop then makes larger.
 fn reverse_and_push(bench: &mut StageBench, case: &Case, axis: usize) {
     bench.break_wire(axis, Some(Wire::AInverted));
     bench.displace(axis, PUSH_COUNTS * case.counts[axis].signum() as f64);
 }
 
-/// A or B stays as it is.
+/// Holds A or B at its level.
 fn stuck(case: &Case, lines: EncoderPins) -> Wire {
     match case.choice & 1 {
         0 => Wire::AStuck(lines.a),
@@ -199,7 +199,7 @@ fn stuck(case: &Case, lines: EncoderPins) -> Wire {
     }
 }
 
-/// A and B the other way round.
+/// Inverts A and B.
 fn inverted(lines: EncoderPins) -> EncoderPins {
     EncoderPins {
         a: !lines.a,
@@ -208,7 +208,7 @@ fn inverted(lines: EncoderPins) -> EncoderPins {
     }
 }
 
-/// Entries that are dropped: no ticks; word 0 missing; a reserved flag.
+/// Writes entries that are dropped: without ticks, without word 0, with a reserved flag.
 fn malformed(bench: &mut StageBench, name: &str) -> Result<(), Error> {
     let mut words = |entry: &[(usize, u32)]| {
         let mut writes = entry.iter();
@@ -219,7 +219,8 @@ fn malformed(bench: &mut StageBench, name: &str) -> Result<(), Error> {
     words(&[(0, 5), (1, 0), (3, 7 | 1 << 24)])
 }
 
-/// Takes away what does not end by itself. `way_back`: a limit stays, since the way back must be open on it.
+/// Removes a fault that does not end by itself. `way_back`: a limit switch stays active, since the axis must be able
+/// to move away from it.
 pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result<(), Error> {
     let kind = case.row.kind;
     if kind == FaultKind::Reset {

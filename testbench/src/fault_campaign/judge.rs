@@ -1,4 +1,4 @@
-//! What was seen from the fault to the end, against what is demanded.
+//! Compares the observations from the fault to the end with the expectation.
 
 use posicast_model::rtl::axis::{Cause, SupervisorState, switching_off};
 use posicast_model::rtl::stage::axis_interrupt_bit;
@@ -10,36 +10,37 @@ use super::observation::{Change, Observation};
 use crate::Error;
 use crate::stage_bench::StageBench;
 
-/// Counts that an axis may be away from its target: half a count of the encoder, and what the loop leaves.
+/// Largest distance in counts of an axis from its target: half a count of the encoder, and the loop's remaining
+/// error.
 pub(super) const ON_TARGET: i64 = 2;
-/// From the state to drive and brake: the register of drive_command.
+/// Clocks from the state to drive and brake: the register of the drive command.
 const PINS_CLOCKS: u64 = 1;
-/// From the state to the gates: that register, and the gates' own.
+/// Clocks from the state to the gates: that register, and the gates' own.
 const GATES_CLOCKS: u64 = 2;
-/// From the state of one axis to QUICK_STOP of another: the group's register, the state.
+/// Clocks from the state of one axis to QUICK_STOP of another: the group's register and the state.
 const GROUP_CLOCKS: u64 = 2;
-/// Ticks of a quick stop beside the slowing down and the settling: three at its begin, in which the command still gains
-/// speed, the state's, and two that have begun.
+/// Ticks of a quick stop in addition to slowing down and settling: three at its start, in which the command still
+/// gains speed, one for the state, and two that have begun.
 const STOP_TICKS: u64 = 6;
 
-/// A case on its way.
+/// A case that is being judged.
 pub(super) struct Seen<'a> {
     pub(super) bed: &'a Bed,
     pub(super) case: &'a Case,
     /// The clock after the last write of the fault.
     pub(super) start: u64,
-    /// The clock by which the state has changed.
+    /// The clock by which the state must have changed.
     pub(super) due: Option<u64>,
-    /// Where the moves end, in counts.
+    /// Ends of the moves in counts.
     pub(super) targets: [i64; 2],
 }
 
-/// Clocks and ticks of the axes that were hit; the largest.
+/// Times of the axes that were hit, in clocks and ticks; the largest of each.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Figures {
-    /// Clocks from the fault, or from when it can be seen, to another state.
+    /// Clocks from the fault, or from its detection, to another state.
     pub state_clocks: Option<u64>,
-    /// The same until all gates are off and the drive is disabled, without a quick stop.
+    /// Clocks until all gates are off and the drive is disabled, without a quick stop.
     pub off_clocks: Option<u64>,
     /// Ticks from QUICK_STOP to its end.
     pub stop_ticks: Option<u64>,
@@ -101,7 +102,7 @@ impl Judge<'_> {
         }
     }
 
-    /// What this axis does, if it is hit.
+    /// Expected reaction of this axis, if it is hit.
     fn reaction(&self) -> Option<Reaction> {
         self.seen
             .case
@@ -109,7 +110,7 @@ impl Judge<'_> {
             .then_some(self.seen.case.row.expects.reaction)
     }
 
-    /// An axis that is hit; says whether it went through QUICK_STOP.
+    /// Judges an axis that is hit; returns whether it went through QUICK_STOP.
     fn hit(&mut self, bench: &StageBench, observed: &Observation, reaction: Reaction) -> bool {
         match reaction {
             Reaction::Nothing => {
@@ -132,7 +133,7 @@ impl Judge<'_> {
         }
     }
 
-    /// The move ends on target, and nothing is reported.
+    /// Checks that the move ends on target and nothing is reported.
     fn goes_on(&mut self, bench: &StageBench, observed: &Observation) {
         let target = self.seen.targets[self.axis];
         let at = bench.plant(self.axis).count();
@@ -147,7 +148,8 @@ impl Judge<'_> {
         self.demand(observed.drive_off.is_none(), || "the drive was disabled".to_owned());
     }
 
-    /// The group stop, which leaves an axis in HOLD, or nothing; says whether it went through QUICK_STOP.
+    /// Checks for the group stop, which leaves an axis in HOLD, or for no reaction; returns whether the axis went
+    /// through QUICK_STOP.
     fn other(&mut self, bench: &StageBench, observed: &Observation, first_stop: Option<u64>) -> bool {
         if self.seen.case.row.expects.others == Others::GoOn {
             self.goes_on(bench, observed);
@@ -211,7 +213,7 @@ impl Judge<'_> {
         !cut
     }
 
-    /// The state has changed to that one, in time.
+    /// Checks that the state changed to this one in time.
     fn in_time(&mut self, observed: &Observation, state: u64) -> Option<Change> {
         let Some(change) = observed.change else {
             self.demand(false, || "no reaction".to_owned());
@@ -233,7 +235,7 @@ impl Judge<'_> {
         Some(change)
     }
 
-    /// Where times count from: the fault, or when it is seen.
+    /// Clock from which times count: that of the fault, or of its detection.
     fn base(&self, observed: &Observation) -> u64 {
         match self.seen.case.row.expects.due {
             Due::Seen(_) => observed.seen.unwrap_or(self.seen.start),
@@ -241,7 +243,7 @@ impl Judge<'_> {
         }
     }
 
-    /// Gates, drive and brake after a cause that switches off.
+    /// Checks gates, drive and brake after a cause that switches off.
     fn off(&mut self, observed: &Observation, change: Option<Change>) {
         let (base, start) = (self.base(observed), self.seen.start);
         let state = change.map_or(start, |change| change.clock);
@@ -265,14 +267,14 @@ impl Judge<'_> {
         larger(&mut self.figures.off_clocks, all_off.saturating_sub(base));
     }
 
-    /// A quick stop ends in time.
+    /// Checks that a quick stop ends in time.
     fn stands(&mut self, observed: &Observation, change: Option<Change>) {
         let (Some(change), Some(stood)) = (change, observed.stood) else {
             self.demand(false, || "the quick stop does not end".to_owned());
             return;
         };
         let watched = &self.seen.bed.stage.config.axes[self.axis].supervision;
-        // Without a deceleration it stops at once.
+        // Without a deceleration the axis stops at once.
         let deceleration = u64::from(watched.stop_deceleration.max(1));
         let slowing = (u64::from(change.travel) << 16).div_ceil(deceleration);
         let most = slowing + u64::from(watched.settle_ticks) + STOP_TICKS;
@@ -283,7 +285,7 @@ impl Judge<'_> {
         larger(&mut self.figures.stop_ticks, ticks);
     }
 
-    /// After the quick stop of a fault: the brake, and when it holds the outputs.
+    /// Checks the brake after the quick stop of a fault, and the outputs when it holds.
     fn brakes(&mut self, observed: &Observation) {
         let (Some(stood), Some(brake), Some(drive)) = (observed.stood, observed.brake, observed.drive_off) else {
             self.demand(false, || "no brake after the quick stop".to_owned());
@@ -302,7 +304,7 @@ impl Judge<'_> {
         });
     }
 
-    /// One of the causes of this kind, and none that it does not lead to.
+    /// Checks that one of the causes of this kind is set, and none to which it does not lead.
     fn causes(&mut self, causes: u32, group: u32) {
         let expects = &self.seen.case.row.expects;
         let there = expects.causes == 0 || causes & (expects.causes | group) != 0;

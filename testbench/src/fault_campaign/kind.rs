@@ -1,4 +1,4 @@
-//! The faults: what is injected, and what is demanded. A table, one row each.
+//! The table of faults: what is injected and what is expected, one row each.
 
 use posicast_model::rtl::axis::Cause;
 
@@ -58,27 +58,27 @@ pub enum FaultKind {
 /// A row of the table.
 #[derive(Debug, Clone, Copy)]
 pub struct FaultRow {
-    /// The kind of the fault.
+    /// Kind of the fault.
     pub kind: FaultKind,
-    /// Its name in reports.
+    /// Name in reports.
     pub name: &'static str,
-    /// What is injected.
+    /// Description of the injected fault.
     pub injected: &'static str,
-    /// What is demanded.
+    /// Expected reaction.
     pub expects: Expectation,
 }
 
-/// From a line to the state: synchroniser, filter, state.
+/// Latency from a line to the state: synchroniser, filter, state.
 const LINE: Due = Due::Clocks(FILTER_CLOCKS + 4);
-/// From a raw fault to the state: latch, synchroniser, `tripped`, state.
+/// Latency from a raw fault to the state: latch, synchroniser, `tripped`, state.
 const RAW: Due = Due::Clocks(4);
-/// From a drive's fault to the state: a register, synchroniser, filter, trip, state.
+/// Latency from a drive's fault to the state: a register, synchroniser, filter, trip, state.
 const DRIVE_FAULT: Due = Due::Clocks(FILTER_CLOCKS + 6);
-/// From the bus to the state: the bus's register, the command's, the state.
+/// Latency from the bus to the state: the bus's register, the command's, the state.
 const HOST: Due = Due::Clocks(4);
-/// From the encoder's lines to the state: synchroniser, filter, counter, cause, state.
+/// Latency from the encoder's lines to the state: synchroniser, filter, counter, cause, state.
 const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 6);
-/// What an axis that no longer follows ends in.
+/// Causes to which an axis that no longer follows may lead.
 const LOST: u32 = bits(&[
     Cause::FollowingError,
     Cause::Deviation,
@@ -88,7 +88,7 @@ const LOST: u32 = bits(&[
     Cause::SoftLimitMinus,
 ]);
 const SHORT: Lasts = Lasts::Clocks(1, FILTER_CLOCKS);
-/// While the command moves fast enough for an error to grow.
+/// Part of the move in which the command is fast enough for an error to grow.
 const IN_MOTION: [u64; 2] = [15, 50];
 
 const fn row(kind: FaultKind, name: &'static str, injected: &'static str, expects: Expectation) -> FaultRow {
@@ -100,7 +100,7 @@ const fn row(kind: FaultKind, name: &'static str, injected: &'static str, expect
     }
 }
 
-/// A fault with this cause, due then.
+/// A fault with this cause and this latest time.
 const fn fault(cause: Cause, due: Due) -> Expectation {
     Expectation {
         causes: cause.bit(),
@@ -109,7 +109,7 @@ const fn fault(cause: Cause, due: Due) -> Expectation {
     }
 }
 
-/// All kinds.
+/// All kinds of faults.
 pub const TABLE: [FaultRow; 44] = [
     row(
         FaultKind::EmergencyStop,

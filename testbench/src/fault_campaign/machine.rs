@@ -1,4 +1,4 @@
-//! The machine that is put in fault: the example's XY stage, ten times as fast in ticks, with every monitor on.
+//! The machine of the campaign: the example's XY stage, ten times as fast in ticks, with every monitor on.
 //!
 //! | | example | here | why |
 //! |---|---|---|---|
@@ -6,8 +6,8 @@
 //! | PWM | 20 kHz | 100 kHz | two periods per tick, as there |
 //! | modes | 131 and 93 Hz | ten times that | the shaper's delay is about 50 ticks |
 //! | acceleration, jerk | 8 m/s², 400 m/s³ | 800 m/s², 400,000 m/s³ | 300 counts in 150 ticks |
-//! | scale | none | on both axes, compared with the motor | so that its trip is tested |
-//! | monitors | off | all | they are what is tested |
+//! | scale | none | on both axes, compared with the motor | to test its trip |
+//! | monitors | off | all | to test them |
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
@@ -19,7 +19,7 @@ use super::CampaignError;
 use crate::lockstep::Device;
 use crate::stage_bench::StageBench;
 
-/// The example.
+/// Machine file of the example.
 const EXAMPLE: &str = include_str!("../../machines/xy-stage.toml");
 const SAMPLE_HZ: f64 = 50_000.0;
 const PWM_HZ: f64 = 100_000.0;
@@ -27,18 +27,18 @@ const FASTER: f64 = 10.0;
 
 /// Clocks per tick.
 pub const TICK_CLOCKS: u64 = 1000;
-/// Clocks that the lines' filters hold back; the encoder's filter is the example's, of as many.
+/// Number of clocks of the lines' filters; the encoder's filter is the example's, with as many.
 pub(super) const FILTER_CLOCKS: u64 = 8;
 /// Ticks from applying the brake until it holds.
 pub(super) const BRAKE_APPLY_TICKS: u64 = 2;
-/// Ticks without a count under a command until the encoder is lost.
+/// Number of ticks without a count under a command after which the encoder counts as lost.
 pub(super) const LOST_TICKS: u64 = 10;
-/// Ticks in a row that the command may be cut.
+/// Number of consecutive ticks for which the command may be clamped.
 pub(super) const SATURATION_TICKS: u64 = 8;
 const BRAKE_RELEASE_TICKS: u64 = 2;
 const TICK_S: f64 = 1.0 / SAMPLE_HZ;
 
-/// The stage under test: its machine, and what it is built from.
+/// The stage under test: its machine and its configuration.
 #[derive(Debug, Clone)]
 pub struct Bed {
     /// The machine.
@@ -50,18 +50,18 @@ pub struct Bed {
 }
 
 impl Bed {
-    /// The machine above.
+    /// Makes the machine described above.
     ///
     /// # Errors
-    /// [`CampaignError::Machine`] if the example can no longer be made into it.
+    /// [`CampaignError::Machine`] if the example can no longer be changed to it.
     pub fn new() -> Result<Self, CampaignError> {
         Self::of(|_| {})
     }
 
-    /// The same with something else about its axes.
+    /// Makes the machine with a change of its axes.
     ///
     /// # Errors
-    /// [`CampaignError::Machine`] if that is no machine.
+    /// [`CampaignError::Machine`] if the result is not a valid machine.
     pub fn of(change: impl Fn(&mut AxisSection)) -> Result<Self, CampaignError> {
         let failed = |reason: String| CampaignError::Machine(reason);
         let mut machine = machine_file::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
@@ -92,10 +92,10 @@ impl Bed {
         })
     }
 
-    /// A bench at reset, with the RTL beside it if there is some.
+    /// A bench at reset, with the RTL beside it if `device` has one.
     ///
     /// # Errors
-    /// As [`StageBench::new`].
+    /// Those of [`StageBench::new`].
     pub fn bench(&self, device: Option<Box<dyn Device>>, seed: u64) -> Result<StageBench, CampaignError> {
         let plant = |axis| AxisPlant::new(axis, &self.machine.clock, &PlantOptions::default());
         let plants: Result<Vec<_>, _> = self.machine.axes.iter().map(plant).collect();
@@ -110,7 +110,7 @@ impl Bed {
     }
 }
 
-/// Every monitor.
+/// Limits with every monitor on.
 fn limits(of_example: LimitsSection) -> LimitsSection {
     LimitsSection {
         acceleration: Some(800.0),

@@ -1,4 +1,4 @@
-//! The fault campaign: every input and every trip at random clocks of a move of both axes.
+//! The fault campaign injects every input and every trip at random clocks of a move of both axes.
 //!
 //! ```text
 //!  case ─► switch on ─► move ─► fault at a random clock ─► observe ─► judge ─► take away, clear ─► a small move ─► judge
@@ -6,20 +6,21 @@
 //!
 //! | part | what it is |
 //! |---|---|
-//! | `kind` | the table of faults: what is injected, and what is demanded |
-//! | `expectation` | what can be demanded: cause, times, what the others do |
+//! | `kind` | the table of faults: what is injected, and what is expected |
+//! | `expectation` | what can be expected: cause, times, reaction of the others |
 //! | `case` | a kind, an axis, a clock and a duration, from a seed |
-//! | `injection` | how a fault is put in and taken away |
+//! | `injection` | injects a fault and removes it |
 //! | `observation` | states and pins from the fault on, clock by clock |
-//! | `judge` | what was seen against what is demanded |
-//! | `run` | one case from reset to the small move |
+//! | `judge` | compares observation and expectation |
+//! | `run` | runs one case from reset to the small move |
 //! | `report` | figures per kind |
 //!
-//! In every clock of every case, beside what is demanded of its kind: both gates of a leg never on together, no gate on and no
-//! brake released while the drive is disabled, and the counter never away from the plant by more than a count on its way.
+//! In every clock of every case it is checked, in addition to the expectation: the two gates of a leg are never on
+//! together, no gate is on and no brake released while the drive is disabled, and the counter never deviates from the
+//! plant by more than a count in progress.
 //!
-//! It runs on the event-driven model, or with the RTL beside it, compared in every clock. `docs/fault-campaign.md` has the
-//! table with the figures.
+//! It runs on the event-driven model, or with the RTL beside it, compared in every clock. `docs/fault-campaign.md`
+//! has the table with the figures.
 
 mod case;
 mod expectation;
@@ -50,27 +51,27 @@ use crate::lockstep::Device;
 /// Why a campaign could not be run. A fault that is not handled is a result, never an error.
 #[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
-    /// The machine.
+    /// The machine cannot be made.
     #[error(
         "the machine of the fault campaign, made from examples/xy-stage.toml: {0}; adapt fault_campaign/machine.rs"
     )]
     Machine(String),
-    /// The bench.
+    /// The bench of a case failed.
     #[error("case {case}, {kind}: {error}")]
     Case {
-        /// Its number.
+        /// Number of the case.
         case: u64,
-        /// Its kind.
+        /// Name of its kind.
         kind: &'static str,
-        /// What stopped it.
+        /// The error.
         error: Error,
     },
-    /// A bench that could not be built.
+    /// A bench could not be built.
     #[error(transparent)]
     Bench(#[from] Error),
 }
 
-/// Runs the cases of these numbers on so many threads.
+/// Runs the cases with these numbers on this many threads.
 ///
 /// # Errors
 /// [`CampaignError`] of the first case that could not be run.
@@ -89,16 +90,16 @@ pub fn run(bed: &Bed, cases: Range<u64>, seed: u64, threads: usize) -> Result<Fa
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads.clamp(1, 64)).map(|_| scope.spawn(work)).collect();
         let joined = workers.into_iter().map(|worker| worker.join());
-        // A worker that panics has said so.
+        // A worker that panics has already printed why.
         joined.flatten().collect::<Result<(), _>>()
     })?;
     Ok(report.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Runs the cases of these numbers one after the other with the RTL of `device` beside the model.
+/// Runs the cases with these numbers one after the other with the RTL of `device` beside the model.
 ///
 /// # Errors
-/// [`CampaignError`], also of `device`.
+/// [`CampaignError`], also that of `device`.
 pub fn run_with_rtl(
     bed: &Bed,
     cases: Range<u64>,

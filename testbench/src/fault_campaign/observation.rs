@@ -1,4 +1,4 @@
-//! What is seen of an axis from the fault on, and in which clock.
+//! Records what happens to an axis from the fault on, and in which clock.
 
 use posicast_model::control::Supervision;
 use posicast_model::rtl::axis::SupervisorState;
@@ -8,7 +8,7 @@ use super::machine::{LOST_TICKS, SATURATION_TICKS};
 use crate::Error;
 use crate::stage_bench::{Probe, StageBench};
 
-/// Nets that are looked at.
+/// Nets that are read.
 struct Probes {
     state: Probe,
     causes: Probe,
@@ -28,46 +28,46 @@ struct Probes {
     cut_low: Probe,
 }
 
-/// An axis in the clock in which its state first was another than that in which the fault found it.
+/// An axis in the clock in which its state first differed from that at the fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Change {
-    /// The clock.
+    /// Number of the clock.
     pub(super) clock: u64,
     /// The new state.
     pub(super) state: u64,
-    /// Causes in it.
+    /// Causes in that state.
     pub(super) causes: u32,
-    /// The most that the command has moved in one of the last two ticks, in 1/256 counts.
+    /// Larger change of the command in the last two ticks, in 1/256 counts.
     pub(super) travel: u32,
 }
 
-/// An axis from the fault on.
+/// Observation of an axis from the fault on.
 pub(super) struct Observation {
     axis: usize,
     probes: Probes,
-    /// The state in which the fault finds it.
+    /// State at the fault.
     from: SupervisorState,
     lost_command: u32,
     deviation_limit: u32,
     still: Still,
-    /// The command at the last tick, and how far it had moved in each of the last two.
+    /// Command at the last tick, and its change in each of the last two.
     command: i32,
     travel: [u32; 2],
     /// The first other state.
     pub(super) change: Option<Change>,
-    /// When what the fault is seen by was first there.
+    /// Clock in which the detection condition first held.
     pub(super) seen: Option<u64>,
-    /// The last clock with a gate on.
+    /// Last clock with a gate on.
     pub(super) last_gate: u64,
-    /// The first clock with the drive disabled.
+    /// First clock with the drive disabled.
     pub(super) drive_off: Option<u64>,
-    /// The first clock with the brake applied.
+    /// First clock with the brake applied.
     pub(super) brake: Option<u64>,
-    /// The first clock after QUICK_STOP.
+    /// First clock after QUICK_STOP.
     pub(super) stood: Option<u64>,
 }
 
-/// Ticks in a row with a command to one side and without a motion, and since where.
+/// Consecutive ticks with a command in one direction and without a motion, and the position at their start.
 #[derive(Default)]
 struct Still {
     count: i32,
@@ -76,7 +76,7 @@ struct Still {
 }
 
 impl Observation {
-    /// Of an axis in this state.
+    /// Starts the observation of an axis in this state.
     pub(super) fn new(
         bench: &StageBench,
         axis: usize,
@@ -120,22 +120,22 @@ impl Observation {
         })
     }
 
-    /// The state in the clock that comes.
+    /// The state in the next clock.
     pub(super) fn state(&self, bench: &StageBench) -> u64 {
         bench.at(self.probes.state)
     }
 
-    /// The causes in the clock that comes.
+    /// The causes in the next clock.
     pub(super) fn causes(&self, bench: &StageBench) -> u32 {
         bench.at(self.probes.causes) as u32
     }
 
-    /// Does the shaped command stand where the command does?
+    /// Whether the shaped command has reached the command.
     pub(super) fn settled(&self, bench: &StageBench) -> bool {
         bench.at(self.probes.shaped) == bench.at(self.probes.command_position)
     }
 
-    /// Before a clock: what registers show in it.
+    /// Records, before a clock, what registers show in it.
     pub(super) fn before(&mut self, bench: &StageBench, tick: bool) {
         let (now, state) = (bench.now(), self.state(bench));
         if state != self.from as u64 && self.change.is_none() {
@@ -154,14 +154,14 @@ impl Observation {
         }
     }
 
-    /// Once per tick.
+    /// Records the command once per tick.
     pub(super) fn follow_command(&mut self, bench: &StageBench) {
         let command = bench.at(self.probes.command_position) as u32 as i32;
         self.travel = [command.wrapping_sub(self.command).unsigned_abs(), self.travel[0]];
         self.command = command;
     }
 
-    /// The same for what the monitors look at, of which most count at ticks only.
+    /// Checks the detection condition, which for most monitors counts at ticks only.
     pub(super) fn look_for(&mut self, bench: &StageBench, seen: Seen, tick: bool) {
         let value = |probe| bench.at(probe);
         let signed = |probe| bench.at(probe) as u32 as i32;
@@ -192,7 +192,7 @@ impl Observation {
             let motion = count.wrapping_sub(self.still.count);
             let one_way = (command < 0) == self.still.backwards;
             let [backward, forward] = [motion < -4, motion >= 4];
-            // A motion against the command is as none, but distances count from there on.
+            // A motion against the command does not count as motion, but distances count from there on.
             let its_way = if command < 0 { backward } else { forward };
             if size(command) > self.lost_command && one_way && !its_way {
                 self.still.ticks += 1;
@@ -209,7 +209,7 @@ impl Observation {
         }
     }
 
-    /// After some clocks: what the pins showed in the last of them.
+    /// Records, after some clocks, the levels of the pins in the last of them.
     pub(super) fn after(&mut self, bench: &StageBench) {
         let (pins, last) = (bench.pins(self.axis), bench.now() - 1);
         if pins.a_high || pins.a_low || pins.b_high || pins.b_low {

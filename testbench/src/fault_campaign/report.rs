@@ -5,17 +5,17 @@ use std::fmt;
 use super::kind::TABLE;
 use super::run::FaultOutcome;
 
-/// Failures that are shown in words.
+/// Number of failures that are shown in words.
 const MOST_SHOWN: usize = 20;
 
-/// What the cases of a kind gave; the largest of each.
+/// Figures over the cases of a kind; the largest of each.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct KindFigures {
-    /// Cases.
+    /// Number of cases.
     pub cases: u64,
-    /// Cases that were not as demanded.
+    /// Number of cases that did not meet the expectation.
     pub failed: u64,
-    /// Clocks to another state, from the fault or from when it can be seen.
+    /// Clocks to another state, from the fault or from its detection.
     pub state_clocks: Option<u64>,
     /// Clocks until gates and drive are off, where outputs are switched off at once.
     pub off_clocks: Option<u64>,
@@ -23,7 +23,7 @@ pub struct KindFigures {
     pub stop_ticks: Option<u64>,
 }
 
-/// A campaign's outcome.
+/// Result of a campaign.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultReport {
     seed: u64,
@@ -32,7 +32,7 @@ pub struct FaultReport {
 }
 
 impl FaultReport {
-    /// Of no case.
+    /// A report without cases.
     pub(super) fn new(seed: u64) -> Self {
         Self {
             seed,
@@ -41,13 +41,13 @@ impl FaultReport {
         }
     }
 
-    /// One more case.
+    /// Adds a case.
     pub(super) fn add(&mut self, outcome: &FaultOutcome) {
         let place = (outcome.case.number % TABLE.len() as u64) as usize;
         let kind = &mut self.kinds[place];
         kind.cases += 1;
         kind.failed += u64::from(!outcome.failures.is_empty());
-        // `None` is less than any number.
+        // `None` compares as less than any number.
         kind.state_clocks = kind.state_clocks.max(outcome.figures.state_clocks);
         kind.off_clocks = kind.off_clocks.max(outcome.figures.off_clocks);
         kind.stop_ticks = kind.stop_ticks.max(outcome.figures.stop_ticks);
@@ -57,17 +57,17 @@ impl FaultReport {
             .extend(failures.map(|what| format!("case {number}, {name}: {what}")));
     }
 
-    /// Cases in all.
+    /// Number of all cases.
     pub fn cases(&self) -> u64 {
         self.kinds.iter().map(|kind| kind.cases).sum()
     }
 
-    /// Per kind, in the order of [`TABLE`].
+    /// Figures per kind, in the order of [`TABLE`].
     pub fn kinds(&self) -> &[KindFigures] {
         &self.kinds
     }
 
-    /// What was not as demanded, with the numbers of the cases: with the seed they can be run again.
+    /// Descriptions of failures, with the numbers of the cases: with the seed they can be repeated.
     pub fn failures(&self) -> &[String] {
         &self.failures
     }

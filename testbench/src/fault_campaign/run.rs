@@ -1,4 +1,4 @@
-//! One case, from reset to the small move after the fault.
+//! Runs one case, from reset to the small move after the fault.
 
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::axis::{SupervisorState, WATCH_CLOCKS};
@@ -16,46 +16,46 @@ use crate::Error;
 use crate::lockstep::Device;
 use crate::stage_bench::{StageBench, state};
 
-/// Clocks after the fault, and after a change, that are looked at one by one.
+/// Number of clocks after the fault, and after a change, that are observed one by one.
 const CLOSE_CLOCKS: u64 = 48;
-/// The same about each tick: before and after it.
+/// Number of clocks before and after each tick that are observed one by one.
 const ABOUT_TICK_CLOCKS: [u64; 2] = [2, 24];
-/// Ticks after the end of the move until a case has ended, at the latest.
+/// Largest number of ticks from the end of the move to the end of a case.
 const PATIENCE_TICKS: u64 = 400;
-/// Ticks that all must stay as they are after the end.
+/// Number of ticks after the end in which nothing may change.
 const STAY_TICKS: u64 = 3;
-/// Clocks in which a load that was stopped at once rings no more: four time constants of the slower mode.
+/// Clocks after which a load that was stopped at once no longer rings: four time constants of the slower mode.
 const RINGING_CLOCKS: u64 = 225_000;
-/// Clocks in which lines and encoders settle after a fault.
+/// Number of clocks in which lines and encoders settle after a fault.
 const SETTLE_CLOCKS: u64 = 200;
-/// Clocks of an encoder's line through synchroniser and filter, and a few.
+/// Clocks that an encoder's line takes through synchroniser and filter, and a few more.
 const STILL_CLOCKS: u64 = FILTER_CLOCKS + 4;
-/// Until the brake is open, or a small move is over, at the latest.
+/// Largest number of clocks until the brake is open, or a small move is over.
 const PATIENCE_CLOCKS: u64 = 300_000;
-/// Ticks until the loop has followed a command that stands.
+/// Number of ticks in which the loop settles to a constant command.
 const LOOP_TICKS: u64 = 20;
-/// Counts of the move after the fault.
+/// Distance of the move after the fault in counts.
 const SMALL_MOVE: i64 = 30;
-/// Both axes.
+/// Mask of both axes.
 const BOTH: u32 = 3;
-/// Bits of `stopping` and `faulted` of both axes in the interrupt registers.
+/// Mask of `stopping` and `faulted` of both axes in the interrupt registers.
 const INTERRUPTS: u32 = 0b11_0000 | 0b11_0000 << 7;
 
-/// What came of a case.
+/// Result of a case.
 #[derive(Debug, Clone)]
 pub struct FaultOutcome {
     /// The case.
     pub case: Case,
     /// Figures of the axes that were hit.
     pub figures: Figures,
-    /// What was not as demanded.
+    /// Descriptions of what did not meet the expectation.
     pub failures: Vec<String>,
 }
 
 /// Runs a case; with a device, every clock is compared with it.
 ///
 /// # Errors
-/// [`CampaignError`] if it cannot be run. What is not as demanded is in the outcome.
+/// [`CampaignError`] if it cannot be run. Unmet expectations are in the outcome.
 pub fn run_case(bed: &Bed, case: &Case, device: Option<Box<dyn Device>>) -> Result<FaultOutcome, CampaignError> {
     let bench = bed.bench(device, case.number)?;
     let mut running = Running {
@@ -133,7 +133,7 @@ impl Running<'_> {
         Ok(())
     }
 
-    /// The move of both axes; a fault that is an entry takes the place of its end.
+    /// Plans the move of both axes; a fault that is an entry replaces its end.
     fn plan(&mut self) -> Result<Plan, Error> {
         let mut plan = Plan::default();
         for axis in 0..2 {
@@ -156,7 +156,7 @@ impl Running<'_> {
         Ok(plan)
     }
 
-    /// A move by so many counts from where the command is, and its end in counts of the counter.
+    /// A move by this many counts from the present command, and its end in counts of the counter.
     fn entries(&mut self, axis: usize, counts: i64) -> Result<(Vec<Entry>, i64), Error> {
         let name = self.bench.axes()[axis].clone();
         let at = i64::from(self.bench.read(&format!("{name}_command_position"))? as i32);
@@ -197,7 +197,7 @@ impl Running<'_> {
         Ok(runs)
     }
 
-    /// To the clock after the next tick.
+    /// Simulates to the clock after the next tick.
     fn next_tick(&mut self) -> Result<(), Error> {
         for _ in 0..=TICK_CLOCKS + 3 {
             self.bench.clocks(1)?;
@@ -208,7 +208,8 @@ impl Running<'_> {
         Ok(())
     }
 
-    /// To the clock of the fault; the last two ticks before it one by one, to know the commands' velocities.
+    /// Simulates to the clock of the fault; the last two ticks before it are simulated one by one, to know the
+    /// commands' velocities.
     fn run_run_to_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
         let mut axes = Vec::new();
         let from = if self.case.row.expects.in_hold {
@@ -238,8 +239,8 @@ impl Running<'_> {
         Ok(axes)
     }
 
-    /// Until the filters show what the encoders' lines are: while a step is on its way through them, the inverse of both lines
-    /// is a step beside what the counter has.
+    /// Waits until the filters show the encoders' lines: while a step is on its way through them, inverting both
+    /// lines would look like another step to the counter.
     fn wait_for_still_encoders(&mut self) -> Result<(), Error> {
         let (mut lines, mut still) = (Vec::new(), 0);
         for _ in 0..2 * TICK_CLOCKS {
@@ -258,7 +259,7 @@ impl Running<'_> {
         Ok(())
     }
 
-    /// The fault, and all until the axes are where they end.
+    /// Injects the fault, and simulates until the axes have ended.
     fn observe(&mut self, mut axes: Vec<Observation>, move_ticks: u64) -> Result<Observed, Error> {
         begin(&mut self.bench, self.case)?;
         let start = self.bench.now();
@@ -306,7 +307,7 @@ impl Running<'_> {
         Ok(Observed { axes, start, due })
     }
 
-    /// When the state must have changed, if that is known from the start.
+    /// Clock by which the state must have changed, if that is known from the start.
     fn first_due(&self, start: u64) -> Option<u64> {
         match self.case.row.expects.due {
             Due::Clocks(clocks) => Some(start + clocks),
@@ -314,7 +315,7 @@ impl Running<'_> {
         }
     }
 
-    /// Clocks until the next one that is looked at.
+    /// Number of clocks until the next one that is observed.
     fn step(&self, start: u64, axes: &[Observation], last_tick: Option<u64>) -> u64 {
         let now = self.bench.now();
         let close = |clock: u64| now < clock + CLOSE_CLOCKS;
@@ -349,14 +350,14 @@ impl Running<'_> {
         }
     }
 
-    /// Takes the fault away, clears, switches on what is off, and moves both axes back a little.
+    /// Removes the fault, clears, switches on what is off, and moves both axes back a little.
     fn recover(&mut self) -> Result<(), Error> {
         let held = self.case.lasts.is_none();
         end(&mut self.bench, self.case, held)?;
         self.bench.clocks(RINGING_CLOCKS)?;
         let known = self.case.row.expects.position_known && self.case.row.expects.reaction != Reaction::Reset;
         if !known {
-            // What came of the encoder's lines while they were corrupted is over: from here on nothing may be lost.
+            // Counts of the encoder's lines while they were corrupted are accepted; from here on none may be lost.
             self.bench.rebase();
         }
         let names = self.bench.axes().to_vec();
@@ -368,7 +369,7 @@ impl Running<'_> {
             }
         }
         self.bench.clocks(SETTLE_CLOCKS)?;
-        // Only now nobody wants a group stop any more, and those that stopped for it can forget it.
+        // Only now no axis wants a group stop any more, so that those that stopped for it can be cleared.
         for name in &names {
             self.bench.write(&format!("{name}_clear_faults"), 0)?;
         }
@@ -428,7 +429,7 @@ impl Running<'_> {
         Ok(())
     }
 
-    /// What must never be, in no clock.
+    /// Checks what must never happen in any clock.
     fn forever(&mut self) {
         for axis in 0..2 {
             let name = self.bench.axes()[axis].clone();

@@ -1,4 +1,4 @@
-//! Proofs about the emitted Verilog: property files against blocks, by Yosys and ABC.
+//! Proofs about the emitted Verilog: Yosys and ABC check blocks against property files.
 //!
 //! ```text
 //!  block's modules ──┐
@@ -14,8 +14,9 @@
 //! every register has its reset value. Block RAM is left out but where a task keeps it: what is read from it is anything, in every
 //! clock; so are products and whole blocks where a task says so.
 //!
-//! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
-//! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
+//! There are two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs
+//! them among the properties. If an engine does not find a proof, a counterexample of at most [`SEARCHED_CLOCKS`] is
+//! searched.
 
 mod names;
 mod task;

@@ -1,23 +1,23 @@
-//! What stands in a property file: peeks, and so the top that joins it to its block.
+//! Reads the peeks of a property file, and writes the top that joins it to its block.
 
 use std::fmt::Write as _;
 
 use posicast_model::rtl::{Direction, Port};
 
-/// A register inside of a block that properties look at.
+/// A register inside the block that the properties read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Peek {
-    /// Input of the property module.
+    /// Name of the property module's input.
     pub(super) name: String,
-    /// `signed `, `[9:0] `, or nothing.
+    /// Declaration: `signed `, `[9:0] `, or empty.
     kind: String,
-    /// Instances and signal inside of the block, with points.
+    /// Path of the signal inside the block, with points between the instances.
     pub(super) path: String,
 }
 
 const MARK: &str = "(* peek = \"";
 
-/// The peeks of a property file, in its order. A line of another shape than the known one is left out.
+/// The peeks of a property file, in order. Other lines are ignored.
 pub(super) fn peeks(text: &str) -> Vec<Peek> {
     let line = |line: &str| {
         let (path, rest) = line.trim().strip_prefix(MARK)?.split_once("\" *)")?;

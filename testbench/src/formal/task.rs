@@ -1,4 +1,4 @@
-//! A proof: block, size, property file, engine.
+//! A proof task: block, size, property file, engine.
 
 use std::fmt::Write as _;
 
@@ -8,14 +8,14 @@ use posicast_model::rtl::Port;
 use super::names::as_inputs;
 use crate::Error;
 
-/// How a task is proven. Both proofs are unbounded.
+/// Method of proof. Both are unbounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
-    /// Property directed reachability, by ABC: finds its invariants itself.
+    /// Property-directed reachability, by ABC, which finds its invariants itself.
     Pdr,
-    /// Induction over at most so many clocks, by Yosys: invariants are among the properties.
+    /// Induction over at most this many clocks, by Yosys; invariants are among the properties.
     Induction {
-        /// Clocks in a row in which all is assumed to hold.
+        /// Number of consecutive clocks in which everything is assumed to hold.
         clocks: u32,
     },
 }
@@ -24,7 +24,7 @@ pub enum Engine {
 pub(crate) const INDUCTION: Engine = Engine::Induction { clocks: 1 };
 
 impl Engine {
-    /// Its name in a table.
+    /// Name in a table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pdr => "PDR (ABC)",
@@ -36,13 +36,13 @@ impl Engine {
 /// Properties of a block at one size.
 #[derive(Debug, Clone)]
 pub struct Task {
-    /// The block's name, and that of its property file.
+    /// Name of the block and of its property file.
     pub name: &'static str,
-    /// Which of its sizes.
+    /// Description of the size.
     pub size: String,
-    /// How it is proven.
+    /// Method of proof.
     pub engine: Engine,
-    /// The block's Verilog, the top last. Tests change it.
+    /// The block's Verilog, the top last. Tests modify it.
     pub modules: Vec<Module>,
     pub(crate) top: String,
     pub(crate) ports: Vec<Port>,

@@ -1,4 +1,4 @@
-//! Runs the engines on a task, each under a time limit, and reads what they say.
+//! Runs the engines on a task, each with a time limit, and reads their results.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use super::task::{Engine, Task};
 use crate::Error;
 use crate::tool::{Tool, text};
 
-/// Longest counterexample that is searched for where an engine proves nothing, in clocks.
+/// Length in clocks of the longest counterexample that is searched where an engine finds no proof.
 pub const SEARCHED_CLOCKS: u32 = 60;
-/// Clocks in which a cover must be reached: a pass of the controller, and some.
+/// Number of clocks in which a cover must be reached: a computation of the controller, and some more.
 const COVERED_CLOCKS: u32 = 540;
 
-/// Name of the file with the assertions, and how they are left over.
+/// Name of the file with the assertions, and the commands that leave only these.
 const ASSERTS: (&str, &str) = ("asserts", "delete t:$cover");
-/// The same of the covers.
+/// Name of the file with the covers, and the commands that leave only these.
 const COVERS: (&str, &str) = ("covers", "delete t:$assert\ntechmap -map reached.v");
 
 pub(crate) const YOSYS: Tool = Tool {
@@ -33,58 +33,58 @@ pub(crate) const ABC: Tool = Tool {
     remedy: "It comes with Yosys (Debian: apt-get install --no-install-recommends yosys), or name it in POSICAST_YOSYS_ABC",
 };
 
-/// What is known of a task's assertions.
+/// Result for a task's assertions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ProofVerdict {
-    /// All hold, for all inputs and for ever.
+    /// All hold, for all inputs and without a bound.
     Proven,
     /// One does not hold.
     Counterexample {
-        /// The assertion.
+        /// Name of the assertion.
         property: String,
-        /// The clock after power-up in which it fails, from 0.
+        /// Clock after power-up in which it fails, from 0.
         clock: u32,
-        /// What leads there.
+        /// Waveform of the inputs that lead there.
         waveform: PathBuf,
     },
-    /// Neither within the time limit.
+    /// Neither was found within the time limit.
     Unknown,
 }
 
-/// A situation that properties speak of, and whether it happens.
+/// A situation of the properties, and whether it can be reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reached {
-    /// The cover.
+    /// Name of the cover.
     pub name: String,
-    /// The first clock after power-up in which it can hold; none: not reached in [`SEARCHED_CLOCKS`].
+    /// The first clock after power-up in which it can hold; `None` if it is not reached in [`SEARCHED_CLOCKS`].
     pub clock: Option<u32>,
 }
 
-/// A task that has been tried.
+/// Result of a task.
 #[derive(Debug, Clone)]
 pub struct ProofOutcome {
-    /// What is known.
+    /// Result for its assertions.
     pub verdict: ProofVerdict,
-    /// Assertions in the property file.
+    /// Number of assertions in the property file.
     pub assertions: usize,
-    /// Its covers.
+    /// Results for its covers.
     pub covers: Vec<Reached>,
-    /// What it took.
+    /// Duration.
     pub time: Duration,
 }
 
 impl ProofOutcome {
-    /// Proven, with all covers reached.
+    /// Whether everything is proven and all covers are reached.
     pub fn is_good(&self) -> bool {
         self.verdict == ProofVerdict::Proven && self.covers.iter().all(|cover| cover.clock.is_some())
     }
 }
 
-/// Tries to prove a task, with all files in `folder`. `limit` is for each run of an engine.
+/// Tries to prove a task, with all files in `folder`. `limit` is the time limit of each run of an engine.
 ///
 /// # Errors
-/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses a property file, for example
-/// because a peek is no longer in the block; [`Error::File`] where the folder cannot be written.
+/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses a property file, for
+/// example because the block no longer contains a peek; [`Error::File`] where the folder cannot be written.
 pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, Error> {
     let start = Instant::now();
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
@@ -109,11 +109,11 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, 
     })
 }
 
-/// Searches for a counterexample without trying the proof first: for a block that was broken on purpose, of which the proof
-/// would only find late that it cannot be. [`ProofVerdict::Unknown`] where there is none in the clocks that are searched.
+/// Searches a counterexample without trying the proof first: for a block that was broken on purpose, for which a
+/// proof attempt would only take time. [`ProofVerdict::Unknown`] if there is none in the clocks that are searched.
 ///
 /// # Errors
-/// As [`run`].
+/// Those of [`run`].
 pub fn search(task: &Task, folder: &Path, limit: Duration) -> Result<ProofVerdict, Error> {
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
     let bench = Bench { task, folder, limit };
@@ -128,7 +128,7 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// Writes the Verilog, and what the engines read: a file for each of `kinds`.
+    /// Writes the Verilog, and the engines' input files: one for each of `kinds`.
     fn prepare(&self, kinds: &[(&str, &str)]) -> Result<(), Error> {
         let mut script = String::new();
         for module in &self.task.modules {
@@ -155,7 +155,7 @@ impl Bench<'_> {
         if self.task.keeps_memories {
             script.push_str("memory\n");
         }
-        // A path that is not in the block is refused: the peek would be free, and no proof possible.
+        // A path that is not in the block is refused: the peek would be free, and nothing could be proven.
         for peek in &peeks {
             let path = format!("formal_top/dut.{}", peek.path);
             let _ = writeln!(script, "select -assert-any {path}\nsetattr -set keep 1 {path}");
@@ -165,7 +165,7 @@ impl Bench<'_> {
             let _ = writeln!(script, "connect -set {} dut.{}", peek.name, peek.path);
         }
         script.push_str("cd ..\nsetattr -unset keep formal_top/w:dut.*\n");
-        // Without its memories: what is read from a block RAM is anything, in every clock.
+        // Memories are removed: the output of a block RAM is free in every clock.
         let multipliers = if self.task.leaves_products_open {
             "delete t:$mul\n"
         } else {
@@ -190,13 +190,13 @@ impl Bench<'_> {
         YOSYS.run(&mut yosys, "reading block and properties").map(drop)
     }
 
-    /// Whether PDR proves the assertions together.
+    /// Whether PDR proves all assertions together.
     fn pdr(&self) -> Result<bool, Error> {
         let commands = format!("read_aiger asserts.aig; fold; strash; orpos; pdr -T {}", self.seconds());
         Ok(self.abc(&commands)?.contains("Property proved"))
     }
 
-    /// Whether they hold at the start, and in each clock after so many in which they did.
+    /// Whether the assertions hold at the start, and in each clock after `clocks` clocks in which they did.
     fn induction(&self, clocks: u32) -> Result<bool, Error> {
         let script = format!(
             "read_ilang design.il\ndelete t:$cover\n\
@@ -225,7 +225,7 @@ impl Bench<'_> {
         })
     }
 
-    /// The counterexample as Yosys's simulator plays it: ABC's form of it has no head and no end.
+    /// The counterexample as played by Yosys's simulator, because ABC's format has no header and no end.
     fn waveform(&self, output: usize) -> Result<PathBuf, Error> {
         let path = self.folder.join("counterexample.txt");
         let found = std::fs::read_to_string(&path).map_err(Error::file(&path, "read"))?;
@@ -241,7 +241,7 @@ impl Bench<'_> {
         Ok(self.folder.join("counterexample.vcd"))
     }
 
-    /// One after the other: with several at once, ABC's search crashes on some blocks.
+    /// Searches the covers one after the other: with several at once, ABC's search crashes on some blocks.
     fn covers(&self, names: Vec<String>) -> Result<Vec<Reached>, Error> {
         let search = |(output, name)| {
             let commands = format!(
@@ -277,14 +277,14 @@ impl Bench<'_> {
     }
 }
 
-/// What ABC says to these commands, with `folder` as its own.
+/// ABC's output for these commands, run in `folder`.
 pub(crate) fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String, Error> {
     let mut abc = ABC.command_in(folder);
     abc.args(["-c", commands]);
     ABC.run(&mut abc, doing).map(|output| text(&output))
 }
 
-/// Outputs and clocks in ABC's words: `Output 3 of miter "asserts" was asserted in frame 12.`
+/// Outputs and clocks from ABC's messages: `Output 3 of miter "asserts" was asserted in frame 12.`
 pub(crate) fn asserted(said: &str) -> impl Iterator<Item = (usize, u32)> + '_ {
     let number = |word: Option<&str>| word?.trim_matches(|c: char| !c.is_ascii_digit()).parse().ok();
     said.lines()

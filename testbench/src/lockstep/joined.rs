@@ -4,19 +4,19 @@ use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 
 use super::Instance;
 
-/// Inputs that all axes share under their plain names.
+/// Inputs that all axes share, with their plain names.
 const SHARED: [&str; 2] = ["rst", "strobe"];
 
 struct Member {
     axis: String,
     block: Box<dyn ClockedBlock>,
-    /// For each input of the block: its place among our inputs.
+    /// For each input of the block, its index among our inputs.
     inputs_at: Vec<usize>,
     inputs: Vec<u64>,
     outputs: Vec<u64>,
 }
 
-/// Blocks side by side. Ports: `rst`, `strobe`, then for every axis its other ports as `<axis>_<port>`.
+/// Blocks side by side. The ports are `rst` and `strobe`, then for every axis its other ports as `<axis>_<port>`.
 pub struct SideBySide {
     ports: Vec<Port>,
     members: Vec<Member>,

@@ -1,4 +1,4 @@
-//! Model and device under test side by side: same inputs, every output compared in every clock.
+//! Runs model and device under test side by side: same inputs, every output compared in every clock.
 //!
 //! ```text
 //! for every clock:  inputs  := stimuli(what the model showed in the clock before)
@@ -6,10 +6,10 @@
 //!                   for every output:  actual ≠ expected or unknown bits → mismatch
 //! ```
 //!
-//! - A block is a set of outputs with a name ([`Instance`]): the report has one entry for each, `axis` by axis.
+//! - A block is a named set of outputs ([`Instance`]): the report has one entry for each, axis by axis.
 //! - Ports are matched by name; model and device must have the same ones, their order may differ.
-//! - The run goes on after a mismatch, so that the report says how much is wrong, and ends early only after
-//!   [`LockstepOptions::mismatch_limit`] wrong values: after that nothing new is learnt.
+//! - The run continues after a mismatch, so that the report shows how much is wrong, and ends early only after
+//!   [`LockstepOptions::mismatch_limit`] wrong values.
 //! - The first mismatch of each block keeps the clocks around it with all ports, ready to be printed
 //!   ([`report::Mismatch`]).
 //! - `time` counts clocks since the start of the run, which begins with a reset.
@@ -28,22 +28,23 @@ use crate::Error;
 use crate::stimuli::Stimuli;
 use crate::verilator::Verilated;
 
-/// Clocks between two calls of the progress function.
+/// Number of clocks between two calls of the progress function.
 const PROGRESS_CLOCKS: u64 = 1 << 16;
 
-/// What is compared with the model: like [`ClockedBlock`], but it may show `x` and `z`.
+/// A device that is compared with the model: like [`ClockedBlock`], but with outputs that may be `x` and `z`.
 pub trait Device {
     /// The ports, as in [`ClockedBlock::ports`].
     fn ports(&self) -> &[Port];
 
-    /// One clock, as in [`ClockedBlock::step`]; `unknown` gets, for every output, a one for each bit that is `x` or `z`.
+    /// Simulates one clock, as [`ClockedBlock::step`] does; `unknown` gets, for every output, a one for each bit that
+    /// is `x` or `z`.
     ///
     /// # Errors
     /// [`StepError`] where the simulator stops.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError>;
 }
 
-/// A device that knows only zeros and ones: RustHDL's simulator, another model.
+/// A device with only zeros and ones, such as RustHDL's simulator or another model.
 pub struct TwoValued(pub Box<dyn ClockedBlock>);
 
 impl Device for TwoValued {
@@ -68,19 +69,19 @@ impl Device for Verilated {
     }
 }
 
-/// The outputs that make one entry of the report.
+/// The outputs of one entry of the report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Instance {
-    /// The block's name: `shaper`.
+    /// Name of the block, such as `shaper`.
     pub block: String,
-    /// What tells it from others of its kind: the axis, or a size.
+    /// Name that distinguishes it from others of its kind: the axis, or a size.
     pub name: String,
     /// Names of its outputs.
     pub outputs: Vec<String>,
 }
 
 impl Instance {
-    /// All outputs of a block that stands alone.
+    /// The instance with all outputs of a block that stands alone.
     pub fn whole(block: &str, name: &str, ports: &[Port]) -> Self {
         Self {
             block: block.to_owned(),
@@ -90,19 +91,19 @@ impl Instance {
     }
 }
 
-/// How long, and how much to keep.
+/// Length of a run, and how much it keeps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LockstepOptions {
-    /// Clocks to compare.
+    /// Number of clocks to compare.
     pub cycles: u64,
-    /// Clocks to keep before and after the first mismatch.
+    /// Number of clocks to keep before and after the first mismatch.
     pub window_clocks: usize,
-    /// Wrong values, over all blocks, after which the run ends early.
+    /// Number of wrong values, over all blocks, after which the run ends early.
     pub mismatch_limit: u64,
 }
 
 impl LockstepOptions {
-    /// So many clocks, with a window of 6 clocks each side and at most a million wrong values.
+    /// This many clocks, with a window of 6 clocks on each side and at most a million wrong values.
     pub fn cycles(cycles: u64) -> Self {
         Self {
             cycles,
@@ -112,10 +113,10 @@ impl LockstepOptions {
     }
 }
 
-/// What happened in one clock, for whoever watches: coverage, waveforms.
+/// Values of one clock, for coverage and waveforms.
 #[derive(Debug, Clone, Copy)]
 pub struct Clock<'a> {
-    /// Clocks since the start of the run.
+    /// Number of clocks since the start of the run.
     pub time: u64,
     /// The inputs, in the order of the model's input ports.
     pub inputs: &'a [u64],
@@ -125,9 +126,9 @@ pub struct Clock<'a> {
     pub actual: &'a [u64],
 }
 
-/// Runs model and device and compares.
+/// Runs model and device, and compares them.
 ///
-/// `watch` sees every clock; `progress` is called with the clocks done every 65,536 clocks and at the end.
+/// `watch` gets every clock; `progress` is called with the number of clocks done every 65,536 clocks and at the end.
 ///
 /// # Errors
 /// [`Error::Unlike`] if the ports differ or an instance names no output; [`Error::Step`] where a simulator stops.
@@ -147,10 +148,10 @@ pub fn run(
     run_until(model, device, stimuli, instances, options, &mut to_the_end, progress)
 }
 
-/// As [`run`], and the clock at which `watch` breaks is the last one.
+/// Runs them as [`run`] does, up to the clock at which `watch` breaks, which is included.
 ///
 /// # Errors
-/// As [`run`].
+/// Those of [`run`].
 pub fn run_until(
     model: &mut dyn ClockedBlock,
     device: &mut dyn Device,
@@ -263,7 +264,7 @@ impl Lockstep {
     }
 }
 
-/// Where a port of the model sits in the device, and which bits it has.
+/// Position of a model's port in the device, and its bits.
 struct Wire {
     device: usize,
     mask: u64,
@@ -312,7 +313,7 @@ fn words(port: &Port) -> String {
     format!("{}-bit {direction}", port.width)
 }
 
-/// One instance while it is compared.
+/// An instance while it is compared.
 struct Watched {
     instance: Instance,
     outputs: Vec<usize>,

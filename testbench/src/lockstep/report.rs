@@ -1,4 +1,4 @@
-//! The result of a lock step, as data (the contract's `verify --json`) and as text for an engineer.
+//! The result of a lock step, as data (the contract's `verify --json`) and as text for engineers.
 
 use std::fmt::{self, Write as _};
 
@@ -8,32 +8,32 @@ use serde::Serialize;
 use super::window::{Row, Window};
 use wavecmp::diff::{Shown, View, value, value_and_digits};
 
-/// Match or mismatch.
+/// Verdict of a lock step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LockstepVerdict {
     /// Every value of every clock was equal.
     Match,
-    /// At least one was not.
+    /// At least one value differed.
     Mismatch,
 }
 
-/// A whole run. Serialises to `verify --json`.
+/// Result of a whole run, which serialises to `verify --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct LockstepReport {
-    /// The verdict over all blocks. A run of no clocks is a mismatch: it shows nothing; nor does one that has not
-    /// exercised all it should ([`BlockReport::not_exercised`]).
+    /// The verdict over all blocks. A run without clocks is a mismatch, because it shows nothing; so is one that has
+    /// not exercised all that it should ([`BlockReport::not_exercised`]).
     pub result: LockstepVerdict,
-    /// Clocks compared.
+    /// Number of clocks compared.
     pub cycles: u64,
-    /// Output samples compared, over all blocks: clocks in which the model's `valid` was high.
+    /// Number of output samples compared, over all blocks: clocks in which the model's `valid` was high.
     pub samples: u64,
     /// One entry per instance.
     pub blocks: Vec<BlockReport>,
 }
 
 impl LockstepReport {
-    /// From the blocks of one run.
+    /// Makes the report of one run from its blocks.
     pub fn new(cycles: u64, blocks: Vec<BlockReport>) -> Self {
         let holds = |block: &BlockReport| block.mismatches == 0 && block.not_exercised.is_empty();
         let equal = cycles > 0 && !blocks.is_empty() && blocks.iter().all(holds);
@@ -49,7 +49,7 @@ impl LockstepReport {
         }
     }
 
-    /// Several runs as one: their blocks after one another, clocks and samples added.
+    /// Joins the reports of several runs: their blocks one after the other, clocks and samples added.
     pub fn joined(reports: Vec<LockstepReport>) -> Self {
         let cycles = reports.iter().map(|r| r.cycles).fold(0, u64::saturating_add);
         let equal = !reports.is_empty() && reports.iter().all(|r| r.result == LockstepVerdict::Match);
@@ -60,7 +60,7 @@ impl LockstepReport {
         all
     }
 
-    /// The same, where this was not exercised: the instance of a row, and what it is.
+    /// Adds what was not exercised, each with the instance of its row.
     pub fn without(mut self, missing: Vec<(String, String)>) -> Self {
         for (instance, what) in missing {
             let row = self.blocks.iter_mut().find(|block| block.instance == instance);
@@ -71,7 +71,7 @@ impl LockstepReport {
         Self::new(self.cycles, self.blocks)
     }
 
-    /// The same, where these bits of words never changed: the instance of a row, and the bits.
+    /// Adds bits of words that never changed, each with the instance of its row.
     pub fn with_unchanged(mut self, bits: Vec<(String, String)>) -> Self {
         for (instance, bits) in bits {
             let row = self.blocks.iter_mut().find(|block| block.instance == instance);
@@ -80,12 +80,12 @@ impl LockstepReport {
         self
     }
 
-    /// What was not exercised, in all rows: how much.
+    /// Number of things that were not exercised, in all rows.
     pub fn not_exercised(&self) -> usize {
         self.blocks.iter().map(|block| block.not_exercised.len()).sum()
     }
 
-    /// What was not exercised, each behind the name of its row.
+    /// What was not exercised, each with the name of its row.
     pub fn not_exercised_names(&self) -> Vec<String> {
         let of_block = |block: &BlockReport| -> Vec<String> {
             let name = |what: &String| format!("{} {}: {what}", block.name, block.instance);
@@ -94,34 +94,34 @@ impl LockstepReport {
         self.blocks.iter().flat_map(of_block).collect()
     }
 
-    /// Wrong values over all blocks.
+    /// Number of wrong values over all blocks.
     pub fn mismatches(&self) -> u64 {
         self.blocks.iter().map(|b| b.mismatches).sum()
     }
 }
 
-/// One instance of a block.
+/// Result for one instance of a block.
 #[derive(Debug, Clone, Serialize)]
 pub struct BlockReport {
-    /// The block's name.
+    /// Name of the block.
     pub name: String,
     /// The axis, or the size.
     pub instance: String,
-    /// Clocks compared.
+    /// Number of clocks compared.
     pub cycles: u64,
-    /// Output samples compared; none where the block has no `valid`.
+    /// Number of output samples compared; `None` if the block has no `valid`.
     #[serde(skip)]
     pub samples: Option<u64>,
-    /// Wrong values: outputs times clocks.
+    /// Number of wrong values: outputs times clocks.
     pub mismatches: u64,
-    /// The first of them.
+    /// The first wrong value.
     pub first: Option<Mismatch>,
-    /// What the run should have driven and did not, in words: a tap, a bank, a flag.
+    /// What the run should have exercised and did not, in words: a tap, a bank, a flag.
     pub not_exercised: Vec<String>,
-    /// Bits of words that had one level all the run, as `word[31:20]`: the upper ones of counters, mostly.
+    /// Bits of words that kept one level during the whole run, as `word[31:20]`: mostly the upper bits of counters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unchanged: Vec<String>,
-    /// What a directed test found that the lock step cannot see, in its words.
+    /// Findings of a directed test that the lock step cannot see, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,
 }
@@ -129,18 +129,18 @@ pub struct BlockReport {
 /// The first wrong value of a block, with the clocks around it. `Display` draws the table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Mismatch {
-    /// Clocks since the start of the run.
+    /// Number of clocks since the start of the run.
     pub time: u64,
-    /// The output.
+    /// Name of the output.
     pub signal: String,
-    /// What the model says, as a binary string, most significant bit first.
+    /// Value of the model as a binary string, most significant bit first.
     pub expected: String,
-    /// What the device shows; may hold `x`.
+    /// Value of the device, which may contain `x`.
     pub actual: String,
-    /// What the model says and what the device shows, as people read it.
+    /// Values of model and device in a form for people.
     #[serde(skip)]
     shown: [String; 2],
-    /// The clocks around it: a row per port.
+    /// The clocks around it, with a row per port.
     #[serde(skip)]
     table: Table,
 }
@@ -148,7 +148,7 @@ pub struct Mismatch {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Table {
     times: Vec<u64>,
-    /// Name and cells; the block's own outputs twice, model above device, where they differ.
+    /// Names and cells; the block's own outputs occur twice, model above device, where they differ.
     rows: Vec<(String, Vec<String>)>,
 }
 
@@ -209,7 +209,7 @@ impl Table {
     }
 }
 
-/// Binary, most significant bit first, unknown bits as `x`.
+/// A binary string, most significant bit first, with unknown bits as `x`.
 fn binary(width: u32, value: u64, unknown: u64) -> String {
     let bit = |at: u32| match (unknown >> at & 1, value >> at & 1) {
         (1, _) => 'x',
@@ -219,7 +219,7 @@ fn binary(width: u32, value: u64, unknown: u64) -> String {
     (0..width.min(64)).rev().map(bit).collect()
 }
 
-/// How an engineer reads a port: as a number, with sign where the port has one.
+/// View of a port for engineers: a number, with a sign if the port has one.
 fn view(port: &Port) -> View {
     match (port.width, port.signed) {
         (..=1, _) => View::Bits,
@@ -228,19 +228,19 @@ fn view(port: &Port) -> View {
     }
 }
 
-/// As an engineer reads it: decimal, hexadecimal where bits are unknown.
+/// A value for engineers: decimal, or hexadecimal if bits are unknown.
 fn number(port: &Port, bits: u64, unknown: u64) -> String {
     value(&Shown::Bits(binary(port.width, bits, unknown)), view(port))
 }
 
-/// Columns of the text.
+/// Number of columns of the text.
 const COLUMNS: usize = 100;
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "first mismatch in clock {}: `{}` is {}, the model says {}",
+            "first mismatch in clock {}: `{}` is {}, the model has {}",
             self.time, self.signal, self.shown[1], self.shown[0]
         )?;
         let names = self.table.rows.iter().map(|(name, _)| name.chars().count());
@@ -252,7 +252,7 @@ impl fmt::Display for Mismatch {
             let width = cells.clone().map(str::len).max().unwrap_or(0);
             let head = time.to_string();
             let width = width.max(head.len());
-            // Clocks behind the mismatch that do not fit are left out.
+            // Clocks after the mismatch that do not fit are left out.
             if *time > self.time && lines[0].chars().count() + 2 + width > COLUMNS {
                 break;
             }

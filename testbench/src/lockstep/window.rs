@@ -1,4 +1,4 @@
-//! The clocks around a mismatch: a ring of the latest ones, and the few that come after.
+//! The clocks around a mismatch: a ring of the latest ones, and the few that follow.
 
 use posicast_model::rtl::{Direction, Port};
 
@@ -22,20 +22,20 @@ impl Row {
     }
 }
 
-/// Rows before, at and after one clock. As long as no mismatch is known it is a ring that forgets the oldest.
+/// Rows before, at and after one clock. Until a mismatch is found it is a ring that drops the oldest row.
 #[derive(Debug, Clone)]
 pub(super) struct Window {
     rows: Vec<Row>,
-    /// Place of the oldest row once the ring is full.
+    /// Index of the oldest row once the ring is full.
     next: usize,
     filled: usize,
     clocks_after: usize,
-    /// Time and output of the mismatch.
+    /// Clock and output of the mismatch.
     pub(super) mismatch: (u64, usize),
 }
 
 impl Window {
-    /// Keeps the latest `clocks` rows and the one at hand.
+    /// Keeps the latest `clocks` rows and the present one.
     pub(super) fn new(ports: &[Port], clocks: usize) -> Self {
         let count = |direction| ports.iter().filter(|p| p.direction == direction).count();
         let outputs = vec![0; count(Direction::Output)];
@@ -46,7 +46,7 @@ impl Window {
             actual: outputs.clone(),
             unknown: outputs,
         };
-        // More than this no one reads, and a huge number must not eat the memory.
+        // Nobody reads more than this, and a huge number must not use up the memory.
         let clocks = clocks.min(1000);
         Self {
             rows: vec![row; clocks + 1],
@@ -57,14 +57,14 @@ impl Window {
         }
     }
 
-    /// Remembers a clock and forgets the oldest.
+    /// Stores a clock and drops the oldest one.
     pub(super) fn push(&mut self, time: u64, inputs: &[u64], expected: &[u64], actual: &[u64], unknown: &[u64]) {
         self.rows[self.next].copy_from(time, inputs, expected, actual, unknown);
         self.next = (self.next + 1) % self.rows.len();
         self.filled = (self.filled + 1).min(self.rows.len());
     }
 
-    /// The rows so far, in order, as the start of the window round a mismatch in the latest clock.
+    /// The rows so far, in order, as the start of the window around a mismatch in the latest clock.
     pub(super) fn opened_at(&self, time: u64, output: usize) -> Self {
         let oldest = if self.filled < self.rows.len() { 0 } else { self.next };
         let ordered = (0..self.filled).map(|n| self.rows[(oldest + n) % self.rows.len()].clone());

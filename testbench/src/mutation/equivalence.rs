@@ -1,4 +1,4 @@
-//! Block and mutant side by side, under the same inputs for ever: does any output tell them apart?
+//! Checks whether a block and a mutant are equivalent: with the same inputs, no output ever differs.
 
 use std::time::Duration;
 
@@ -8,13 +8,14 @@ use crate::Error;
 use crate::formal::{ABC, asserted};
 use crate::netlist::EquivalenceVerdict;
 
-/// Most bits of memories that become registers.
+/// Largest number of bits of memories that are converted to registers.
 const MOST_MEMORY_BITS: u32 = 8192;
-/// Most nodes of ABC's BDDs: a few seconds.
+/// Largest number of nodes of ABC's BDDs: a few seconds.
 const BDD_NODES: u32 = 200_000;
 
-/// What is taken out of both sides of a comparison: what drives it becomes outputs, what it gives inputs. That is sufficient,
-/// not necessary: a mutant that reads another word, and then does not use it, counts as different.
+/// Cells that are removed from both sides of a comparison: their inputs become outputs, and their outputs become
+/// inputs. Equivalence without them is sufficient, but not necessary: a mutant that reads another word, and then does
+/// not use it, counts as different.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Without {
     MemoriesAndProducts,
@@ -23,7 +24,7 @@ enum Without {
 }
 
 impl Without {
-    /// Takes modules with such cells out, but `kept`. ROMs stay: their words are known.
+    /// The commands that remove modules with such cells, except `kept`. ROMs stay, because their words are known.
     fn script(self, kept: &str) -> String {
         let cells = match self {
             Self::MemoriesAndProducts => "t:$memwr* %m t:$mul %m %u",
@@ -36,8 +37,8 @@ impl Without {
 
 /// Compares, for at most about fifteen times `limit`.
 ///
-/// First without memories and multipliers; where that is no proof, with the multipliers, then with the memories too, as
-/// registers that begin as 0 in both. The module of the mutant always stays.
+/// It first compares without memories and multipliers; if that gives no proof, with the multipliers, then with the
+/// memories too, as registers that begin as 0 in both. The module of the mutant is always included.
 pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<EquivalenceVerdict, Error> {
     let mut ways = vec![Without::MemoriesAndProducts];
     if netlist.multiplies() {
@@ -57,19 +58,19 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     Ok(verdict)
 }
 
-/// What is known of `miter.aig`.
+/// Result for `miter.aig`.
 fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<EquivalenceVerdict, Error> {
-    // What is equal in both, by induction over signals, is merged; what is left is small, mostly nothing. Counters that
-    // never get far are quick with BDDs, and slow with PDR, which needs a clause for each value.
+    // Signals that are equal in both, by induction, are merged; the remainder is small, and mostly empty. Counters
+    // that never get far are quick with BDDs and slow with PDR, which needs a clause for each value.
     let at = |name: &str| netlist.folder().join(name);
-    // If the first engine comes to no end, the others take what it was given.
+    // If the first engine does not finish, the others use its input.
     std::fs::copy(at("miter.aig"), at("merged.aig")).map_err(Error::file(&at("merged.aig"), "write"))?;
     let seconds = limit.as_secs().max(1);
     let engines = [
         format!(
             "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
         ),
-        // Induction, retiming and reachability in turn: soon, or never.
+        // Induction, retiming and reachability in turn succeed soon or never.
         "read_aiger merged.aig; dprove -T 5".to_owned(),
         format!("read_aiger merged.aig; pdr -m -T {seconds}"),
         format!("read_aiger merged.aig; bmc3 -T {seconds}"),
@@ -93,7 +94,7 @@ fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<EquivalenceVerdict, E
     Ok(EquivalenceVerdict::Unknown)
 }
 
-/// The script that writes `miter.aig`, whose one output says that an output differs.
+/// The script that writes `miter.aig`, whose one output tells that an output differs.
 fn miter(top: &str, mutant: &Mutant, without: Without) -> String {
     let Mutant { arguments, module, .. } = mutant;
     let boxes = without.script(module);

@@ -1,13 +1,13 @@
-//! Named mutants inside a stage: faults that stood in a stage's Verilog and that a check of its folder did not find.
+//! Named mutants inside a stage: faults in a stage's Verilog that a check of its folder once did not find.
 //!
 //! ```text
 //!  stage's modules ─► one text replaced by another ─► every row of the folder's check whose files have changed ─► found, or not
 //! ```
 //!
-//! The other mutants of this folder are chosen by chance, in blocks that stand alone. These are faults that someone thought
-//! of, in words, put into the modules as they stand in a stage, and looked for by exactly the rows that
-//! `posicast verify DIR` compares there, with its default clocks. A text that is no longer there, or is there twice, is an
-//! error: a mutant that is not put in proves nothing.
+//! The other mutants of this folder are chosen at random, in blocks that stand alone. These are faults that were
+//! thought of by name, put into the modules as they are in a stage, and searched by exactly the rows that
+//! `posicast verify DIR` compares there, with its default clocks. A text that no longer exists, or exists twice, is
+//! an error: a mutant that is not applied proves nothing.
 
 use std::fmt::Write as _;
 
@@ -19,7 +19,7 @@ use crate::asynchronous;
 use crate::blocks::{self, Block, ShortTicksBlock, Sources, StageBlock};
 use crate::page::Marks;
 
-/// Where the table of these mutants stands.
+/// Marks of the table of these mutants.
 pub const INSIDE_MARKS: Marks = Marks {
     begin: "<!-- mutants inside the stage: written by the example `mutate` -->",
     end: "<!-- end of mutants inside the stage -->",
@@ -107,12 +107,12 @@ pub const INSIDE: [NamedMutant<'static>; 13] = [
     },
 ];
 
-/// What found a mutant.
+/// Check that found a mutant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// The row: name and instance.
+    /// Name and instance of the row.
     pub row: String,
-    /// The first wrong clock; none where a directed test between clocks found it.
+    /// The first wrong clock; `None` if a directed test between clocks found it.
     pub clock: Option<u64>,
 }
 
@@ -157,7 +157,7 @@ pub fn hunt(
     Ok(None)
 }
 
-/// The row's lock step, and its test between clocks.
+/// Runs the row's lock step, and its test between clocks.
 fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
     let found = |clock| Found {
         row: format!("{} {}", row.name(), row.instance()),

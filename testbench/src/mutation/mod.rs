@@ -1,4 +1,4 @@
-//! Mutants of the blocks: faults put into the emitted Verilog one by one, to see whether the checks notice.
+//! Mutants of the blocks: faults put into the emitted Verilog one by one, to see whether the checks detect them.
 //!
 //! ```text
 //!  block's modules ─► Yosys `mutate` ─► one netlist, its input `mutsel` chooses the mutant ─► Verilator
@@ -8,16 +8,19 @@
 //!              survivors ─► block and mutant side by side ─► ABC: equivalent for ever? ─► else property file ─► fate
 //! ```
 //!
-//! - A mutant is one bit at a port of one cell that is stuck at 0 or 1, inverted, or inverted where another bit of the port
-//!   is 0 or 1. Yosys spreads the choice evenly over modules, cells, bits and source lines, by a seed.
-//! - The netlist keeps the block's modules: a mutant in a module that a block has twice is in both, as a mistake in the
-//!   source would be.
-//! - All mutants of a block are one simulator; a run of stimuli and model is made once, and every mutant that still lives
-//!   is compared with it, piece by piece. `mutsel` = 0 is the block itself, which must match to the end.
-//! - *Equivalent* is a proof for all inputs and for ever, from power-up: no output tells the two apart. Block RAM is outside of
-//!   the comparison: both must drive it equally, and read the same, whatever that is.
-//! - What is not equivalent may still break a property of `testbench/formal`, where the block has a file there.
-//! - The rest is *unknown*: each is listed. Where a search finds how to tell it from the block, the stimuli have a hole.
+//! - A mutant is one bit at a port of one cell that is stuck at 0 or 1, inverted, or inverted where another bit of
+//!   the port is 0 or 1. Yosys distributes the choice evenly over modules, cells, bits and source lines, by a seed.
+//! - The netlist keeps the block's modules: a mutant in a module that a block contains twice is in both, as a mistake
+//!   in the source would be.
+//! - All mutants of a block are one simulator. A run of stimuli and model is made once, and every mutant that has not
+//!   been detected yet is compared with it, piece by piece. `mutsel` = 0 is the block itself, which must match to the
+//!   end.
+//! - *Equivalent* is a proof for all inputs and without a bound, from power-up on: no output differs. Block RAM is
+//!   outside the comparison: both must drive it equally, and read the same arbitrary data.
+//! - A mutant that is not equivalent may still break a property of `testbench/formal`, where the block has a file
+//!   there.
+//! - The rest is *unknown*, and each is listed. Where a search finds an input that distinguishes it from the block,
+//!   the stimuli have a gap.
 
 mod by_name;
 mod equivalence;
@@ -43,23 +46,23 @@ use self::netlist::Netlist;
 use crate::Error;
 use crate::netlist::EquivalenceVerdict;
 
-/// How many mutants, and how hard each is tried.
+/// Number of mutants, and effort for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MutationOptions {
-    /// Mutants per block, at most: a small block may have fewer places for them.
+    /// Largest number of mutants per block: a small block may have fewer places for them.
     pub mutants: usize,
-    /// Chooses them.
+    /// Seed of the choice.
     pub seed: u64,
-    /// Runs of stimuli, with the seeds 1, 2, …
+    /// Number of runs of stimuli, with the seeds 1, 2, …
     pub runs: u64,
-    /// Clocks of each run.
+    /// Number of clocks of each run.
     pub clocks: u64,
-    /// Limit of each run of a prover.
+    /// Time limit of each run of a prover.
     pub proof: Duration,
 }
 
 impl Default for MutationOptions {
-    /// What `docs/verification.md` shows: a run of the blocks' lock-step tests.
+    /// The settings for `docs/verification.md`, which are those of the blocks' lock-step tests.
     fn default() -> Self {
         Self {
             mutants: 60,
@@ -71,23 +74,25 @@ impl Default for MutationOptions {
     }
 }
 
-/// What became of a mutant.
+/// Result for a mutant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fate {
     /// An output differed from the model's.
     Lockstep(Kill),
     /// A property no longer holds.
     Property(String),
-    /// Nothing tells it from the block, proven.
+    /// It is proven equivalent to the block.
     Equivalent,
     /// None of these.
     Unknown {
-        /// Clocks after power-up after which some input tells it from the block, where the search found any.
+        /// Number of clocks after power-up after which some input distinguishes it from the block, if the search
+        /// found one.
         differs: Option<u32>,
     },
 }
 
-/// Puts mutants into a block and finds out what becomes of each. All files are in `folder`, which must be empty or absent.
+/// Puts mutants into a block and determines the result of each. All files are in `folder`, which must be empty or
+/// absent.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Yosys, its ABC or Verilator; [`Error::ToolFailed`] where one of them refuses the block;
@@ -99,10 +104,10 @@ pub fn run(subject: &Subject, options: &MutationOptions, folder: &Path) -> Resul
     })
 }
 
-/// The same under other stimuli than the block's.
+/// Does the same with other stimuli than the block's.
 ///
 /// # Errors
-/// As [`run`].
+/// Those of [`run`].
 pub fn run_with<'a>(
     subject: &'a Subject,
     options: &MutationOptions,
@@ -125,7 +130,7 @@ pub fn run_with<'a>(
     mutants.into_iter().zip(kills).map(fate).collect()
 }
 
-/// Equivalent, broken by a property, or unknown.
+/// Determines whether a mutant is equivalent, broken by a property, or unknown.
 fn survivor(
     subject: &Subject,
     netlist: &Netlist<'_>,

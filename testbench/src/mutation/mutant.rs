@@ -5,16 +5,16 @@ use std::fmt;
 /// One fault in a netlist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mutant {
-    /// Its number in the list, from 1; also the value of `mutsel` that chooses it.
+    /// Number in the list, from 1, which is also the value of `mutsel` that selects it.
     pub number: usize,
     /// Arguments of Yosys's `mutate` that make it.
     pub(super) arguments: String,
-    /// `const0`, `const1`, `inv`, `cnot0` or `cnot1`.
+    /// Kind of the fault: `const0`, `const1`, `inv`, `cnot0` or `cnot1`.
     mode: String,
     pub(super) module: String,
     cell: String,
     port: String,
-    /// The register or wire that the bit is a part of, where it has a name.
+    /// Name of the register or wire to which the bit belongs, if it has one.
     wire: Option<String>,
     bit: String,
     /// Verilog file and line.
@@ -22,7 +22,7 @@ pub struct Mutant {
 }
 
 impl Mutant {
-    /// From a line of `mutate -list … -ctrl NAME WIDTH VALUE`; `None` for the line that changes nothing.
+    /// Parses a line of `mutate -list … -ctrl NAME WIDTH VALUE`; `None` for the line that changes nothing.
     pub(super) fn parse(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let after = |option: &str| {
@@ -48,19 +48,19 @@ impl Mutant {
         })
     }
 
-    /// With another number.
+    /// The mutant with another number.
     pub(super) fn numbered(self, number: usize) -> Self {
         Self { number, ..self }
     }
 
-    /// Whether registers stay what they are: not so at their output, with which Yosys loses the value at power-up, and at
-    /// their clock.
+    /// Whether registers keep their properties. They do not with a fault at their output, with which Yosys loses the
+    /// power-up value, or at their clock.
     pub(super) fn keeps_registers(&self) -> bool {
         self.port != "Q" && self.port != "CLK"
     }
 }
 
-/// `FILE:LINE` of `FILE:LINE.COLUMN-LINE.COLUMN`.
+/// Shortens `FILE:LINE.COLUMN-LINE.COLUMN` to `FILE:LINE`.
 fn line_of(place: &str) -> String {
     place.split('.').take(2).collect::<Vec<_>>().join(".")
 }

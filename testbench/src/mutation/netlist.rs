@@ -1,4 +1,4 @@
-//! A block as Yosys reads it, and its mutants.
+//! A block as Yosys reads it, with its mutants.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use super::mutant::Mutant;
 use crate::Error;
 use crate::formal::YOSYS;
 
-/// The input that chooses a mutant; 0 is none of them.
+/// Name of the input that selects a mutant; 0 selects none.
 pub(super) const SELECT: &str = "mutsel";
-/// Its width.
+/// Width of that input in bits.
 pub(super) const SELECT_BITS: u32 = 16;
-/// Most mutants of a netlist: the input counts no further.
+/// Largest number of mutants of a netlist, which is limited by that input.
 const MOST: usize = (1 << SELECT_BITS) - 1;
 
-/// Cells in the block's modules, in a folder.
+/// A block's modules as cells, in a folder.
 pub(super) struct Netlist<'a> {
     folder: &'a Path,
     modules: &'a [Module],
@@ -24,7 +24,7 @@ pub(super) struct Netlist<'a> {
 }
 
 impl<'a> Netlist<'a> {
-    /// Reads the Verilog. Only logic that can be told to be superfluous is removed: what is left is where mutants go.
+    /// Reads the Verilog. Only logic that is clearly redundant is removed; mutants go into the rest.
     pub(super) fn read(modules: &'a [Module], top: &'a str, folder: &'a Path) -> Result<Self, Error> {
         std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
         let netlist = Self { folder, modules, top };
@@ -42,7 +42,7 @@ impl<'a> Netlist<'a> {
         Ok(netlist)
     }
 
-    /// Where the files are.
+    /// Path of the folder with the files.
     pub(super) fn folder(&self) -> &Path {
         self.folder
     }
@@ -52,12 +52,12 @@ impl<'a> Netlist<'a> {
         self.top
     }
 
-    /// Whether there are multipliers in it.
+    /// Whether it contains multipliers.
     pub(super) fn multiplies(&self) -> bool {
         self.modules.iter().any(|module| module.name.contains("smul_"))
     }
 
-    /// Bits of its memories that can be written, by the modules' names: `ram_WORDSxBITS`.
+    /// Number of writable bits of its memories, from the modules' names: `ram_WORDSxBITS`.
     pub(super) fn memory_bits(&self) -> u32 {
         let bits = |name: &str| -> Option<u32> {
             let (words, bits) = name.rsplit_once("ram_")?.1.split_once('x')?;
@@ -66,16 +66,16 @@ impl<'a> Netlist<'a> {
         self.modules.iter().filter_map(|module| bits(&module.name)).sum()
     }
 
-    /// At most so many mutants, by the seed.
+    /// Chooses at most this many mutants, by the seed.
     pub(super) fn mutants(&self, count: usize, seed: u64) -> Result<Vec<Mutant>, Error> {
         if !(1..=MOST).contains(&count) {
             return Err(Error::Option(format!(
                 "{count} mutants of a block: 1 to {MOST} are possible"
             )));
         }
-        // Yosys takes 31 bits.
+        // Yosys takes a seed of 31 bits.
         let seed = seed & 0x7fff_ffff;
-        // More than are needed, for some places are not for us.
+        // More are listed than needed, because some places cannot be used.
         let listed = 2 * count;
         self.yosys(
             "list",
@@ -91,10 +91,11 @@ impl<'a> Netlist<'a> {
         Ok(numbered.map(|(number, mutant)| mutant.numbered(number)).collect())
     }
 
-    /// A Verilog file with all mutants, and the input that chooses.
+    /// Writes a Verilog file with all mutants, and the input that selects one.
     ///
-    /// A mutant may tie a bit of a net to another bit of it. Verilator 5.006 takes that for a loop, and then simulates wrongly
-    /// what depends on it, whichever mutant is chosen: so nets are split where their drivers are.
+    /// A mutant may tie a bit of a net to another bit of it. Verilator 5.006 takes that for a loop, and then
+    /// simulates logic that depends on it wrongly, whichever mutant is selected; therefore nets are split at their
+    /// drivers.
     pub(super) fn with_all(&self, mutants: &[Mutant]) -> Result<PathBuf, Error> {
         let mut script = String::from("read_ilang block.il\n");
         for mutant in mutants {
@@ -106,7 +107,7 @@ impl<'a> Netlist<'a> {
         Ok(self.folder.join("mutants.v"))
     }
 
-    /// The block's modules with one mutant in them, all in one text.
+    /// The block's modules with one mutant, all in one text.
     pub(super) fn with(&self, mutant: &Mutant) -> Result<Vec<Module>, Error> {
         let arguments = &mutant.arguments;
         self.yosys(
@@ -125,7 +126,7 @@ impl<'a> Netlist<'a> {
             .collect())
     }
 
-    /// Runs a script, which stays in the folder under this name.
+    /// Runs a script, which is kept in the folder under this name.
     pub(super) fn yosys(&self, name: &str, script: &str) -> Result<(), Error> {
         let file = format!("{name}.ys");
         self.write(&file, script)?;

@@ -1,4 +1,4 @@
-//! The property file of a block, asked about its mutants.
+//! Checks mutants against the property file of a block.
 
 use std::time::Duration;
 
@@ -7,7 +7,8 @@ use super::{Mutant, Subject};
 use crate::Error;
 use crate::formal::{self, ProofVerdict};
 
-/// A property that the mutant breaks: none where the block has no property file at this size.
+/// Name of a property that the mutant breaks; `None` if there is none, or the block has no property file at this
+/// size.
 pub(super) fn broken(
     subject: &Subject,
     netlist: &Netlist<'_>,

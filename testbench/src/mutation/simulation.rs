@@ -1,4 +1,4 @@
-//! All mutants of a block in lock step with its model, until the first wrong output of each.
+//! Runs all mutants of a block in lock step with its model, until the first wrong output of each.
 
 use std::path::{Path, PathBuf};
 
@@ -11,30 +11,30 @@ use crate::blocks::Block;
 use crate::stimuli::Stimuli;
 use crate::verilator::{Verilated, VerilogSource};
 
-/// Clocks of the first piece: most mutants do not live longer.
+/// Number of clocks of the first piece, in which most mutants are detected.
 const FIRST_PIECE: u64 = 64;
-/// Clocks of the longest piece, which bounds the memory.
+/// Number of clocks of the longest piece, which limits the memory.
 const LONGEST_PIECE: u64 = 4096;
 
-/// Where a mutant's output was wrong for the first time.
+/// First wrong output of a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kill {
     /// Seed of the run.
     pub seed: u64,
-    /// Clocks since its start.
+    /// Number of clocks since the start of the run.
     pub clock: u64,
 }
 
-/// Makes the stimuli of a run from its clocks and seed.
+/// A function that makes the stimuli of a run from its number of clocks and its seed.
 pub type StimuliOf<'a, 'f> = &'f mut dyn FnMut(u64, u64) -> Box<dyn Stimuli + 'a>;
 
-/// The block's model under its stimuli, a piece at a time.
+/// The block's model with its stimuli, a piece at a time.
 struct Reference<'a> {
     model: Box<dyn ClockedBlock>,
     stimuli: Box<dyn Stimuli + 'a>,
     masks: Vec<u64>,
     outputs: usize,
-    /// A row per clock: the model's inputs, then room for the choice of a mutant.
+    /// A row per clock: the model's inputs, then a column for the selection of a mutant.
     inputs: Vec<u64>,
     expected: Vec<u64>,
     seen: Vec<u64>,
@@ -59,7 +59,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// The next so many clocks.
+    /// Computes the next piece of this many clocks.
     fn piece(&mut self, clocks: u64) -> Result<(), Error> {
         let width = self.masks.len() + 1;
         let clocks = usize::try_from(clocks).unwrap_or(usize::MAX);
@@ -83,8 +83,8 @@ impl<'a> Reference<'a> {
         Ok(())
     }
 
-    /// The first clock of the piece in which the mutant's outputs are wrong; one that stops the simulator is wrong from the
-    /// first.
+    /// The first clock of the piece in which the mutant's outputs are wrong; a mutant that stops the simulator is
+    /// wrong from the first clock on.
     fn first_wrong(&mut self, device: &mut Verilated, number: u64, actual: &mut Vec<u64>) -> Option<usize> {
         for row in self.inputs.chunks_exact_mut(self.masks.len() + 1) {
             if let Some(select) = row.last_mut() {
@@ -100,7 +100,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// What kills each of the mutants 1 to `mutants` of a block, if anything does.
+/// The first wrong output of each of the mutants 1 to `mutants` of a block, if there is one.
 pub(super) fn run<'a>(
     block: &'a dyn Block,
     verilog: &Path,
@@ -116,7 +116,7 @@ pub(super) fn run<'a>(
     Ok(kills)
 }
 
-/// One run: all that live, beside the reference.
+/// Makes one run: compares all undetected mutants with the reference.
 fn chase(
     block: &dyn Block,
     verilog: &Path,

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::blocks::{self, Block, SmallBench};
 use crate::formal::Task;
 
-/// A block at one size, and what is proven of it.
+/// A block at one size, with its proofs.
 pub struct Subject {
     block: Box<dyn Block>,
     size: &'static str,
@@ -17,7 +17,7 @@ impl Subject {
         self.block.as_ref()
     }
 
-    /// Which of its sizes.
+    /// Description of its size.
     pub fn size(&self) -> &str {
         self.size
     }
@@ -45,10 +45,10 @@ pub fn all() -> Result<Vec<Subject>, Error> {
     blocks::small_benches()?.into_iter().map(subject).collect()
 }
 
-/// Those of a block.
+/// The subjects of one block.
 ///
 /// # Errors
-/// As [`all`], and [`Error::Option`] where there is no such block.
+/// Those of [`all`], and [`Error::Option`] where there is no such block.
 pub fn named(name: &str) -> Result<Vec<Subject>, Error> {
     let all = all()?;
     let names: Vec<String> = all.iter().map(|subject| subject.block.name().to_owned()).collect();

@@ -1,46 +1,46 @@
-//! What became of the mutants, as the table of `docs/verification.md`.
+//! The results of the mutants as the table of `docs/verification.md`.
 //!
-//! The page keeps a row per block, so that a run of one block renews its own and leaves the rest; sums and the list of what
-//! is unknown follow from the rows.
+//! The page has a row per block, so that a run of one block updates its own and leaves the others; sums and the list
+//! of unknown mutants follow from the rows.
 
 use std::fmt::Write as _;
 
 use super::{Fate, Mutant, Subject};
 use crate::page::Marks;
 
-/// Where the table stands.
+/// Marks of the table.
 pub const MARKS: Marks = Marks {
     begin: "<!-- mutants: written by the example `mutate` -->",
     end: "<!-- end of mutants -->",
 };
 const HEAD: &str = "| block | size | mutants | lock step | of these late | property | equivalent | unknown |\n\
                     |---|---|---|---|---|---|---|---|\n";
-/// A kill in a later run than the first, or after so many clocks, is late.
+/// Number of clocks after which a detection counts as late, as one in a later run than the first does.
 const LATE_CLOCKS: u64 = 10_000;
 
-/// A block's line, and its mutants that are unknown.
+/// Row of a block, with its unknown mutants.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct MutationRow {
-    /// The block's name.
+    /// Name of the block.
     pub block: String,
-    /// Which of its sizes.
+    /// Description of its size.
     pub size: String,
-    /// How many mutants there were.
+    /// Number of mutants.
     pub mutants: usize,
-    /// Killed by lock step.
+    /// Number detected by lock step.
     pub lockstep: usize,
-    /// Of these, in the second run or after 10,000 clocks.
+    /// Number of these detected in the second run or after 10,000 clocks.
     pub late: usize,
-    /// Killed by a property.
+    /// Number detected by a property.
     pub property: usize,
-    /// Proven equivalent.
+    /// Number proven equivalent.
     pub equivalent: usize,
-    /// Neither killed nor equivalent.
+    /// Descriptions of those neither detected nor proven equivalent.
     pub unknown: Vec<String>,
 }
 
 impl MutationRow {
-    /// Counts.
+    /// Counts the results.
     pub fn new(subject: &Subject, fates: &[(Mutant, Fate)]) -> Self {
         let mut row = Self {
             block: subject.block().name().to_owned(),
@@ -65,7 +65,7 @@ impl MutationRow {
         row
     }
 
-    /// A line of the table; the mutants that are unknown stand elsewhere.
+    /// Parses a row of the table; the unknown mutants are listed elsewhere.
     fn parse(line: &str) -> Option<Self> {
         let cells: Vec<&str> = line.strip_prefix("| ")?.strip_suffix(" |")?.split(" | ").collect();
         let [block, size, counts @ .., _unknown] = cells.as_slice() else {
@@ -103,13 +103,13 @@ impl MutationRow {
         self.block == subject.block().name() && self.size == subject.size()
     }
 
-    /// What stands before each of its unknown mutants.
+    /// Prefix of each of its unknown mutants in the list.
     fn mark(&self) -> String {
         format!("- {}, {}: `", self.block, self.size)
     }
 }
 
-/// Rows, their sum, and the list of what is unknown.
+/// Writes rows, their sum, and the list of unknown mutants.
 pub fn table(rows: &[MutationRow]) -> String {
     let sum = |count: fn(&MutationRow) -> usize| rows.iter().map(count).sum::<usize>();
     let mut text = HEAD.to_owned();
@@ -137,7 +137,7 @@ pub fn table(rows: &[MutationRow]) -> String {
     text
 }
 
-/// The table of these subjects: with these rows, and with those of `old` where there is none.
+/// The table of these subjects, with these rows, and with those of `old` where there is no new one.
 pub fn merged(old: &str, rows: &[MutationRow], subjects: &[Subject]) -> String {
     let old = on_page(old);
     let of = |subject: &Subject| {
@@ -148,7 +148,7 @@ pub fn merged(old: &str, rows: &[MutationRow], subjects: &[Subject]) -> String {
     table(&rows)
 }
 
-/// The rows of a table as [`table`] writes it.
+/// The rows of a table in the format of [`table`].
 fn on_page(text: &str) -> Vec<MutationRow> {
     let mut rows: Vec<MutationRow> = text.lines().filter_map(MutationRow::parse).collect();
     for row in &mut rows {

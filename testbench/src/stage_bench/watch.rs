@@ -1,34 +1,34 @@
-//! What must never happen at the pins of an axis, watched in every clock of a bench.
+//! Checks for forbidden states of an axis's pins, in every clock of a bench.
 
 use posicast_model::plant::axis::{AxisPlant, DrivePins};
 
-/// Clocks that the gates may stay on once the drive is disabled: the gates' register is behind the enable's.
+/// Number of clocks for which the gates may stay on once the drive is disabled: the gates' register follows the
+/// enable's.
 const GATES_FOLLOW_CLOCKS: u64 = 1;
 
-/// What was seen of an axis since its bench began.
+/// Observations of an axis since its bench began.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Watched {
-    /// Clocks with a gate on, more than one clock after the drive was disabled. Must be 0.
+    /// Number of clocks with a gate on, more than one clock after the drive was disabled. Must be 0.
     pub gates_while_disabled: u64,
-    /// Clocks with the brake released and the drive disabled. Must be 0.
+    /// Number of clocks with the brake released and the drive disabled. Must be 0.
     pub released_while_disabled: u64,
-    /// Largest distance of the counter from the plant's count, since the last reset or
-    /// [`rebase`](super::StageBench::rebase). A count on its way through filter and
-    /// synchroniser makes 1.
+    /// Largest difference between the counter and the plant's count, since the last reset or
+    /// [`rebase`](super::StageBench::rebase). A count that is still in filter and synchroniser makes it 1.
     pub largest_count_error: u64,
-    /// The plant's count at which the counter is 0.
+    /// Count of the plant at which the counter is 0.
     pub origin: i64,
     disabled_clocks: u64,
 }
 
 impl Watched {
-    /// What the counter shows, and where the plant is, in one clock.
+    /// Compares the counter with the plant in one clock.
     pub(super) fn look(&mut self, counter: u64, plant: &AxisPlant) {
         let off_by = (plant.count() - self.origin).abs_diff(signed(counter));
         self.largest_count_error = self.largest_count_error.max(off_by);
     }
 
-    /// So many clocks with these pins.
+    /// Records this many clocks with these pins.
     pub(super) fn pass(&mut self, pins: &DrivePins, passed: u64) {
         if pins.drive_enable {
             self.disabled_clocks = 0;
@@ -45,7 +45,7 @@ impl Watched {
         }
     }
 
-    /// The counter is right as it is.
+    /// Accepts the counter as it is.
     pub(super) fn rebase(&mut self, counter: u64, plant: &AxisPlant) {
         self.origin = plant.count() - signed(counter);
         self.largest_count_error = 0;

@@ -1,4 +1,4 @@
-//! A circle of two axes, point by point: what unequal delays bend.
+//! A circle of two axes as points, which unequal delays distort.
 
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{TickLimits, plan_circle};
@@ -9,102 +9,103 @@ use super::host::{Host, Trouble};
 use super::{StageRun, StageRunError, moves};
 use crate::stage_bench::{AxisSample, state};
 
-/// Speed of the circle as a part of the slower axis's limit, where `[stage]` has no `contour_speed`.
+/// Speed of the circle as a fraction of the slower axis's limit, where `[stage]` has no `contour_speed`.
 const PART_OF_VELOCITY: f64 = 0.4;
-/// The same of acceleration, towards the centre.
+/// Acceleration towards the centre as a fraction of the limit.
 const PART_OF_ACCELERATION: f64 = 0.125;
-/// The same along the path: together they stay below the limit.
+/// Acceleration along the path as a fraction of the limit: together they stay below it.
 const PART_ALONG_PATH: f64 = 0.5;
-/// Part of the speed from which on a place counts: what happens at rest, and on the way from and to it, is a move's business.
+/// Fraction of the speed from which on a point counts: points at rest, and while starting and stopping, are not
+/// compared.
 const PART_OF_SPEED: f64 = 0.5;
-/// The same of the room in the travel.
+/// Fraction of the travel that a circle may take.
 const PART_OF_TRAVEL: f64 = 0.9;
-/// Counts that the position's words reach.
+/// Range of the position words in counts.
 const LARGEST_COUNTS: u32 = 1 << 23;
-/// Least radius in counts, below which steps of the encoders are all that is seen.
+/// Smallest radius in counts; below it, only the steps of the encoders would be visible.
 const LEAST_RADIUS_COUNTS: f64 = 100.0;
-/// Entries that a FIFO holds beside those that it may still have when it calls itself low.
+/// Number of entries that a FIFO has room for when it signals that it is low.
 const REFILL: usize = 40;
-/// Entries that wait at the start.
+/// Number of entries that wait at the start.
 const FIRST_FILL: usize = 60;
-/// Ticks between two looks at the FIFOs: fewer than entries are left in one that is almost low.
+/// Ticks between two checks of the FIFOs: fewer than the entries left in one that is almost low.
 const LOOK_TICKS: u64 = 8;
-/// Ticks beyond the plan.
+/// Number of ticks in addition to the plan.
 const SPARE_TICKS: u64 = 1000;
 
-/// A circle of the first two axes, once round, counter-clockwise, from rest at its right end to rest there.
+/// A circle of the first two axes: once round, counter-clockwise, starting and ending at rest at its rightmost point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
-    /// m.
+    /// Radius in m.
     pub radius: f64,
-    /// m/s.
+    /// Speed in m/s.
     pub speed: f64,
-    /// m/s² along the path.
+    /// Acceleration along the path in m/s².
     acceleration: f64,
-    /// m/s³ along the path.
+    /// Jerk along the path in m/s³.
     jerk: f64,
-    /// 1, or −1 where the first axis has more room on its positive side: then it is mirrored.
+    /// 1, or −1 where the first axis has more room in its positive direction: the circle is then mirrored.
     side: f64,
 }
 
-/// A circle and what came of it.
+/// Result of a circle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Circled {
-    /// The load's distance from the circle, along its radius, in m.
+    /// Distance of the load from the circle, along its radius, in m.
     pub error: ErrorFigures,
-    /// The load's places `(x, y)` from the circle's centre, in m, at every tick in which the command goes at half the speed or
-    /// faster.
+    /// Positions `(x, y)` of the load relative to the circle's centre, in m, at every tick in which the command has
+    /// at least half the speed.
     pub points: Vec<(f64, f64)>,
-    /// What the stage did not do.
+    /// Set if the stage did not do what it should.
     pub trouble: Option<Trouble>,
     radius: f64,
 }
 
-/// Why a machine drives no circle.
+/// Why a machine cannot drive a circle.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoCircle {
-    /// Less than two axes.
+    /// There are fewer than two axes.
     #[error("it takes two axes, and the machine has one")]
     OneAxis,
-    /// An axis that turns round and round.
+    /// An axis is modulo, and turns without an end.
     #[error("axis {0} is modulo: it turns round and round")]
     Modulo(String),
-    /// No radius that the encoders see fits the travel.
+    /// No radius that the encoders resolve fits the travel.
     #[error(
         "the travel of axes {x} and {y} has room for a radius of {room}, and {least} is the least that their encoders tell"
     )]
     NoRoom {
-        /// The first axis.
+        /// Name of the first axis.
         x: String,
-        /// The second.
+        /// Name of the second axis.
         y: String,
         /// Largest radius.
         room: String,
         /// Least radius.
         least: String,
     },
-    /// A radius that was asked for does not fit the travel.
+    /// The requested radius does not fit the travel.
     #[error("the travel of axes {x} and {y} has room for a radius of {room}, less than {radius}")]
     TooLarge {
-        /// The first axis.
+        /// Name of the first axis.
         x: String,
-        /// The second.
+        /// Name of the second axis.
         y: String,
-        /// The radius.
+        /// Requested radius.
         radius: String,
         /// Largest radius.
         room: String,
     },
-    /// A radius that the encoders do not see: of the limits of the axes, or asked for.
+    /// The encoders do not resolve the radius, whether it was requested or follows from the limits of the axes.
     #[error("its radius is {radius}, and {least} is the least that the encoders of axes {x} and {y} tell")]
     TooSmall {
-        /// The first axis.
+        /// Name of the first axis.
         x: String,
-        /// The second.
+        /// Name of the second axis.
         y: String,
         /// The radius.
         radius: String,
-        /// Least radius.
+        /// Smallest radius.
         least: String,
     },
 }
@@ -113,15 +114,15 @@ impl Circle {
     /// A circle that suits the limits of the machine.
     ///
     /// # Errors
-    /// [`NoCircle`] where there is none.
+    /// [`NoCircle`] where the machine cannot drive one.
     pub fn of_machine(machine: &Machine) -> Result<Self, NoCircle> {
         Self::fitting(machine, None)
     }
 
-    /// The same with a radius in m, or rad.
+    /// A circle with this radius in m, or rad.
     ///
     /// # Errors
-    /// [`NoCircle`], also where the radius does not fit.
+    /// [`NoCircle`] where the machine cannot drive one, or the radius does not fit.
     pub fn with_radius(machine: &Machine, radius: f64) -> Result<Self, NoCircle> {
         Self::fitting(machine, Some(radius))
     }
@@ -193,14 +194,14 @@ impl Circle {
         })
     }
 
-    /// The points of both axes, from where they stand.
+    /// Points of both axes, from where they stand.
     fn plan(&self, run: &StageRun<'_>, host: &mut Host<'_>) -> Result<[Vec<Entry>; 2], StageRunError> {
         let clock = &run.machine.clock;
         let mut of_axis = |index: usize| {
             let axis = &run.machine.axes[index];
             let unit = axis.loop_counts_per_unit();
             let limits = TickLimits::new(self.speed, self.acceleration, self.jerk, unit, clock.sample_hz);
-            // Planned from 0, then moved to where the axis stands, so that a mirror is a sign.
+            // The circle is planned from 0 and then moved to where the axis stands, so that mirroring is a sign.
             let planned = plan_circle([0, 0], self.radius * unit, 1.0, &limits);
             let [x, y] = planned.map_err(|source| StageRunError::Plan {
                 axis: axis.name.clone(),
@@ -223,7 +224,7 @@ impl Circle {
             Ok::<Vec<Entry>, StageRunError>(placed.collect())
         };
         let (mut x, mut y) = (of_axis(0)?, of_axis(1)?);
-        // Counts of different size may round the number of ticks differently.
+        // With counts of different size the number of ticks may be rounded differently.
         let longer = x.len().max(y.len());
         for entries in [&mut x, &mut y] {
             let last = entries.last().copied();
@@ -234,14 +235,14 @@ impl Circle {
 }
 
 impl Circled {
-    /// How far the load is outside of the circle, at each tick: direction from the centre in degrees, from 0 on and on, and
-    /// distance in m.
+    /// Distance of the load outside the circle at each tick: direction from the centre in degrees, from 0 on without
+    /// wrapping, and distance in m.
     pub fn distances(&self) -> Vec<(f64, f64)> {
         let mut turned = 0.0;
         let mut distances: Vec<(f64, f64)> = Vec::with_capacity(self.points.len());
         for (x, y) in &self.points {
             let degrees = y.atan2(*x).to_degrees();
-            // The direction goes on beyond a half turn instead of jumping back.
+            // The direction continues beyond a half turn instead of jumping back.
             turned += (degrees - turned + 180.0).rem_euclid(360.0) - 180.0;
             distances.push((turned, x.hypot(*y) - self.radius));
         }
@@ -267,12 +268,12 @@ fn write(
     Ok(())
 }
 
-/// Streams the points of both axes, refilling as the FIFOs ask for it, and waits for their end.
+/// Streams the points of both axes, refilling the FIFOs as they ask for it, and waits for the end.
 pub(super) fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble>, StageRunError> {
     stream_some(host, paths, true)
 }
 
-/// The same; where the points are `whole`, it waits for their end, else it ends once all are written.
+/// Streams points: if they are `whole`, it waits for the end; else it returns once all are written.
 pub(super) fn stream_some(
     host: &mut Host<'_>,
     paths: &[Vec<Entry>; 2],
@@ -304,7 +305,7 @@ pub(super) fn stream_some(
     }
 }
 
-/// The circle in the model.
+/// Drives the circle in the model.
 pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, circle: &Circle) -> Result<Circled, StageRunError> {
     let mut trouble = host.switch_on()?;
     if trouble.is_none() {
@@ -327,7 +328,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, circle: &Circle) -
     })
 }
 
-/// Where the load is from the centre while it goes round.
+/// Positions of the load relative to the centre while it goes round.
 fn places(run: &StageRun<'_>, circle: &Circle, x: &[AxisSample], y: &[AxisSample]) -> Vec<(f64, f64)> {
     let units = [0, 1].map(|axis| run.machine.axes[axis].loop_counts_per_unit());
     let slowest = PART_OF_SPEED * circle.speed / run.machine.clock.sample_hz;

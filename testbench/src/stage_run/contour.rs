@@ -1,4 +1,4 @@
-//! A path of the first two axes, from where they stand at reset, point by point.
+//! A path of the first two axes as points, starting where they stand at reset.
 
 use posicast_model::contour::{self, Contour, ContourError, ContourSample, FollowedContour, PlanePoint};
 use posicast_model::design::MachineDesign;
@@ -9,25 +9,25 @@ use super::host::{Host, Trouble};
 use super::{StageRun, StageRunError, circle, moves};
 use crate::stage_bench::AxisSample;
 
-/// Most clocks that model and RTL are compared in.
+/// Largest number of clocks in which model and RTL are compared.
 const COMPARED_CLOCKS: u64 = 24_000_000;
 
-/// A contour and what came of it.
+/// Result of a contour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contoured {
-    /// How far the load went from the path; nothing where it never moved.
+    /// The followed contour; `None` if the stage never moved.
     pub followed: Option<FollowedContour>,
-    /// What the stage did not do.
+    /// Set if the stage did not do what it should.
     pub trouble: Option<Trouble>,
 }
 
-/// The command in each tick: from where the machine stands at reset, `(0, 0)`, to rest.
+/// The command in each tick: from `(0, 0)`, where the machine stands at reset, to rest.
 fn command(run: &StageRun<'_>, contour: &Contour) -> Result<Vec<ContourSample>, StageRunError> {
     let samples = contour.samples(run.machine.clock.sample_period_s(), 0.0);
     samples.map_err(|error| StageRunError::Contour(Box::new(error)))
 }
 
-/// The points of both axes, from where they stand.
+/// Points of both axes, from where they stand.
 fn plan(run: &StageRun<'_>, host: &mut Host<'_>, samples: &[ContourSample]) -> Result<[Vec<Entry>; 2], StageRunError> {
     let units = [0, 1].map(|axis: usize| run.machine.axes[axis].loop_counts_per_unit());
     let places = samples
@@ -40,7 +40,7 @@ fn plan(run: &StageRun<'_>, host: &mut Host<'_>, samples: &[ContourSample]) -> R
     })
 }
 
-/// The contour in the model alone.
+/// Drives the contour in the model alone.
 pub(super) fn measure(
     run: &StageRun<'_>,
     mut host: Host<'_>,
@@ -67,7 +67,7 @@ pub(super) fn measure(
     Ok(Contoured { followed, trouble })
 }
 
-/// The command and the load in each tick from the first in which the command has moved; at rest the last command stays.
+/// Command and load in each tick from the first in which the command has moved; at rest the last command is repeated.
 fn aligned(
     run: &StageRun<'_>,
     samples: &[ContourSample],
@@ -78,7 +78,8 @@ fn aligned(
     let of = |tick: usize| [x[tick].command / units[0], y[tick].command / units[1]];
     let ticks = x.len().min(y.len());
     let place = |sample: &ContourSample| sample.at;
-    // The commands of both lists are the same but for their rounding to words: the offset is that of the first that has left its place.
+    // Both lists have the same commands except for rounding to words: the offset is that of the first command that
+    // has left its position.
     let half_a_word = [0, 1].map(|axis: usize| 1.0 / units[axis] / 256.0);
     let moved =
         |at: PlanePoint, begin: PlanePoint| (0..2).any(|axis| (at[axis] - begin[axis]).abs() > half_a_word[axis]);
@@ -100,7 +101,8 @@ fn aligned(
     pairs.unzip()
 }
 
-/// The contour with a device beside the model; whether it came to its end within the clocks that are compared.
+/// Drives the contour with a device beside the model; returns whether it reached the end within the clocks that are
+/// compared.
 pub(super) fn compare(
     run: &StageRun<'_>,
     host: &mut Host<'_>,
@@ -113,7 +115,7 @@ pub(super) fn compare(
     let room = (COMPARED_CLOCKS / host.tick_clocks()) as usize;
     let whole = samples.len() <= room;
     let mut paths = plan(run, host, &samples)?;
-    // A part of a path ends where it does not: there the comparison ends too, before the stage has run dry.
+    // A partial path ends in motion, so the comparison ends there too, before the stage runs out of entries.
     for path in &mut paths {
         path.truncate(room);
     }
@@ -122,7 +124,7 @@ pub(super) fn compare(
 }
 
 impl StageRunError {
-    /// The contour's error, where it is one.
+    /// The contour's error, if it is one.
     pub fn contour(&self) -> Option<&ContourError> {
         match self {
             Self::Contour(error) => Some(error),

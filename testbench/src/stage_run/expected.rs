@@ -1,6 +1,6 @@
-//! What the move should come to, from the machine file alone: the designed tap table, the law in floating point, and the loop as it
-//! is sampled ([`SampledLoop`]). The stage, its fixed-point words and the simulated pins are not in it, so that the two are
-//! witnesses against each other. `docs/closed-loop.md` derives the bounds.
+//! Expected figures of the move, computed from the machine file alone: the designed tap table, the law in floating
+//! point, and the sampled loop ([`SampledLoop`]). They do not use the stage, its fixed-point words or the simulated
+//! pins, so that the two check each other. `docs/closed-loop.md` derives the bounds.
 
 use posicast_model::control::Derived;
 use posicast_model::control::sampled::{FollowLimits, SampledLoop};
@@ -15,59 +15,63 @@ use super::moves;
 use super::{Shaping, StageRun, StageRunError};
 use crate::stage_bench::AxisSample;
 
-/// Part of an expected figure by which the stage may differ: what the drive's limits, the clocks of the schedule and the fixed point
-/// make of it.
+/// Fraction of an expected figure by which the stage may differ, because of the drive's limits, the clocks of the
+/// schedule and the fixed-point arithmetic.
 const MODEL_PART: f64 = 0.1;
-/// Counts of the encoder that an error may have beside what is expected: half a count is not seen, and the measured velocity moves
-/// the command by a count.
+/// Counts of the encoder by which an error may exceed what is expected: half a count is not resolved, and the
+/// measured velocity moves the command by a count.
 const TRACKING_COUNTS: f64 = 2.0;
-/// The same of the load's ringing: the driven coordinate rests within half a count of its target, and a mode overshoots such a step
-/// by itself.
+/// Counts by which the load's ringing may exceed what is expected: the driven coordinate rests within half a count of
+/// its target, and a mode overshoots such a step by itself.
 const RINGING_COUNTS: f64 = 1.0;
-/// Part of the move that an error may be at most.
+/// Largest allowed error as a fraction of the move.
 const MOVE_PART: f64 = 0.5;
-/// A shaper is exercised by a move that would ring so many times as much as is allowed if it did nothing.
+/// A shaper is exercised by a move that, without the shaper, would ring at least this many times as much as is
+/// allowed.
 const EXERCISED: f64 = 1.5;
-/// So many times as much, or the move is made harsher.
+/// If the ringing without a shaper is not at least this many times as much as is allowed, the move is made harsher.
 const CLEARLY: f64 = 4.0;
-/// Least counts of a move: below that, the encoder's steps are what is moved.
+/// Smallest move in counts; below it, the encoder's steps dominate.
 const LEAST_COUNTS: f64 = 100.0;
 
-/// What a move of an axis should come to. Lengths in m or rad.
+/// Expected figures of a move of an axis. Lengths are in m or rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
-    /// How far the move goes.
+    /// Distance of the move.
     pub distance: f64,
-    /// The same in counts of the loop.
+    /// Distance in counts of the loop.
     pub counts: f64,
-    /// Error and ringing of the float loop.
+    /// Error and ringing of the floating-point loop.
     pub figures: AxisFigures,
-    /// Error that the whole of Coulomb friction, and what the bridge loses to dead time and minimum pulse, make as a step.
+    /// Error that the whole Coulomb friction, and what the bridge loses to dead time and minimum pulse, cause as a
+    /// step.
     pub friction: f64,
-    /// What the hand-overs between tap tables may add, of an axis whose modes move with its position.
+    /// Largest vibration that the handovers between tap tables add, for an axis whose modes move with its position.
     pub handover: f64,
-    /// A count of the loop.
+    /// Length of a count of the loop.
     pub count: f64,
 }
 
 impl Expected {
-    /// Largest error that the loop may have: what is expected, friction and the encoder's steps, and at most half of the move.
+    /// Largest allowed error of the loop: the expected error, friction and the encoder's steps, but at most half of
+    /// the move.
     pub fn tracking_allowed(&self) -> f64 {
         let expected = (1.0 + MODEL_PART) * self.figures.tracking.peak + self.friction + self.handover;
         (expected + TRACKING_COUNTS * self.count).min(MOVE_PART * self.distance.abs())
     }
 
-    /// Most that the load may ring.
+    /// Largest allowed ringing of the load.
     pub fn ringing_allowed(&self) -> f64 {
         (1.0 + MODEL_PART) * self.figures.residual.peak + self.friction + self.handover + RINGING_COUNTS * self.count
     }
 
-    /// Whether the move is long enough to say something.
+    /// Whether the move is long enough to be significant.
     pub fn moves(&self) -> bool {
         self.counts.abs() >= LEAST_COUNTS
     }
 
-    /// Whether the shaper has something to do: without it (`unshaped`) the load would ring clearly more than is allowed with it.
+    /// Whether the move exercises the shaper: without it (`unshaped`) the load would ring clearly more than is
+    /// allowed with it.
     pub fn exercises(&self, unshaped: &Self) -> bool {
         self.times_allowed(unshaped) >= EXERCISED
     }
@@ -77,7 +81,7 @@ impl Expected {
     }
 }
 
-/// What the move should come to on a machine whose modes are at `frequency_factor` times their frequencies, by axis.
+/// Expected figures of the move, by axis, on a machine whose modes are at `frequency_factor` times their frequencies.
 pub(super) fn of_move(
     run: &StageRun<'_>,
     shaping: Shaping,
@@ -96,7 +100,7 @@ pub(super) fn of_move(
     for ((((index, axis), tables), (derived, lag_s)), (of, harsh)) in axes.zip(loops).zip(moves) {
         let planned = moves::plan_axis(machine, axis, of, *harsh, 0)?;
         let commands = commands(&planned, ticks);
-        // A mode that moves with the position is where it rings in the end, and so is the table.
+        // For a mode that moves with the position, the end of the move determines mode and table.
         let family = run.families.iter().find(|family| family.axis == index);
         let along = family.filter(|_| axis.family.as_ref().is_some_and(FamilySection::is_position));
         let handed =
@@ -120,7 +124,7 @@ pub(super) fn of_move(
     Ok(expectations)
 }
 
-/// The axes whose move would not exercise their shaper clearly.
+/// Whether, by axis, the move would not exercise the shaper clearly.
 pub(super) fn too_smooth(run: &StageRun<'_>) -> Result<Vec<bool>, StageRunError> {
     let (shaped, unshaped) = (
         of_move(run, Shaping::Shaped, 1.0)?,
@@ -132,17 +136,18 @@ pub(super) fn too_smooth(run: &StageRun<'_>) -> Result<Vec<bool>, StageRunError>
         .collect())
 }
 
-/// What becomes of an axis's tables on a move.
+/// Tables of an axis during a move.
 struct HandedOver<'a> {
-    /// Where the move ends.
+    /// End of the move.
     end: f64,
-    /// The table there.
+    /// Table in use at the end.
     table: &'a TapTable,
-    /// Most that the beginning, through the first table, and the hand-overs leave ringing ([`posicast_model::design::family`]).
+    /// Largest vibration that remains from the start, with the first table, and from the handovers
+    /// ([`posicast_model::design::family`]).
     most: f64,
 }
 
-/// The tables of a move of the axis by its command.
+/// The tables during a move of the axis, by its command.
 fn handed_over<'a>(
     family: &'a TableFamily,
     axis: &AxisSection,
@@ -184,7 +189,7 @@ fn scales(axis: &AxisSection, sample_hz: f64) -> [f64; 3] {
     ]
 }
 
-/// The command words of a move in every tick, and of standstill after it.
+/// The command words of a move in every tick, and at standstill after it.
 fn commands((entries, end): &(Vec<Entry>, i32), settle_ticks: u64) -> Vec<[f64; 3]> {
     let mut at = Integrator::default();
     let mut commands = Vec::new();
@@ -251,12 +256,13 @@ fn expected(
     }
 }
 
-/// Largest input of the loop's plant, and what friction and the bridge take from it.
+/// Largest input of the loop's plant, and the part of it that friction and the bridge take.
 fn pushes(machine: &Machine, axis: &AxisSection) -> (f64, f64) {
     let (Some(drive), Some(pwm)) = (axis.drive, axis.pwm) else {
         return (f64::INFINITY, 0.0);
     };
-    // Both legs lose a dead time in a period, and pulses below the least are left out; locked antiphase is at half duty near 0.
+    // Both legs lose a dead time per period, and pulses below the minimum are left out; with locked antiphase the
+    // duty is near half at 0.
     let lost_clocks = match pwm.mode {
         PwmMode::LockedAntiphase => 0,
         _ => 2 * pwm.dead_time_clocks(&machine.clock) + pwm.minimum_pulse_clocks(&machine.clock),
@@ -277,7 +283,7 @@ fn pushes(machine: &Machine, axis: &AxisSection) -> (f64, f64) {
     }
 }
 
-/// Commands through a tap table, in units and s.
+/// Passes commands through a tap table, in units and s.
 fn shaped(commands: &[[f64; 3]], table: &TapTable, scales: [f64; 3]) -> Vec<[f64; 3]> {
     let one = f64::from(1u32 << table.coefficient_fraction());
     let at = |tick: usize, channel: usize| {

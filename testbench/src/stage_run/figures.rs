@@ -4,28 +4,28 @@ use posicast_model::plant::axis::{ErrorFigures, residual_vibration, tracking_err
 
 use crate::stage_bench::AxisSample;
 
-/// The part of the time at standstill, at its end, of which the load's place of rest is the mean.
+/// The load's rest position is its mean over the last part of the time at standstill; this is the divisor.
 const REST_PART: usize = 2;
 
-/// How an axis followed, and what it left ringing. In m or rad.
+/// Tracking error of an axis, and its residual vibration, in m or rad.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AxisFigures {
-    /// The count against the shaped command, over the whole move: what the controller sees.
+    /// Difference between count and shaped command over the whole move, as the controller sees it.
     pub tracking: ErrorFigures,
-    /// The load about its place of rest, from when the shaped command has come to its end.
+    /// Vibration of the load about its rest position, from the end of the shaped command on.
     pub residual: ErrorFigures,
-    /// How far from its target the load comes to rest.
+    /// Distance of the load's rest position from its target.
     pub offset: f64,
 }
 
-/// The first sample from which on the shaped command stands.
+/// Index of the first sample from which on the shaped command stands still.
 pub(super) fn arrival(samples: &[AxisSample]) -> usize {
     let target = samples.last().map_or(0.0, |sample| sample.shaped);
     let moving = samples.iter().rposition(|sample| sample.shaped != target);
     moving.map_or(0, |last| last + 1)
 }
 
-/// The load about its place of rest, from when the shaped command has come to its end, and that place.
+/// Vibration of the load about its rest position, from the end of the shaped command on, and that position.
 pub(super) fn ringing(samples: &[AxisSample]) -> (Vec<f64>, f64) {
     let load: Vec<f64> = samples[arrival(samples)..].iter().map(|sample| sample.load).collect();
     let resting = &load[load.len() - load.len() / REST_PART..];
@@ -33,7 +33,7 @@ pub(super) fn ringing(samples: &[AxisSample]) -> (Vec<f64>, f64) {
     (load.iter().map(|position| position - rest).collect(), rest)
 }
 
-/// The figures of an axis of so many counts per unit.
+/// The figures of an axis with this many counts per unit.
 pub(super) fn of_move(samples: &[AxisSample], counts_per_unit: f64) -> AxisFigures {
     let of = |value: fn(&AxisSample) -> f64| samples.iter().map(value).collect::<Vec<f64>>();
     let tracking = tracking_error(&of(|sample| sample.error), &vec![0.0; samples.len()]);

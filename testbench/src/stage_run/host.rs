@@ -1,4 +1,4 @@
-//! The program that works the stage's registers.
+//! The host program that operates the stage's registers.
 
 use posicast_model::rtl::axis::{Cause, SupervisorState};
 use posicast_model::rtl::stage::StageConfig;
@@ -9,27 +9,27 @@ use super::tables::AxisTables;
 use crate::Error;
 use crate::stage_bench::{StageBench, state};
 
-/// Clocks in which filters and encoders settle after a reset.
+/// Number of clocks in which filters and encoders settle after a reset.
 const SETTLE_CLOCKS: u64 = 1000;
-/// Ticks after which a stage that has not done what it was told will not do it.
+/// Number of ticks after which a stage that has not done what it should counts as stuck.
 const PATIENCE_TICKS: u64 = 100;
-/// What the watchdog wants to read: `KICK`.
+/// Word that kicks the watchdog: `KICK`.
 const KICK: u32 = 0x4b49_434b;
-/// The bank that the host loads.
+/// Tap table bank that the host loads.
 const BANK: u32 = 1;
 
 /// A stage that did not do what it should.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Trouble {
-    /// Clocks since the start.
+    /// Number of clocks since the start.
     pub clock: u64,
-    /// The axis.
+    /// Name of the axis.
     pub axis: String,
     /// What it should have done.
     pub wanted: &'static str,
-    /// The state that it was in instead, as [`state`] numbers them.
+    /// State that it was in instead, numbered as in [`state`].
     pub state: u32,
-    /// Why, a bit per [`Cause`].
+    /// Causes of a fault, a bit per [`Cause`].
     pub causes: u32,
 }
 
@@ -43,7 +43,7 @@ impl Trouble {
         causes.map(Cause::name).collect()
     }
 
-    /// Axis, state and causes, for a picture.
+    /// Axis, state and causes, for a plot.
     pub fn in_short(&self) -> String {
         format!(
             "{} in {}: {}",
@@ -69,16 +69,16 @@ impl fmt::Display for Trouble {
     }
 }
 
-/// A stage on its bench, and who works its registers.
+/// A stage on its bench, with the host that operates its registers.
 pub(super) struct Host<'a> {
     pub(super) bench: StageBench,
     pub(super) config: &'a StageConfig,
-    /// Clocks between kicks, where an axis has a watchdog.
+    /// Clocks between kicks, if an axis has a watchdog.
     kick_clocks: Option<u64>,
     kicked: u64,
-    /// Of the axes whose modes move with their position.
+    /// Tables of the axes whose modes move with their position.
     tables: Vec<AxisTables>,
-    /// Hand-overs from table to table.
+    /// Number of handovers from table to table.
     pub(super) handovers: u64,
 }
 
@@ -135,7 +135,7 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Hands over to the tables for where the commands are.
+    /// Hands over to the tables for the present commands.
     fn follow(&mut self) -> Result<(), Error> {
         for tables in &mut self.tables {
             self.handovers += u64::from(tables.follow(&mut self.bench)?);
@@ -143,13 +143,13 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// The axis's state, from the inside: a bus would tell the same a little later.
+    /// The axis's state, read internally; the bus would show the same slightly later.
     pub(super) fn state(&self, axis: usize) -> Result<u32, Error> {
         let net = format!("{}_state", self.config.axes[axis].name);
         Ok(self.bench.net(&net)? as u32)
     }
 
-    /// What an axis should have done and did not.
+    /// Describes what an axis should have done and did not.
     pub(super) fn trouble(&mut self, axis: usize, wanted: &'static str) -> Result<Trouble, Error> {
         let name = &self.config.axes[axis].name;
         Ok(Trouble {
@@ -161,7 +161,7 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// Waits until `done` holds for each axis, tick by tick, or an axis is in a state that leads nowhere.
+    /// Waits, tick by tick, until `done` holds for each axis, or an axis is in a state from which that cannot happen.
     pub(super) fn wait(
         &mut self,
         wanted: &'static str,
@@ -186,14 +186,14 @@ impl<'a> Host<'a> {
         Ok(None)
     }
 
-    /// From reset until every axis holds its position.
+    /// Goes from reset to the state in which every axis holds its position.
     pub(super) fn switch_on(&mut self) -> Result<Option<Trouble>, Error> {
         self.pass(SETTLE_CLOCKS)?;
         for axis in &self.config.axes {
             self.bench.write(&format!("{}_clear_faults", axis.name), 0)?;
         }
         for axis in 0..self.config.axes.len() {
-            // The PWM's first trip is over; what is not stays a cause.
+            // The cause of the PWM's first trip is over; others remain.
             let mut patience = PATIENCE_TICKS;
             while self.state(axis)? != state::READY {
                 if patience == 0 {
@@ -211,7 +211,7 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// Puts a table of one tap in the place of each axis's own, if wanted.
+    /// Loads a table of one tap in place of each axis's own, if `shaping` asks for it.
     pub(super) fn shape(&mut self, shaping: Shaping) -> Result<Option<Trouble>, Error> {
         if shaping == Shaping::Shaped {
             return Ok(None);
@@ -228,7 +228,7 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// Waits for the brakes, then starts these axes together; there must be something to play.
+    /// Waits for the brakes, then starts these axes together; there must be entries to play.
     pub(super) fn start(&mut self, axes: &[usize]) -> Result<Option<Trouble>, Error> {
         let release = self
             .config
@@ -250,14 +250,15 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// Waits until all commands are at their ends.
+    /// Waits until all commands have reached their ends.
     pub(super) fn arrive(&mut self, most_ticks: u64) -> Result<Option<Trouble>, Error> {
         self.wait("come to the end of its motion", most_ticks, |host, axis| {
             Ok(host.state(axis)? == state::HOLD)
         })
     }
 
-    /// Watches so many ticks, in which every axis must hold its position, which it leaves with any cause: the shapers' tail, and settling.
+    /// Simulates this many ticks, in which every axis must hold its position (a fault would end that): the shapers'
+    /// tail, and settling.
     pub(super) fn rest(&mut self, ticks: u64) -> Result<Option<Trouble>, Error> {
         for _ in 0..ticks {
             self.pass(self.tick_clocks())?;
@@ -270,7 +271,7 @@ impl<'a> Host<'a> {
         Ok(None)
     }
 
-    /// The command position as it stands, Q24.8 counts.
+    /// The present command position, Q24.8 counts.
     pub(super) fn command(&mut self, axis: usize) -> Result<i32, Error> {
         let name = &self.config.axes[axis].name;
         Ok(self.bench.read(&format!("{name}_command_position"))? as i32)

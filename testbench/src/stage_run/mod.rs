@@ -1,4 +1,5 @@
-//! What a stage does with its machine, measured: from reset over switch-on and a move to standstill, and round a circle.
+//! Measures what a stage does with its machine: from reset over switching on and a move to standstill, and round a
+//! circle.
 //!
 //! ```text
 //!  StageRun ─┬─ side_by_side ─► model and RTL in every clock of a move       ─► Compared: the first clock that differs
@@ -6,9 +7,9 @@
 //!            └─ circle ───────► the model alone: points through the FIFOs      ─► Circled: contour error
 //! ```
 //!
-//! A host on the bus does what a program would: it clears the first trip, enables, waits for the brakes, writes segments, sets one
-//! bit, kicks the watchdogs, and keeps the FIFOs filled as their low marks say. A stage that does not do what it should is a
-//! result, with its [`Trouble`]; an error is what could not be run at all.
+//! A host on the bus does what a program would: it clears the first trip, enables, waits for the brakes, writes
+//! segments, sets one bit, kicks the watchdogs, and refills the FIFOs at their low marks. If a stage does not do what
+//! it should, this is a result with its [`Trouble`]; an error is a run that was not possible.
 
 mod circle;
 mod contour;
@@ -44,45 +45,45 @@ pub use shaping::Shaping;
 use host::Host;
 use tables::AxisTables;
 
-/// Why a run could not be made.
+/// Why a run was not possible.
 #[derive(Debug, thiserror::Error)]
 pub enum StageRunError {
-    /// The bench.
+    /// An error of the bench.
     #[error(transparent)]
     Bench(#[from] Error),
-    /// A move of an axis.
+    /// The move of an axis cannot be planned.
     #[error("the move of axis {axis}: {source}")]
     Plan {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// Why there is none.
+        /// Why it cannot be planned.
         source: PlanError,
     },
-    /// The machine.
+    /// The machine cannot be simulated.
     #[error(transparent)]
     Plant(#[from] AxisPlantError),
-    /// The hardware.
+    /// The stage cannot be made.
     #[error(transparent)]
     Stage(#[from] StageError),
-    /// The hardware, from the machine file.
+    /// The stage cannot be made from the machine file.
     #[error(transparent)]
     MachineStage(#[from] MachineStageError),
-    /// A contour.
+    /// An error of a contour.
     #[error("the contour: {0}")]
     Contour(Box<ContourError>),
-    /// The tap tables of the same machine with, or without, `[stage]`.
+    /// The tap tables of the machine with, or without, `[stage]` cannot be designed.
     #[error("the axes with and without equal delays: {0}")]
     Design(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// The comparison of model and RTL over a move.
+/// Comparison of model and RTL over a move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// Clocks that were compared, reset included.
+    /// Number of clocks compared, including the reset.
     pub clocks: u64,
-    /// Whether they reach to standstill; a very long move is compared at its beginning.
+    /// Whether they reach to standstill; only the beginning of a very long move is compared.
     pub whole: bool,
-    /// Outputs that differed, clock by clock.
+    /// Number of differing outputs, over all clocks.
     pub mismatches: u64,
     /// The first.
     pub first: Option<Mismatch>,
@@ -90,35 +91,35 @@ pub struct Compared {
     pub trouble: Option<Trouble>,
 }
 
-/// A stage and the machine that it is for.
+/// A stage with the machine for which it was made.
 #[derive(Debug, Clone)]
 pub struct StageRun<'a> {
     machine: &'a Machine,
     config: StageConfig,
     component: Component,
     seed: u64,
-    /// Of each axis.
+    /// The move of each axis.
     moves: Vec<AxisMove>,
-    /// Of the axes whose modes move.
+    /// Table families of the axes whose modes move.
     families: Vec<TableFamily>,
-    /// Of each axis, whether its move has its acceleration from tick to tick, because a smoother one would not exercise its shaper.
+    /// Whether, for each axis, the move has no jerk limit, because a smoother one would not exercise its shaper.
     harsh: Vec<bool>,
 }
 
 impl<'a> StageRun<'a> {
-    /// A stage with this configuration, of `machine`, whose axes make their default moves. `seed` gives the arbitrary contents of
-    /// memories.
+    /// A stage of `machine` with this configuration, whose axes make their default moves. `seed` determines the
+    /// arbitrary contents of memories.
     ///
     /// # Errors
-    /// [`StageRunError::Stage`] where the configuration is none.
+    /// [`StageRunError::Stage`] where the configuration is invalid.
     pub fn new(machine: &'a Machine, config: &StageConfig, seed: u64) -> Result<Self, StageRunError> {
         Self::with_moves(machine, config, seed, &[])
     }
 
-    /// The same with a move for each axis, in their order; an axis beyond their end makes its default move.
+    /// A stage with a move for each axis, in their order; further axes make their default move.
     ///
     /// # Errors
-    /// As [`StageRun::new`].
+    /// Those of [`StageRun::new`].
     pub fn with_moves(
         machine: &'a Machine,
         config: &StageConfig,
@@ -154,30 +155,31 @@ impl<'a> StageRun<'a> {
             families,
             harsh: vec![false; machine.axes.len()],
         };
-        // A machine of which nothing can be expected says so where it is moved.
+        // For a machine without expected figures the error is reported when it is moved.
         if let Ok(harsh) = expected::too_smooth(&run) {
             run.harsh.splice(..harsh.len(), harsh);
         }
         Ok(run)
     }
 
-    /// The same with a host that leaves every axis on the table of its ROM.
+    /// The run with a host that leaves every axis on the table of its ROM.
     #[must_use]
     pub fn with_one_table(mut self) -> Self {
         self.families.clear();
         self
     }
 
-    /// Whether the move of an axis has its whole acceleration from tick to tick: its limited jerk would excite its modes too little to
-    /// see what the shaper does.
+    /// Whether the move of an axis has no jerk limit: with one it would excite the modes too little to show what the
+    /// shaper does.
     pub fn is_harsh(&self, axis: usize) -> bool {
         self.harsh.get(axis).copied().unwrap_or(false)
     }
 
-    /// The same machine with delays that are equal for all axes, or with each shaper's own.
+    /// The machine with delays that are equal for all axes, or with each shaper's own.
     ///
     /// # Errors
-    /// [`StageRunError::Design`] where a table cannot hold the delay that is missing; [`StageRunError::MachineStage`].
+    /// [`StageRunError::Design`] where a table cannot hold the delay that it needs; [`StageRunError::MachineStage`]
+    /// where the stage cannot be made.
     pub fn with_delays(machine: &'a Machine, equal: bool, seed: u64) -> Result<Option<Self>, StageRunError> {
         let own = machine.stage.unwrap_or(StageSection {
             extra_delay_s: 0.0,
@@ -194,25 +196,25 @@ impl<'a> StageRun<'a> {
             .transpose()
     }
 
-    /// Moves model and `device` side by side, from reset to standstill: every output of every clock is compared.
+    /// Moves model and `device` side by side, from reset to standstill: every output is compared in every clock.
     ///
     /// # Errors
-    /// [`StageRunError`] where that cannot be run.
+    /// [`StageRunError`] where the run is not possible.
     pub fn side_by_side(&self, device: Box<dyn Device>) -> Result<Compared, StageRunError> {
         let mut host = self.host(1.0, Some(device), Shaping::Shaped)?;
         let (trouble, whole) = moves::compare(self, &mut host)?;
         Ok(compared(&host, trouble, whole))
     }
 
-    /// The move in the model alone, on a machine whose modes are at `frequency_factor` times their frequencies.
+    /// Makes the move in the model alone, on a machine whose modes are at `frequency_factor` times their frequencies.
     ///
     /// # Errors
-    /// [`StageRunError`] where that cannot be run.
+    /// [`StageRunError`] where the run is not possible.
     pub fn moved(&self, shaping: Shaping, frequency_factor: f64) -> Result<Moved, StageRunError> {
         moves::measure(self, self.host(frequency_factor, None, shaping)?, shaping)
     }
 
-    /// What the move should come to, by axis, from the machine file alone.
+    /// Expected figures of the move, by axis, from the machine file alone.
     ///
     /// # Errors
     /// [`StageRunError`] where the machine has no such move.
@@ -220,27 +222,28 @@ impl<'a> StageRun<'a> {
         expected::of_move(self, shaping, frequency_factor)
     }
 
-    /// The circle in the model alone.
+    /// Drives the circle in the model alone.
     ///
     /// # Errors
-    /// [`StageRunError`] where that cannot be run.
+    /// [`StageRunError`] where the run is not possible.
     pub fn circle(&self, circle: &Circle) -> Result<Circled, StageRunError> {
         circle::measure(self, self.host(1.0, None, Shaping::Shaped)?, circle)
     }
 
-    /// The contour in the model alone, from where both axes stand at reset.
+    /// Drives the contour in the model alone, from where both axes stand at reset.
     ///
     /// # Errors
-    /// [`StageRunError`] where that cannot be run.
+    /// [`StageRunError`] where the run is not possible.
     pub fn contour(&self, contour: &Contour) -> Result<Contoured, StageRunError> {
         let host = self.host(1.0, None, Shaping::Shaped)?;
         contour::measure(self, host, contour, &designed(self.machine)?)
     }
 
-    /// Drives model and `device` side by side along a contour, or the part of it that is compared in a minute or so.
+    /// Drives model and `device` side by side along a contour, or along a part of it that can be compared in about a
+    /// minute.
     ///
     /// # Errors
-    /// [`StageRunError`] where that cannot be run.
+    /// [`StageRunError`] where the run is not possible.
     pub fn contour_side_by_side(&self, device: Box<dyn Device>, contour: &Contour) -> Result<Compared, StageRunError> {
         let mut host = self.host(1.0, Some(device), Shaping::Shaped)?;
         let (trouble, whole) = contour::compare(self, &mut host, contour)?;

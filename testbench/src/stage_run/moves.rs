@@ -1,4 +1,4 @@
-//! The move that all axes make at once.
+//! The move that all axes make at the same time.
 
 use posicast_model::design::TableFamily;
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -10,47 +10,48 @@ use super::host::{Host, Trouble};
 use super::{Shaping, StageRun, StageRunError};
 use crate::stage_bench::AxisSample;
 
-/// Most clocks that model and RTL are compared in: a minute of Verilator.
+/// Largest number of clocks in which model and RTL are compared: a minute of Verilator.
 const COMPARED_CLOCKS: u64 = 24_000_000;
-/// Longest time in which a machine is watched after its shaped command has come to its end, s.
+/// Longest time for which a machine is simulated after the end of its shaped command, s.
 const LONGEST_SETTLE_S: f64 = 2.0;
-/// Ticks beyond the plan and the shapers after which a move is over.
+/// Number of ticks after plan and shapers after which a move counts as over.
 const SPARE_TICKS: u64 = 1000;
-/// Ticks at the end, in which nothing moves any more.
+/// Number of ticks at the end in which nothing moves any more.
 const STANDSTILL_TICKS: u64 = 20;
 /// Fraction bits of a command word and of an exact position.
 const WORD_FRACTION: u32 = 8;
 const EXACT_FRACTION: u32 = 32;
 
-/// A move and what came of it.
+/// Result of a move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
-    /// Of each axis; empty where the stage never moved.
+    /// Figures of each axis; empty if the stage never moved.
     pub axes: Vec<AxisFigures>,
-    /// Each tick from the start on, by axis: of motion, then of standstill.
+    /// Samples of each axis at every tick from the start on: of motion, then of standstill.
     pub samples: Vec<Vec<AxisSample>>,
-    /// Hand-overs from one tap table to another, of axes whose modes move with their position.
+    /// Number of handovers between tap tables, for axes whose modes move with their position.
     pub handovers: u64,
-    /// What the stage did not do.
+    /// Set if the stage did not do what it should.
     pub trouble: Option<Trouble>,
 }
 
 impl Moved {
-    /// The load of an axis about its place of rest, in m or rad, at each tick from when the shaped command has come to its end.
+    /// Vibration of an axis's load about its rest position, in m or rad, at each tick from the end of the shaped
+    /// command on.
     pub fn ringing(&self, axis: usize) -> Vec<f64> {
         let samples = self.samples.get(axis).map_or(&[][..], Vec::as_slice);
         figures::ringing(samples).0
     }
 }
 
-/// The segments of an axis, and how many ticks they last.
+/// Entries of an axis with their duration in ticks.
 struct Plan {
     entries: Vec<Entry>,
     ticks: u64,
 }
 
-/// The move of an axis from `start` (Q24.8 counts) on: its entries, and where it ends. A `harsh` one has its whole acceleration from
-/// tick to tick.
+/// Plans the move of an axis from `start` (Q24.8 counts) on: its entries, and its end. A `harsh` move has no jerk
+/// limit.
 pub(super) fn plan_axis(
     machine: &Machine,
     axis: &AxisSection,
@@ -63,7 +64,7 @@ pub(super) fn plan_axis(
         limits.jerk = limits.acceleration;
     }
     let words = of.distance * axis.loop_counts_per_unit() * f64::from(1u32 << WORD_FRACTION);
-    // A distance beyond the words ends at the last word; counting so finely, the axis is refused as a plant.
+    // A distance beyond the words ends at the last word; with such fine counts the axis is refused as a plant.
     let end = start.saturating_add(words.round() as i32);
     let exact = i64::from(start) << (EXACT_FRACTION - WORD_FRACTION);
     let entries = plan_move(exact, end, &limits).map_err(|source| StageRunError::Plan {
@@ -85,7 +86,7 @@ fn plan(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<Vec<Plan>, StageRunEr
     Ok(plans)
 }
 
-/// Switches on, loads the moves and starts them; the ticks that they last.
+/// Switches on, loads the moves and starts them; returns their duration in ticks.
 fn begin(run: &StageRun<'_>, host: &mut Host<'_>, shaping: Shaping) -> Result<Result<u64, Trouble>, StageRunError> {
     if let Some(trouble) = host.switch_on()? {
         return Ok(Err(trouble));
@@ -107,7 +108,7 @@ fn begin(run: &StageRun<'_>, host: &mut Host<'_>, shaping: Shaping) -> Result<Re
     })
 }
 
-/// Ticks that the longest shaper goes on for.
+/// Duration of the longest shaper in ticks.
 fn shaper_ticks(run: &StageRun<'_>) -> u64 {
     let own = run
         .config
@@ -118,7 +119,7 @@ fn shaper_ticks(run: &StageRun<'_>) -> u64 {
     own.chain(families).max().unwrap_or(0).into()
 }
 
-/// Ticks in which a machine is watched after its commands have come to their end: the shapers' tail, and settling.
+/// Ticks for which a machine is simulated after the end of its commands: the shapers' tail, and settling.
 pub(super) fn settle_ticks(run: &StageRun<'_>) -> u64 {
     let clock = &run.machine.clock;
     let modes = run.machine.axes.iter().flat_map(|axis| &axis.modes);
@@ -127,7 +128,7 @@ pub(super) fn settle_ticks(run: &StageRun<'_>) -> u64 {
     (settle_s * clock.sample_hz).ceil() as u64 + STANDSTILL_TICKS
 }
 
-/// The move with a device beside the model; whether it came to its end within the clocks that are compared.
+/// Makes the move with a device beside the model; returns whether it ended within the clocks that are compared.
 pub(super) fn compare(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<(Option<Trouble>, bool), StageRunError> {
     let ticks = match begin(run, host, Shaping::Shaped)? {
         Ok(ticks) => ticks,
@@ -147,7 +148,7 @@ pub(super) fn compare(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<(Option
     Ok((trouble, whole))
 }
 
-/// The move in the model, watched until the machine has come to rest.
+/// Makes the move in the model, until the machine has come to rest.
 pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) -> Result<Moved, StageRunError> {
     let mut trouble = match begin(run, &mut host, shaping)? {
         Ok(ticks) => host.arrive(ticks + SPARE_TICKS)?,

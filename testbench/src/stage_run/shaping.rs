@@ -1,10 +1,10 @@
-//! With the machine's shapers, and without.
+//! Selects whether a run uses the machine's shapers.
 
-/// What the shapers do.
+/// The shapers in use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shaping {
     /// The machine's tap tables.
     Shaped,
-    /// A table of one tap, loaded over the bus: the command goes through as it is.
+    /// A table of one tap, loaded over the bus: the command passes unchanged.
     Unshaped,
 }

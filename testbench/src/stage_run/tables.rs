@@ -1,5 +1,5 @@
-//! The tap tables of an axis whose modes move with its own position: loaded and handed over by where the command is, as the driver's
-//! `posicast_select_table` does it.
+//! The tap tables of an axis whose modes move with its own position: they are loaded and handed over by the position
+//! of the command, as the driver's `posicast_select_table` does.
 
 use posicast_model::design::TableFamily;
 use posicast_model::machine_file::AxisSection;
@@ -9,14 +9,14 @@ use posicast_model::taps::COEFFICIENT_BITS;
 use crate::Error;
 use crate::stage_bench::StageBench;
 
-/// Place of the bank in `TAP_ADDRESS`.
+/// Position of the bank in `TAP_ADDRESS`.
 const BANK_SHIFT: u32 = 8;
-/// Place of the way in `SWAP`.
+/// Position of the way of a swap in `SWAP`.
 const HOW_SHIFT: u32 = 4;
-/// Words of a command per count: it has 8 fraction bits.
+/// Words of a command per count, which has 8 fraction bits.
 const WORDS_PER_COUNT: f64 = 256.0;
 
-/// The tables of an axis, and which is in use.
+/// The tables of an axis, with the one in use.
 #[derive(Debug, Clone)]
 pub(super) struct AxisTables {
     axis: String,
@@ -28,7 +28,7 @@ pub(super) struct AxisTables {
 }
 
 impl AxisTables {
-    /// After a reset; nothing where the modes do not move with the position.
+    /// The state after a reset; `None` if the modes do not move with the position.
     pub(super) fn new(axis: &AxisSection, family: &TableFamily) -> Option<Self> {
         let of_file = axis.family.as_ref()?;
         of_file.is_position().then(|| Self {
@@ -40,7 +40,8 @@ impl AxisTables {
         })
     }
 
-    /// Hands over to the table for where the command is, unless an earlier hand-over still lasts. Says whether it did.
+    /// Hands over to the table for the command's position, unless an earlier handover is still active. Returns
+    /// whether it did.
     pub(super) fn follow(&mut self, bench: &mut StageBench) -> Result<bool, Error> {
         let position = bench.read(&format!("{}_command_position", self.axis))? as i32;
         let chosen = self.family.choose(self.now, f64::from(position) / self.words_per_unit);

@@ -1,6 +1,6 @@
-//! Inputs for the supervisor of an axis, seeded: a host that enables, starts, stops and clears; segments that follow what
-//! the supervisor tells them, or do what they like; lines with glitches around the filter's length; everything that can go
-//! wrong, rarely and often; registers that change in any clock.
+//! Seeded random inputs for the supervisor of an axis: a host that enables, starts, stops and clears; segments that
+//! follow what the supervisor tells them, or ignore it; lines with glitches of about the filter's length; every
+//! fault, rarely and often; registers that change in any clock.
 
 use std::ops::Range;
 
@@ -12,31 +12,31 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::Stimuli;
 use super::table::pick;
 
-/// Clocks between changes of the slow inputs.
+/// Number of clocks between changes of the slow inputs.
 const MOOD_CLOCKS: u64 = 1_500;
 
-/// Clocks in which nothing happens but ticks, and the watchdog comes to its end after [`CALM_TICKS`].
+/// Range of clocks in which nothing happens but ticks, so that the watchdog expires after [`CALM_TICKS`].
 const CALM: Range<u64> = 300_000..350_000;
 const CALM_TICKS: u16 = 1 << 12;
 
-/// What holds for a while.
+/// Settings that hold for a while.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mood {
-    /// One tick in about so many clocks.
+    /// One tick comes in about this many clocks.
     tick_pace: u32,
-    /// One request of the host in so many clocks.
+    /// The host makes one request in this many clocks.
     request_pace: u32,
-    /// One fault in so many clocks.
+    /// One fault comes in this many clocks.
     fault_pace: u32,
-    /// One glitch of a line in so many clocks.
+    /// A line has one glitch in this many clocks.
     glitch_pace: u32,
-    /// One kick of the watchdog in so many clocks.
+    /// The watchdog is kicked once in this many clocks.
     kick_pace: u32,
-    /// Segments that do what they like.
+    /// Whether the segments ignore the supervisor.
     lawless: bool,
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct AxisRandom {
     rng: Xoshiro256PlusPlus,
@@ -44,14 +44,14 @@ pub struct AxisRandom {
     mood: Mood,
     inputs: Inputs,
     until_tick: u32,
-    /// Clocks left of a glitch, per line.
+    /// Number of clocks left of a glitch, per line.
     glitches: [u32; 5],
-    /// Ticks that segments still play or slow down.
+    /// Number of ticks for which the segments still play or slow down.
     busy_ticks: u32,
 }
 
 impl AxisRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -68,10 +68,10 @@ impl AxisRandom {
         self.rng.random_range(0..clocks) == 0
     }
 
-    /// An axis that stays on, with a host that no longer kicks.
+    /// Returns the mood of an axis that stays on while the host no longer kicks the watchdog.
     fn calm(&mut self, state: SupervisorState) {
-        // Not a beat in which a bit that turns over in every clock would never show.
-        // Nor one that begins too soon after a tick before.
+        // The ticks must not come at a beat that hides a bit that toggles in every clock, nor too soon after the
+        // previous tick.
         let least = u64::from(LEAST_TICK_CLOCKS);
         let ticks = self.clock.is_multiple_of(least) && self.clock >= CALM.start + least && !self.one_in(50);
         let inputs = &self.inputs;
@@ -103,7 +103,7 @@ impl AxisRandom {
         self.registers();
     }
 
-    /// Registers that a host writes, and numbers of other blocks.
+    /// Changes the registers that a host writes and the numbers of other blocks.
     fn registers(&mut self) {
         let rng = &mut self.rng;
         let any = rng.next_u64();
@@ -146,7 +146,7 @@ impl AxisRandom {
         );
     }
 
-    /// Numbers at and around their limits.
+    /// Draws numbers at and around their limits.
     fn numbers(&mut self) {
         let rng = &mut self.rng;
         let inputs = &mut self.inputs;
@@ -202,7 +202,7 @@ impl AxisRandom {
         let toggles = self.one_in(pace * 4);
         let inputs = &mut self.inputs;
         (inputs.stop, inputs.clear_faults) = (stop, clear);
-        // Without it an axis would soon stand in OFF for ever.
+        // Without this an axis would soon stay in OFF for ever.
         inputs.enable = if toggles { !inputs.enable } else { inputs.enable };
         let (back, start) = (self.one_in(20), self.one_in(10));
         if back {
@@ -225,7 +225,7 @@ impl AxisRandom {
         let (asks, long) = (self.one_in(300), self.one_in(10));
         let any = self.rng.next_u32();
         let inputs = &mut self.inputs;
-        // Flags of other blocks stay until they are cleared.
+        // The flags of other blocks stay until they are cleared.
         for (flag, is) in [
             &mut inputs.segments_underrun,
             &mut inputs.segments_overflow,
@@ -257,7 +257,7 @@ impl AxisRandom {
         inputs.group_emergency_stop = held[13];
     }
 
-    /// Segments as the supervisor sees them.
+    /// Imitates the segments as the supervisor sees them.
     fn segments(&mut self, seen: &Outputs) {
         let any = self.rng.random_range(0..4);
         let busy = self.rng.random_range(1..12);
@@ -310,7 +310,7 @@ impl Stimuli for AxisRandom {
             self.until_tick = self.mood.tick_pace + self.rng.random_range(0..2);
         }
         self.inputs.rst = self.clock < 2 || self.one_in(20_000);
-        // A host commits what is to be played.
+        // A host commits new segments.
         if self.one_in(40) {
             self.inputs.segments_empty = false;
         }
@@ -321,7 +321,7 @@ impl Stimuli for AxisRandom {
         if self.one_in(6) {
             self.numbers();
         }
-        // A cause that is over soon, so that a run is not all FAULT.
+        // A cause that is over soon keeps a run from spending all its time in FAULT.
         if seen.causes & !HARMLESS != 0 {
             (self.inputs.error, self.inputs.deviation) = (0, 0);
             self.inputs.position %= STAND_COUNTS;

@@ -1,4 +1,4 @@
-//! What a run of the supervisor reached, and what it must never do.
+//! What a run of the supervisor reached, and the rules that it must never violate.
 
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::axis::{
@@ -6,7 +6,7 @@ use posicast_model::rtl::axis::{
     TRANSITIONS, ports, switching_off,
 };
 
-/// Inputs and outputs of a clock, typed; none where `state` is no state.
+/// Returns the inputs and outputs of a clock as structures; `None` if `state` is not a valid state.
 fn typed(inputs: &[u64], outputs: &[u64]) -> Option<(Inputs, Outputs)> {
     let inputs = <&[u64; INPUT_PORTS]>::try_from(inputs).ok()?;
     let outputs = <&[u64; OUTPUT_PORTS]>::try_from(outputs).ok()?;
@@ -14,7 +14,7 @@ fn typed(inputs: &[u64], outputs: &[u64]) -> Option<(Inputs, Outputs)> {
     (shown.to_raw() == *outputs).then(|| (Inputs::from_raw(inputs), shown))
 }
 
-/// What happens rarely, beside states, transitions and causes.
+/// Rare events that are counted besides states, transitions and causes.
 const SPECIAL: [&str; 6] = [
     "host stop",
     "enable low",
@@ -24,21 +24,21 @@ const SPECIAL: [&str; 6] = [
     "outputs off after the brake",
 ];
 
-/// What a run reached.
+/// Counts of what a run reached.
 #[derive(Debug, Clone, Default)]
 pub struct AxisCoverage {
-    /// Clocks with a one, per output port of one bit.
+    /// Number of clocks in which each one-bit output port was 1.
     levels: [u64; OUTPUT_PORTS],
-    /// From a state to another; on the diagonal, clocks in it.
+    /// Number of transitions from a state to another; on the diagonal, the number of clocks in the state.
     changes: [[u64; 6]; 6],
-    /// Causes that became active, and that were forgotten.
+    /// Number of times that each cause became active, and was cleared.
     causes: [[u64; 2]; CAUSE_BITS as usize],
     special: [u64; SPECIAL.len()],
     before: Option<(Inputs, Outputs)>,
 }
 
 impl AxisCoverage {
-    /// One clock.
+    /// Adds a clock.
     pub fn observe(&mut self, inputs: &[u64], outputs: &[u64]) {
         let Some((now, shown)) = typed(inputs, outputs) else {
             return;
@@ -72,7 +72,7 @@ impl AxisCoverage {
         self.special[special] += 1;
     }
 
-    /// How often, by name.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> Vec<(String, u64)> {
         let ports = ports();
         let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
@@ -105,26 +105,26 @@ impl AxisCoverage {
     }
 }
 
-/// What must hold in every clock, whatever the inputs are: pins, brake, transitions.
+/// Checks what must hold in every clock, whatever the inputs are, of pins, brake and transitions.
 #[derive(Debug, Clone, Default)]
 pub struct AxisSafety {
     clock: u64,
     before: Option<(Inputs, Outputs)>,
-    /// `off_causes` of the clock before that.
+    /// `off_causes` one clock earlier still.
     off_causes: u16,
-    /// Ticks with the outputs on and the brake applied, and how many are allowed.
+    /// Number of ticks with the outputs on and the brake applied, and the number allowed.
     braked: Option<(u64, u64)>,
-    /// Clocks since the emergency stop's line went low, and the longest filter meanwhile.
+    /// Number of clocks since the emergency stop's line went low, and the longest filter during that time.
     low: (u64, u64),
     filter_before: u64,
     violations: Vec<String>,
 }
 
 impl AxisSafety {
-    /// One clock: inputs, and the outputs before its edge.
+    /// Checks a clock, given its inputs and the outputs before its edge.
     pub fn observe(&mut self, inputs: &[u64], outputs: &[u64]) {
         let Some((inputs, shown)) = typed(inputs, outputs) else {
-            self.violated("a state that there is not");
+            self.violated("an invalid state");
             return;
         };
         self.pins(&shown);
@@ -138,7 +138,7 @@ impl AxisSafety {
         self.clock += 1;
     }
 
-    /// What was violated, the first few: clock and rule.
+    /// Returns the first few violations, each with its clock and rule.
     pub fn violations(&self) -> &[String] {
         &self.violations
     }
@@ -186,7 +186,7 @@ impl AxisSafety {
             self.braked = None;
             return;
         }
-        // The timer is loaded in the first clock.
+        // The timer is loaded in the first clock of the state.
         let at_entry = u64::from(inputs.brake_apply_ticks);
         let (ticks, allowed) = self.braked.unwrap_or((0, at_entry + 1));
         if ticks >= allowed {
@@ -209,13 +209,13 @@ impl AxisSafety {
         self.filter_before = filter;
     }
 
-    /// `inputs` and `before` are those of the clock before `shown`.
+    /// Checks a transition. `inputs` and `before` are those of the clock before `shown`.
     fn transition(&mut self, inputs: &Inputs, before: &Outputs, shown: &Outputs) {
         let (from, to) = (before.state, shown.state);
         if from != to && !TRANSITIONS.iter().any(|row| (row.from, row.to) == (from, to)) {
             self.violated(&format!("{from:?} to {to:?} is not in the table"));
         }
-        // Causes that stand switch off by what `off_causes` was when they were registered.
+        // A cause that is still active switches off by the value that `off_causes` had when it was registered.
         let stand = before.causes & shown.causes;
         let lines = shown.causes & !stand & AT_ONCE;
         let cut = switching_off(lines, inputs.off_causes) != 0

@@ -1,5 +1,5 @@
-//! Inputs for the cascade, seeded: strobes as fast as a pass allows, one clock earlier, in every clock, after long
-//! pauses; commands that swing from end to end, ramp, rest or are noise; starts, clears and resets in any clock.
+//! Seeded random inputs for the cascade: strobes as fast as a pass allows, one clock earlier, in every clock, after
+//! long pauses; commands that swing from end to end, ramp, rest or are noise; starts, clears and resets in any clock.
 
 use posicast_model::rtl::cascade::{CascadeConfig, pass_clocks};
 use rand::{Rng, RngExt, SeedableRng};
@@ -9,7 +9,7 @@ use super::Stimuli;
 use super::table::pick;
 use crate::lockstep::Clock;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct CascadeRandom {
     rng: Xoshiro256PlusPlus,
@@ -17,13 +17,13 @@ pub struct CascadeRandom {
     pass_clocks: i64,
     word_max: i64,
     word: i64,
-    /// Distance of the strobes, and how many more of them at that distance.
+    /// Distance of the strobes in clocks, and the number of strobes left at that distance.
     pace: (i64, u32),
     until_strobe: i64,
 }
 
 impl CascadeRandom {
-    /// Equal seeds give equal inputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(config: &CascadeConfig, seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -73,7 +73,7 @@ impl Stimuli for CascadeRandom {
         *rst = u64::from(self.clock < 2 || self.rng.random_range(0..5000) == 0);
         *strobe = u64::from(strobes);
         *start = u64::from(self.rng.random_range(0..600) == 0);
-        // Noise where no strobe is, so that a block that looks at it is found out.
+        // Between strobes the input is noise, so that a block that reads it then is found.
         *x = self.rng.next_u64();
         if strobes {
             self.advance_word();
@@ -84,24 +84,24 @@ impl Stimuli for CascadeRandom {
     }
 }
 
-/// How often things happened in a lock step of the cascade.
+/// Counts of the events in a lockstep run of the cascade.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CascadeCoverage {
-    /// Clocks with `rst`.
+    /// Number of clocks with `rst`.
     pub resets: u64,
-    /// Clocks with `start` and no `strobe`.
+    /// Number of clocks with `start` and without `strobe`.
     pub starts: u64,
-    /// Clocks with `start` and `strobe`.
+    /// Number of clocks with `start` and `strobe`.
     pub starts_with_sample: u64,
-    /// Starts while `busy`.
+    /// Number of starts while `busy`.
     pub cut_off: u64,
-    /// Clocks with `valid`.
+    /// Number of clocks with `valid`.
     pub valid: u64,
-    /// Strobes while `busy`, without `start`.
+    /// Number of strobes while `busy`, without `start`.
     pub overrun: u64,
-    /// `overrun` set and cleared in one clock: set wins.
+    /// Number of clocks in which `overrun` was set and cleared at once; setting has priority.
     pub set_over_clear: u64,
-    /// Clocks with `valid` and `y` at an end of the word.
+    /// Number of clocks with `valid` in which `y` was at an end of the word.
     pub ends: u64,
 }
 
@@ -123,7 +123,7 @@ impl CascadeCoverage {
         self.ends += valid & u64::from(y == most || y == most + 1);
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); 8] {
         [
             ("resets", self.resets),

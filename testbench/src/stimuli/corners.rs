@@ -1,17 +1,17 @@
-//! Scripts for the corners of one shaper's sizes: values one beside the other, the longest delay, sums that miss one by a
-//! power of two. Random stimuli meet them too rarely to be relied on.
+//! Scripts for the corner cases of one shaper's sizes: adjacent values, the longest delay, sums that miss one by a
+//! power of two. Random stimuli meet them too rarely.
 
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
 
 use super::{Action, AxisLayout};
 use Action::{Clear, Reset, Start, StartAlone, Strobe, StrobeExact, Swap, Tap, TapExact, Wait, WaitIdle};
 
-/// Rings up to this size are filled: a larger one takes more clocks than a corner is worth.
+/// Rings of up to this size are filled: filling a larger one takes more clocks than the case is worth.
 const FILLED_RING_BITS: u32 = 9;
-/// Clocks over which a second event is moved across a pass of one tap.
+/// Number of clocks over which a second event is moved across a pass of one tap.
 const PASS_SPAN: u32 = 18;
 
-/// The corner cases of a shaper with the sizes of `axis`, each with its name.
+/// Returns the corner cases of a shaper with the sizes of `axis`, each with its name.
 pub fn corners(axis: &AxisLayout) -> Vec<(&'static str, Vec<Action>)> {
     let mut cases = vec![
         ("rounding", rounding(axis)),
@@ -26,7 +26,7 @@ pub fn corners(axis: &AxisLayout) -> Vec<(&'static str, Vec<Action>)> {
     cases
 }
 
-/// Loads `coefficients` into a bank, at delays 0 to 3 in turn: any ring has them.
+/// Loads `coefficients` into a bank, at delays 0 to 3 in turn, which any ring has.
 fn load(bank: u64, coefficients: &[i32]) -> Vec<Action> {
     let tap = |(index, coefficient): (u64, &i32)| TapExact(bank, index, *coefficient, index as i64 % 4);
     (0..).zip(coefficients).map(tap).collect()
@@ -36,7 +36,7 @@ fn started() -> Vec<Action> {
     vec![Reset(2), Start(0), WaitIdle]
 }
 
-/// Sums just below, at and above one half of an LSB, of both signs.
+/// Produces sums just below, at and above one half of an LSB, of both signs.
 fn rounding(axis: &AxisLayout) -> Vec<Action> {
     let half = 1 << (axis.coefficient_fraction - 1);
     let samples = [1, 1, 0, 0, -1, -1, 0, 0]
@@ -52,7 +52,7 @@ fn rounding(axis: &AxisLayout) -> Vec<Action> {
     script
 }
 
-/// The extreme coefficients times the extreme words.
+/// Multiplies the extreme coefficients by the extreme words.
 fn largest_products(axis: &AxisLayout) -> Vec<Action> {
     let one = 1 << axis.coefficient_fraction;
     let samples = [-256, -256, 256, 256, -256, 0].map(|x| [Strobe(x), WaitIdle]).concat();
@@ -68,7 +68,7 @@ fn largest_products(axis: &AxisLayout) -> Vec<Action> {
     script
 }
 
-/// Tables whose sum is one plus or minus a power of two: none may become active.
+/// Loads tables whose sum is one plus or minus a power of two; none of them may become active.
 fn sums_beside_one(axis: &AxisLayout) -> Vec<Action> {
     let one = 1i64 << axis.coefficient_fraction;
     let mut script = started();
@@ -90,11 +90,11 @@ fn sums_beside_one(axis: &AxisLayout) -> Vec<Action> {
     script
 }
 
-/// `sum` as coefficients that 18 bits hold, as few as there can be.
+/// Splits `sum` into as few coefficients of 18 bits as possible.
 fn split(sum: i64) -> Vec<i32> {
     let mut rest = sum;
     let mut coefficients = Vec::new();
-    // More than any table holds is enough to see that it does not fit.
+    // More coefficients than any table holds suffice to see that the table does not fit.
     while rest != 0 && coefficients.len() <= 1 << 9 {
         let part = rest.clamp(i64::from(COEFFICIENT_MIN), i64::from(COEFFICIENT_MAX));
         coefficients.push(part as i32);
@@ -103,7 +103,7 @@ fn split(sum: i64) -> Vec<i32> {
     coefficients
 }
 
-/// After a reset a loaded bank can be neither continued nor chosen.
+/// Checks that a loaded bank can be neither continued nor chosen after a reset.
 fn reset_empties_both_banks() -> Vec<Action> {
     let mut script = Vec::new();
     for bank in [1, 2] {
@@ -119,7 +119,7 @@ fn reset_empties_both_banks() -> Vec<Action> {
     script
 }
 
-/// A start, and a strobe, in every clock of a pass of one tap and in the clocks round its end.
+/// Gives a start, and a strobe, in every clock of a pass of one tap and in the clocks around its end.
 fn across_a_pass() -> Vec<Action> {
     let mut script = started();
     script.extend([Tap(1, 0, 256, 0), Swap(1), Strobe(3), WaitIdle]);
@@ -131,7 +131,7 @@ fn across_a_pass() -> Vec<Action> {
     script
 }
 
-/// The longest legal delay, from an empty ring to one that has gone round.
+/// Plays the longest valid delay, from an empty ring to one that has wrapped.
 fn longest_delay(axis: &AxisLayout) -> Vec<Action> {
     let mut script = started();
     script.extend([Tap(1, 0, 128, 0), Tap(1, 1, 128, -2), Swap(1)]);

@@ -5,38 +5,39 @@ use std::fmt;
 use super::Layout;
 use crate::lockstep::Clock;
 
-/// How often things happened, over all shapers of a [`Layout`].
+/// Counts of the events, over all shapers of a [`Layout`].
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// Clocks.
+    /// Number of clocks.
     pub clocks: u64,
-    /// Clocks with `rst`.
+    /// Number of clocks with `rst`.
     pub resets: u64,
-    /// Clocks with `strobe`.
+    /// Number of clocks with `strobe`.
     pub strobes: u64,
-    /// Strobes with `start`.
+    /// Number of strobes with `start`.
     pub starts: u64,
-    /// Taps written.
+    /// Number of taps written.
     pub tap_writes: u64,
-    /// Clocks with `valid`.
+    /// Number of clocks with `valid`.
     pub valid: u64,
-    /// Times that `saturated` rose.
+    /// Number of times that `saturated` rose.
     pub saturated: u64,
-    /// Times that `overrun` rose.
+    /// Number of times that `overrun` rose.
     pub overrun: u64,
-    /// Times that `refused` rose.
+    /// Number of times that `refused` rose.
     pub refused: u64,
-    /// Times that a host's read found a tap.
+    /// Number of times that a host's read returned a tap.
     pub taps_read_back: u64,
-    /// Times that a swap became pending.
+    /// Number of times that a swap became pending.
     pub swaps_requested: u64,
-    /// Times that `bank` became another bank than 0, or changed from one to the other.
+    /// Number of times that `bank` changed to a bank other than 0.
     pub swaps: u64,
-    /// Times that a swap took effect and was not over: a handover began. Only a shaper for motion has them.
+    /// Number of times that a swap took effect without being complete, so that a handover began. Only a motion shaper
+    /// has handovers.
     pub handovers: u64,
-    /// Times that one was over: by itself, by a start, by a reset.
+    /// Number of times that a handover ended: by itself, by a start or by a reset.
     pub handovers_over: u64,
-    /// Times that a sticky flag fell.
+    /// Number of times that a sticky flag was cleared.
     pub flags_cleared: u64,
     seen: Vec<[u64; 6]>,
 }
@@ -76,7 +77,7 @@ impl Coverage {
         }
     }
 
-    /// What was never reached: the names of the counters that are zero.
+    /// Returns the names of the counters that are zero.
     pub fn missing(&self) -> Vec<&'static str> {
         let all = self.counts();
         all.iter()
@@ -85,7 +86,7 @@ impl Coverage {
             .collect()
     }
 
-    /// What happened how often, handovers left out: not every shaper has them.
+    /// Returns each event's name and count, without handovers, which not every shaper has.
     pub fn counts(&self) -> [(&'static str, u64); 12] {
         [
             ("resets", self.resets),

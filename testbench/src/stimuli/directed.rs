@@ -1,43 +1,45 @@
-//! Scripts: the cases that one thinks of, by name.
+//! Scripts of directed test cases, by name.
 
 use super::{AxisLayout, Layout, Stimuli};
 
 /// One step of a script. All axes do the same, each at its own full scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
-    /// `rst` for so many clocks.
+    /// Asserts `rst` for this many clocks.
     Reset(u32),
-    /// `strobe` for one clock with `x` = so many 256ths of full scale; 256 is the largest word, −256 the smallest.
+    /// Asserts `strobe` for one clock with `x` in 256ths of full scale: 256 is the largest word, −256 the smallest.
     Strobe(i32),
-    /// `strobe` for one clock with this very word.
+    /// Asserts `strobe` for one clock with this word.
     StrobeExact(i64),
-    /// The same as [`Action::Strobe`] together with `start`.
+    /// Like [`Action::Strobe`], together with `start`.
     Start(i32),
-    /// `start` without `strobe`.
+    /// Asserts `start` without `strobe`.
     StartAlone,
-    /// So many clocks of nothing.
+    /// Waits for this many clocks.
     Wait(u32),
-    /// Until no axis is busy, at least one clock and at most 4096.
+    /// Waits until no axis is busy, for 1 to 4096 clocks.
     WaitIdle,
-    /// Writes a tap: bank, index, coefficient in 256ths of one, delay. Negative delays count from the largest, −1.
+    /// Writes a tap: bank, index, coefficient in 256ths of one, delay. Negative delays count from the largest, which
+    /// is −1.
     Tap(u64, u64, i32, i64),
-    /// Writes a tap with this very coefficient: bank, index, coefficient, delay as before.
+    /// Writes a tap: bank, index, raw coefficient, delay as for [`Action::Tap`].
     TapExact(u64, u64, i32, i64),
-    /// `tap_read` for one clock, with the place of a tap: bank, index. A second one leaves the place until it is read.
+    /// Asserts `tap_read` for one clock with the bank and index of a tap. A second read is ignored until the first is
+    /// done.
     Read(u64, u64),
-    /// Asks for a bank.
+    /// Requests this bank.
     Swap(u64),
-    /// `swap` and `strobe` in one clock, with that `x`.
+    /// Asserts `swap` for this bank and `strobe` with this `x` in the same clock.
     SwapAndStrobe(u64, i32),
-    /// Asks for a bank with a `swap_how`; a shaper that has none swaps at once.
+    /// Requests a bank with a `swap_how`; a shaper without that port swaps at once.
     SwapHow(u64, u64),
-    /// `clear_flags` for one clock.
+    /// Asserts `clear_flags` for one clock.
     Clear,
-    /// `clear_flags` together with a strobe of that `x`.
+    /// Asserts `clear_flags` together with a strobe of this `x`.
     ClearAndStrobe(i32),
 }
 
-/// The directed cases, each with its name.
+/// Returns the directed cases, each with its name.
 pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
     use Action::{
         Clear, ClearAndStrobe, Read, Reset, Start, StartAlone, Strobe, Swap, SwapAndStrobe, Tap, Wait, WaitIdle,
@@ -45,7 +47,7 @@ pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
     let samples = |values: &[i32]| values.iter().flat_map(|x| [Strobe(*x), WaitIdle]).collect::<Vec<_>>();
     let held = |x: i32, count: usize| samples(&vec![x; count]);
     let started = |x: i32| vec![Reset(2), Start(x), WaitIdle];
-    // 1.5 − 0.5 swings beyond full scale; loaded into bank 1, half and half into bank 2.
+    // 1.5 − 0.5 swings beyond full scale. It is loaded into bank 1; one half and one half go into bank 2.
     let load = |bank: u64, taps: [(i32, i64); 2]| {
         let tap = |(index, (coefficient, delay)): (u64, (i32, i64))| Tap(bank, index, coefficient, delay);
         (0..).zip(taps).map(tap).collect::<Vec<_>>()
@@ -192,7 +194,8 @@ pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
                 vec![Swap(1)],
                 held(3, 2),
                 halves,
-                // Of each bank, the one in use too; then where there is no tap, and in a pass, at which end the first of bank 0.
+                // Each bank is read, including the active one; then a place without a tap, and, during a pass, the
+                // first tap of bank 0.
                 [(1, 1), (2, 0), (2, 1), (0, 0), (2, 2), (3, 0)]
                     .map(|(bank, index)| [Read(bank, index), Read(bank, index), Wait(3)])
                     .concat(),
@@ -204,7 +207,7 @@ pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
     ]
 }
 
-/// The directed cases of a shaper for motion, beside those of [`cases`].
+/// Returns the directed cases of a motion shaper that come in addition to those of [`cases`].
 pub fn motion_cases() -> Vec<(&'static str, Vec<Action>)> {
     use Action::{Clear, Reset, Start, StartAlone, Strobe, Swap, SwapHow, Tap, Wait, WaitIdle};
     let ramp = |from: i32, step: i32, count: i32| {
@@ -293,21 +296,21 @@ pub fn motion_cases() -> Vec<(&'static str, Vec<Action>)> {
     ]
 }
 
-/// Longest wait for an axis that stays busy.
+/// Longest wait in clocks for an axis that stays busy.
 const IDLE_LIMIT_CLOCKS: u32 = 4096;
 
-/// Plays a script once; then nothing happens any more.
+/// Plays a script once and then changes nothing.
 #[derive(Debug, Clone)]
 pub struct Directed {
     layout: Layout,
     script: Vec<Action>,
     at: usize,
-    /// Clocks already spent in the current action.
+    /// Number of clocks already spent in the current action.
     spent: u32,
 }
 
 impl Directed {
-    /// Plays `script` on all axes of the layout.
+    /// Creates a player of `script` on all axes of the layout.
     pub fn new(layout: &Layout, script: Vec<Action>) -> Self {
         Self {
             layout: layout.clone(),
@@ -317,7 +320,7 @@ impl Directed {
         }
     }
 
-    /// More clocks than the script needs with passes of at most `pass_clocks`.
+    /// Returns an upper bound of the clocks that the script needs if a pass takes at most `pass_clocks`.
     pub fn clocks(&self, pass_clocks: u32) -> u64 {
         let clocks = |action: &Action| match action {
             Action::Reset(clocks) | Action::Wait(clocks) => *clocks,
@@ -327,7 +330,7 @@ impl Directed {
         self.script.iter().map(|action| u64::from(clocks(action))).sum()
     }
 
-    /// Whether the current action is over, given what the outputs showed.
+    /// Returns whether the current action is over, given the outputs of the previous clock.
     fn over(&self, action: Action, seen: &[u64]) -> bool {
         match action {
             Action::Reset(clocks) | Action::Wait(clocks) => self.spent >= clocks,
@@ -371,7 +374,7 @@ impl Stimuli for Directed {
     }
 }
 
-/// The words of all channels: a different part of `x` 256ths of full scale each.
+/// Sets the words of all channels, each to a different part of `x` 256ths of full scale.
 fn command(axis: &AxisLayout, x: i32, inputs: &mut [u64]) {
     let word = |x: i32| {
         let word = i128::from(axis.largest_word()) * i128::from(x) / 256;

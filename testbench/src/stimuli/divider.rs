@@ -1,5 +1,5 @@
-//! Inputs for the divider, seeded: operands of every size, at the ends, and such that the quotient just fits or just does
-//! not; starts at the pace of a division and in any clock; clears and resets.
+//! Seeded random inputs for the divider: operands of every size, at the ends, and such that the quotient just fits or
+//! just does not; starts at the pace of a division and in any clock; clears and resets.
 
 use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig};
 use rand::{Rng, RngExt, SeedableRng};
@@ -9,7 +9,7 @@ use super::Stimuli;
 use super::table::pick;
 use crate::lockstep::Clock;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct DividerRandom {
     rng: Xoshiro256PlusPlus,
@@ -19,7 +19,7 @@ pub struct DividerRandom {
 }
 
 impl DividerRandom {
-    /// Equal seeds give equal inputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(config: &DividerConfig, seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -37,7 +37,7 @@ impl DividerRandom {
         let steps: i64 = *pick(rng, &[few, any, small, small, small, -131_072, 131_071]);
         let random = rng.random_range(0..1i64 << 24);
         let about_a_tick = self.tick_clocks + rng.random_range(-2..=2);
-        // 2^15 counts per tick is the end of Q16.16.
+        // The range of Q16.16 ends at 2^15 counts per tick.
         let about_the_end = steps.abs() * self.tick_clocks / 32_768 + rng.random_range(-1..=1);
         let shifted = random >> rng.random_range(0..24);
         let choices = [0, 1, random, shifted, shifted, about_a_tick, about_the_end, 0xff_ffff];
@@ -66,7 +66,7 @@ impl Stimuli for DividerRandom {
     }
 }
 
-/// How often things happened in a lock step of the divider.
+/// Counts of the events in a lockstep run of the divider.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct DividerCoverage {
     resets: u64,
@@ -89,7 +89,7 @@ impl DividerCoverage {
         self.overrun += overrun;
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); 5] {
         [
             ("resets", self.resets),

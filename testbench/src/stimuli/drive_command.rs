@@ -1,5 +1,6 @@
-//! Inputs for the drive command, seeded: a supervisor that is mostly in READY or beyond it, ticks and controllers at every
-//! pace, kicks in time and too late, duties at and about their limits, limit switches, faults; resets at any clock.
+//! Seeded random inputs for the drive command: a supervisor that is mostly in READY or beyond, ticks and controllers
+//! at every pace, kicks in time and too late, duties at and around their limits, limit switches, faults; resets in
+//! any clock.
 
 use std::ops::Range;
 
@@ -12,31 +13,32 @@ use super::Stimuli;
 use super::table::pick;
 use crate::lockstep::Clock;
 
-/// Clocks between changes of the slow inputs.
+/// Number of clocks between changes of the slow inputs.
 const MOOD_CLOCKS: u64 = 500;
 
-/// Clocks of the one long self-test: periods that double, then a gate that is on longer than its counter counts.
+/// Range of clocks of the single long self-test: the periods double, then a gate is on for longer than its counter
+/// can count.
 const LONG_TEST: Range<u64> = 350_000..466_500;
-/// Its last valley.
+/// Clock of the last valley of the long self-test.
 const LONG_TEST_VALLEY: u64 = 466_000;
 
-/// Whether a clock of the long self-test is a valley. Long periods have an odd number of clocks: a fault that comes and goes
-/// with every clock would not show in an even one.
+/// Returns whether a clock of the long self-test is a valley. Long periods have an odd number of clocks: a fault that
+/// toggles in every clock would not show in an even number.
 fn is_long_valley(clock: u64) -> bool {
     let since = clock - LONG_TEST.start;
     let doubled = (0..=14).any(|doubling| since == (3 << doubling) + doubling);
     clock == LONG_TEST_VALLEY || doubled
 }
 
-/// What holds for a while.
+/// Settings that hold for a while.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mood {
     state: u64,
-    /// PWM, drive, brake, by the supervisor.
+    /// Enables of the PWM, the drive and the brake from the supervisor.
     outputs: [bool; 3],
     tick_pace: u32,
     kick_pace: u32,
-    /// One clock in so many has a line low.
+    /// A line is low in one of this many clocks.
     line_pace: u32,
     hold_ticks: u64,
     limit: i64,
@@ -44,7 +46,7 @@ struct Mood {
     valley_pace: u32,
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct DriveCommandRandom {
     rng: Xoshiro256PlusPlus,
@@ -54,7 +56,7 @@ pub struct DriveCommandRandom {
 }
 
 impl DriveCommandRandom {
-    /// Equal seeds give equal inputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -80,7 +82,7 @@ impl DriveCommandRandom {
             SupervisorState::from_value(state),
             Some(SupervisorState::Hold | SupervisorState::Run | SupervisorState::QuickStop)
         );
-        // Now and then what no supervisor says.
+        // Now and then the outputs take values that no supervisor produces.
         let outputs = [(); 3].map(|()| on != (rng.random_range(0..12) == 0));
         let size = rng.random_range(0..=16);
         let any_limit: i64 = rng.random_range(0..=65_535);
@@ -98,7 +100,7 @@ impl DriveCommandRandom {
         };
     }
 
-    /// Manual duties of all sizes, at the limits and an LSB beyond.
+    /// Draws a manual duty of any size, also at the limits and one LSB beyond.
     fn new_direct_duty(&mut self) {
         let rng = &mut self.rng;
         let any: i64 = rng.random_range(-65_536..=65_535);
@@ -163,7 +165,7 @@ impl Stimuli for DriveCommandRandom {
     }
 }
 
-/// What is counted.
+/// Names of the counted events.
 const NAMES: [&str; 24] = [
     "resets",
     "clocks off",
@@ -191,11 +193,11 @@ const NAMES: [&str; 24] = [
     "clocks of a gate beyond the end of the counter",
 ];
 
-/// How often things happened in a lock step of the drive command.
+/// Counts of the events in a lockstep run of the drive command.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct DriveCommandCoverage {
     counts: [u64; NAMES.len()],
-    /// The clock before: inputs and outputs.
+    /// Inputs and outputs of the previous clock.
     before: Option<([u64; INPUT_PORTS], [u64; OUTPUT_PORTS])>,
 }
 
@@ -260,7 +262,7 @@ impl DriveCommandCoverage {
         ]
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); NAMES.len()] {
         std::array::from_fn(|bin| (NAMES[bin], self.counts[bin]))
     }

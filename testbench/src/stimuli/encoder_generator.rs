@@ -1,5 +1,6 @@
-//! Inputs for the internal encoder, seeded: rates of every size and both signs, held or changing in every clock; turns of
-//! every length; pins that change at any time; changes between pins and generator, and resets, in any clock.
+//! Seeded random inputs for the internal encoder: rates of every size and both signs, constant or changing in every
+//! clock; turns of every length; pins that change at any time; changes between pins and generator, and resets, in any
+//! clock.
 
 use posicast_model::rtl::encoder_generator::INPUT_PORTS;
 use rand::{Rng, RngExt, SeedableRng};
@@ -9,7 +10,7 @@ use super::Stimuli;
 use super::table::pick;
 use crate::lockstep::Clock;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct EncoderGeneratorRandom {
     rng: Xoshiro256PlusPlus,
@@ -18,12 +19,12 @@ pub struct EncoderGeneratorRandom {
     rate: i32,
     index_every: u16,
     pins: u64,
-    /// The rate changes once in so many clocks.
+    /// The rate changes once in this many clocks.
     unrest: u32,
 }
 
 impl EncoderGeneratorRandom {
-    /// Equal seeds give equal inputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -56,7 +57,8 @@ impl EncoderGeneratorRandom {
         if self.one_in(1500) {
             let any = self.rng.next_u32() as u16;
             let small = any & 63;
-            // A power of two periods, or one more: turns, and the first step below the index, of each bit alone.
+            // A power of two of periods, or one more, exercises each bit alone in the turns and in the first step
+            // below the index.
             let bit = (self.rng.random_range(0..2_u16) + (1 << self.rng.random_range(0..13))) << 2;
             self.index_every = *pick(
                 &mut self.rng,
@@ -89,10 +91,10 @@ impl Stimuli for EncoderGeneratorRandom {
     }
 }
 
-/// How often things happened in a lock step of the internal encoder.
+/// Counts of the events in a lockstep run of the internal encoder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct EncoderGeneratorCoverage {
-    /// Count, Z and `loop_back` of the clock before; no count in the first clock and after a reset.
+    /// Count, Z and `loop_back` of the previous clock; `None` in the first clock and after a reset.
     before: Option<(i32, u64, u64)>,
     resets: u64,
     looped_resets: u64,
@@ -105,7 +107,7 @@ pub struct EncoderGeneratorCoverage {
     unlooped: u64,
     indices_up: u64,
     indices_down: u64,
-    /// The last count went up.
+    /// Whether the last count went up.
     rising: bool,
     moved: bool,
 }
@@ -139,7 +141,7 @@ impl EncoderGeneratorCoverage {
         self.before = (rst == 0).then_some((count, z, loop_back));
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); 11] {
         [
             ("resets", self.resets),

@@ -1,6 +1,6 @@
-//! Inputs for the excitation, seeded: signals of every kind, size, period, sweep and duration, whole or cut off by `enable`,
-//! `allowed`, a reset or another kind; positions at the ends of their word; ticks far apart, and now and then too close;
-//! settings that change while a signal runs.
+//! Seeded random inputs for the excitation: signals of every kind, size, period, sweep and duration, complete or
+//! ended early by `enable`, `allowed`, a reset or another kind; positions at the ends of their word; ticks far apart,
+//! and now and then too close; settings that change while a signal runs.
 
 use posicast_model::rtl::excitation::{ExcitationKind, INPUT_PORTS, Inputs, OUTPUT_PORTS, TICK_CLOCKS, TURN_STEPS};
 use rand::{Rng, RngExt, SeedableRng};
@@ -17,10 +17,10 @@ const KINDS: [ExcitationKind; 4] = [
     ExcitationKind::Chirp,
     ExcitationKind::Square,
 ];
-/// Place of `excitation_active` among the outputs.
+/// Index of `excitation_active` among the outputs.
 const ACTIVE: usize = 5;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct ExcitationRandom {
     rng: Xoshiro256PlusPlus,
@@ -28,14 +28,14 @@ pub struct ExcitationRandom {
     clock: u64,
     until_valid: u32,
     tick_clocks: u32,
-    /// Clocks until `enable` falls or rises.
+    /// Number of clocks until `enable` falls or rises.
     until_enable: u32,
-    /// Settings change at any time.
+    /// Whether settings change at any time.
     unrest: bool,
 }
 
 impl ExcitationRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -52,7 +52,7 @@ impl ExcitationRandom {
         self.rng.random_range(0..clocks) == 0
     }
 
-    /// Another signal.
+    /// Draws the settings of another signal.
     fn settings(&mut self) {
         let rng = &mut self.rng;
         let word = rng.next_u64();
@@ -63,7 +63,7 @@ impl ExcitationRandom {
         let other = word >> 16 & 0xffff;
         let limit = *pick(rng, &[0xffff, 0xffff, other, amplitude, amplitude.saturating_sub(1), 0]);
         let period = *pick(rng, &[1, 2, 3, 5, 8, 20, 100, small, any, 0]);
-        // The first bits of a PRBS are 15 ones and 14 zeros: it takes fast ones to come beyond.
+        // The first bits of a PRBS are 15 ones and 14 zeros: only short bits get beyond them in the time of a run.
         let period = if kind == 1 {
             *pick(rng, &[1, 1, 1, 2, 3, period])
         } else {
@@ -73,7 +73,7 @@ impl ExcitationRandom {
         let duration = *pick(rng, &[0, 1, 2, 40, 300, 1000, 1000, 1000, word >> 40]);
         let modulo = word >> 32 & 1;
         self.raw[7..].copy_from_slice(&[kind, amplitude, limit, period, sweep, duration, modulo]);
-        // As close as the first frequency allows, as close as any does, or too close.
+        // Ticks come as close as the first frequency allows, as close as any frequency allows, or too close.
         let turn = (TURN_STEPS / (period as u32).max(1) + 24).min(TICK_CLOCKS);
         self.tick_clocks = *pick(rng, &[turn, turn, turn, turn, TICK_CLOCKS, 30]);
     }
@@ -131,7 +131,7 @@ impl Stimuli for ExcitationRandom {
             let words = [self.position(), self.rng.next_u64(), self.rng.next_u64()];
             self.raw[2..5].copy_from_slice(&words);
         } else if self.one_in(50) {
-            // Between two ticks they do not count.
+            // Between two ticks the positions are ignored.
             self.raw[2] = self.rng.next_u64();
         }
         self.clock += 1;
@@ -141,12 +141,12 @@ impl Stimuli for ExcitationRandom {
     }
 }
 
-/// How often things happened in a lock step of the excitation.
+/// Counts of the events in a lockstep run of the excitation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ExcitationCoverage {
     before: Option<(Inputs, bool, i32)>,
     resets: u64,
-    /// Ticks with a signal, by kind: PRBS, chirp, square.
+    /// Number of ticks with a signal, by kind: PRBS, chirp, square.
     ticks: [u64; 3],
     prbs_changes: u64,
     zero_crossings: u64,
@@ -157,7 +157,7 @@ pub struct ExcitationCoverage {
     limited: u64,
     at_the_ends: u64,
     wrapped: u64,
-    /// Ticks of the signal that runs.
+    /// Number of ticks of the running signal.
     length: u32,
 }
 
@@ -203,7 +203,7 @@ impl ExcitationCoverage {
         self.before = Some((inputs, active == 1, value));
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); 13] {
         let [prbs, chirp, square] = self.ticks;
         [

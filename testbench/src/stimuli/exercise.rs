@@ -1,7 +1,8 @@
-//! What a lock step of shapers must have shown before it says anything: every tap, every bank, both levels of every flag.
+//! What a lockstep run of shapers must have exercised before its result counts: every tap, every bank, both levels of
+//! every flag.
 //!
-//! It is measured in the run itself, from the model's ports: a table of which no sample reached the longest delay has not
-//! been compared, however many clocks were equal.
+//! It is measured in the run itself, from the model's ports. If no sample reached a table's longest delay, that table
+//! has not been compared, however many clocks were equal.
 //!
 //! ```text
 //! tap i was seen:  in a pass over bank 0, not clamped, with 2^F ≤ |c_i · x[n − d_i]| and x[n − d_i] ≠ x[n − d_i ± 1]
@@ -15,13 +16,13 @@ use posicast_model::taps::Tap;
 use super::{AxisLayout, Layout};
 use crate::lockstep::Clock;
 
-/// A tap must have been seen so often: once could be chance.
+/// Least number of times that a tap must be seen: once could be chance.
 const LEAST_TIMES: u32 = 2;
 
-/// Flags of which both levels must have been seen.
+/// Flags of which both levels must be seen.
 const FLAGS: [&str; 5] = ["saturated", "overrun", "refused", "swap_pending", "tap_read_waits"];
 
-/// What each shaper of a layout has shown so far.
+/// What each shaper of a layout has exercised so far.
 #[derive(Debug, Clone)]
 pub struct ShaperExercise {
     rst: usize,
@@ -33,22 +34,22 @@ pub struct ShaperExercise {
 struct Shown {
     axis: AxisLayout,
     taps: Vec<Tap>,
-    /// Times that each tap was seen.
+    /// Number of times that each tap was seen.
     seen: Vec<u32>,
     word_bits: u32,
     saturates: bool,
-    /// Samples since the last start, the newest first, as many as the longest delay needs.
+    /// Samples since the last start, newest first, as many as the longest delay needs.
     samples: VecDeque<i64>,
-    /// A pass over bank 0 is under way.
+    /// Whether a pass over bank 0 is under way.
     in_pass: bool,
-    /// Results over each bank.
+    /// Number of results over each bank.
     results: [u32; 3],
-    /// Clocks in which each flag was low, and high.
+    /// Whether each flag was seen low, and high.
     flags: [[bool; 2]; FLAGS.len()],
 }
 
 impl ShaperExercise {
-    /// The shapers of these configurations, in the order of the layout.
+    /// Creates a record for shapers of these configurations, in the order of the layout.
     pub fn new<'a>(layout: &Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
         let shown = |(axis, config): (&AxisLayout, &ShaperConfig)| Shown {
             axis: axis.clone(),
@@ -79,7 +80,7 @@ impl ShaperExercise {
         }
     }
 
-    /// What has not been shown, per shaper.
+    /// Returns what has not been exercised, per shaper.
     pub fn missing(&self) -> Vec<Vec<String>> {
         self.shapers.iter().map(Shown::missing).collect()
     }
@@ -112,7 +113,7 @@ impl Shown {
             self.in_pass = false;
         }
         if reset || start || strobe && busy {
-            // The samples before are gone, or no longer certain.
+            // The earlier samples are gone or no longer certain.
             self.samples.clear();
             self.in_pass = false;
         }
@@ -124,14 +125,14 @@ impl Shown {
         }
     }
 
-    /// A result over bank 0: which taps does it show?
+    /// Finds the taps that a result over bank 0 shows.
     fn look(&mut self) {
         let sample = |delay: u32| self.samples.get(delay as usize).copied();
         let products = self.taps.iter().map(|tap| {
             let product = i128::from(sample(tap.delay_samples)?) * i128::from(tap.coefficient);
             Some(product)
         });
-        // A delay line that is not full yet shows the start value: no product is certain.
+        // A delay line that is not yet full still contains the start value, so no product is certain.
         let Some(products) = products.collect::<Option<Vec<i128>>>() else {
             return;
         };

@@ -1,21 +1,23 @@
-//! The first phase of a shaper's stimuli: noise, a sample per pass, until every tap has been seen in the output.
+//! The first phase of a shaper's stimuli: noise, one sample per pass, until every tap has been seen in the output.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{Layout, Stimuli};
 
-/// Clocks of reset before the first strobe.
+/// Number of clocks of reset before the first strobe.
 const RESET_CLOCKS: u64 = 2;
-/// Clocks from a strobe to the first in which `busy` shows that its pass is over, beyond those of the pass; and one to spare.
+/// Number of clocks, beyond those of the pass, from a strobe until `busy` shows that its pass is over, plus one to
+/// spare.
 const TURN_CLOCKS: u64 = 3;
-/// Samples behind the one with which the delay line is full: each of them shows every tap in the output.
+/// Number of samples after the one that fills the delay line: each of them shows every tap in the output.
 const SAMPLES_BEHIND: u64 = 24;
-/// Words are this part of full scale, so that no table of usual coefficients saturates: what is clamped shows no tap.
+/// Words use this part of full scale, so that no table of usual coefficients saturates: a saturated result shows no
+/// tap.
 const PART_OF_FULL_SCALE: i64 = 4;
 
-/// A reset and a `start`, then a strobe as soon as no pass is under way, each with a random word. The word differs from
-/// sample to sample, so that a tap at another delay, or with another coefficient, gives another output.
+/// Gives a reset and a `start`, then a strobe with a random word as soon as no pass is under way. The word differs
+/// from sample to sample, so that a wrong delay or coefficient of a tap changes the output.
 #[derive(Debug, Clone)]
 pub struct Fill {
     layout: Layout,
@@ -25,7 +27,7 @@ pub struct Fill {
 }
 
 impl Fill {
-    /// Equal seeds give equal words.
+    /// Creates the generator. Equal seeds give equal words.
     pub fn new(layout: &Layout, seed: u64) -> Self {
         Self {
             layout: layout.clone(),
@@ -35,7 +37,8 @@ impl Fill {
         }
     }
 
-    /// Clocks until every tap up to `longest_delay_samples` was seen more than once, where a pass lasts `pass_clocks`.
+    /// Returns the number of clocks until every tap up to `longest_delay_samples` was seen more than once, if a pass
+    /// takes `pass_clocks`.
     pub fn clocks(longest_delay_samples: u32, pass_clocks: u32) -> u64 {
         let samples = u64::from(longest_delay_samples) + 2 + SAMPLES_BEHIND;
         RESET_CLOCKS + samples * (u64::from(pass_clocks) + TURN_CLOCKS)
@@ -53,7 +56,7 @@ impl Stimuli for Fill {
         let first = self.clock == RESET_CLOCKS + 1;
         self.since_strobe += 1;
         let busy = self.layout.axes.iter().any(|axis| seen[axis.busy] != 0);
-        // `busy` of a strobe is seen from the second clock behind it on.
+        // `busy` is visible from the second clock after a strobe.
         if !first && (busy || self.since_strobe < 3) {
             return;
         }

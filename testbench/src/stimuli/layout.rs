@@ -1,21 +1,21 @@
-//! Where a shaper's ports sit among the ports of what is simulated.
+//! Indices of a shaper's ports among the ports of the simulated block.
 
 use posicast_model::rtl::{Direction, Port};
 
 use crate::Error;
 
-/// The ports of one shaper: places among the inputs and the outputs, and the widths that stimuli depend on.
+/// The ports of one shaper: indices among the inputs and the outputs, and the widths that stimuli depend on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[allow(missing_docs)] // places, named after the ports
 pub struct AxisLayout {
-    /// The axis; empty for a shaper that stands alone.
+    /// Name of the axis; empty for a shaper that stands alone.
     pub name: String,
-    /// `F` of the tables that are loaded.
+    /// Number of fraction bits `F` of the tables that are loaded.
     pub coefficient_fraction: u32,
     pub start: usize,
-    /// The command word; of a shaper for motion that of channel 0, and those of the others follow.
+    /// Index of the command word. For a motion shaper this is the word of channel 0; those of the others follow.
     pub x: usize,
-    /// Channels, each with a word of its own.
+    /// Number of channels, each with its own word.
     pub channels: usize,
     pub clear_flags: usize,
     pub tap_write: usize,
@@ -26,13 +26,13 @@ pub struct AxisLayout {
     pub tap_read: usize,
     pub swap: usize,
     pub swap_bank: usize,
-    /// Only of a shaper for motion.
+    /// Index of the port; only a motion shaper has it.
     pub swap_how: Option<usize>,
-    /// Bits of a command word.
+    /// Width of a command word in bits.
     pub word_bits: u32,
-    /// Bits of a tap's index.
+    /// Width of a tap's index in bits.
     pub tap_index_bits: u32,
-    /// Bits of a tap's delay.
+    /// Width of a tap's delay in bits.
     pub ring_address_bits: u32,
     pub valid: usize,
     pub saturated: usize,
@@ -46,7 +46,7 @@ pub struct AxisLayout {
 }
 
 impl AxisLayout {
-    /// Largest command word; the smallest is `-largest - 1`.
+    /// Returns the largest command word; the smallest is `-largest - 1`.
     pub fn largest_word(&self) -> i64 {
         (1 << (self.word_bits.clamp(2, 63) - 1)) - 1
     }
@@ -55,9 +55,9 @@ impl AxisLayout {
 /// All shapers of a block or a top module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Layout {
-    /// Place of `rst` among the inputs.
+    /// Index of `rst` among the inputs.
     pub rst: usize,
-    /// Place of `strobe` among the inputs.
+    /// Index of `strobe` among the inputs.
     pub strobe: usize,
     /// The shapers, in the order of the ports.
     pub axes: Vec<AxisLayout>,

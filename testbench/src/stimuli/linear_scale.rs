@@ -1,6 +1,6 @@
-//! Inputs for the linear scale, seeded: an axis that moves and a scale that follows it, by the ratio or not; counts that wrap
-//! and ratios that saturate; ticks, velocities and aligns at every pace, also into a running pass. The tied inputs change in
-//! reset.
+//! Seeded random inputs for the linear scale: an axis that moves and a scale that follows it, at the configured ratio
+//! or not; counts that wrap and ratios that saturate; ticks, velocities and aligns at every pace, also during a pass.
+//! The tied inputs change in reset.
 
 use posicast_model::rtl::linear_scale::{INPUT_PORTS, OUTPUT_PORTS, PASS_CLOCKS};
 use rand::{Rng, RngExt, SeedableRng};
@@ -10,18 +10,18 @@ use super::Stimuli;
 use super::table::pick;
 use crate::lockstep::Clock;
 
-/// One reset in so many clocks: a machine's life.
+/// Mean number of clocks between resets, that is the life of a machine.
 const LIFE_CLOCKS: u32 = 3_000;
 
-/// What holds between resets.
+/// Settings that hold from one reset to the next.
 #[derive(Debug, Clone, Copy, Default)]
 struct Life {
     mantissa: i64,
     shift: u64,
     use_scale: bool,
-    /// Largest step of the motor per clock, counts.
+    /// Largest step of the motor per clock, in counts.
     step: i64,
-    /// The scale follows the motor.
+    /// Whether the scale follows the motor.
     follows: bool,
     tick_pace: u32,
     velocity_pace: u32,
@@ -29,7 +29,7 @@ struct Life {
     velocity_bits: u32,
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct LinearScaleRandom {
     rng: Xoshiro256PlusPlus,
@@ -40,7 +40,7 @@ pub struct LinearScaleRandom {
 }
 
 impl LinearScaleRandom {
-    /// Equal seeds give equal inputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -72,7 +72,7 @@ impl LinearScaleRandom {
         self.scale = rng.next_u64() as i64;
     }
 
-    /// The axis moves by a clock. The scale, where it follows, has the ratio of the loop that is built.
+    /// Moves the axis by one clock. A scale that follows has the ratio of the configured loop.
     fn moves(&mut self) {
         let life = self.life;
         let step = self.rng.random_range(-life.step..=life.step);
@@ -98,7 +98,7 @@ impl Stimuli for LinearScaleRandom {
         self.moves();
         let life = self.life;
         let mut once_in = |pace: u32| u64::from(self.rng.random_range(0..pace) == 0);
-        // Every so many clocks, and now and then in between.
+        // Each event comes at its own pace, and now and then in between.
         let mut paced = |pace: u32| u64::from(self.clock.is_multiple_of(pace.into())) | once_in(50 * pace);
         let (tick, velocity_valid) = (paced(life.tick_pace), paced(life.velocity_pace));
         *inputs = [
@@ -117,7 +117,7 @@ impl Stimuli for LinearScaleRandom {
     }
 }
 
-/// What is counted.
+/// Names of the counted events.
 const NAMES: [&str; 13] = [
     "resets",
     "deviations in scale counts",
@@ -134,11 +134,11 @@ const NAMES: [&str; 13] = [
     "velocities scaled",
 ];
 
-/// How often things happened in a lock step of the linear scale.
+/// Counts of the events in a lockstep run of the linear scale.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LinearScaleCoverage {
     counts: [u64; NAMES.len()],
-    /// A tick was taken, and its deviation is not there yet.
+    /// Whether a tick was taken and its deviation is not yet computed.
     computes: bool,
     asked: bool,
 }
@@ -179,7 +179,7 @@ impl LinearScaleCoverage {
         self.computes |= taken;
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); NAMES.len()] {
         std::array::from_fn(|bin| (NAMES[bin], self.counts[bin]))
     }

@@ -1,15 +1,15 @@
-//! Inputs for shapers, one row of values per clock, without allocation in the clock.
+//! Inputs for shapers, one row of values per clock, without allocation in a clock.
 //!
-//! - [`Fill`] fills the delay line, a sample per pass, until every tap has been seen.
-//! - [`Directed`] plays scripts: the cases that one thinks of ([`cases`]), and the corners of each size ([`corners`]).
-//! - [`Random`] mixes everything, seeded: the cases that one does not think of.
+//! - [`Fill`] fills the delay line, one sample per pass, until every tap has been seen.
+//! - [`Directed`] plays scripts: the directed cases ([`cases`]) and the corner cases of each size ([`corners`]).
+//! - [`Random`] mixes everything at random from a seed, to find what nobody thought of.
 //! - [`MotionStimuli`] strobes real command words at a steady rate.
-//! - [`ShaperExercise`] says which tap, bank or flag a run has not shown.
-//! - [`Coverage`] counts what a run reached, so that a test can insist on it.
+//! - [`ShaperExercise`] lists the taps, banks and flags that a run has not exercised.
+//! - [`Coverage`] counts what a run reached, so that a test can require it.
 //!
-//! All work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe` shared):
-//! [`Layout`] finds the axes by their port names. Other blocks have random stimuli and a coverage of their own, under
-//! their name.
+//! All of them work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe`
+//! shared): [`Layout`] finds the axes by their port names. Each other block has its own random stimuli and coverage,
+//! under its own name.
 
 mod axis;
 mod axis_coverage;
@@ -66,7 +66,7 @@ pub use self::trace::{TraceCoverage, TraceRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {
-    /// Fills `inputs`, in the order of the input ports, knowing what the outputs showed in the clock before (zeros in the
+    /// Fills `inputs`, in the order of the input ports. `seen` holds the outputs of the previous clock (zeros in the
     /// first). Bits above a port's width are ignored.
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]);
 }

@@ -1,9 +1,9 @@
-//! Real motion: command words, one per sample, at a steady rate.
+//! Stimuli of a real motion: one command word per sample, at a steady rate.
 
 use super::{Layout, Stimuli};
 
-/// A reset, then one strobe every `clocks_per_sample` clocks; `start` with the first. Each word stands until the next, the
-/// last one for ever.
+/// Gives a reset, then one strobe every `clocks_per_sample` clocks, the first with `start`. Each word stays until the
+/// next; the last one stays for ever.
 #[derive(Debug, Clone)]
 pub struct MotionStimuli<'a> {
     layout: Layout,
@@ -12,11 +12,12 @@ pub struct MotionStimuli<'a> {
     clock: u64,
 }
 
-/// Clocks of reset before the first strobe.
+/// Number of clocks of reset before the first strobe.
 const RESET_CLOCKS: u64 = 2;
 
 impl<'a> MotionStimuli<'a> {
-    /// `words` holds one sequence of command words per axis of the layout; a missing or empty one stands still at 0.
+    /// Creates the stimuli. `words` holds one sequence of command words per axis of the layout; an axis whose
+    /// sequence is missing or empty stays at 0.
     pub fn new(layout: &Layout, words: &'a [Vec<i64>], clocks_per_sample: u64) -> Self {
         Self {
             layout: layout.clone(),
@@ -26,12 +27,12 @@ impl<'a> MotionStimuli<'a> {
         }
     }
 
-    /// The clock of the first strobe, which comes with `start`.
+    /// Returns the clock of the first strobe, which comes with `start`.
     pub fn first_strobe(&self) -> u64 {
         RESET_CLOCKS
     }
 
-    /// Clocks until the pass of the last word has had its full sample period.
+    /// Returns the number of clocks until the pass of the last word has had its full sample period.
     pub fn clocks(&self) -> u64 {
         let samples = self.words.iter().map(Vec::len).max().unwrap_or(0) as u64;
         RESET_CLOCKS.saturating_add(samples.saturating_mul(self.clocks_per_sample))

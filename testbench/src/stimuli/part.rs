@@ -1,4 +1,4 @@
-//! Inputs for the small blocks between others, seeded: every input at a pace of its own, which changes now and then.
+//! Seeded random inputs for the small blocks between others: every input changes at its own pace, which varies.
 
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
@@ -7,7 +7,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::Stimuli;
 use super::table::pick;
 
-/// An input, and how often it changes: once in so many clocks.
+/// An input and its pace: it changes once in this many clocks.
 #[derive(Debug, Clone)]
 struct Pin {
     width: u32,
@@ -15,7 +15,7 @@ struct Pin {
     value: u64,
 }
 
-/// A mixture of everything, without end. The first input is the reset, and rare.
+/// An endless random mixture of all inputs. The first input is the reset, which is rare.
 #[derive(Debug, Clone)]
 pub struct PartRandom {
     rng: Xoshiro256PlusPlus,
@@ -24,7 +24,7 @@ pub struct PartRandom {
 }
 
 impl PartRandom {
-    /// For a block with these ports. Equal seeds give equal inputs.
+    /// Creates the generator for a block with these ports. Equal seeds give equal inputs.
     pub fn new(ports: &[Port], seed: u64) -> Self {
         let inputs = ports.iter().filter(|port| port.direction == Direction::Input);
         let pin = |port: &Port| Pin {

@@ -1,6 +1,6 @@
-//! Inputs for the pulse counter, seeded: an encoder that turns at any speed either way, with bounce, glitches around the
-//! filter's length, lost edges and index pulses; pairs that disagree; ticks, a divider's answers, late, early or none;
-//! and registers that change in any clock.
+//! Seeded random inputs for the pulse counter: an encoder that turns at any speed in either direction, with bounce,
+//! glitches of about the filter's length, lost edges and index pulses; pairs of lines that disagree; ticks; a
+//! divider's answers that are late, early or missing; registers that change in any clock.
 
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pulse_counter::{Inputs, ports};
@@ -13,10 +13,10 @@ use super::table::pick;
 
 /// Quadrature states {B, A} in the order of counting up.
 const STATES: [u8; 4] = [0b00, 0b01, 0b11, 0b10];
-/// Steps of the encoder from index to index.
+/// Number of steps of the encoder from index to index.
 const STEPS_PER_TURN: i32 = 20;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct PulseCounterRandom {
     rng: Xoshiro256PlusPlus,
@@ -26,17 +26,18 @@ pub struct PulseCounterRandom {
     forward: bool,
     clocks_per_step: u32,
     until_step: u32,
-    /// Clocks of a disturbance that are left, and what it turns over: A, B, Z and their complements.
+    /// Number of clocks left of a disturbance, and the lines that it inverts: A, B, Z and their complements.
     glitch: (u32, u8),
     tick_clocks: u32,
     until_tick: u32,
     until_answer: Option<u32>,
-    /// The encoder loses most edges, and the host does not look: the count of illegal steps reaches its end.
+    /// Whether the encoder loses most edges while the host does not react, so that the count of illegal steps reaches
+    /// its end.
     torn: bool,
 }
 
 impl PulseCounterRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -58,7 +59,7 @@ impl PulseCounterRandom {
         self.rng.random_range(0..clocks) == 0
     }
 
-    /// Registers that a host writes: mostly useful values, at any time.
+    /// Changes the registers that a host writes, at any time and mostly to useful values.
     fn registers(&mut self) {
         if self.one_in(3000) {
             self.inputs.filter_clocks = *pick(&mut self.rng, &[0, 0, 1, 2, 3, 8, 63]);
@@ -103,7 +104,7 @@ impl PulseCounterRandom {
             if self.one_in(12) {
                 self.forward = !self.forward;
             }
-            // A lost edge: both lines change together.
+            // When an edge is lost, both lines change together.
             let steps = if self.one_in(if self.torn { 2 } else { 40 }) {
                 2
             } else {
@@ -113,7 +114,7 @@ impl PulseCounterRandom {
         }
     }
 
-    /// Levels of the pins: the encoder's, with what disturbs them.
+    /// Returns the levels of the pins: those of the encoder with the disturbances.
     fn pins(&mut self) {
         if self.glitch.0 == 0 && self.one_in(60) {
             let filter = u32::from(self.inputs.filter_clocks);
@@ -134,7 +135,7 @@ impl PulseCounterRandom {
 
     fn time(&mut self, seen: &Seen) {
         self.inputs.time_stamp = (self.inputs.time_stamp + 1) & 0xff_ffff;
-        // Long pauses without simulating them.
+        // A jump of the time stamp gives a long pause without simulating it.
         if self.one_in(20_000) {
             self.inputs.time_stamp = self.rng.next_u32() & 0xff_ffff;
         }
@@ -151,7 +152,7 @@ impl PulseCounterRandom {
             Some(0) => {
                 self.until_answer = None;
                 self.inputs.quotient_valid = true;
-                // Mostly what a divider says; else anything.
+                // The answer is mostly that of a divider, else an arbitrary word.
                 if !self.one_in(10) {
                     self.inputs.quotient = seen.quotient(self.tick_clocks);
                 }
@@ -162,7 +163,7 @@ impl PulseCounterRandom {
     }
 }
 
-/// What the counter showed for the divider.
+/// Outputs of the counter for the divider.
 struct Seen {
     steps: i32,
     elapsed: u32,
@@ -196,12 +197,13 @@ impl Stimuli for PulseCounterRandom {
     }
 }
 
-/// How often things happened in a lock step of the pulse counter: by name, in the order of [`PulseCounterCoverage::counts`].
+/// Counts of the events in a lockstep run of the pulse counter, by name, in the order of
+/// [`PulseCounterCoverage::counts`].
 #[derive(Debug, Clone)]
 pub struct PulseCounterCoverage {
     outputs: Vec<String>,
     before: Vec<u64>,
-    /// Times that each output changed.
+    /// Number of times that each output changed.
     changed: Vec<u64>,
     resets: u64,
     reversals: u64,
@@ -224,11 +226,11 @@ impl Default for PulseCounterCoverage {
 }
 
 impl PulseCounterCoverage {
-    /// Adds a clock: its inputs and the outputs that the model showed.
+    /// Adds a clock, given its inputs and the model's outputs.
     pub fn observe(&mut self, inputs: &[u64], shown: &[u64]) {
         self.resets += inputs.first().copied().unwrap_or(0);
         let fell = |at: usize| shown[at] < self.before[at];
-        // The velocity went to zero with steps to divide: a reversal. It held: below its bound.
+        // The velocity became zero with steps to divide: a reversal. It was held: it is below its bound.
         self.reversals += u64::from(shown[16] != 0 && shown[15] == 0 && self.before[15] != 0);
         self.held += u64::from(shown[16] != 0 && shown[15] == self.before[15] && fell(14));
         for (at, (value, before)) in shown.iter().zip(&mut self.before).enumerate() {
@@ -237,7 +239,7 @@ impl PulseCounterCoverage {
         }
     }
 
-    /// What happened how often: changes of every output, and some that take more than one.
+    /// Returns each event's name and count: changes of every output, and some combined events.
     pub fn counts(&self) -> Vec<(&str, u64)> {
         let outputs = self
             .outputs

@@ -1,7 +1,7 @@
-//! Inputs for the PWM, seeded: duties of every size, and about the ends of every pattern; modes, periods and times that a
-//! host changes in any clock; a time base in step and out of it; faults of every kind and length, and hosts that clear them;
-//! a controller that feeds the watchdog, or forgets; a mask that comes
-//! and goes in any clock. Beside it what every run must hold ([`GateSafety`]).
+//! Seeded random inputs for the PWM: duties of every size, and around the ends of every pattern; modes, periods and
+//! times that a host changes in any clock; a time base in step and out of step; faults of every kind and length, and
+//! hosts that clear them; a controller that feeds the watchdog, or forgets to; a mask that comes and goes in any
+//! clock. [`GateSafety`] checks what every run must fulfil.
 
 use posicast_model::rtl::pwm::{ActiveLow, Inputs, ports};
 use posicast_model::rtl::{Direction, Port};
@@ -11,26 +11,26 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::Stimuli;
 use super::table::pick;
 
-/// Every third of these is calm.
+/// Every third interval of this many clocks is calm.
 const CALM_CLOCKS: u64 = 50_000;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct PwmRandom {
     rng: Xoshiro256PlusPlus,
     inputs: Inputs,
     clock: u64,
     until_feed: u32,
-    /// Clocks that a fault still lasts: raw, PLL, filtered 0, filtered 1.
+    /// Number of clocks that each fault still lasts: raw, PLL, filtered 0, filtered 1.
     faults: [u32; 4],
-    /// Clocks since the time base.
+    /// Number of clocks since the last sync of the time base.
     since_sync: u32,
     /// The period that the carrier counts, as far as the pins show it.
     period_used: u16,
 }
 
 impl PwmRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -48,12 +48,13 @@ impl PwmRandom {
         }
     }
 
-    /// Now and then nothing interrupts a run, so that long periods come to their edges.
+    /// Returns whether the current interval is calm: nothing interrupts the run, so that long periods reach their
+    /// edges.
     fn is_calm(&self) -> bool {
         self.clock / CALM_CLOCKS % 3 == 2
     }
 
-    /// As [`one_in`](Self::one_in), and twenty times as rare while it is calm.
+    /// Like [`one_in`](Self::one_in), but twenty times as rare in a calm interval.
     fn interrupts(&mut self, clocks: u32) -> bool {
         let rarity = if self.is_calm() { 20 } else { 1 };
         self.one_in(clocks * rarity)
@@ -63,7 +64,7 @@ impl PwmRandom {
         self.rng.random_range(0..clocks) == 0
     }
 
-    /// Period, dead time and minimum pulse: mostly while off, as they should be.
+    /// Changes period, dead time and minimum pulse: mostly while the PWM is off, as a host should.
     fn timing(&mut self, running: bool) {
         let changes = match running {
             true => self.one_in(4000),
@@ -73,7 +74,7 @@ impl PwmRandom {
             return;
         }
         let any = self.rng.next_u32() as u16;
-        // A period of 0 is one of 65,536 clocks.
+        // A period of 0 means 65,536 clocks.
         let seldom = if self.one_in(4) { 0 } else { 2 };
         let short = match self.is_calm() {
             true => any >> self.rng.random_range(0..9),
@@ -88,7 +89,7 @@ impl PwmRandom {
         self.inputs.dead_time = *pick(&mut self.rng, &[0, 1, 2, 3, some, some, one_bit[0]]);
         self.inputs.minimum_pulse = *pick(&mut self.rng, &[0, 1, 2, some, some, one_bit[1]]);
         if self.one_in(6) {
-            // Room for both sides' minima and nothing more, or a clock either side of it.
+            // The period has room for both sides' minima and nothing more, or one clock less or more.
             let sum = *pick(&mut self.rng, &[32, 33, 40, 64, 135]);
             self.inputs.dead_time = self.rng.random_range(4..28);
             self.inputs.minimum_pulse = sum - self.inputs.dead_time;
@@ -122,8 +123,8 @@ impl PwmRandom {
         }
     }
 
-    /// A position in the period, often shortly before a boundary, so that the longest ends soon. Seldom one beyond the
-    /// period, from where it is a long way to the next valley.
+    /// Returns a position in the period, often shortly before a boundary, so that the longest periods end soon.
+    /// Rarely it is one beyond the period, from where the next valley is far.
     fn position(&mut self) -> u16 {
         let period = self.period_used;
         if self.one_in(30) {
@@ -137,7 +138,7 @@ impl PwmRandom {
     }
 
     fn time_base(&mut self, running: bool) {
-        // A carrier that is off waits at its phase for a sync or two: in peace, as a rule.
+        // A carrier that is off waits at its phase for a sync or two, usually without an interruption.
         if self.one_in(if running { 3000 } else { 900 }) {
             self.inputs.phase = self.position();
         }
@@ -146,7 +147,8 @@ impl PwmRandom {
             self.inputs.trigger_phase = *pick(&mut self.rng, &[0, any, any, self.inputs.period.wrapping_sub(1)]);
         }
         self.since_sync += 1;
-        // In step for long times: every third period, off every one, or sometimes any moment.
+        // The time base stays in step for long times: a sync comes every third period, when off in every period, or
+        // sometimes at any moment.
         let (periods, moment) = if running { (3, 180_000) } else { (1, 1200) };
         let in_step = self.since_sync >= periods * u32::from(self.inputs.period.max(1));
         self.inputs.sync = in_step || self.one_in(moment);
@@ -158,7 +160,7 @@ impl PwmRandom {
         if self.inputs.feed {
             let forgets = self.one_in(if self.is_calm() { 150 } else { 30 });
             self.until_feed = if forgets && self.is_calm() {
-                // Long enough for every bit of the watchdog.
+                // 255 periods exercise every bit of the watchdog.
                 self.inputs.watchdog_periods = 255;
                 20_000
             } else if forgets {
@@ -222,8 +224,8 @@ impl Stimuli for PwmRandom {
     }
 }
 
-/// What must hold at the pins in every clock, whatever comes: never both sides of a leg on; from one side's off to the
-/// other's on, at least the dead time in use.
+/// Checks what must hold at the pins in every clock: both sides of a leg are never on together, and from the turn-off
+/// of one side to the turn-on of the other at least the dead time in use elapses.
 #[derive(Debug, Clone)]
 pub struct GateSafety {
     active_low: [bool; 4],
@@ -231,12 +233,12 @@ pub struct GateSafety {
     /// The last clock in which each gate was on, plus one.
     last_on: [u64; 4],
     was_on: [bool; 4],
-    /// The first violation, in words.
+    /// Description of the first violation.
     violation: Option<String>,
 }
 
 impl GateSafety {
-    /// For pins of these polarities.
+    /// Creates a checker for pins of these polarities.
     pub fn new(active_low: ActiveLow) -> Self {
         Self {
             active_low: [active_low.a_high, active_low.a_low, active_low.b_high, active_low.b_low],
@@ -247,7 +249,7 @@ impl GateSafety {
         }
     }
 
-    /// Adds a clock: the outputs that the device showed.
+    /// Adds a clock, given the device's outputs.
     pub fn observe(&mut self, shown: &[u64]) {
         let (levels, dead_time) = (&shown[..4], shown[15]);
         self.clock += 1;
@@ -275,33 +277,33 @@ impl GateSafety {
         self.was_on = on;
     }
 
-    /// The first clock that was not safe, in words.
+    /// Returns a description of the first violation.
     pub fn violation(&self) -> Option<&str> {
         self.violation.as_deref()
     }
 }
 
-/// How often things happened in a lock step of the PWM, by name.
+/// Counts of the events in a lockstep run of the PWM, by name.
 #[derive(Debug, Clone)]
 pub struct PwmCoverage {
     outputs: Vec<String>,
     before: Vec<u64>,
-    /// Times that each output changed.
+    /// Number of times that each output changed.
     changed: Vec<u64>,
     resets: u64,
-    /// Rising edges of a high side by mode, and starts by mode.
+    /// Number of rising edges of a high side by mode, and of starts by mode.
     pulses: [u64; 4],
     starts: [u64; 4],
-    /// Trips by cause.
+    /// Number of trips by cause.
     trips: [u64; 5],
-    /// Periods with the high side always on, never on.
+    /// Number of periods with the high side always on, and never on.
     full: u64,
     none: u64,
     constant: Option<u64>,
     mode: u64,
     peak_updates: u64,
     off_by_enable: u64,
-    /// Pins: clocks in which the gate is on, and the mask keeps the pin off.
+    /// Per pin, the number of clocks in which the gate is on and the mask keeps the pin off.
     masked: [u64; 4],
     was_masked: bool,
 }
@@ -331,7 +333,7 @@ impl Default for PwmCoverage {
 }
 
 impl PwmCoverage {
-    /// Adds a clock: its inputs and the outputs that the model showed, of a PWM whose pins are all active high.
+    /// Adds a clock, given its inputs and the model's outputs, of a PWM whose pins are all active high.
     pub fn observe(&mut self, inputs: &[u64], shown: &[u64]) {
         let rises = |at: usize| shown[at] != 0 && self.before[at] == 0;
         let mode = (self.mode & 3) as usize;
@@ -349,7 +351,7 @@ impl PwmCoverage {
             *masked += u64::from(self.was_masked) & gates >> gate;
         }
         self.was_masked = inputs[20] != 0;
-        // Before the mask: a period whose pins were masked had its pulse.
+        // The gates are taken before the mask: a period whose pins were masked had its pulse.
         let high = u64::from(gates & 0b0101 != 0);
         if shown[8] != 0 {
             self.full += u64::from(self.constant == Some(1));
@@ -365,7 +367,7 @@ impl PwmCoverage {
         }
     }
 
-    /// What happened how often: changes of every output, and some that take more than one.
+    /// Returns each event's name and count: changes of every output, and some combined events.
     pub fn counts(&self) -> Vec<(&str, u64)> {
         let outputs = self
             .outputs
@@ -398,7 +400,7 @@ impl PwmCoverage {
             .collect()
     }
 
-    /// The least of all counts.
+    /// Returns the smallest of all counts.
     pub fn least(&self) -> u64 {
         self.counts().into_iter().map(|(_, count)| count).min().unwrap_or(0)
     }

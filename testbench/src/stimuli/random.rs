@@ -1,11 +1,12 @@
-//! Seeded random mixtures, weighted so that deep states are reached in a few thousand clocks.
+//! Seeded random mixtures, weighted so that deep states are reached within a few thousand clocks.
 //!
-//! Uniformly random bits would never load a table (its sum must be `2^F`) and would strobe in every second clock. So every
-//! axis runs three small random processes, and strobes come in phases:
+//! Uniformly random bits would never load a table (its sum must be `2^F`) and would strobe in every second clock.
+//! Therefore every axis runs small random processes, and strobes come in phases:
 //!
-//! - *strobes*: as fast as the pass allows, one clock earlier, one later, every clock, at random, long idle;
+//! - *strobes*: as fast as the pass allows, one clock earlier, one later, in every clock, at random, after long idle
+//!   times;
 //! - *commands*: noise, full-scale steps, ramps, constants, reversals;
-//! - *tables*: loaded completely and legally, then swapped in; or with one thing wrong;
+//! - *tables*: loaded completely and correctly, then swapped in; or with one error;
 //! - *read back*: taps of any bank at any time, drawn from a generator of its own;
 //! - *everything else* at a low rate: start, clear, reset, stray writes and swaps.
 
@@ -15,17 +16,17 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::table::{Table, pick};
 use super::{AxisLayout, Layout, Stimuli};
 
-/// When the next strobe comes, relative to the length of a pass.
+/// Time of the next strobe relative to the length of a pass.
 #[derive(Debug, Clone, Copy)]
 enum Pace {
-    /// So many clocks after the pass could end; negative is an overrun.
+    /// The strobe comes this many clocks after the pass could end; a negative number is an overrun.
     Pass(i64),
     EveryClock,
     Random,
     Idle,
 }
 
-/// What the command words do.
+/// Course of the command words.
 #[derive(Debug, Clone, Copy)]
 enum Course {
     Noise,
@@ -35,7 +36,7 @@ enum Course {
     Walk,
 }
 
-/// What an axis does with its tables.
+/// State of an axis's loading of tables.
 #[derive(Debug, Clone, Copy)]
 enum Loading {
     Rest(u32),
@@ -59,11 +60,11 @@ struct AxisState {
     table: Table,
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct Random {
     rng: Xoshiro256PlusPlus,
-    /// Of what a host reads back: what a run reaches does not change with it.
+    /// Generator of the reads by a host, separate so that it does not change what else a run reaches.
     read_back: Xoshiro256PlusPlus,
     layout: Layout,
     axes: Vec<AxisState>,
@@ -77,7 +78,7 @@ pub struct Random {
 }
 
 impl Random {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(layout: &Layout, seed: u64) -> Self {
         let state = |axis: &AxisLayout| AxisState {
             axis: axis.clone(),
@@ -101,12 +102,12 @@ impl Random {
         }
     }
 
-    /// Learns the length of a pass from the slowest axis, and says whether to strobe now.
+    /// Measures the length of a pass from the slowest axis, and returns whether to strobe in this clock.
     fn strobe_now(&mut self, seen: &[u64]) -> bool {
         let busy = self.axes.iter().any(|state| seen[state.axis.busy] != 0);
         self.clocks_since_strobe += 1;
         if self.was_busy && !busy {
-            // Seen one clock late: the first idle clock was the one before.
+            // The outputs are seen one clock late: the first idle clock was the previous one.
             self.pass_clocks = self.clocks_since_strobe.saturating_sub(1).clamp(1, 4096);
         }
         self.was_busy = busy;
@@ -147,7 +148,7 @@ impl Random {
 
 impl Stimuli for Random {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
-        // Inputs that do not count in this clock are noise, so that a block that looks at them is found out.
+        // Inputs that are not read in this clock are noise, so that a block that reads them is found.
         for (at, input) in inputs.iter_mut().enumerate() {
             let read_back = self.axes.iter().any(|state| state.axis.tap_read == at);
             *input = if read_back { 0 } else { self.rng.next_u64() };
@@ -178,8 +179,8 @@ impl AxisState {
         self.load(rng, seen, inputs);
     }
 
-    /// Asks for a tap, and names a place in the clocks in which none is written: near the beginning as a rule, since most
-    /// tables are short.
+    /// Requests a tap, and sets its address in the clocks in which no tap is written: usually near the beginning,
+    /// since most tables are short.
     fn read_back(&self, rng: &mut Xoshiro256PlusPlus, inputs: &mut [u64]) {
         inputs[self.axis.tap_read] = u64::from(one_in(rng, 20));
         let (bank, index) = (rng.random_range(0..4), rng.random_range(0..8));
@@ -221,7 +222,7 @@ impl AxisState {
         self.word = self.word.clamp(-most - 1, most);
     }
 
-    /// One step of loading a table; leaves `tap_write` and `swap` as they are where it has nothing to do.
+    /// Makes one step of loading a table; leaves `tap_write` and `swap` unchanged if there is nothing to do.
     fn load(&mut self, rng: &mut Xoshiro256PlusPlus, seen: &[u64], inputs: &mut [u64]) {
         let axis = &self.axis;
         match &mut self.loading {
@@ -230,12 +231,12 @@ impl AxisState {
                 let size = 1usize << axis.tap_index_bits.min(8);
                 let few = rng.random_range(1..=size.min(6));
                 let count = *pick(rng, &[few, few, few, few, few, few, few, size / 4, size / 2 + 1, size]);
-                // A handover lasts for the longest delay: short tables let it end before something else ends it.
+                // A handover lasts for the longest delay: with short tables it ends before something else ends it.
                 let short = axis.swap_how.is_some() && !one_in(rng, 4);
                 let reach_bits = if short { 3 } else { axis.ring_address_bits };
                 self.table.draw(rng, count, axis.coefficient_fraction, reach_bits);
                 let active = seen[axis.bank];
-                // Mostly the loadable bank that is not in use.
+                // Mostly it is the loadable bank that is not active.
                 let bank = if one_in(rng, 8) {
                     rng.random_range(0..4)
                 } else {

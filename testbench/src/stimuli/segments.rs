@@ -1,5 +1,5 @@
-//! Inputs for the command FIFO, seeded: whole entries and single words, well formed and not; moves that end at rest and
-//! such that do not; ticks at every pace; requests, resets, and stops of every size.
+//! Seeded random inputs for the command FIFO: whole entries and single words, valid and invalid; moves that end at
+//! rest and others; ticks at every pace; requests, resets, and stops of every size.
 
 use posicast_model::rtl::segments::{
     CUBIC, Cubic, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState, TICK_CLOCKS,
@@ -11,10 +11,10 @@ use std::collections::VecDeque;
 use super::Stimuli;
 use super::table::pick;
 
-/// Clocks between changes of the slow inputs.
+/// Number of clocks between changes of the slow inputs.
 const MOOD_CLOCKS: u64 = 6_000;
 
-/// Clocks from tick to tick: too soon, as soon as it may be without a new entry and with one, and later.
+/// Numbers of clocks from tick to tick: too few, the fewest allowed without a new entry and with one, and more.
 const PACES: [u32; 8] = [
     1,
     LATENCY_CLOCKS,
@@ -26,31 +26,32 @@ const PACES: [u32; 8] = [
     100,
 ];
 
-/// Jerks of two moods, from [`OVERFLOW_MOOD`] on: the sums overflow upwards, then downwards. Random ones seldom last so long.
+/// Jerks of the two moods from [`OVERFLOW_MOOD`] on: the sums overflow upwards, then downwards. Random jerks rarely
+/// last long enough.
 const OVERFLOWS: [i64; 2] = [(1 << 39) - 1, -(1 << 39)];
 
-/// Eight random moods come before.
+/// Number of random moods before the first overflow.
 const OVERFLOW_MOOD: u64 = 8;
 
-/// What holds for a while.
+/// Settings that hold for a while.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mood {
-    /// One write in so many clocks.
+    /// One write comes in this many clocks.
     write_pace: u32,
-    /// One tick in about so many clocks.
+    /// One tick comes in about this many clocks.
     tick_pace: u32,
-    /// One request in so many clocks.
+    /// One request comes in this many clocks.
     request_pace: u32,
     enable: bool,
     stop_deceleration: u64,
     low_water: u64,
     modulo: u64,
-    /// Feed hold: never, always, or about every other tick.
+    /// Pace of the feed hold: never, always, or about every other tick.
     hold_pace: u32,
     extrapolation: u64,
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct SegmentsRandom {
     rng: Xoshiro256PlusPlus,
@@ -58,14 +59,14 @@ pub struct SegmentsRandom {
     mood: Mood,
     until_tick: u32,
     feed_hold: bool,
-    /// The next clock asks for a preset.
+    /// Whether the next clock requests a preset.
     presets: bool,
     /// Words to write, as (word, data).
     words: VecDeque<(u64, u64)>,
 }
 
 impl SegmentsRandom {
-    /// Equal seeds give equal inputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -95,14 +96,15 @@ impl SegmentsRandom {
         };
     }
 
-    /// Out of the words of the sums, soon and for certain, and from there a stop with the upper bits of the deceleration.
+    /// Drives the sums out of their words quickly and with certainty, then stops with the upper bits of the
+    /// deceleration.
     fn overflow(&mut self, jerk: i64) {
         self.mood.enable = true;
         (self.mood.modulo, self.mood.hold_pace, self.mood.extrapolation) = (0, 0, 0);
         self.mood.stop_deceleration |= 1 << 30;
         (self.mood.write_pace, self.mood.tick_pace, self.mood.request_pace) = (5, TICK_CLOCKS, 500_000);
         self.words.clear();
-        // What waits and what plays goes: at the next tick, with the first of these.
+        // The queued and the playing entries are discarded at the next tick, which comes with the first of these.
         self.presets = true;
         for _ in 0..8 {
             let motion = EntryMotion::Jerk(jerk);
@@ -128,7 +130,7 @@ impl SegmentsRandom {
         *pick(&mut self.rng, &[few, few, few, 30])
     }
 
-    /// There and back: jerk j, −2·j, j over n ticks each way ends at rest.
+    /// Queues a move there and back: the jerks j, −2·j, j over n ticks each way end at rest.
     fn push_move(&mut self) {
         let (jerk, ticks) = (self.jerk() >> 6, self.ticks());
         for (ticks, jerk) in [(ticks, jerk), (2 * ticks, -jerk), (ticks, jerk)] {
@@ -145,7 +147,7 @@ impl SegmentsRandom {
         let rests = self.rng.random_range(0..2) == 0;
         let mut word = || {
             let any = self.rng.next_u64() as i32;
-            // A byte beside the largest word: what rounds up past the end.
+            // A byte beside the largest word covers what rounds up past the end.
             *pick(&mut self.rng, &[any, any >> 16, any >> 23, i32::MAX, i32::MIN, 0])
         };
         let position = word();
@@ -162,7 +164,7 @@ impl SegmentsRandom {
             notify: rests,
         });
         if self.rng.random_range(0..2) == 0 {
-            // Less than an LSB of the outputs: from the largest word on they would round past their end.
+            // Less than an LSB of the outputs: added to the largest word, it would round past the end.
             let jerk = self.rng.random_range(0..256);
             self.push(&Entry {
                 ticks: 1,
@@ -211,7 +213,7 @@ impl SegmentsRandom {
         }
     }
 
-    /// An entry with one thing wrong.
+    /// Queues an entry with one error.
     fn push_malformed(&mut self) {
         let jerk = self.jerk();
         let good = Entry {
@@ -298,7 +300,7 @@ impl Stimuli for SegmentsRandom {
         let mut request = || u64::from(self.rng.random_range(0..mood.request_pace) == 0);
         let [flush, quick_stop, preset] = [request(), request(), request()];
         let preset = preset | u64::from(std::mem::take(&mut self.presets));
-        // Without it a stop would be the end of most runs.
+        // Without a restart most runs would end at the first stop.
         let restart = u64::from(self.rng.random_range(0..200) == 0);
         *inputs = [
             u64::from(self.clock < 2 || self.rng.random_range(0..20_000) == 0),
@@ -323,7 +325,7 @@ impl Stimuli for SegmentsRandom {
     }
 }
 
-/// What a run reached, in clocks.
+/// Number of clocks in which each event of a run occurred.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SegmentsCoverage {
     counts: [u64; NAMES.len()],
@@ -355,7 +357,7 @@ const NAMES: [&str; 19] = [
 ];
 
 impl SegmentsCoverage {
-    /// One clock's outputs.
+    /// Adds the outputs of a clock.
     pub fn observe(&mut self, outputs: &[u64]) {
         let &[
             _,
@@ -410,12 +412,12 @@ impl SegmentsCoverage {
         (self.state, self.late_ticks) = (state, late_ticks);
     }
 
-    /// The counts, by name.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
         NAMES.into_iter().zip(self.counts)
     }
 
-    /// What was reached least.
+    /// Returns the smallest of all counts.
     pub fn least(&self) -> u64 {
         self.counts.into_iter().min().unwrap_or(0)
     }

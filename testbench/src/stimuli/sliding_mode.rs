@@ -1,6 +1,7 @@
-//! Inputs for the controller, seeded: first the integral wound up to both its ends, then everything at random: motion of
-//! every size and at the ends of each word, gains of every size, arbitrary settings, laws that change at any tick, starts at
-//! the pace of a pass and in any clock, inputs that change during a pass, clears and resets.
+//! Seeded random inputs for the controller: first the integral is wound up to both its ends, then everything is
+//! random: motion of every size and at the ends of each word, gains of every size, arbitrary settings, laws that
+//! change at any tick, starts at the pace of a pass and in any clock, inputs that change during a pass, clears and
+//! resets.
 
 use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, SETTINGS, Saturation, SettingRow, TickMotion, ports};
 use posicast_model::rtl::{Direction, Port};
@@ -10,14 +11,14 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::Stimuli;
 use super::table::pick;
 
-/// Ticks of the largest e until the integral is at an end: from 0, and from the other end.
+/// Number of ticks of the largest e until the integral is at an end: from 0, and from the other end.
 const WIND_UP_TICKS: [u64; 2] = [260, 520];
-/// The limit's address; the other settings are gains.
+/// Address of the limit; the other settings are gains.
 const LIMIT: usize = SettingRow::Limit as usize;
-/// Law that integrates.
+/// Value of `law` with an integral.
 const PID: u8 = 2;
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct SlidingModeRandom {
     rng: Xoshiro256PlusPlus,
@@ -28,15 +29,15 @@ pub struct SlidingModeRandom {
 }
 
 impl SlidingModeRandom {
-    /// Clocks in which the integral is wound up.
+    /// Number of clocks in which the integral is wound up.
     pub const WIND_UP_CLOCKS: u64 = (WIND_UP_TICKS[0] + WIND_UP_TICKS[1]) * (CONTROL_CLOCKS as u64 + 1);
 
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(seed: u64) -> Self {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
         Self {
             inputs: Inputs::default(),
-            // What stands in a memory that nobody wrote.
+            // A memory that nobody has written holds arbitrary words.
             settings: std::array::from_fn(|_| rng.next_u32()),
             rng,
             clock: 0,
@@ -44,7 +45,7 @@ impl SlidingModeRandom {
         }
     }
 
-    /// Without the ticks that wind the integral up: everything at random from the first clock.
+    /// Creates a generator without the ticks that wind the integral up: everything is random from the first clock.
     pub fn without_wind_up(seed: u64) -> Self {
         Self {
             starts: WIND_UP_TICKS[0] + WIND_UP_TICKS[1],
@@ -56,7 +57,7 @@ impl SlidingModeRandom {
         self.rng.random_range(0..clocks) == 0
     }
 
-    /// A word of any size, often at an end.
+    /// Returns a word of any size, often at an end.
     fn word(&mut self) -> i32 {
         let sized = self.rng.next_u32() as i32 >> self.rng.random_range(0..32);
         *pick(
@@ -74,7 +75,7 @@ impl SlidingModeRandom {
         (word & 0x3_ffff) | shift << 18 | (self.rng.next_u32() & 0xff80_0000)
     }
 
-    /// References and measurements: unrelated, or close to each other, or just at the end of e and de.
+    /// Draws references and measurements: unrelated, close to each other, or just at the end of e and de.
     fn motion(&mut self) -> TickMotion {
         let (position, velocity) = (self.word(), self.word());
         let near = self.word() >> self.rng.random_range(0..24);
@@ -93,13 +94,13 @@ impl SlidingModeRandom {
             motion.velocity_reference = self.word();
         }
         if self.one_in(3) {
-            // Where 2^23 counts are not passed, e is the plain difference.
+            // Below 2^23 counts, e is the plain difference.
             motion.position >>= 9;
         }
         motion
     }
 
-    /// What changes from tick to tick.
+    /// Draws the inputs that change from tick to tick.
     fn tick(&mut self) {
         self.starts += 1;
         self.inputs.law = self.rng.random_range(0..4);
@@ -108,17 +109,17 @@ impl SlidingModeRandom {
         self.inputs.set_motion(motion);
         if self.one_in(3) {
             self.settings = std::array::from_fn(|address| self.any_setting(address));
-            // A limit that some commands pass.
+            // Some commands exceed the limit.
             self.settings[LIMIT] >>= self.rng.random_range(0..16);
         }
-        // Gains of one: what comes in at an end goes out at an end.
+        // With gains of one, an input at an end gives an output at an end.
         if self.one_in(4) {
             let row = self.rng.random_range(0..SETTINGS);
             self.settings[row] = 0x1_ffff | self.rng.random_range(0..18) << 18;
         }
     }
 
-    /// The largest e on one side, and half the integral as the command: its ends show, and nothing cuts it.
+    /// Applies the largest e of one sign with half the integral as the command: its ends show, and nothing limits it.
     fn wind_up(&mut self) {
         self.starts += 1;
         let high = self.starts <= WIND_UP_TICKS[0];
@@ -150,14 +151,14 @@ impl Stimuli for SlidingModeRandom {
             }
             self.inputs.start |= self.one_in(2000);
             self.inputs.rst |= self.one_in(30_000);
-            // Often where the integral's next value is under way.
+            // The clear often comes while the integral's next value is under way.
             let clears = if address == Some(LIMIT as u64) { 150 } else { 5000 };
             self.inputs.clear_integral = self.one_in(clears);
             if self.one_in(500) {
                 let motion = self.motion();
                 self.inputs.set_motion(motion);
             }
-            // Any word, but for the limit: its step works with it for some clocks.
+            // Any setting may change except the limit, which its step uses for some clocks.
             if self.one_in(300) && address != Some(LIMIT as u64) {
                 self.inputs.setting = self.rng.next_u32();
             }
@@ -172,20 +173,20 @@ impl Stimuli for SlidingModeRandom {
     }
 }
 
-/// How often things happened in a lock step of the controller: by name.
+/// Counts of the events in a lockstep run of the controller, by name.
 #[derive(Debug, Clone)]
 pub struct SlidingModeCoverage {
     outputs: Vec<String>,
     before: Vec<u64>,
-    /// Times that each output changed.
+    /// Number of times that each output changed.
     changed: Vec<u64>,
-    /// Times that each flag of the upper and the lower side rose.
+    /// Number of times that each flag of the upper and the lower side rose.
     rose: [[u64; 7]; 2],
-    /// Passes of each value of `law`.
+    /// Number of passes with each value of `law`.
     laws: [u64; 4],
     modulo: u64,
     resets: u64,
-    /// PID, cut: with an e of either sign on either side.
+    /// Number of limited outputs of the PID, with an e of either sign at either limit.
     against_limit: [u64; 4],
     law: usize,
 }
@@ -209,7 +210,7 @@ impl Default for SlidingModeCoverage {
 }
 
 impl SlidingModeCoverage {
-    /// Adds a clock: its inputs and the outputs that the model showed.
+    /// Adds a clock, given its inputs and the model's outputs.
     pub fn observe(&mut self, inputs: &[u64], shown: &[u64]) {
         let (&[rst, start, law, modulo, ..], &[_, error, _, _, _, valid, busy, high, low, ..]) = (inputs, shown) else {
             return;
@@ -234,7 +235,7 @@ impl SlidingModeCoverage {
         }
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> Vec<(String, u64)> {
         use Saturation::{Command, Duty, Error, ErrorRate, Feedback, Integral, Sliding};
         let outputs = self.outputs.iter().cloned().zip(self.changed.iter().copied());

@@ -1,28 +1,30 @@
-//! Random tap tables that the hardware must accept: sum `2^F`, every coefficient within 18 bits and not zero.
+//! Random tap tables that the hardware must accept: the sum is `2^F`, and every coefficient fits into 18 bits and is
+//! not zero.
 
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
 use rand::{Rng, RngExt};
 
-/// Taps as they are written, in order of index. Kept between loads, so that a load does not allocate.
+/// Taps in the order in which they are written. The memory is kept between loads, so that a load does not allocate.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Table {
     pub(super) taps: Vec<(i32, u64)>,
 }
 
 impl Table {
-    /// Room for the longest table.
+    /// Creates an empty table with room for the longest table.
     pub(super) fn with_capacity(taps: usize) -> Self {
         Self {
             taps: Vec::with_capacity(taps),
         }
     }
 
-    /// A new table of `count` taps with increasing delays below 2^`ring_address_bits` − 1, as far as they go.
+    /// Draws a new table of `count` taps with increasing delays below 2^`ring_address_bits` − 1, as far as these
+    /// suffice.
     pub(super) fn draw(&mut self, rng: &mut impl Rng, count: usize, fraction: u32, ring_address_bits: u32) {
         let one = 1 << fraction;
         let longest = (1u64 << ring_address_bits) - 2;
         let count = count.clamp(1, longest as usize);
-        // Coefficients of the size of one make large swings: these reach saturation.
+        // Coefficients of about one make large swings, which reach saturation.
         let swing = *pick(rng, &[one / count as i32 + 1, one, COEFFICIENT_MAX]);
         let step = longest / count as u64;
         loop {
@@ -33,7 +35,7 @@ impl Table {
                 let coefficient = if last {
                     rest
                 } else {
-                    // What is left must stay within reach of the last tap.
+                    // The rest must stay within reach of the last tap.
                     let low = (rest - COEFFICIENT_MAX).max(-swing).max(COEFFICIENT_MIN);
                     let high = (rest - COEFFICIENT_MIN).min(swing).min(COEFFICIENT_MAX);
                     match rng.random_range(low..=high.max(low)) {
@@ -57,7 +59,7 @@ impl Table {
     }
 }
 
-/// One of the choices, all equally likely. `choices` is not empty.
+/// Returns one of the choices, all equally likely. `choices` must not be empty.
 pub(super) fn pick<'a, T>(rng: &mut impl Rng, choices: &'a [T]) -> &'a T {
     &choices[rng.random_range(0..choices.len())]
 }

@@ -1,5 +1,6 @@
-//! Inputs for the trace memory, seeded: every mode of the trigger, every number of signals, strobes at every pace, signals
-//! that wander about the level; arms and halts in every state, settings that change meanwhile, all addresses read.
+//! Seeded random inputs for the trace memory: every trigger mode, every number of signals, strobes at every pace,
+//! signals that wander around the level; arms and halts in every state, settings that change meanwhile, reads of all
+//! addresses.
 
 use posicast_model::rtl::trace::{Inputs, ROW_SIGNALS, TraceConfig, TraceState, row_clocks};
 use rand::{Rng, RngExt, SeedableRng};
@@ -12,36 +13,36 @@ use crate::lockstep::Clock;
 /// Distance of the strobes.
 #[derive(Debug, Clone, Copy)]
 enum Pace {
-    /// As fast as rows can be taken, and so many clocks later.
+    /// Strobes come as fast as rows can be taken, plus this many clocks.
     Row(u32),
-    /// One clock earlier: every second strobe is missed.
+    /// Strobes come one clock earlier: every second strobe is missed.
     TooFast,
     EveryClock,
-    /// In about so many clocks.
+    /// One strobe comes in about this many clocks.
     Random(u32),
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct TraceRandom {
     rng: Xoshiro256PlusPlus,
     config: TraceConfig,
     clock: u64,
-    /// Clocks until another mood.
+    /// Number of clocks until the next mood.
     mood_clocks: u32,
     pace: Pace,
     until_strobe: u32,
-    /// One halt in about so many clocks.
+    /// One halt comes in about this many clocks.
     halt_pace: u32,
-    /// One `arm` in about so many clocks while a trace is being taken.
+    /// One `arm` comes in about this many clocks while a trace is being taken.
     arm_pace: u32,
-    /// Signals change in every clock, not with the strobe only.
+    /// Whether signals change in every clock, not only with the strobe.
     noisy: bool,
     now: Inputs,
 }
 
 impl TraceRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(config: &TraceConfig, seed: u64) -> Self {
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -82,7 +83,7 @@ impl TraceRandom {
         }
     }
 
-    /// Another value for one of the settings.
+    /// Changes one of the settings.
     fn change(&mut self, setting: u32) {
         let rng = &mut self.rng;
         let any = rng.next_u64();
@@ -120,7 +121,7 @@ impl TraceRandom {
         true
     }
 
-    /// Signals wander in small steps, and at times are anywhere.
+    /// Moves the signals in small steps, and now and then to any value.
     fn move_signals(&mut self) {
         for signal in &mut self.now.signal {
             let any = self.rng.next_u64();
@@ -135,7 +136,7 @@ impl TraceRandom {
     }
 }
 
-/// Settings that [`TraceRandom::change`] knows.
+/// Number of settings that [`TraceRandom::change`] knows.
 const SETTINGS: u32 = 7;
 
 impl Stimuli for TraceRandom {
@@ -155,7 +156,7 @@ impl Stimuli for TraceRandom {
         let is_idle = seen.get(1) == Some(&(TraceState::Idle as u64));
         let samples = self.config.samples();
         let rng = &mut self.rng;
-        // Time enough to read it all, mostly.
+        // There is mostly enough time to read everything.
         let arm_pace = if is_idle { 2 * samples } else { self.arm_pace };
         self.now.read_address = match rng.random_range(0..samples) {
             0 => rng.random_range(0..2048),
@@ -176,7 +177,7 @@ impl Stimuli for TraceRandom {
     }
 }
 
-/// How often things happened in a lock step of the trace memory.
+/// Counts of the events in a lockstep run of the trace memory.
 #[derive(Debug, Clone)]
 pub struct TraceCoverage {
     config: TraceConfig,
@@ -185,7 +186,7 @@ pub struct TraceCoverage {
     state: u64,
 }
 
-/// What is counted.
+/// Names of the counted events.
 const NAMES: [&str; 22] = [
     "idle",
     "filling",
@@ -212,7 +213,7 @@ const NAMES: [&str; 22] = [
 ];
 
 impl TraceCoverage {
-    /// Nothing counted yet.
+    /// Creates counters at zero.
     pub fn new(config: &TraceConfig) -> Self {
         Self {
             config: *config,
@@ -266,7 +267,7 @@ impl TraceCoverage {
         }
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
         NAMES.into_iter().zip(self.counts)
     }

@@ -1,19 +1,19 @@
-//! Where built simulations are kept, and how old ones go.
+//! The cache of built simulations, and the removal of old ones.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
-/// A simulation that was not used for so long is removed: it is built again when it is needed.
+/// A simulation that was not used for this long is removed, and built again when it is needed.
 const KEPT: Duration = DAY.saturating_mul(30);
-/// A folder in which nobody has built for so long was left by a process that was killed.
+/// A build folder that was not changed for this long was left by a process that was killed.
 const ABANDONED: Duration = DAY;
 
 /// Prefix of the folders in which simulations are built.
 pub(super) const BUILD_PREFIX: &str = "build-";
 
-/// The folder: `$POSICAST_CACHE`, else the user's cache folder, else the temporary one.
+/// Path of the cache: `$POSICAST_CACHE`, else the user's cache folder, else the temporary one.
 pub(super) fn folder() -> PathBuf {
     let variable = |name| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     variable("POSICAST_CACHE")
@@ -22,12 +22,12 @@ pub(super) fn folder() -> PathBuf {
         .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
 }
 
-/// Whether the simulation is there; if so, it counts as used now.
+/// Returns whether the simulation is there; if so, it counts as used now.
 pub(super) fn holds(object: &Path) -> bool {
     if !object.is_file() {
         return false;
     }
-    // Where this fails, the file only counts as older than it is.
+    // If this fails, the file only counts as older than it is.
     let _ = File::options()
         .append(true)
         .open(object)
@@ -35,7 +35,7 @@ pub(super) fn holds(object: &Path) -> bool {
     true
 }
 
-/// Removes what is old. Failures do not matter: another process may be doing the same.
+/// Removes old entries. Failures do not matter: another process may be doing the same.
 pub(super) fn tidy(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();

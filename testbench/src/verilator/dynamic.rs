@@ -1,9 +1,9 @@
 //! The one file with `unsafe`: loads the shared object that Verilator and the C++ compiler built, and calls it.
 //!
 //! Why it is sound: the object is built from our own harness (`harness.rs`), whose functions have exactly the types
-//! below; its content hash is its name, so an object of another harness is never loaded. C++ exceptions do not leave the
-//! harness. The buffers' lengths are checked here before every call against the numbers of ports for which the harness
-//! was made. The simulation is freed before the library that holds its code is unloaded.
+//! below; its content hash is its name, so an object of another harness is never loaded. C++ exceptions do not leave
+//! the harness. The buffers' lengths are checked here before every call against the numbers of ports for which the
+//! harness was made. The simulation is freed before the library with its code is unloaded.
 #![allow(unsafe_code)] // dlopen and calls through the C interface have no safe form
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -28,24 +28,26 @@ pub(super) struct Simulation {
     run: Run,
     free: Free,
     message: Message,
-    /// Of a simulation that was built to count.
+    /// Function of a simulation that was built to count.
     coverage: Option<WriteCoverage>,
     inputs: usize,
     outputs: usize,
-    // Last, so that the code outlives the state.
+    // This field comes last, so that the code outlives the state.
     _library: Library,
 }
 
 impl Simulation {
-    /// Loads `object`, which was built for so many inputs and outputs, and starts it at random by `seed`.
+    /// Loads `object`, which was built for this many inputs and outputs, and starts it with a random state from
+    /// `seed`.
     pub(super) fn load(object: &Path, seed: u64, inputs: usize, outputs: usize) -> Result<Self, Error> {
         let refuse = |reason: String| Error::Load {
             path: object.to_owned(),
             reason,
         };
-        // Verilator takes 31 bits, and 0 as "choose one yourself".
+        // Verilator takes 31 bits; 0 means that it chooses a seed itself.
         let seed = ((seed ^ (seed >> 32)) as u32 & 0x7fff_fffe) | 1;
-        // SAFETY: the object's initialisers are those of Verilator's runtime library; types as the module doc says.
+        // SAFETY: the object's initialisers are those of Verilator's runtime library; the types are as the module doc
+        // says.
         let (library, new, free, message, run, coverage) = unsafe {
             let library = Library::new(object).map_err(|cause| refuse(cause.to_string()))?;
             let missing = |cause: libloading::Error| refuse(cause.to_string());
@@ -71,7 +73,7 @@ impl Simulation {
         })
     }
 
-    /// As many clocks as there are rows.
+    /// Simulates as many clocks as there are rows.
     pub(super) fn run(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
         let clocks = match (
             inputs.len().checked_div(self.inputs),
@@ -103,14 +105,14 @@ impl Simulation {
         if failed == 0 {
             return Ok(());
         }
-        // SAFETY: a string that ends in 0 and lives until the next call.
+        // SAFETY: the result is a string that ends in 0 and lives until the next call.
         let message = unsafe { CStr::from_ptr((self.message)(self.state.as_ptr())) };
         Err(StepError(format!("Verilator: {}", message.to_string_lossy())))
     }
 }
 
 impl Simulation {
-    /// Writes what was counted since the start into the file `path`, in Verilator's format.
+    /// Writes the counts since the start into the file `path`, in Verilator's format.
     pub(super) fn write_coverage(&mut self, path: &Path) -> Result<(), StepError> {
         let name = CString::new(path.as_os_str().as_encoded_bytes());
         let (Some(write), Ok(name)) = (self.coverage, name) else {
@@ -126,7 +128,7 @@ impl Simulation {
 
 impl Drop for Simulation {
     fn drop(&mut self) {
-        // SAFETY: made by this library's `posicast_new`, freed once.
+        // SAFETY: the state was made by this library's `posicast_new`, and is freed once.
         unsafe { (self.free)(self.state.as_ptr()) }
     }
 }

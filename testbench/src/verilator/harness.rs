@@ -1,7 +1,7 @@
 //! The C++ between Verilator's class and our C interface, and the check that the class has the expected ports.
 //!
-//! The ports are read from the class's header: Verilator writes each as `VL_IN8(&name,msb,lsb);`. That is exact in bits,
-//! where the C++ types are not, and it names the member also where the name had to be changed for C++.
+//! The ports are read from the class's header, where Verilator writes each as `VL_IN8(&name,msb,lsb);`. Unlike the
+//! C++ types this is exact in bits, and it names the member even where the name had to be changed for C++.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use crate::Error;
 /// Name of the class that Verilator writes.
 pub(super) const CLASS: &str = "Vdevice";
 
-/// Included before everything: the simulation's own output goes to standard error, for standard output is ours.
+/// Included first: the simulation's own output goes to standard error, because standard output is ours.
 pub(super) const PRINT: &str = r#"#include <cstdio>
 #define VL_PRINTF(...) std::fprintf(stderr, __VA_ARGS__)
 #define VL_USER_FATAL
@@ -38,7 +38,7 @@ static std::string place(const char* file, int line) {
 }
 void vl_finish(const char* file, int line, const char*) { stopped = "the Verilog called $finish" + place(file, line); }
 void vl_stop(const char* file, int line, const char*) { stopped = "the Verilog called $stop" + place(file, line); }
-// Thrown, because Verilator's loops go on where this returns.
+// This throws, because Verilator's loops continue if it returns.
 void vl_fatal(const char* file, int line, const char*, const char* message) {
     throw std::runtime_error(std::string(message ? message : "fatal error") + place(file, line));
 }
@@ -92,7 +92,7 @@ EXPORT int posicast_run(Simulation* simulation, const uint64_t* in, uint64_t* ou
 int main() { return 0; }
 "#;
 
-/// Put behind the harness of a simulation that counts what its Verilog did.
+/// Appended to the harness of a simulation that counts what its Verilog does.
 pub(super) const COVERAGE: &str = r#"
 #include "verilated_cov.h"
 
@@ -113,7 +113,7 @@ pub(super) struct Declared {
     member: String,
     /// Name in the Verilog.
     name: String,
-    /// `None` for `inout`.
+    /// Direction; `None` for `inout`.
     direction: Option<Direction>,
     width: u64,
 }
@@ -163,7 +163,7 @@ fn verilog_name(member: &str) -> String {
     name + rest
 }
 
-/// The C++ member of each port in the order of `source.ports`; an error that lists all that differs.
+/// The C++ member of each port in the order of `source.ports`; the error lists all differences.
 pub(super) fn members(source: &VerilogSource<'_>, declared: &[Declared]) -> Result<Vec<String>, Error> {
     let mut problems = Vec::new();
     let mut members = Vec::with_capacity(source.ports.len());

@@ -1,16 +1,16 @@
-//! Verilog into a running simulation: Verilator, a generated C++ harness, a shared object, `dlopen`.
+//! Turns Verilog into a running simulation: Verilator, a generated C++ harness, a shared object, `dlopen`.
 //!
 //! ```text
 //!  files, top, ports ─► sha256 ─► in the cache? ──yes──────────────────────────┐
 //!                                   └─no─► verilator --cc ─► ports compared ─► make ─► rename into the cache ─► load
 //! ```
 //!
-//! - **Cache.** One shared object per content of the sources, ports, harness, Verilator version and flags, in
-//!   `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It is built
-//!   in a folder of its own and renamed when complete, so that parallel builds never see half a file. What was not used
-//!   for 30 days is removed. Verilator's own C++ is compiled once and kept there too.
-//! - **Random start.** Registers without a reset value and memories start at random, by the seed: what works only
-//!   because a simulator zeroes its memory does not work here.
+//! - **Cache.** There is one shared object per content of the sources, ports, harness, Verilator version and flags,
+//!   in `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It
+//!   is built in a folder of its own and renamed when complete, so that parallel builds never see half a file. An
+//!   object that was not used for 30 days is removed. Verilator's own C++ is compiled once and kept there too.
+//! - **Random start.** Registers without a reset value and memories start with random contents, by the seed: a block
+//!   that works only because a simulator clears its memory fails here.
 //! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
 //! - **Time.** A step sets `clk` low, applies the inputs, settles, reads the outputs, and sets `clk` high.
 //! - `$display` goes to standard error; `$finish`, `$stop` and a loop that does not settle are a [`StepError`].
@@ -39,7 +39,7 @@ const VERILATOR: Tool = Tool {
 const MAKE: Tool = Tool {
     name: "make",
     variable: "MAKE",
-    purpose: "it compiles what Verilator writes",
+    purpose: "it compiles Verilator's output",
     remedy: "Install it together with a C++ compiler (Debian: apt-get install make g++)",
 };
 /// `-O2` is 1.6 times as fast as Verilator's default `-Os`, for the same build time.
@@ -60,21 +60,22 @@ const FLAGS: [&str; 12] = [
     "-shared -Wl,-Bsymbolic",
 ];
 
-/// More of them, for a simulation that counts lines and toggles. Buses of more bits than that are not counted.
+/// Additional flags for a simulation that counts lines and toggles. Buses with more bits than given here are not
+/// counted.
 const COVERAGE_FLAGS: [&str; 4] = ["--coverage-line", "--coverage-toggle", "--coverage-max-width", "1024"];
 
-/// What is to be simulated.
+/// Verilog to simulate.
 #[derive(Debug, Clone)]
 pub struct VerilogSource<'a> {
     /// The Verilog files, in any order.
     pub files: &'a [PathBuf],
     /// Name of the top module; it has a port `clk`.
     pub top: &'a str,
-    /// All other ports. The Verilog must have exactly these.
+    /// All other ports, which must be exactly those of the Verilog.
     pub ports: &'a [Port],
 }
 
-/// A Verilog module that runs.
+/// A simulated Verilog module.
 #[derive(Debug)]
 pub struct Verilated {
     ports: Vec<Port>,
@@ -91,18 +92,19 @@ impl Verilated {
         Self::build_in(&cache::folder(), source, seed)
     }
 
-    /// As [`Verilated::build`], and counts what its lines and nets do: some times slower.
+    /// Builds the module as [`Verilated::build`] does, with counters for its lines and nets; it is several times
+    /// slower.
     ///
     /// # Errors
-    /// As [`Verilated::build`].
+    /// Those of [`Verilated::build`].
     pub fn counting(source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
         Self::build_with(&cache::folder(), source, seed, true)
     }
 
-    /// The same with a cache folder of the caller's choice.
+    /// Builds the module with another cache folder.
     ///
     /// # Errors
-    /// As [`Verilated::build`].
+    /// Those of [`Verilated::build`].
     pub fn build_in(cache: &Path, source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
         Self::build_with(cache, source, seed, false)
     }
@@ -123,18 +125,18 @@ impl Verilated {
         })
     }
 
-    /// Many clocks at once: `inputs` and `outputs` hold one row per clock, one after the other.
+    /// Simulates many clocks at once: `inputs` and `outputs` have one row per clock, one after the other.
     ///
     /// # Errors
-    /// [`StepError`] where the Verilog stops the simulation, or if the lengths are not whole, equal numbers of rows.
+    /// [`StepError`] where the Verilog stops the simulation, or if the lengths are not equal numbers of whole rows.
     pub fn run(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
         self.simulation.run(inputs, outputs)
     }
 
-    /// Writes what was counted since the start into a file, in the format of `verilator_coverage`.
+    /// Writes the counts since the start into a file, in the format of `verilator_coverage`.
     ///
     /// # Errors
-    /// [`StepError`] where it was not built by [`Verilated::counting`], or the file cannot be written.
+    /// [`StepError`] if it was not built by [`Verilated::counting`], or the file cannot be written.
     pub fn write_coverage(&mut self, path: &Path) -> Result<(), StepError> {
         self.simulation.write_coverage(path)
     }
@@ -150,7 +152,7 @@ impl ClockedBlock for Verilated {
     }
 }
 
-/// What Verilator's `--lint-only -Wall` has to say about the files: nothing, where the list is empty.
+/// The warnings of Verilator's `--lint-only -Wall` about the files; an empty list if there are none.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Verilator.
@@ -165,10 +167,10 @@ pub fn lint(files: &[PathBuf], top: &str) -> Result<Vec<String>, Error> {
     Ok(said)
 }
 
-/// Version line of the Verilator in use. Asked once per process.
+/// Version line of the installed Verilator, which is determined once per process.
 ///
 /// # Errors
-/// [`Error::ToolMissing`] without Verilator: the cheap way to know before a long job.
+/// [`Error::ToolMissing`] without Verilator, which is a cheap check before a long job.
 pub fn version() -> Result<&'static str, Error> {
     static VERSION: OnceLock<String> = OnceLock::new();
     if let Some(version) = VERSION.get() {
@@ -213,7 +215,7 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     VERILATOR.run(&mut verilate, "translating the Verilog")?;
 
     let header = work.path().join(format!("{}.h", harness::CLASS));
-    let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read what Verilator wrote"))?;
+    let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read Verilator's output"))?;
     let members = harness::members(source, &harness::declared_ports(&header))?;
     let coverage = if counts { harness::COVERAGE } else { "" };
     write(
@@ -225,7 +227,7 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     let mut make = MAKE.command_in(work.path());
     make.args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
         .args(MAKE_FLAGS);
-    // Inherited from a make that runs us: would change flags, or claim job slots that are not ours.
+    // A make that runs this process may have set these; they would change flags, or claim its job slots.
     make.env_remove("MAKEFLAGS")
         .env_remove("MAKELEVEL")
         .env_remove("MFLAGS");
@@ -243,7 +245,7 @@ fn coverage_flags(counts: bool) -> &'static [&'static str] {
     if counts { &COVERAGE_FLAGS } else { &[] }
 }
 
-/// Hash of all that the shared object depends on.
+/// Hash of everything on which the shared object depends.
 fn content_hash(source: &VerilogSource<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str, counts: bool) -> String {
     let mut hash = ContentHash::of_tools(version, counts);
     hash.add(harness::TEMPLATE.as_bytes());
@@ -261,7 +263,7 @@ fn content_hash(source: &VerilogSource<'_>, contents: &[(PathBuf, Vec<u8>)], ver
     hash.text()
 }
 
-/// Hash of all that Verilator's own objects depend on.
+/// Hash of everything on which Verilator's own objects depend.
 fn runtime_hash(version: &str, counts: bool) -> String {
     ContentHash::of_tools(version, counts).text()
 }
@@ -269,7 +271,7 @@ fn runtime_hash(version: &str, counts: bool) -> String {
 struct ContentHash(Sha256);
 
 impl ContentHash {
-    /// Of version, flags, and what every C++ file includes.
+    /// Hashes version, flags, and the file that every C++ file includes.
     fn of_tools(version: &str, counts: bool) -> Self {
         let mut hash = Self(Sha256::new());
         hash.add(version.as_bytes());
@@ -280,7 +282,7 @@ impl ContentHash {
         hash
     }
 
-    /// The length goes in, so that no two inputs run into each other.
+    /// The length is hashed too, so that inputs cannot run into each other.
     fn add(&mut self, bytes: &[u8]) {
         self.0.update((bytes.len() as u64).to_le_bytes());
         self.0.update(bytes);

@@ -1,6 +1,6 @@
-//! Verilator's own C++, which is the same in every simulation: compiled once, then lent by the cache.
+//! Verilator's own C++, which is the same in every simulation: it is compiled once and taken from the cache.
 //!
-//! `verilated.cpp` and its kin take longer to compile than a small block does.
+//! Compiling `verilated.cpp` and its companions takes longer than compiling a small block.
 
 use std::fs;
 use std::io;
@@ -13,7 +13,7 @@ pub(super) struct Runtime {
 }
 
 impl Runtime {
-    /// Those in a cache folder. The key stands for all that they depend on.
+    /// The objects in a cache folder. The key represents everything on which they depend.
     pub(super) fn new(folder: &Path, key: &str) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -21,10 +21,10 @@ impl Runtime {
         }
     }
 
-    /// Puts the objects that are there into a folder to build in, where `make` finds them newer than their sources.
+    /// Copies the existing objects into a build folder, where `make` finds them newer than their sources.
     pub(super) fn lend(&self, work: &Path) {
         for (name, path) in objects(&self.folder, &self.prefix) {
-            // Without it, `make` compiles the object again.
+            // If the copy fails, `make` compiles the object again.
             let _ = fs::copy(&path, work.join(name));
             super::cache::holds(&path);
         }
@@ -45,7 +45,7 @@ impl Runtime {
     }
 }
 
-/// Object files whose names begin so: the rest of the name, and the path.
+/// Object files whose names have this prefix: the rest of the name, and the path.
 fn objects(folder: &Path, prefix: &str) -> Vec<(String, PathBuf)> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries

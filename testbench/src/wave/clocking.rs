@@ -5,10 +5,11 @@ use wavecmp::unit::unit_for;
 
 use crate::Error;
 
-/// Half a nanohertz-second in femtoseconds: half a period in femtoseconds is this by the clock in nanohertz.
+/// Half a second in units of femtosecond-nanohertz: divided by the clock in nanohertz it gives half a period in
+/// femtoseconds.
 const HALF_FS_NANOHERTZ: u128 = 500_000_000_000_000_000_000_000;
 
-/// A clock on the grid of a unit.
+/// A clock on the grid of a unit of time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clocking {
     /// Unit of the `$timescale`; the number before it is 1.
@@ -18,7 +19,7 @@ pub(super) struct Clocking {
 }
 
 impl Clocking {
-    /// The coarsest unit in which half a period is whole; femtoseconds where there is none.
+    /// Finds the coarsest unit in which half a period is a whole number; femtoseconds if there is none.
     pub(super) fn new(clock_hz: f64) -> Result<Self, Error> {
         let half_fs = 0.5e15 / clock_hz;
         if !(clock_hz > 0.0 && (1.0..=5e17).contains(&half_fs)) {
@@ -39,9 +40,10 @@ impl Clocking {
         })
     }
 
-    /// Times of the rising edge with which clock `clock` begins, and of the falling edge in its middle.
+    /// Returns the times of the rising edge with which clock `clock` begins, and of the falling edge in its middle.
     ///
-    /// Each is rounded by itself: a half period that is no whole number of femtoseconds adds no error clock by clock.
+    /// Each is rounded separately, so that a half period that is not a whole number of femtoseconds does not
+    /// accumulate an error.
     pub(super) fn edges(&self, clock: u64) -> Result<(u64, u64), Error> {
         let halves = u128::from(clock) * 2;
         match (self.time(halves), self.time(halves + 1)) {
@@ -52,7 +54,7 @@ impl Clocking {
         }
     }
 
-    /// The time half a period before clock `clock` begins; 0 for the first clock.
+    /// Returns the time half a period before clock `clock` begins; 0 for the first clock.
     pub(super) fn before(&self, clock: u64) -> Result<u64, Error> {
         Ok(clock
             .checked_sub(1)

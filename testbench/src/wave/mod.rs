@@ -1,4 +1,4 @@
-//! Writes waveforms: one VCD per run. [`merge`] makes one that shows several side by side.
+//! Writes waveforms: one VCD per run. [`merge`] writes one that shows several side by side.
 //!
 //! ```text
 //!            ┌─ step 0 ─┐┌─ step 1 ─┐┌─ step 2 ─┐
@@ -6,12 +6,14 @@
 //!  y         <  of 0    ><  of 1    ><  of 2    >      and changes with the edge before it, as registers do
 //! ```
 //!
-//! - Files are written to a temporary name beside their own and renamed when complete; a run that fails leaves nothing.
-//! - Memory does not grow with the length: only the latest value of each signal is kept, only changes are written.
+//! - Files are written under a temporary name beside their own and renamed when complete; a run that fails leaves
+//!   none.
+//! - Memory does not grow with the length: only the latest value of each signal is kept, and only changes are
+//!   written.
 //! - The timescale is one second divided by a power of 1000: the coarsest in which half a clock period is a whole number, down
 //!   to femtoseconds.
-//! - Clocks in which nothing happens can be [left out](Recorder::skip_to), with all times true. The file then says so: `clk` is
-//!   `x` there, and a signal `recording` is 0.
+//! - Clocks without changes can be [left out](Recorder::skip_to), with all times correct. The file shows this: `clk`
+//!   is `x` there, and a signal `recording` is 0.
 //!
 //! ```text
 //!  clk        ‾\_/‾\_/‾\_xxxxxxxxxxxxxxxxxxxxxx_/‾\_/‾\_     one row each time that clk rises
@@ -41,7 +43,7 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// A vector.
+    /// Creates a vector.
     pub fn bits(name: &str, width: u32) -> Self {
         Self {
             name: name.to_owned(),
@@ -49,7 +51,7 @@ impl Signal {
         }
     }
 
-    /// A real number.
+    /// Creates a real number.
     pub fn real(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -58,12 +60,12 @@ impl Signal {
     }
 }
 
-/// What a file says beside its signals.
+/// Contents of a file apart from its signals.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Heading<'a> {
-    /// Name of the clock; empty: `clk`.
+    /// Name of the clock; `clk` if empty.
     pub clock: &'a str,
-    /// A `$comment` at the top; empty: none.
+    /// Text of a `$comment` at the top; none if empty.
     pub comment: &'a str,
     /// Whether clocks may be [left out](Recorder::skip_to): the file then has the signal `recording`.
     pub gaps: bool,
@@ -86,9 +88,9 @@ pub struct Recorder {
     clocking: Clocking,
     signals: Vec<Recorded>,
     clocks: u64,
-    /// Nothing was written yet.
+    /// Whether nothing has been written yet.
     is_new: bool,
-    /// The clock of the row before is left out.
+    /// Whether the clock of the previous row was left out.
     behind_gap: bool,
 }
 
@@ -102,7 +104,7 @@ impl Recorder {
         Self::create_with(path, clock_hz, scope, signals, &Heading::default())
     }
 
-    /// As [`Recorder::create`], with a heading of one's own.
+    /// Like [`Recorder::create`], with a given heading.
     ///
     /// # Errors
     /// As [`Recorder::create`].
@@ -119,7 +121,7 @@ impl Recorder {
         for name in names.chain([clock_name]) {
             if name.is_empty() || !name.bytes().all(|b| b.is_ascii_graphic()) {
                 return Err(Error::Option(format!(
-                    "`{name}` is no name for a waveform: use letters, digits and _"
+                    "`{name}` is not a valid name in a waveform: use letters, digits and _"
                 )));
             }
         }
@@ -229,8 +231,8 @@ impl Recorder {
         Ok(())
     }
 
-    /// Leaves out all clocks before clock `clock`, counted from the beginning of the file: nothing may change in them, and what
-    /// is recorded next is clock `clock`. Nothing happens where that is the next clock anyway.
+    /// Leaves out all clocks before clock `clock`, counted from the beginning of the file: nothing may change in
+    /// them, and the next recorded clock is `clock`. If that is the next clock anyway, nothing happens.
     ///
     /// # Errors
     /// [`Error::Option`] for a clock that was recorded before, and where the file has no signal `recording`

@@ -1,4 +1,4 @@
-//! A VCD that appears under its name only when it is complete.
+//! Writes a VCD that appears under its name only when it is complete.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -11,18 +11,18 @@ use wavecmp::merge::{DifferenceSignal, MergePart};
 
 use crate::Error;
 
-/// How a signal is written.
+/// The type of a signal's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SignalKind {
-    /// A vector of so many bits, 1..=64.
+    /// A vector of this many bits, 1..=64.
     Bits(u32),
-    /// A real number; its value is handed over as [`f64::to_bits`].
+    /// A real number; its value is passed as [`f64::to_bits`].
     Real,
 }
 
 pub(super) type Vcd = Writer<BufWriter<Draft>>;
 
-/// The writer, with the file that it will become.
+/// The writer and the file that it writes.
 pub(super) struct Output {
     path: PathBuf,
     vcd: Vcd,
@@ -59,7 +59,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
     output::write_text(path, text).map_err(Error::file(path, "write"))
 }
 
-/// Files with posicast's seal, complete or not at all.
+/// Writes files with posicast's seal, complete or not at all.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SealedFiles;
 
@@ -75,7 +75,7 @@ impl OutputSink for SealedFiles {
     }
 }
 
-/// Several waveforms side by side in `path`, with posicast's seal ([`wavecmp::merge::merge`]).
+/// Merges several waveforms side by side into `path`, with posicast's seal ([`wavecmp::merge::merge`]).
 ///
 /// # Errors
 /// [`Error::Wave`] for a part that cannot be read, a difference that names no signal, or a file that cannot be written.
@@ -83,7 +83,8 @@ pub fn merge(path: &Path, parts: &[MergePart<'_>], differences: &[DifferenceSign
     Ok(wavecmp::merge::merge(&SealedFiles, path, parts, differences)?)
 }
 
-/// Writes one change. Reals with an exponent: written out, the large ones are longer than readers take.
+/// Writes one change. Reals are written with an exponent, because large ones written out are longer than readers
+/// accept.
 pub(super) fn change(vcd: &mut Vcd, id: IdCode, kind: SignalKind, value: u64) -> io::Result<()> {
     match kind {
         SignalKind::Bits(1) => vcd.change_scalar(id, value & 1 == 1),

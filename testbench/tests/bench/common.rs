@@ -14,7 +14,7 @@ pub(crate) fn port(name: &str, direction: Direction, width: u32, signed: bool) -
     }
 }
 
-/// Adds signed steps; `moving` is combinational.
+/// A counter that adds signed steps; `moving` is combinational.
 pub(crate) const COUNTER: &str = "
 module counter(
     input wire clk, input wire rst, input wire strobe,
@@ -71,7 +71,7 @@ impl ClockedBlock for Counter {
     }
 }
 
-/// A memory without reset: reads what was never written.
+/// A memory without reset, which reads cells that were never written.
 pub(crate) const MEMORY: &str = "
 module memory(input wire clk, input wire write, input wire [3:0] address, input wire [63:0] data, output wire [63:0] q);
     reg [63:0] words [0:15];
@@ -97,7 +97,7 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// The file is named after the first module, as lint wants it.
+    /// Writes the Verilog; the file is named after the first module, as lint requires.
     pub(crate) fn new(verilog: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let name = verilog

@@ -1,4 +1,4 @@
-//! Lock step on hand-written Verilog: what it must find, and how it says so.
+//! Lockstep runs on hand-written Verilog: the errors that they must find, and their reports.
 
 use crate::bench::common::{COUNTER, Counter, Files, counter_ports};
 use posicast_model::rtl::{ClockedBlock, Port};
@@ -8,7 +8,7 @@ use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Device, Instance, LockstepOptions, SideBySide, TwoValued};
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 
-/// Reset in the first two clocks, then steps of `clock mod 7 − 3`.
+/// Resets in the first two clocks, then gives the steps `clock mod 7 − 3`.
 fn steps() -> impl FnMut(&[u64], &mut [u64]) {
     let mut clock = 0i64;
     move |_: &[u64], inputs: &mut [u64]| {
@@ -55,7 +55,7 @@ fn lockstep_equal_verilog_matches() {
 
 #[test]
 fn lockstep_catches_one_wrong_bit_and_shows_the_clocks_around_it() {
-    // The sign extension is cut: wrong from the first negative step on.
+    // Without the sign extension, the result is wrong from the first negative step on.
     let report = against(&mut verilated(&COUNTER.replace("{23{a__step[8]}}", "{23{1'b0}}")), 1000);
     assert_eq!(report.result, LockstepVerdict::Mismatch);
     let first = report.blocks[0].first.as_ref().unwrap();
@@ -64,7 +64,7 @@ fn lockstep_catches_one_wrong_bit_and_shows_the_clocks_around_it() {
     assert_eq!(first.actual, "00000000000000000000001000000010");
     let text = first.to_string();
     let expected = "\
-first mismatch in clock 10: `count` is 514 (0x00000202), the model says 2 (0x00000002)
+first mismatch in clock 10: `count` is 514 (0x00000202), the model has 2 (0x00000002)
 clock           4  5  6   7   8   9    10    11    12    13    14    15     16
 rst             0  0  0   0   0   0     0     0     0     0     0     0      0
 strobe          0  0  1   0   0   1     0     0     1     0     0     1      0
@@ -165,7 +165,7 @@ fn lockstep_joined_models_share_reset_and_strobe() {
     ];
     assert_eq!(names, expected);
 
-    // The Verilog has the axes the other way round: ports meet by name.
+    // The Verilog has the axes in another order: ports are matched by name.
     let top = format!(
         "{COUNTER}
         module top(input wire clk, input wire rst, input wire strobe,

@@ -187,7 +187,7 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
             scope.spawn(move || same_as_model(&mut Verilated::build_in(&files.cache(), source, seed).unwrap(), 100));
         }
     });
-    // A file that was built anew would be another one under the same name.
+    // A file that was built again would be another one under the same name.
     let kept = |extension: &str| -> Vec<(PathBuf, u64)> {
         let entries = std::fs::read_dir(files.cache()).unwrap().map(Result::unwrap);
         let entries = entries.map(|entry| (entry.path(), entry.metadata().unwrap().ino()));
@@ -207,7 +207,7 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
     };
     build_another("32'd1").unwrap();
     assert_eq!(kept("so").len(), 2);
-    // Verilator's own C++ is not compiled again: its objects are taken as they are.
+    // Verilator's own C++ is not compiled again: its objects are reused.
     let runtime = kept("o");
     assert!(!runtime.is_empty());
     for (object, _) in &runtime {

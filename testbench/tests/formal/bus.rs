@@ -1,4 +1,4 @@
-//! What the bus writes: registers, commits, settings.
+//! The blocks that the bus writes: registers, commits, settings.
 
 use crate::formal::{fails, proven};
 

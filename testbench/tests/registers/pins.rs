@@ -1,7 +1,7 @@
 //! What must hold at the pins of a PWM or of a stage's axis in every clock, whatever the traffic is.
 //!
-//! Never both sides of a leg on, and the dead time between them; no gate on in a clock of a raw fault; with the drive
-//! disabled no gate on, and the brake applied.
+//! Both sides of a leg are never on, and the dead time is between them; no gate is on in a clock of a raw fault; with
+//! the drive disabled no gate is on, and the brake is applied.
 
 use posicast_model::rtl::pwm::ActiveLow;
 use posicast_model::rtl::{Direction, Port};
@@ -21,7 +21,7 @@ pub(crate) struct Pins {
 }
 
 impl Pins {
-    /// All of a block with these ports whose gates are active high.
+    /// Returns all pins of a block with these ports whose gates are active high.
     pub(crate) fn of(ports: &[Port], dead_time: u64) -> Vec<Self> {
         let place = |direction, name: &str| {
             let mut names = ports.iter().filter(|port| port.direction == direction);
@@ -54,7 +54,7 @@ impl Pins {
         for (gate, at) in shown.iter_mut().zip(self.gates) {
             *gate = clock.actual[at];
         }
-        // Where `GateSafety` finds the dead time.
+        // `GateSafety` reads the dead time here.
         shown[15] = self.dead_time;
         self.safety.observe(&shown);
         let on = shown[..4].iter().any(|gate| *gate != 0);
@@ -68,7 +68,7 @@ impl Pins {
             if !enabled && clock.actual[brake] != 0 {
                 broken.push("the brake released with the drive disabled");
             }
-            // The gates' register is behind the enable's.
+            // The gates' register comes after that of the enable.
             if on && self.disabled_clocks > 1 {
                 broken.push("a gate on with the drive disabled");
             }
@@ -82,7 +82,7 @@ impl Pins {
         self.violation.as_deref().or(self.safety.violation())
     }
 
-    /// Whether a gate is on.
+    /// Returns whether a gate is on.
     pub(crate) fn is_on(&self, clock: &Clock<'_>) -> bool {
         self.gates.iter().any(|at| clock.actual[*at] != 0)
     }

@@ -1,11 +1,11 @@
-//! Large files such as Verilator writes: a clock, counters, accumulators, flags; about seven changes at a time and 26 bytes
-//! a change.
+//! Writes large files like those of Verilator: a clock, counters, accumulators, flags; about seven changes at a time
+//! and 26 bytes per change.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Widths of the signals beside the clock.
+/// Widths of the signals other than the clock.
 const WIDTHS: [u32; 100] = {
     let mut widths = [1; 100];
     let mut at = 0;
@@ -23,7 +23,7 @@ const WIDTHS: [u32; 100] = {
 };
 const CHANGES_PER_CLOCK: u64 = 13;
 
-/// Writes at least `bytes` of it; with `flip`, one bit is another near the end. Returns what it is, for people.
+/// Writes at least `bytes` bytes; with `flip`, one bit differs near the end. Returns a description of the file.
 pub(crate) fn write(path: &Path, bytes: u64, flip: bool) -> io::Result<String> {
     let mut out = Counting {
         inner: BufWriter::with_capacity(1 << 20, File::create(path)?),

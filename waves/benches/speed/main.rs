@@ -1,4 +1,4 @@
-//! Speed and memory of `wavecmp` on two large files, beside a probe on the crate `wellen` that loads them.
+//! Speed and memory of `wavecmp` on two large files, compared with a probe on the crate `wellen` that loads them.
 //!
 //! ```sh
 //! cargo bench -p wavecmp --bench speed                       # two files of 500 MB
@@ -7,8 +7,8 @@
 //! cargo bench -p wavecmp --bench speed -- --files A B        # two files that are there
 //! ```
 //!
-//! The files differ in one bit near their end. Each run is a process of its own, so that its peak memory (`VmHWM`) is its
-//! own; both read files that are in the system's cache.
+//! The files differ in one bit near their end. Each run is a separate process, so that its peak memory (`VmHWM`) can
+//! be measured; both read files that are in the system's cache.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::panic)] // a bench stops where it fails
 
 mod generator;
@@ -91,7 +91,7 @@ fn run(how: &str, a: &Path, b: &Path) {
     println!("{seconds} {}", peak_megabytes());
 }
 
-/// Largest resident memory of this process so far, as Linux tells it.
+/// Returns the largest resident memory of this process so far, as Linux reports it.
 fn peak_megabytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));

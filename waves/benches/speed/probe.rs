@@ -1,4 +1,4 @@
-//! What a few lines over `wellen` do: load both files, then compare each signal's changes.
+//! A simple comparison with `wellen`: it loads both files, then compares each signal's changes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,7 +21,7 @@ fn load(path: &Path) -> Loaded {
     (wave, names)
 }
 
-/// Whether any signal that both files have has other changes, or at other times.
+/// Returns whether any signal that both files have has different changes, or changes at different times.
 pub(crate) fn differs(a: &Path, b: &Path) -> bool {
     let (a, b): (Loaded, Loaded) = std::thread::scope(|scope| {
         let b = scope.spawn(|| load(b));

@@ -1,4 +1,5 @@
-//! Any bytes as a VCD or an FST: an error or a result, and a file never differs from itself.
+//! Reads arbitrary bytes as a VCD or an FST: this must give an error or a result, and a file must never differ from
+//! itself.
 #![no_main]
 
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! The clock and the reset among the pairs.
+//! Finds the clock and the reset among the pairs.
 
 use std::collections::BTreeMap;
 
@@ -9,24 +9,24 @@ use crate::WaveError;
 use crate::wording::counted;
 
 const CLOCKS: [&str; 2] = ["clk", "clock"];
-/// Name of a clock that rises once a sample: not to be taken for that of the hardware.
+/// Name of a clock that rises once per sample; it must not be mistaken for the clock of the hardware.
 pub const SAMPLE_CLOCK: &str = "sample_clk";
 const RESETS: [&str; 4] = ["rst", "reset", "arst", "areset"];
 
-/// A one-bit pair: its slots in both files.
+/// Slots of a one-bit pair in both files.
 pub(super) type Slots = [u32; 2];
 
-/// What samples, and from when on.
+/// The signals that define the samples, and their beginning.
 pub(super) struct Clocking {
     pub(super) clock: Option<Slots>,
-    /// The reset and its value while it is on.
+    /// The reset and its active value.
     pub(super) reset: Option<(Slots, bool)>,
-    /// How they were found, or why not.
+    /// How clock and reset were found, or why not.
     pub(super) notes: Vec<String>,
 }
 
 impl Clocking {
-    /// `fits` says whether a pair has one bit in both files.
+    /// Finds them. `fits` tells whether a pair has one bit in both files.
     pub(super) fn find(
         matched: &Matched,
         options: &DiffOptions,
@@ -61,7 +61,7 @@ impl Clocking {
             clocking.find_reset(matched, options, &fits)?;
         } else if let Reset::Named { name, .. } = &options.reset {
             return Err(WaveError::Option(format!(
-                "--reset {name}: there is no clock; name it with --clock"
+                "--reset {name}: no clock; name it with --clock"
             )));
         }
         Ok(clocking)
@@ -109,7 +109,7 @@ impl Clocking {
     }
 }
 
-/// The pairs with such a name, in lower case without scopes. Several names of one signal are one candidate.
+/// Returns the pairs with such a name, in lower case without scopes. Several names of one signal are one candidate.
 fn candidates(
     matched: &Matched,
     fits: &impl Fn(&Pair) -> bool,
@@ -149,7 +149,7 @@ fn named(
         format!("{option} {name}: it must be one bit wide in both files, and have a partner in the second")
     } else {
         format!(
-            "{option} {name}: that may be {}; give the full name",
+            "{option} {name}: it may mean {}; give the full name",
             names.join(" or ")
         )
     }))

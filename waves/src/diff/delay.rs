@@ -1,14 +1,15 @@
-//! Holds values back for so many samples, or so much time.
+//! Delays values by a number of samples, or by a time.
 
 use std::collections::VecDeque;
 
-/// Values that come into effect later. Its unit is what the caller counts in: samples or femtoseconds.
+/// Values that take effect later. Times are in the unit in which the caller counts: samples or femtoseconds.
 #[derive(Debug)]
 pub(super) struct DelayLine {
     pub(super) by: u128,
-    /// Slot whose value is delayed, and the slot that shows it.
+    /// Slot whose value is delayed, and the slot that shows the delayed value.
     pub(super) slots: Vec<(u32, u32)>,
-    /// Places in `slots` that changed since the last [`super::side::Side::pend`], and for each whether it is among them.
+    /// Indices in `slots` that changed since the last [`super::side::Side::pend`], and for each index whether it is
+    /// in the list.
     pub(super) changed: Vec<u32>,
     pub(super) is_changed: Vec<bool>,
     pub(super) queue: VecDeque<(u128, u32)>,

@@ -1,7 +1,7 @@
 //! Compares what changed, at the samples or at every change.
 //!
-//! The cost of a sample is the number of signals that changed since the last one: a pair that did not change stays as
-//! equal or as different as it was, and its count is added up when that ends.
+//! The cost of a sample is the number of signals that changed since the previous one: a pair that did not change
+//! stays as equal or as different as it was, and its count is added when that state ends.
 
 use super::clocking::Slots;
 use super::gather::Gathering;
@@ -17,14 +17,14 @@ use crate::reader::{Kind, Value, Values};
 
 const PROGRESS_SAMPLES: u64 = 1 << 14;
 
-/// How far a comparison has come.
+/// Progress of a comparison.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Progress {
-    /// Samples compared.
+    /// Number of samples compared.
     pub samples: u64,
-    /// Bytes read, of both files.
+    /// Number of bytes read from both files.
     pub bytes: u64,
-    /// Length of both files; `None` where one is a pipe.
+    /// Length of both files in bytes; `None` if one is a pipe.
     pub total_bytes: Option<u64>,
 }
 
@@ -37,12 +37,12 @@ pub(super) struct First {
     pub(super) b_number: Option<f64>,
 }
 
-/// What a comparison of words needs, close together.
+/// Data that the comparison of words needs, close together in memory.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hot {
     pub(super) a: Option<u32>,
     pub(super) b: Option<u32>,
-    /// Two words on either side, equal if they are.
+    /// Whether the two values are equal exactly if their words are equal.
     plain: bool,
     different: bool,
 }
@@ -51,7 +51,7 @@ pub(super) struct Hot {
 pub(super) struct State {
     pub(super) name: String,
     pub(super) rule: Rule,
-    /// Sample and time since which it differs, with what it then was.
+    /// Sample and time since which the pair differs, and its values then.
     pub(super) since: Option<(u64, First)>,
     pub(super) count: u64,
     pub(super) first: Option<First>,
@@ -66,16 +66,16 @@ pub(super) struct Engine<'a> {
     options: &'a DiffOptions,
     pub(super) samples: u64,
     total_bytes: Option<u64>,
-    /// A value per pair, as it was when the pair was equal last; until the first difference.
+    /// Values per pair when the pair was last equal; kept until the first difference.
     pub(super) before: Option<(Values, u128)>,
     pub(super) context: Option<Gathering>,
     /// Edges of the clock that the other file does not have.
     pub(super) surplus: Option<Difference>,
-    /// First time at which paired edges lie at different times.
+    /// First time at which paired edges are at different times.
     pub(super) shifted_fs: Option<u128>,
-    /// Samples that one file does not record.
+    /// Number of samples that one file does not record.
     pub(super) unrecorded: u64,
-    /// Differences that did not last as long as the time tolerance.
+    /// Number of differences that did not last longer than the time tolerance.
     pub(super) forgiven: u64,
 }
 
@@ -133,7 +133,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// These pairs are not compared before a delayed value has arrived.
+    /// Excludes these pairs from the comparison until a delayed value has arrived.
     pub(super) fn wait_for(&mut self, pairs: impl Iterator<Item = u32>) {
         for pair in pairs {
             self.touched.waiting[pair as usize] = true;
@@ -189,7 +189,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// After a stretch that one file does not record, edges meet by their time, as far apart as they were before.
+    /// After a period that one file does not record, pairs edges by their time, with the same offset as before.
     fn meet_again(
         &mut self,
         mut a: ClockEdge,
@@ -197,7 +197,7 @@ impl<'a> Engine<'a> {
         last: Option<[u128; 2]>,
         period_fs: u128,
     ) -> Result<(Option<ClockEdge>, Option<ClockEdge>), WaveError> {
-        // In a common time: each file's own, plus where the other stood at the last common edge.
+        // The times are compared in a common scale: each file's own time relative to its last common edge.
         let [last_a, last_b] = last.unwrap_or_default();
         loop {
             let (time_a, time_b) = (a.time_fs + last_b, b.time_fs + last_a);
@@ -212,13 +212,14 @@ impl<'a> Engine<'a> {
             };
             match behind.0.next_edge(&mut self.touched)? {
                 Some(edge) => *behind.1 = edge,
-                // The rest of the other file has no partner that could have been recorded.
+                // The remaining edges of the other file have no partner that could have been recorded.
                 None => return Ok((None, None)),
             }
         }
     }
 
-    /// One file has more edges than the other: a difference of the clock, from the first edge that is alone.
+    /// Counts a difference of the clock if one file has more edges than the other, from the first edge without a
+    /// partner.
     fn count_surplus(&mut self, clock: Slots, edge: ClockEdge, of_a: bool) -> Result<(), WaveError> {
         let within = |edge: ClockEdge| self.options.end_fs.is_none_or(|end| edge.time_fs <= end);
         if !within(edge) {
@@ -257,7 +258,7 @@ impl<'a> Engine<'a> {
         self.b.start()?;
         let glitch_fs = self.options.glitch_fs;
         while let Some(time) = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min() {
-            // With a glitch filter, a value comes into effect when it has lasted; it began before.
+            // With a glitch filter, a value takes effect when it has lasted long enough; it began before.
             let began = time.saturating_sub(glitch_fs);
             if self.options.end_fs.is_some_and(|end| began > end) {
                 return Ok(());
@@ -324,7 +325,7 @@ impl<'a> Engine<'a> {
         for at in ended {
             self.end(at as usize, time_fs);
         }
-        // In the order of the file, so that the report does not depend on the order of the changes.
+        // They are in the order of the file, so that the report does not depend on the order of the changes.
         diverged.sort_unstable();
         for at in &diverged {
             self.begin(*at as usize, time_fs);
@@ -378,7 +379,8 @@ impl<'a> Engine<'a> {
         state.first.get_or_insert(first);
     }
 
-    /// Notes what stands around the first divergence of all: the last equal sample, itself, and some behind it.
+    /// Collects the values around the first divergence of all: the last equal sample, the diverging one, and some
+    /// after it.
     fn gather(&mut self, diverged: &[u32], time_fs: u128) {
         if self.context.is_none() && !diverged.is_empty() {
             let of = |at: usize| (self.states[at].name.clone(), self.states[at].rule.reading());

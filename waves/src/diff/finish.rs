@@ -1,15 +1,15 @@
-//! What the engine found, as the result.
+//! Converts the engine's findings into the result.
 
 use super::engine::Engine;
 use super::result::{Comparison, Difference, seconds};
 use crate::wording::{counted, time};
 
 impl Engine<'_> {
-    /// Writes what was found into the result.
+    /// Writes the findings into the result.
     pub(super) fn finish(self, comparison: &mut Comparison) {
         let mut differences: Vec<(u128, Difference)> = Vec::new();
         for state in self.states {
-            // What differs at the end of the files has no end that could forgive it.
+            // A difference at the end of the files has no end within the tolerance.
             let persistent = state.since.is_some();
             let since = state.since.as_ref().map_or(0, |(since, _)| self.samples - since);
             let Some(first) = state.first.or(state.since.map(|(_, first)| first)) else {
@@ -28,7 +28,7 @@ impl Engine<'_> {
             };
             differences.push((first.time_fs, difference));
         }
-        // Stable: signals that differ first at the same time stay in the order of the file.
+        // The sort is stable: signals with the same first time stay in the order of the file.
         differences.sort_by_key(|(time_fs, _)| *time_fs);
         let mut differences: Vec<Difference> = differences.into_iter().map(|(_, difference)| difference).collect();
         differences.extend(self.surplus);

@@ -1,17 +1,18 @@
-//! Values as people read them: a number in its format, a wide word as a decimal number, a narrow one in hexadecimal.
+//! Formats values for people: a number in its format, a wide word as a decimal number, a narrow one in hexadecimal.
 
 use super::{Shown, View};
 
-/// Words from this width on are numbers to people, narrower ones are codes and flags.
+/// Words with at least this width are shown as numbers; narrower ones are codes and flags.
 const NUMBER_BITS: usize = 16;
-/// The widest word that is still a number.
+/// Width of the widest word that is shown as a number.
 const MOST_NUMBER_BITS: usize = 64;
-/// Fraction bits up to which a number is written with all its decimals; with more, with as many as tell two numbers apart.
+/// Largest number of fraction bits for which a number is written with all its decimals; with more fraction bits, it
+/// gets as many decimals as distinguish two numbers.
 const EXACT_FRACTION: u32 = 8;
-/// Fraction bits beyond which a number is written as a power of ten.
+/// Number of fraction bits above which a number is written as a power of ten.
 const MOST_FRACTION: u32 = 40;
 
-/// A value in a few characters, the bits read as `view` says.
+/// Returns a value in a few characters, with the bits read by `view`.
 pub fn value(shown: &Shown, view: View) -> String {
     match shown {
         Shown::Bits(digits) => bits(digits, view),
@@ -21,7 +22,7 @@ pub fn value(shown: &Shown, view: View) -> String {
     }
 }
 
-/// The same with the hexadecimal digits behind it, where it is written as a number.
+/// Like [`value`], followed by the hexadecimal digits if it is written as a number.
 pub fn value_and_digits(shown: &Shown, view: View) -> String {
     let text = value(shown, view);
     match shown {
@@ -44,7 +45,8 @@ fn bits(digits: &str, view: View) -> String {
     number.unwrap_or_else(|| hexadecimal(digits))
 }
 
-/// Binary digits as a number with so many bits behind the point; `None` with unknown bits, and beyond 127 bits.
+/// Converts binary digits to a number with this many bits after the point; `None` with unknown bits, and beyond 127
+/// bits.
 fn number(digits: &str, signed: bool, fraction: u32) -> Option<String> {
     if digits.len() > 127 {
         return None;
@@ -70,7 +72,8 @@ fn number(digits: &str, signed: bool, fraction: u32) -> Option<String> {
     Some(format!("{sign}{above}.{below:0width$}", width = decimals as usize))
 }
 
-/// Binary digits as hexadecimal ones; `x` or `z` for four unknown bits, `X` where only some of them are.
+/// Converts binary digits to hexadecimal ones; `x` or `z` stands for four unknown bits, `X` if only some of them are
+/// unknown.
 fn hexadecimal(digits: &str) -> String {
     let bytes = digits.as_bytes();
     let groups = bytes.rchunks(4).rev().map(|group| {

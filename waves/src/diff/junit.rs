@@ -1,4 +1,4 @@
-//! The result of a comparison as JUnit XML, which test servers read: a test case per signal.
+//! The result of a comparison as JUnit XML, which test servers read: one test case per signal.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use super::human::value_and_digits;
 use super::{Comparison, DiffVerdict, Difference};
 use crate::wording::counted;
 
-/// The document. `name` is that of the suite, such as the two files' names.
+/// Returns the document. `name` is the name of the suite, such as the two files' names.
 pub fn junit(comparison: &Comparison, name: &str) -> String {
     let by_signal: HashMap<&str, &Difference> = comparison.differences.iter().map(|d| (d.signal.as_str(), d)).collect();
     let alone: Vec<&String> = comparison.only_in_a.iter().chain(&comparison.only_in_b).collect();
@@ -67,7 +67,7 @@ pub fn junit(comparison: &Comparison, name: &str) -> String {
     text
 }
 
-/// Text as XML has it; control characters, which XML 1.0 cannot hold, as U+FFFD.
+/// Escapes a text for XML; control characters, which XML 1.0 does not permit, become U+FFFD.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

@@ -8,24 +8,27 @@
 //! ```
 //!
 //! # Rules
-//! - **Names.** Maps first. Then full names; if nothing has the same full name, the scopes that all signals of a file share
-//!   are stripped, as few as give the most pairs. What is still alone meets by its canonical name (`a$b`, `a__b`, `A.B`),
-//!   where there is one candidate. A vector that one file writes bit by bit meets the whole of the other.
+//! - **Names.** Maps come first, then full names. If no full names match, the scopes that all signals of a file share
+//!   are stripped, as few as give the most pairs. Signals still without a partner are matched by their canonical name
+//!   (`a$b`, `a__b`, `A.B`), if there is one candidate. A vector that one file writes bit by bit is matched with the
+//!   whole vector of the other.
 //! - **Partners.** A signal without a partner is listed, never silently left out; with [`DiffOptions::require_all`] it is a
 //!   difference.
-//! - **Clock.** With a clock, values are those just before its edge, so that registers of both sides compare the same
-//!   whether their file shows changes at the edge or after it. Edges are paired by their number behind the release of
-//!   reset, not by their time; that the times differ is a note, that the numbers differ is a difference of the clock.
-//! - **Recording.** What one file does not record (`$dumpoff`) is not compared; behind it, edges meet by time again.
-//! - **Unknown bits.** By [`UnknownPolicy`]. A signal without a value yet is `x`.
-//! - **Widths.** The narrower is extended with zeros, as VCD does; with its sign in a signed view. The result names both widths,
-//!   and is then not exact.
-//! - **Tolerance.** See [`Tolerance`]; without a [`View`], bits are then signed numbers. A real against a vector is compared
-//!   as number, exactly if there is no tolerance. A tolerance for all signals leaves single bits and text alone.
-//! - **Nothing compared** is `incomparable`: no common signal beside the clock, or no sample.
+//! - **Clock.** With a clock, values are those just before its edge, so that registers of both sides compare equal
+//!   whether their file shows changes at the edge or after it. Edges are paired by their number after the release of
+//!   the reset, not by their time; different times give a note, different numbers a difference of the clock.
+//! - **Recording.** Times that one file does not record (`$dumpoff`) are not compared; after them, edges are paired
+//!   by time again.
+//! - **Unknown bits.** They are compared by [`UnknownPolicy`]. A signal without a value yet is `x`.
+//! - **Widths.** The narrower value is extended with zeros, as in VCD; in a signed view, with its sign. The result
+//!   names both widths, and is then not exact.
+//! - **Tolerance.** See [`Tolerance`]; without a [`View`], bits are then signed numbers. A real and a vector are
+//!   compared as numbers, exactly if there is no tolerance. A tolerance for all signals does not apply to single bits
+//!   and text.
+//! - **Nothing compared.** The result is `incomparable` if there is no common signal except the clock, or no sample.
 //!
-//! Both files are read once and at the same time; memory depends on the number of signals and their widths, not on the
-//! length. Only [`show`] reads them again, when it is asked for.
+//! Both files are read once and at the same time; memory depends on the number of signals and their widths, not on
+//! the length. Only [`show`] reads them again, on request.
 
 mod clocking;
 mod delay;
@@ -113,12 +116,12 @@ pub fn compare(
     Ok(comparison)
 }
 
-/// What belongs together, and how it is compared.
+/// The pairs, and how they are compared.
 struct Plan {
     names: [Names; 2],
     matched: Matched,
     clocking: Clocking,
-    /// Of each pair.
+    /// The rule of each pair.
     rules: Vec<Rule>,
     latencies: Vec<Option<Latency>>,
 }
@@ -190,7 +193,7 @@ impl Plan {
                 Some(Latency::Samples(by)) => i128::from(by),
                 Some(Latency::Femtoseconds(by)) => by,
             };
-            // What comes later in the second file is held back in the first.
+            // If the second file is late, the first is delayed, and vice versa.
             let by_abs = by.unsigned_abs();
             delays[usize::from(by < 0)].push(Delayed { by: by_abs, pair });
         }
@@ -229,7 +232,7 @@ impl Plan {
     }
 }
 
-/// Of each pair of vectors their widths, where they differ.
+/// Returns the widths of each pair of vectors, if they differ.
 fn widths(matched: &Matched, [a, b]: &[Wave; 2]) -> Vec<Option<[u32; 2]>> {
     let width = |wave: &Wave, slot: Option<u32>| match wave.declarations.kinds[slot? as usize] {
         Kind::Bits(width) => Some(width),
@@ -239,7 +242,7 @@ fn widths(matched: &Matched, [a, b]: &[Wave; 2]) -> Vec<Option<[u32; 2]>> {
     matched.pairs.iter().map(widths).collect()
 }
 
-/// The rule of each pair. `kinds` gives those of its two signals.
+/// Returns the rule of each pair. `kinds` returns those of its two signals.
 fn rules(
     matched: &Matched,
     options: &DiffOptions,

@@ -1,6 +1,7 @@
-//! The names of a file as they are compared: below the root, filtered, and with vectors that are written bit by bit.
+//! The names of a file for the comparison: below the root, filtered, with vectors assembled that are written bit by
+//! bit.
 //!
-//! Producers write one name in many ways. Where exact names do not meet, [`canonical`] ones may:
+//! Producers write the same name in different ways. If exact names do not match, [`canonical`] ones may:
 //!
 //! | written | by | canonical |
 //! |---|---|---|
@@ -22,16 +23,17 @@ pub(super) struct Entry {
     /// Full name.
     pub(super) full: String,
     pub(super) slot: u32,
-    /// Place in [`Names::groups`], if it is put together from parts.
+    /// Index in [`Names::groups`], if it is assembled from parts.
     pub(super) group: Option<usize>,
 }
 
-/// A vector put together from signals that are its parts.
+/// A vector assembled from signals that are its parts.
 #[derive(Debug, Clone)]
 pub(super) struct Group {
-    /// Slot of the whole, behind those of the file.
+    /// Slot of the whole vector, after those of the file.
     pub(super) slot: u32,
-    /// Slot of each part, its width, and the place of its last digit, with index 0 or the lowest as least significant bit.
+    /// Slot of each part, its width, and the position of its last digit, where index 0 or the lowest index is the
+    /// least significant bit.
     pub(super) parts: Vec<(u32, u32, u32)>,
 }
 
@@ -42,13 +44,13 @@ pub(super) struct Names {
     pub(super) groups: Vec<Group>,
 }
 
-/// Which names of a file take part.
+/// Selection of the names of a file that take part.
 pub(super) struct Filter {
     only: Vec<Pattern>,
     ignore: Vec<Pattern>,
 }
 
-/// Whether it is the signal, or a scope above it.
+/// Returns whether the pattern means the signal, or a scope above it.
 fn takes(pattern: &Pattern, path: &str) -> bool {
     let mut scopes = path.match_indices('.').map(|(at, _)| &path[..at]);
     pattern.fits(path) || (!pattern.has_wildcards() && scopes.any(|scope| pattern.fits(scope)))
@@ -78,8 +80,8 @@ impl Filter {
 }
 
 impl Names {
-    /// Takes the names below `root` that pass the filter, and gives each vector that is there only in parts a slot of its
-    /// own, behind those of the file.
+    /// Takes the names below `root` that pass the filter, and gives each vector that exists only in parts a slot of
+    /// its own, after those of the file.
     pub(super) fn new(
         declarations: &mut Declarations,
         root: Option<&str>,
@@ -96,7 +98,7 @@ impl Names {
         for (at, named) in declarations.names.iter().enumerate() {
             let Some(path) = below(&named.path) else { continue };
             known = true;
-            // A part goes by the name of the whole, too.
+            // A part also goes by the name of the whole vector.
             let whole = named.part.as_ref().and_then(|(vector, _)| below(vector));
             if filter.takes(&path) && whole.as_ref().is_none_or(|whole| filter.keeps(whole))
                 || whole.is_some_and(|whole| filter.takes(&whole) && filter.keeps(&path))
@@ -117,7 +119,7 @@ impl Names {
         for (at, mut path) in taken {
             let named = &declarations.names[at];
             let mut full = named.path.clone();
-            // The first part of a vector has the name of the whole.
+            // The first part of a vector has the name of the whole vector.
             if let Some((vector, range)) = &named.part
                 && *vector == full
                 && vectors.contains_key(vector)
@@ -147,14 +149,14 @@ impl Names {
         Ok(names)
     }
 
-    /// The slots of the parts of these groups.
+    /// Returns the slots of the parts of these groups.
     pub(super) fn parts_of(&self, groups: &HashSet<usize>) -> HashSet<u32> {
         let groups = groups.iter().filter_map(|at| self.groups.get(*at));
         groups.flat_map(|group| group.parts.iter().map(|part| part.0)).collect()
     }
 }
 
-/// The whole of parts that lie side by side without a gap.
+/// Assembles a vector of parts that lie side by side without a gap.
 fn group(declarations: &mut Declarations, members: &[usize]) -> Option<Group> {
     let mut parts = Vec::new();
     for at in members {
@@ -176,7 +178,7 @@ fn group(declarations: &mut Declarations, members: &[usize]) -> Option<Group> {
         at = at.checked_add(width)?;
     }
     let width = at;
-    // The parts were counted already; the whole counts again, within the same limit.
+    // The parts were counted already; the whole vector counts again, within the same limit.
     declarations.kinds.push(Kind::Bits(width));
     Some(Group {
         slot: declarations.kinds.len() as u32 - 1,
@@ -184,7 +186,7 @@ fn group(declarations: &mut Declarations, members: &[usize]) -> Option<Group> {
     })
 }
 
-/// One writing for all; see the module doc.
+/// Returns the common form of a name; see the module documentation.
 pub(super) fn canonical(path: &str) -> String {
     let path = path.to_ascii_lowercase();
     let plain = path
@@ -204,7 +206,7 @@ pub(super) fn last_part(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// Whether a reset's name says that it is on while 0.
+/// Returns whether a reset's name indicates that it is active low.
 pub(super) fn is_low_active(name: &str) -> bool {
     let name = last_part(name).to_ascii_lowercase();
     name.ends_with("_n") || name.ends_with("resetn") || name.ends_with("rstn") || name.ends_with("_b")

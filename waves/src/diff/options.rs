@@ -1,4 +1,4 @@
-//! What to compare, when, and how strictly: the options as data, read from their texts.
+//! Options of a comparison as data, parsed from text: what to compare, when, and how strictly.
 
 use super::names::is_low_active;
 use super::pattern::Pattern;
@@ -7,78 +7,81 @@ use super::value::UnknownPolicy;
 use crate::WaveError;
 use crate::wording::counted;
 
-/// Which edge of the clock samples.
+/// Edge of the clock that samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum SamplingEdge {
-    /// 0 to 1.
+    /// The edge from 0 to 1.
     #[default]
     Rising,
-    /// 1 to 0.
+    /// The edge from 1 to 0.
     Falling,
 }
 
-/// From which sample on the files are compared.
+/// Sample from which on the files are compared.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Reset {
-    /// From the first one.
+    /// The first sample.
     #[default]
     Ignored,
-    /// From where the only signal named like a reset is released, on each side; from the first where there is none.
+    /// The release of the only signal that is named like a reset, on each side; the first sample if there is none.
     Found,
-    /// From where this signal is released, on each side.
+    /// The release of this signal, on each side.
     Named {
-        /// Name in the first file: full, or its end where that is unique.
+        /// Name in the first file: the full name, or its end if that is unique.
         name: String,
-        /// Its value while the reset is on.
+        /// Active value of the reset.
         active: bool,
     },
 }
 
-/// How much later a signal is in the second file.
+/// Time by which a signal is later in the second file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Latency {
-    /// In samples of the clock; negative: earlier.
+    /// Time in samples of the clock; negative if it is earlier.
     Samples(i64),
-    /// In femtoseconds, without clock; negative: earlier.
+    /// Time in femtoseconds, without a clock; negative if it is earlier.
     Femtoseconds(i128),
 }
 
-/// What to compare, and how strictly.
+/// Options of a comparison.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DiffOptions {
-    /// Name of the clock in the first file: full, or its end where that is unique.
+    /// Name of the clock in the first file: the full name, or its end if that is unique.
     pub clock: Option<String>,
     /// The edge of the clock at which both files are sampled.
     pub edge: SamplingEdge,
-    /// Compare at every change, even if there is a clock.
+    /// Whether to compare at every change, even if there is a clock.
     pub raw: bool,
-    /// From which sample on to compare.
+    /// Sample from which on to compare.
     pub reset: Reset,
-    /// Times of the first file in femtoseconds between which to compare, both included.
+    /// First time of the first file to compare, in femtoseconds.
     pub start_fs: Option<u128>,
-    /// See [`DiffOptions::start_fs`].
+    /// Last time of the first file to compare, in femtoseconds.
     pub end_fs: Option<u128>,
-    /// Without clock: a difference that lasts no longer is none.
+    /// Without a clock, differences that last no longer than this are ignored, in femtoseconds.
     pub time_tolerance_fs: u128,
-    /// Without clock: a value that lasts shorter is taken out of both files before they are compared.
+    /// Without a clock, values that last shorter than this are removed from both files before the comparison, in
+    /// femtoseconds.
     pub glitch_fs: u128,
-    /// Scopes below which to compare; names are then those below. `None`: all of the file.
+    /// Scopes below which to compare; names are then relative to them. `None` means the whole file.
     pub roots: [Option<String>; 2],
-    /// `(A, B)`: scope or signal `A` of the first file is `B` of the second. With wildcards, as many in both.
+    /// Maps `(A, B)`: scope or signal `A` of the first file is `B` of the second. Both have the same number of
+    /// wildcards.
     pub maps: Vec<(String, String)>,
-    /// Names, scopes or patterns: if there are any, nothing else is compared.
+    /// Names, scopes or patterns; if there are any, only these are compared.
     pub only: Vec<String>,
     /// Names, scopes or patterns that are not compared.
     pub ignore: Vec<String>,
-    /// Tolerances: of one signal of the first file, of a pattern, or of all. A signal's own comes first, the last given wins.
+    /// Tolerances of one signal of the first file, of a pattern, or of all signals. A signal's own tolerance has
+    /// priority; of several, the last one counts.
     pub tolerances: Vec<(Option<String>, Tolerance)>,
-    /// How to read the bits of signals as numbers.
+    /// How the bits of signals are read as numbers.
     pub views: Vec<(String, View)>,
-    /// Signals that come later, or earlier, in the second file.
+    /// Signals that are later, or earlier, in the second file.
     pub latencies: Vec<(String, Latency)>,
-    /// What unknown bits equal.
+    /// What unknown bits are equal to.
     pub unknown: UnknownPolicy,
-    /// A signal that only one file has is a difference, instead of being listed.
+    /// Whether a signal that only one file has is a difference, instead of being listed.
     pub require_all: bool,
 }
 
@@ -108,7 +111,7 @@ impl DiffOptions {
         Ok(())
     }
 
-    /// Adds the maps of a file: one `A=B` a line; empty lines and lines that begin with `#` say nothing.
+    /// Adds the maps of a file: one `A=B` per line; empty lines and lines that begin with `#` are ignored.
     ///
     /// # Errors
     /// As [`DiffOptions::add_map`], with the line.
@@ -219,13 +222,13 @@ impl DiffOptions {
     }
 }
 
-/// A time such as `20ns`, `1.5us` or `3e-6s`, in femtoseconds.
+/// Parses a time such as `20ns`, `1.5us` or `3e-6s`, in femtoseconds.
 ///
 /// # Errors
 /// What is wrong with it, for people.
 pub fn parse_time_fs(text: &str) -> Result<u128, String> {
     time_fs(text)
-        .ok_or_else(|| format!("`{text}` is no time: write a number with fs, ps, ns, us, ms or s, such as 20ns"))
+        .ok_or_else(|| format!("`{text}` is not a time: write a number with fs, ps, ns, us, ms or s, such as 20ns"))
 }
 
 fn time_fs(text: &str) -> Option<u128> {
@@ -239,7 +242,7 @@ fn time_fs(text: &str) -> Option<u128> {
     }
     let number: f64 = number.parse().ok()?;
     let time = (number * 10f64.powi(zeros as i32)).round();
-    // 2^64 s, far beyond any file.
+    // 2^64 s is far beyond any file.
     (0.0..=1.9e34).contains(&time).then_some(time as u128)
 }
 

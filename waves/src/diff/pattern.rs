@@ -1,4 +1,4 @@
-//! Names with wildcards, as `--map`, `--only`, `--tolerance` and their like take them.
+//! Names with wildcards, as `--map`, `--only`, `--tolerance` and similar options accept them.
 //!
 //! | in a pattern | stands for |
 //! |---|---|
@@ -7,12 +7,12 @@
 //! | `?` | one character but a dot |
 //! | anything else, brackets too | itself |
 //!
-//! A pattern fits a whole path, or its end behind a dot.
+//! A pattern fits a whole path, or its end after a dot.
 
 use crate::WaveError;
 use crate::wording::counted;
 
-/// More than that is no name any more, and the time to match it grows with each.
+/// Largest number of wildcards; the time to match a name grows with each.
 const WILDCARDS: usize = 8;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ enum Piece {
     Across,
 }
 
-/// A name, perhaps with wildcards.
+/// A name that may have wildcards.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pattern {
     pieces: Vec<Piece>,
@@ -63,19 +63,19 @@ impl Pattern {
         self.wildcards
     }
 
-    /// What the wildcards stand for if the pattern is all of `name`.
+    /// Returns what the wildcards stand for if the pattern fits all of `name`.
     pub(super) fn whole<'a>(&self, name: &'a str) -> Option<Vec<&'a str>> {
         let mut captured = Vec::new();
         capture(&self.pieces, name, &mut captured).then_some(captured)
     }
 
-    /// Whether it is `path`, or its end behind a dot.
+    /// Returns whether the pattern fits `path`, or its end after a dot.
     pub(super) fn fits(&self, path: &str) -> bool {
         let ends = path.match_indices('.').map(|(at, _)| &path[at + 1..]);
         std::iter::once(path).chain(ends).any(|name| self.whole(name).is_some())
     }
 
-    /// The name that results if the wildcards stand for `captured`; there must be as many.
+    /// Returns the name in which the wildcards are replaced by `captured`, which must have as many entries.
     pub(super) fn filled(&self, captured: &[&str]) -> String {
         let mut captured = captured.iter();
         let pieces = self.pieces.iter().map(|piece| match piece {

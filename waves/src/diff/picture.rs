@@ -1,4 +1,4 @@
-//! Shows a difference: both sides in one VCD with their difference, files that open it there, and a drawing.
+//! Shows a difference: both sides in one VCD with their difference, files that open it at that time, and a drawing.
 //!
 //! ```text
 //!  first.vcd    a.…  b.…  difference.…   the signals that differ, the clock, over all of the time
@@ -17,15 +17,15 @@ use crate::files::{OutputSink, write_text};
 use crate::merge::{DifferenceSignal, Focus, MergePart, merge_around};
 use crate::reader::{Kind, Value, Values, Wave};
 
-/// Signals that are shown, the earliest first.
+/// Largest number of signals that are shown, the earliest first.
 const SIGNALS: usize = 8;
-/// Samples before the divergence and behind it.
+/// Number of samples shown before the divergence and after it.
 const BEFORE: u128 = 5;
 const BEHIND: u128 = 6;
-/// Values of a signal that a drawing holds; more could not be told apart.
+/// Largest number of values of a signal in a drawing; more could not be distinguished.
 const VALUES: usize = 200;
 
-/// The files that [`show`] writes.
+/// Returns the files that [`show`] writes.
 pub fn shown_files(base: &Path) -> [PathBuf; 4] {
     ["vcd", "gtkw", "sucl", "svg"].map(|extension| base.with_extension(extension))
 }
@@ -72,7 +72,7 @@ pub fn show(
             b,
         });
     let lanes: Vec<Lane> = lanes.collect();
-    // One signal under several names is drawn once.
+    // A signal with several names is drawn once.
     let mut drawn: Vec<Lane> = Vec::new();
     for lane in &lanes {
         let leaf = |lane: &Lane| lane.signal.rsplit('.').next().map(str::to_owned);
@@ -89,7 +89,7 @@ pub fn show(
     let leaves: Vec<String> = shown.iter().map(|(name, _)| name.replace('.', "_")).collect();
     let numeric = |signal: &str| {
         let d = comparison.differences.iter().find(|d| d.signal == signal);
-        // A vector that is put together from parts has no trace of its own to subtract.
+        // A vector that is assembled from parts has no trace of its own for the difference.
         let traced = |lane: &Lane| lane.signal == signal && !lane.a.values.is_empty() && !lane.b.values.is_empty();
         d.is_some_and(|d| matches!(d.a, Shown::Bits(_) | Shown::Real(_))) && lanes.iter().any(traced)
     };
@@ -116,7 +116,7 @@ pub fn show(
     Ok(true)
 }
 
-/// Some samples around the first divergence, as far apart as they are there.
+/// Returns some samples around the first divergence, with their spacing there.
 fn window(comparison: &Comparison, first: f64) -> Window {
     let fs = |seconds: f64| comparison.femtoseconds(seconds);
     let at = fs(first);
@@ -130,7 +130,8 @@ fn window(comparison: &Comparison, first: f64) -> Window {
     }
 }
 
-/// What the signals do in the window; an empty trace for one that the file does not have by that name.
+/// Returns the traces of the signals in the window; an empty trace for one that the file does not have under that
+/// name.
 fn traces(path: &Path, signals: &[String], window: Window) -> Result<Vec<Trace>, WaveError> {
     let (declarations, mut feed) = Wave::open(path)?.play(None)?;
     let slot = |signal: &String| declarations.names.iter().find(|named| named.path == *signal);
@@ -173,7 +174,7 @@ fn traces(path: &Path, signals: &[String], window: Window) -> Result<Vec<Trace>,
     Ok(traces)
 }
 
-/// A value in a drawing: a bit, hexadecimal digits, a number, text.
+/// Formats a value for a drawing: a bit, hexadecimal digits, a number, text.
 fn text(value: Value<'_>) -> String {
     match value {
         Value::Bits { width: 1, .. } => value.digits(1, false),

@@ -1,4 +1,4 @@
-//! When two values are equal, and how they are shown.
+//! Decides when two values are equal, and how they are shown.
 
 use std::fmt;
 
@@ -8,17 +8,17 @@ use crate::reader::Value;
 /// How bits are read as a number.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum View {
-    /// No number: bit by bit.
+    /// Bit by bit, not as a number.
     #[default]
     Bits,
-    /// Two's complement, with so many bits behind the binary point.
+    /// Two's complement, with this many bits after the binary point.
     Signed {
-        /// Bits behind the point, 0..=128.
+        /// Number of bits after the point, 0..=128.
         fraction: u8,
     },
-    /// Without sign, with so many bits behind the binary point.
+    /// Without a sign, with this many bits after the binary point.
     Unsigned {
-        /// Bits behind the point, 0..=128.
+        /// Number of bits after the point, 0..=128.
         fraction: u8,
     },
 }
@@ -59,7 +59,7 @@ impl View {
         }
     }
 
-    /// Bits beyond which it cannot be computed with.
+    /// Returns the largest width with which it can calculate.
     pub(super) fn widest(self) -> u32 {
         if self.signed() { 128 } else { 127 }
     }
@@ -77,14 +77,14 @@ impl fmt::Display for View {
     }
 }
 
-/// How far apart two numbers may be.
+/// Largest difference of two numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tolerance {
-    /// In units of the last bit; of reals, in their own unit.
+    /// Difference in units of the last bit; for reals, in their own unit.
     Lsb(f64),
-    /// In the number's unit, behind the binary point.
+    /// Difference in the number's unit, after the binary point is applied.
     Absolute(f64),
-    /// As a fraction of the larger of the two.
+    /// Difference as a fraction of the larger of the two.
     Relative(f64),
 }
 
@@ -129,12 +129,12 @@ pub(super) struct Rule {
 }
 
 impl Rule {
-    /// Whether equal words are all there is to it.
+    /// Returns whether words are simply compared for equality.
     pub(super) fn is_plain(&self) -> bool {
         self.tolerance.is_none() && self.unknown == UnknownPolicy::Strict
     }
 
-    /// How the bits are read: as signed numbers where there is a tolerance and no view.
+    /// Returns how the bits are read: as signed numbers if there is a tolerance and no view.
     pub(super) fn reading(&self) -> View {
         match (self.view, self.tolerance) {
             (View::Bits, Some(_)) => View::Signed { fraction: 0 },
@@ -178,7 +178,7 @@ impl Rule {
         a == b || (a.is_nan() && b.is_nan()) || within()
     }
 
-    /// The bits as a whole number of LSB; `None` with unknown bits that stay so.
+    /// Returns the bits as a whole number of LSB; `None` with unknown bits that are not zero by the policy.
     fn whole(&self, value: Value<'_>) -> Option<i128> {
         let known = value.integer(self.view.signed());
         if known.is_some() || self.unknown != UnknownPolicy::Zero {
@@ -201,7 +201,7 @@ impl Rule {
         cleared.integer(self.view.signed())
     }
 
-    /// Bit by bit, the narrower extended with zeros, or by a signed view with its sign.
+    /// Compares bit by bit; the narrower value is extended with zeros, or in a signed view with its sign.
     fn same_bits(&self, a: Value<'_>, b: Value<'_>) -> bool {
         let extend = matches!(self.view, View::Signed { .. });
         let words = words(a).max(words(b));
@@ -215,7 +215,7 @@ impl Rule {
         })
     }
 
-    /// Both values as the report shows them, vectors in the width of the wider.
+    /// Returns both values as the report shows them, vectors in the width of the wider.
     pub(super) fn shown(&self, a: Option<Value<'_>>, b: Option<Value<'_>>) -> (Shown, Shown) {
         let width = |value: &Option<Value<'_>>| match value {
             Some(Value::Bits { width, .. }) => *width,
@@ -232,7 +232,7 @@ impl Rule {
         (show(a), show(b))
     }
 
-    /// The value as a number, if it is looked at as one.
+    /// Returns the value as a number, if it is read as one.
     pub(super) fn number(&self, value: Option<Value<'_>>) -> Option<f64> {
         match value? {
             Value::Real(real) => real,
@@ -249,7 +249,7 @@ fn words(value: Value<'_>) -> usize {
     }
 }
 
-/// Word `at` of the bits and of the unknown ones, the missing ones zero or the sign.
+/// Returns word `at` of the bits and of the unknown ones; missing words are zero or the sign.
 fn word(value: Value<'_>, at: usize, extend: bool) -> [u64; 2] {
     let Value::Bits { width, bits, unknown } = value else {
         return [0; 2];

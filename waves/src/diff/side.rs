@@ -1,4 +1,4 @@
-//! One of the two files while it is compared: its values now, and which pairs a change touches.
+//! One of the two files during the comparison: its current values, and the pairs that a change affects.
 //!
 //! ```text
 //!              ┌─────────────────────────► values of the file ──┬──► pairs
@@ -16,12 +16,12 @@ use super::touched::{Lists, Touched};
 use crate::WaveError;
 use crate::reader::{Feed, Kind, Step, Values};
 
-/// Words that all delay lines of a file may hold together.
+/// Largest number of words that all delay lines of a file may hold together.
 const DELAYED_WORDS: usize = 1 << 21;
-/// Changes that may be held back until it is known whether they are glitches.
+/// Largest number of changes that may be delayed until it is known whether they are glitches.
 const HELD_CHANGES: usize = 1 << 20;
 
-/// Part of a vector: where its bits go.
+/// Destination of the bits of a part of a vector.
 #[derive(Debug, Clone, Copy)]
 struct PartOf {
     whole: u32,
@@ -29,11 +29,11 @@ struct PartOf {
     low: u32,
 }
 
-/// Holds values back until they have lasted.
+/// Delays values until they have lasted long enough.
 #[derive(Debug)]
 struct Settle {
     width_fs: u128,
-    /// The value to come, and when it began; by slot.
+    /// The next value and its beginning, by slot.
     next: Values,
     since: Vec<Option<u128>>,
     queue: VecDeque<(u128, u32)>,
@@ -43,7 +43,7 @@ struct Settle {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ClockEdge {
     pub(super) time_fs: u128,
-    /// Since the edge before, nothing was recorded for a while.
+    /// Whether a period without recording precedes this edge.
     pub(super) gap: bool,
 }
 
@@ -54,23 +54,23 @@ pub(super) struct Side {
     unit_fs: u128,
     step: Option<Step>,
     pairs: Lists,
-    /// Empty where no slot needs it.
+    /// Parts by slot; empty if no slot needs them.
     parts: Vec<Vec<PartOf>>,
-    /// By slot: line and place in its slots.
+    /// Delay line and index in its slots, by slot.
     delayed: Vec<Vec<(u32, u32)>>,
     lines: Vec<DelayLine>,
     settle: Option<Settle>,
-    /// The reset's slot and its value while it is on, until it has been released.
+    /// The reset's slot and its active value, until it has been released.
     reset: Option<(u32, bool)>,
-    /// Edges before the reset's release.
+    /// Number of edges before the reset's release.
     pub(super) held_in_reset: u64,
-    /// The step at hand is an edge that was returned: it has not been taken in yet.
+    /// Whether the current step is an edge that was returned: it has not been taken in yet.
     at_edge: bool,
     off: bool,
     gap: bool,
 }
 
-/// A delayed signal: by how much, its slot, and the pair that looks at it.
+/// A delayed signal: its delay, its slot, and the pair that uses it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Delayed {
     pub(super) by: u128,
@@ -78,8 +78,8 @@ pub(super) struct Delayed {
 }
 
 impl Side {
-    /// `slots` are those of the pairs, in their order. Returns the slots that the pairs are to look at: delayed pairs get
-    /// one of their own.
+    /// Creates a side. `slots` are those of the pairs, in their order. Returns the slots that the pairs must use:
+    /// delayed pairs get their own.
     pub(super) fn new(
         feed: Feed,
         kinds: &[Kind],
@@ -153,7 +153,7 @@ impl Side {
         self.reset = Some((reset, active));
     }
 
-    /// Takes values that last shorter than this out.
+    /// Removes values that last shorter than this.
     pub(super) fn without_glitches(&mut self, width_fs: u128, kinds: &[Kind]) {
         self.settle = Some(Settle {
             width_fs,
@@ -163,7 +163,7 @@ impl Side {
         });
     }
 
-    /// Whether the file records nothing at the moment.
+    /// Returns whether the file records nothing at the moment.
     pub(super) fn is_off(&self) -> bool {
         self.off
     }
@@ -182,9 +182,9 @@ impl Side {
         Ok(())
     }
 
-    /// Goes on to the next edge of the clock behind the reset's release; then the values are those just before it.
+    /// Advances to the next edge of the clock after the reset's release; the values are then those just before it.
     ///
-    /// Edges are marked by the reader: a step is looked at only to take its changes in.
+    /// The reader marks edges: a step is examined only to take its changes in.
     pub(super) fn next_edge(&mut self, touched: &mut Touched) -> Result<Option<ClockEdge>, WaveError> {
         while let Some(step) = self.step {
             if step.edge && !std::mem::take(&mut self.at_edge) {
@@ -209,7 +209,7 @@ impl Side {
         *self.values.words(slot) == [u64::from(!active), 0]
     }
 
-    /// Time of the next step, or of a value that comes into effect.
+    /// Returns the time of the next step, or of a value that takes effect.
     pub(super) fn next_time(&self) -> Option<u128> {
         let step = self.step.map(|step| u128::from(step.time) * self.unit_fs);
         let settled = self
@@ -220,7 +220,7 @@ impl Side {
         [step, settled, lines].into_iter().flatten().min()
     }
 
-    /// Both files have ended: what would come into effect later has nothing to be compared with.
+    /// Discards delayed values after the end of both files, when they have nothing to be compared with.
     pub(super) fn forget_delayed(&mut self) {
         for line in &mut self.lines {
             line.queue.clear();
@@ -228,12 +228,13 @@ impl Side {
         }
     }
 
-    /// Whether the file has ended.
+    /// Returns whether the file has ended.
     pub(super) fn has_ended(&self) -> bool {
         self.step.is_none()
     }
 
-    /// Takes in all that happens at this time, which must not lie behind [`Side::next_time`]. Whether anything did.
+    /// Takes in everything at this time, which must not be after [`Side::next_time`]. Returns whether anything
+    /// happened.
     pub(super) fn advance_to(&mut self, time_fs: u128, touched: &mut Touched) -> Result<bool, WaveError> {
         let mut happened = self.take_in_settled(time_fs, touched);
         if let Some(step) = self.step
@@ -296,7 +297,7 @@ impl Side {
             && since + settle.width_fs <= time_fs
         {
             settle.queue.pop_front();
-            // Another value came since: this one did not last.
+            // Another value has come since: this one did not last.
             if settle.since[slot as usize] != Some(since) {
                 continue;
             }
@@ -316,7 +317,7 @@ impl Side {
         happened
     }
 
-    /// Puts what changed since the last time into the delay lines. `now` counts samples, or femtoseconds.
+    /// Puts the changes since the last call into the delay lines. `now` counts samples, or femtoseconds.
     pub(super) fn pend(&mut self, now: u128) -> Result<(), WaveError> {
         for line in &mut self.lines {
             for place in line.changed.drain(..) {
@@ -336,7 +337,7 @@ impl Side {
         Ok(())
     }
 
-    /// Brings delayed values into effect. Whether there were any.
+    /// Applies delayed values. Returns whether there were any.
     pub(super) fn release(&mut self, now: u128, touched: &mut Touched) -> bool {
         let mut happened = false;
         for line in &mut self.lines {
@@ -358,7 +359,7 @@ impl Side {
     }
 }
 
-/// What follows from a slot's value.
+/// Values that follow from a slot's value.
 struct Derived<'a> {
     pairs: &'a Lists,
     parts: &'a [Vec<PartOf>],
@@ -385,7 +386,7 @@ impl Derived<'_> {
     }
 }
 
-/// The slot of a side.
+/// Returns the slot of a side.
 pub(super) fn slot_of(slots: Slots, of_b: bool) -> u32 {
     slots[usize::from(of_b)]
 }

@@ -1,10 +1,10 @@
-//! Draws the neighbourhood of a divergence: for each signal the two files' traces, red where they differ.
+//! Draws the surroundings of a divergence: for each signal the two files' traces, red where they differ.
 
 use std::fmt::Write as _;
 
 use crate::wording::time;
 
-/// A stretch of time in femtoseconds.
+/// A period of time in femtoseconds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     pub(super) from: u128,
@@ -12,10 +12,10 @@ pub(super) struct Window {
     pub(super) to: u128,
 }
 
-/// Values from a time on, the first at the window's beginning.
+/// Values and their start times, the first at the window's beginning.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Trace {
-    /// A single bit is drawn as a line, anything else as boxes.
+    /// Whether it is a single bit, which is drawn as a line; anything else is drawn as boxes.
     pub(super) is_bit: bool,
     pub(super) values: Vec<(u128, String)>,
 }
@@ -29,7 +29,7 @@ pub(super) struct Lane {
     pub(super) b: Trace,
 }
 
-/// Pixels.
+/// Width of the names in pixels.
 const NAME_WIDTH: f64 = 250.0;
 const WAVE_WIDTH: f64 = 900.0;
 const ROW: f64 = 26.0;
@@ -41,7 +41,7 @@ const CHARACTER: f64 = 7.2;
 const STYLE: &str = "<style>text{font:12px monospace;fill:#222}.wave{fill:none;stroke:#1f4e79;stroke-width:1.3}\
     .unknown{fill:#f6c9c9;stroke:#a33}.bad{fill:#ffe1dd}.mark{stroke:#c00;stroke-dasharray:4 3}.axis{fill:#666}</style>";
 
-/// The drawing as SVG.
+/// Returns the drawing as SVG.
 pub(super) fn draw(lanes: &[Lane], window: Window) -> String {
     let height = TOP + lanes.len() as f64 * (2.0 * ROW + 8.0) + 30.0;
     let width = NAME_WIDTH + WAVE_WIDTH + 20.0;
@@ -149,7 +149,7 @@ fn draw_trace(svg: &mut String, trace: &Trace, y: f64, window: Window) {
     }
 }
 
-/// The stretches in which the two traces have other values.
+/// Returns the periods in which the two traces have different values.
 fn differing(lane: &Lane, window: Window) -> Vec<(u128, u128)> {
     let mut times: Vec<u128> = lane
         .a
@@ -176,7 +176,7 @@ fn x(time: u128, window: Window) -> f64 {
     NAME_WIDTH + WAVE_WIDTH * part.min(1.0)
 }
 
-/// The end of a long name: it tells more than its scopes.
+/// Returns the end of a long name: it tells more than its scopes.
 fn tail(name: &str) -> String {
     let room = ((NAME_WIDTH - 30.0) / CHARACTER) as usize;
     let count = name.chars().count();

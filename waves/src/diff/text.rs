@@ -1,4 +1,4 @@
-//! The result of a comparison as text for people, at most 100 columns wide.
+//! The result of a comparison as text, at most 100 columns wide.
 
 use std::fmt;
 
@@ -6,11 +6,11 @@ use super::human::{value, value_and_digits};
 use super::{Comparison, Context, DiffVerdict, Difference, Leniency, UnknownPolicy};
 use crate::wording::{counted, time, times};
 
-/// Lines of one kind that the text shows before it counts the rest.
+/// Largest number of lines of one kind that the text shows before it counts the rest.
 const SHOWN_LINES: usize = 20;
-/// Columns of the text.
+/// Width of the text in columns.
 const COLUMNS: usize = 100;
-/// Characters of a name and of a value that are shown.
+/// Largest number of characters shown of a name and of a value.
 const NAME: usize = 36;
 const VALUE: usize = 35;
 const CELL: usize = 26;
@@ -52,7 +52,7 @@ impl fmt::Display for Comparison {
 }
 
 impl Comparison {
-    /// How many signals differ, in words: `1 of 39 signals differs`.
+    /// Returns how many signals differ, in words: `1 of 39 signals differs`.
     pub fn differing(&self) -> String {
         let is_common = |d: &&Difference| self.compared.iter().any(|(name, _)| *name == d.signal);
         let common = self.differences.iter().filter(is_common).count() as u64;
@@ -67,12 +67,13 @@ impl Comparison {
         text
     }
 
-    /// A time of the result as people read it, with the digits that the files' units of time have: `40.68904 ms`.
+    /// Formats a time of the result with the digits of the files' units of time: `40.68904 ms`.
     pub fn time(&self, seconds: f64) -> String {
         time(self.femtoseconds(seconds))
     }
 
-    /// Seconds in whole units of time of the files: a number of seconds has fewer digits than a long file needs.
+    /// Converts seconds to femtoseconds, rounded to the files' unit of time: a number of seconds has fewer digits
+    /// than a long file needs.
     pub(super) fn femtoseconds(&self, seconds: f64) -> u128 {
         let unit_fs = u128::from(self.unit_fs.max(1));
         (seconds * 1e15 / unit_fs as f64).round() as u128 * unit_fs
@@ -112,7 +113,7 @@ impl Comparison {
             columns.push(cells);
         }
         let mut widths: Vec<usize> = columns.iter().map(|cells| column(cells.iter().cloned())).collect();
-        // Samples behind the divergence that do not fit are left out.
+        // Samples after the divergence that do not fit are left out.
         while 1 + widths.iter().map(|width| width + 1).sum::<usize>() > COLUMNS && widths.len() > before + 2 {
             widths.pop();
         }
@@ -130,7 +131,7 @@ impl Comparison {
         }
     }
 
-    /// Two lines: since when and how often, and the two values.
+    /// Returns two lines: since when and how often, and the two values.
     fn difference(&self, d: &Difference, width: usize) -> String {
         let cause = if Some(d.time) == self.first_time {
             ", probable cause"
@@ -173,12 +174,12 @@ fn leniency(lenient: &Leniency) -> String {
     text
 }
 
-/// Width of a column that holds these texts.
+/// Returns the width of a column that holds these texts.
 fn column(texts: impl Iterator<Item = String>) -> usize {
     texts.map(|text| text.chars().count()).max().unwrap_or(0)
 }
 
-/// The end of a long text: of names and of numbers, the end tells more.
+/// Returns the end of a long text: in names and numbers, the end tells more.
 fn short(text: &str, length: usize) -> String {
     let count = text.chars().count();
     if count <= length {

@@ -1,16 +1,16 @@
-//! Which pairs a change touches, and which were touched.
+//! The pairs that a change affects, and those that were affected.
 
-/// Pairs to look at again.
+/// Pairs to compare again.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
     flags: Vec<bool>,
     list: Vec<u32>,
-    /// Pairs that wait for a delayed value to arrive.
+    /// Whether each pair waits for a delayed value to arrive.
     pub(super) waiting: Vec<bool>,
 }
 
 impl Touched {
-    /// So many pairs, all to be looked at.
+    /// Creates a set of this many pairs, all to be compared.
     pub(super) fn new(pairs: usize) -> Self {
         Self {
             flags: vec![true; pairs],
@@ -26,7 +26,7 @@ impl Touched {
         }
     }
 
-    /// The pairs touched since, which are then untouched.
+    /// Calls `each` for the pairs affected since, and clears the set.
     pub(super) fn drain(&mut self, mut each: impl FnMut(u32)) {
         for pair in self.list.drain(..) {
             self.flags[pair as usize] = false;

@@ -1,4 +1,4 @@
-//! Values as a report shows them, and what unknown ones equal.
+//! Values as a report shows them, and what unknown ones are equal to.
 
 use serde::{Serialize, Serializer};
 
@@ -6,11 +6,11 @@ use serde::{Serialize, Serializer};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Shown {
-    /// Binary digits, most significant first, `x` and `z` included.
+    /// Binary digits, most significant first, including `x` and `z`.
     Bits(String),
-    /// A real number; as JSON, which has no other word for it, `"NaN"` where it is none.
+    /// A real number; in JSON, which has no other word for it, `"NaN"` for an invalid one.
     Real(#[serde(serialize_with = "number_or_text")] f64),
-    /// Text, its first 64 bytes.
+    /// The first 64 bytes of a text.
     Text(String),
     /// There is no value: the signal or the clock edge is missing, or nothing was written yet.
     Missing,
@@ -24,15 +24,15 @@ fn number_or_text<S: Serializer>(real: &f64, serializer: S) -> Result<S::Ok, S::
     }
 }
 
-/// What an unknown bit (`x`, `z`) equals.
+/// What an unknown bit (`x`, `z`) is equal to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum UnknownPolicy {
-    /// `x` equals `x`, `z` equals `z`, nothing else.
+    /// `x` is equal only to `x`, `z` only to `z`.
     #[default]
     Strict,
-    /// An unknown bit of either file equals anything.
+    /// An unknown bit of either file is equal to anything.
     Wildcard,
-    /// It is 0, as in two-valued simulators.
+    /// An unknown bit is 0, as in two-valued simulators.
     Zero,
 }

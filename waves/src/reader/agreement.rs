@@ -1,4 +1,5 @@
-//! Our reader against the crates `vcd` and `wellen`: the same values at the same times, on a recording of each producer.
+//! Compares our reader with the crates `vcd` and `wellen`: the same values at the same times, on a recording of each
+//! producer.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
@@ -11,10 +12,11 @@ use wellen::simple;
 
 use super::*;
 
-/// Time and value of each change that is one, at most one per time; of each signal, sorted: readers name them differently.
+/// Time and value of each real change, at most one per time; per signal, and sorted, because readers name the signals
+/// differently.
 type Changes = Vec<Vec<(u64, String)>>;
 
-/// The last digit is the least significant one; `U`, `W` and `-` are `x`, `H` is 1, `L` is 0.
+/// Normalises digits, of which the last is the least significant one; `U`, `W` and `-` are `x`, `H` is 1, `L` is 0.
 fn plain(digits: &str, width: usize) -> String {
     let digits: String = digits
         .chars()
@@ -151,7 +153,7 @@ fn golden_every_recording_reads_as_by_wellen() {
     let files = fixtures();
     assert!(files.len() >= 8, "{files:?}");
     for path in files {
-        // It puts single bits together to a vector.
+        // It assembles single bits to a vector.
         if path.ends_with("modelsim_style.vcd") {
             continue;
         }
@@ -164,14 +166,14 @@ fn golden_every_recording_reads_as_by_wellen() {
 #[test]
 fn golden_every_vcd_reads_as_by_the_crate_vcd() {
     for path in fixtures() {
-        // The crate does not know VHDL's values, nor FST.
+        // The crate supports neither VHDL's values nor FST.
         if path.extension().is_some_and(|e| e == "vcd") && !path.ends_with("ghdl.vcd") {
             assert_eq!(ours(&path), by_vcd(&path), "{path:?}");
         }
     }
 }
 
-/// Widths of the signals of a random file; their id codes are as long as their place.
+/// Widths of the signals of a random file; their id codes are as long as their index.
 const WIDTHS: [usize; 5] = [1, 5, 64, 65, 200];
 
 fn random_file(changes: &[(usize, String, u64)]) -> String {
@@ -183,7 +185,7 @@ fn random_file(changes: &[(usize, String, u64)]) -> String {
     text += "$upscope $end $enddefinitions $end\n";
     let mut time = 0;
     for (at, digits, later) in changes {
-        // Often none: a time stamp more, which says nothing.
+        // Often the step is 0: an additional time stamp without effect.
         time += later / 2;
         let digits = &digits[..digits.len().min(WIDTHS[*at])];
         let (b, space) = if WIDTHS[*at] == 1 { ("", "") } else { ("b", " ") };

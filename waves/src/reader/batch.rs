@@ -1,4 +1,4 @@
-//! What a file says in a stretch of time, packed, on its way from the thread that reads to the one that compares.
+//! Packed changes of a period of time, passed from the thread that reads to the one that compares.
 //!
 //! ```text
 //!  steps    time 0, ends at 3 │ time 5, ends at 4, edge │ …        all that happens at one time is one step
@@ -9,37 +9,37 @@
 use super::header::Kind;
 use super::values::words_of;
 
-/// A batch is handed over when it is this full.
+/// A batch is handed over when it has this many changes.
 const CHANGES: usize = 1 << 13;
 const WORDS: usize = 1 << 16;
 
-/// All that changes at one time.
+/// All changes at one time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Step {
-    /// In the file's unit.
+    /// Time in the file's unit.
     pub(crate) time: u64,
-    /// End of its changes; they start at the end of the step before.
+    /// End of its changes; they start at the end of the previous step.
     pub(super) end: usize,
-    /// The watched clock has its edge here.
+    /// Whether the watched clock has its edge here.
     pub(crate) edge: bool,
-    /// From here on nothing is recorded (`$dumpoff`), until a step says otherwise.
+    /// Whether nothing is recorded from here on (`$dumpoff`), until a later step.
     pub(crate) off: bool,
 }
 
-/// A slot and where its words are.
+/// A slot and the position of its words.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     pub(super) slot: u32,
     pub(super) word: u32,
 }
 
-/// Steps on their way.
+/// Steps to be handed over.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     pub(super) steps: Vec<Step>,
     pub(super) changes: Vec<Change>,
     pub(super) words: Vec<u64>,
-    /// Bytes of the file that were read up to here.
+    /// Number of bytes of the file that were read up to here.
     pub(super) bytes: u64,
 }
 
@@ -56,11 +56,11 @@ impl Batch {
 pub(crate) struct Watch {
     /// Slot of a signal of one bit.
     pub(crate) slot: u32,
-    /// Whether the edge is the falling one.
+    /// Whether the falling edge is marked.
     pub(crate) falling: bool,
 }
 
-/// Gathers changes into steps, and steps into a batch.
+/// Collects changes into steps, and steps into a batch.
 pub(super) struct Gatherer {
     pub(super) batch: Batch,
     kinds: Vec<Kind>,
@@ -72,7 +72,7 @@ pub(super) struct Gatherer {
     was_off: bool,
     /// Start of the step in the changes and in the words.
     from: (usize, usize),
-    /// Beyond this many words, the step is pressed together.
+    /// With more words than this, the step is compacted.
     press_at: usize,
 }
 
@@ -95,7 +95,7 @@ impl Gatherer {
         self.kinds[slot as usize]
     }
 
-    /// A known or unknown value of at most 64 bits, or a real number.
+    /// Adds a known or unknown value of at most 64 bits, or a real number.
     #[inline]
     pub(super) fn put_word(&mut self, slot: u32, bits: u64, unknown: u64) {
         let batch = &mut self.batch;
@@ -112,7 +112,7 @@ impl Gatherer {
         }
     }
 
-    /// Words for a value of the slot's kind, all zero.
+    /// Adds a value of the slot's kind and returns its words, all zero.
     pub(super) fn put_words(&mut self, slot: u32) -> &mut [u64] {
         if self.batch.words.len() > self.press_at {
             self.press();
@@ -125,7 +125,7 @@ impl Gatherer {
         &mut batch.words[from..]
     }
 
-    /// Looks at the value that was put last, if it is the clock's.
+    /// Checks the value that was added last, if it is the clock's.
     pub(super) fn watch_last(&mut self, slot: u32) {
         let words = &self.batch.words;
         if let (Some(watch), [.., bits, unknown]) = (self.watch, words.as_slice())
@@ -139,7 +139,7 @@ impl Gatherer {
         self.off = off;
     }
 
-    /// The time goes on; it must not go back. Whether the batch is full and must be handed over.
+    /// Advances the time, which must not go back. Returns whether the batch is full and must be handed over.
     #[inline]
     pub(super) fn advance(&mut self, time: u64) -> bool {
         if time == self.time {
@@ -154,7 +154,7 @@ impl Gatherer {
         self.time
     }
 
-    /// Ends the step at hand, if anything happened in it.
+    /// Ends the current step, if anything happened in it.
     pub(super) fn end_step(&mut self) {
         let end = self.batch.changes.len();
         if end == self.from.0 && self.off == self.was_off {
@@ -176,7 +176,7 @@ impl Gatherer {
         self.from = (end, self.batch.words.len());
     }
 
-    /// Takes the whole steps out, leaving `empty` in their place. The step at hand must have ended.
+    /// Takes the complete steps out, leaving `empty` in their place. The current step must have ended.
     pub(super) fn take(&mut self, mut empty: Batch) -> Batch {
         empty.clear();
         self.from = (0, 0);
@@ -184,7 +184,8 @@ impl Gatherer {
         std::mem::replace(&mut self.batch, empty)
     }
 
-    /// Keeps only the last change of each slot in the step at hand: a file may say as much as it likes about one time.
+    /// Keeps only the last change of each slot in the current step, since a file may have any number of changes at
+    /// one time.
     fn press(&mut self) {
         let mut seen = vec![false; self.kinds.len()];
         let (first, first_word) = self.from;
@@ -205,7 +206,7 @@ impl Gatherer {
         self.batch.changes.extend(kept);
         self.batch.words.truncate(first_word);
         self.batch.words.extend(words);
-        // At least as much again comes in before the next time: the cost per change stays the same.
+        // At least as much again comes in before the next time, so that the cost per change stays the same.
         self.press_at = (2 * self.batch.words.len()).max(2 * WORDS);
     }
 }

@@ -1,9 +1,9 @@
-//! How far a reader has come.
+//! Counts how far a reader has come.
 
 use std::fs::File;
 use std::io::{self, Read};
 
-/// A file that knows how much of it was read.
+/// A file that counts the bytes read from it.
 pub(super) struct Counted {
     pub(super) file: File,
     pub(super) bytes: u64,

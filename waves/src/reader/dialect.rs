@@ -1,4 +1,4 @@
-//! Puts the declarations of every producer into the words that the crate `vcd` knows.
+//! Converts the declarations of every producer into the words that the crate `vcd` knows.
 //!
 //! | producer writes | becomes |
 //! |---|---|
@@ -8,12 +8,12 @@
 //! | `$date`, `$version`, `$comment`, `$attrbegin`, any other `$word` | nothing; its text may hold whatever it likes |
 //! | bytes that are not UTF-8 | U+FFFD |
 //!
-//! It stops right behind `$enddefinitions $end`, so that the value changes can be read from there. Line breaks stay where
-//! they are, so that the parser's line numbers hold.
+//! It stops right after `$enddefinitions $end`, so that the value changes can be read from there. Line breaks stay
+//! where they are, so that the parser's line numbers are correct.
 
 use std::io::{self, BufRead, Read};
 
-/// Bytes that one word of the declarations may have.
+/// Largest number of bytes in a word of the declarations.
 const WORD_BYTES: usize = 1 << 20;
 
 const VAR_TYPES: [&[u8]; 18] = [
@@ -39,10 +39,10 @@ const VAR_TYPES: [&[u8]; 18] = [
 const REAL_TYPES: [&[u8]; 3] = [b"shortreal", b"realtime", b"real_parameter"];
 const SCOPE_TYPES: [&[u8]; 5] = [b"module", b"task", b"function", b"begin", b"fork"];
 
-/// Which word of a command comes next.
+/// Kind of the next word of a command.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
-    /// Outside of any command.
+    /// Outside any command.
     Between,
     /// The type after `$var` or `$scope`.
     VarType,
@@ -51,20 +51,20 @@ enum Place {
     Var(u8),
     /// Any other word of a command that the parser reads.
     Inside,
-    /// Behind `$enddefinitions`.
+    /// After `$enddefinitions`.
     Last,
-    /// Text that nobody reads, up to `$end`.
+    /// Text that is ignored, up to `$end`.
     Text,
     Done,
 }
 
-/// The declarations in plain words.
+/// Reads the declarations in converted words.
 pub(super) struct Dialect<'a, R> {
     inner: &'a mut R,
     place: Place,
-    /// The word being read.
+    /// The current word.
     word: Vec<u8>,
-    /// What the parser gets, and how much of it has been taken.
+    /// Output for the parser, and how much of it has been taken.
     out: Vec<u8>,
     taken: usize,
 }
@@ -80,7 +80,7 @@ impl<'a, R: BufRead> Dialect<'a, R> {
         }
     }
 
-    /// Translates the next word with the space before it.
+    /// Converts the next word with the space before it.
     fn translate(&mut self) -> io::Result<()> {
         self.word.clear();
         let mut lines = 0usize;
@@ -126,7 +126,7 @@ impl<'a, R: BufRead> Dialect<'a, R> {
             (_, b"") => (b"", self.place),
             (Place::Text, b"$end") => (b"", Place::Between),
             (Place::Text, text) => {
-                // Some writers set no space before it.
+                // Some writers put no space before it.
                 let ends = text.ends_with(b"$end");
                 (b"", if ends { Place::Between } else { Place::Text })
             }
@@ -135,7 +135,7 @@ impl<'a, R: BufRead> Dialect<'a, R> {
             (Place::Between, b"$scope") => (word, Place::ScopeType),
             (Place::Between, b"$upscope" | b"$timescale") => (word, Place::Inside),
             (Place::Between, b"$enddefinitions") => (word, Place::Last),
-            // A value change, and not a declaration: the parser tells it as such.
+            // This is a value change, not a declaration: the parser reports it as such.
             (Place::Between, b"$end" | b"$dumpvars" | b"$dumpall" | b"$dumpon" | b"$dumpoff") => (word, Place::Between),
             (Place::Between, word) if word.starts_with(b"$") => (b"", Place::Text),
             (Place::Between, word) => (word, Place::Between),
@@ -150,7 +150,7 @@ impl<'a, R: BufRead> Dialect<'a, R> {
             (Place::Var(left), word) => (word, Place::Var(left - 1)),
             (Place::Inside | Place::Done, word) => (word, self.place),
         };
-        // Behind the last word the parser waits for a space. It must not come from the value changes.
+        // After the last word the parser waits for a space, which must not come from the value changes.
         if space && !written.is_empty() {
             self.out.push(b' ');
         }
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     fn translated(text: &str) -> (String, String) {
-        // One byte at a time, so that every word is cut everywhere.
+        // It reads one byte at a time, so that every word is cut everywhere.
         let mut inner = io::BufReader::with_capacity(1, text.as_bytes());
         let mut out = String::new();
         Dialect::new(&mut inner).read_to_string(&mut out).unwrap();

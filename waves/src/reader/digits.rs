@@ -1,4 +1,4 @@
-//! Packs digits into words: a bit each, and a bit each that says whether it is unknown.
+//! Packs digits into words: one bit each for the value, and one that tells whether it is unknown.
 //!
 //! | digit | bit | unknown |
 //! |---|---|---|
@@ -7,7 +7,7 @@
 //! | `x`, and what VHDL has beside it: `U`, `W`, `-` | 0 | 1 |
 //! | `z` | 1 | 1 |
 
-/// What a byte stands for: bit 0 the bit, bit 1 unknown, [`NO_DIGIT`] for any other byte.
+/// Meaning of a byte: bit 0 is the value, bit 1 unknown, [`NO_DIGIT`] for any other byte.
 const DIGITS: [u8; 256] = {
     let mut table = [NO_DIGIT; 256];
     let digits = [
@@ -31,13 +31,13 @@ const DIGITS: [u8; 256] = {
 };
 const NO_DIGIT: u8 = 0xff;
 
-/// The digit of a byte: bit 0 the bit, bit 1 whether it is unknown.
+/// Returns the digit of a byte: bit 0 is the value, bit 1 tells whether it is unknown.
 pub(super) fn digit(byte: u8) -> Option<u8> {
     let digit = DIGITS[byte as usize];
     (digit != NO_DIGIT).then_some(digit)
 }
 
-/// Up to 64 digits, all known, most significant first; `None` if one is anything but `0` or `1`.
+/// Packs up to 64 known digits, most significant first; `None` if one is anything but `0` or `1`.
 #[inline]
 pub(super) fn known_word(digits: &[u8]) -> Option<u64> {
     const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
@@ -49,7 +49,7 @@ pub(super) fn known_word(digits: &[u8]) -> Option<u64> {
         if raw & !ONES != 0 {
             return None;
         }
-        // Byte 0 goes to bit 7, byte 7 to bit 0: no two products meet.
+        // Byte 0 goes to bit 7, byte 7 to bit 0: no two products overlap.
         word = word << 8 | raw.wrapping_mul(0x8040_2010_0804_0201) >> 56;
     }
     for byte in eights.remainder() {
@@ -63,7 +63,7 @@ pub(super) fn known_word(digits: &[u8]) -> Option<u64> {
 }
 
 /// Packs `digits`, most significant first, into `bits` and `unknown`, which hold `width` bits, least significant word
-/// first. What is missing is as VCD has it: zeros, or the first digit if that is unknown. There must not be more digits
+/// first. Missing digits are as in VCD: zeros, or the first digit if that is unknown. There must not be more digits
 /// than `width`.
 ///
 /// # Errors

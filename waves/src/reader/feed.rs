@@ -1,4 +1,4 @@
-//! A thread that reads a file ahead, and what it hands over.
+//! A thread that reads a file ahead, and the batches that it hands over.
 //!
 //! ```text
 //!  reading thread ──► full batches (at most 3) ──► comparing thread
@@ -6,7 +6,8 @@
 //!        └──────────────── empty batches ◄──────────────┘
 //! ```
 //!
-//! The batches go round, so that nothing is allocated on the way, and a reader that is faster than the comparison waits.
+//! The batches are reused in a circle, so that nothing is allocated on the way; a reader that is faster than the
+//! comparison waits.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -30,7 +31,7 @@ pub(crate) struct Feed {
     full: Receiver<Message>,
     empty: SyncSender<Batch>,
     batch: Batch,
-    /// The step at hand, and where its changes start.
+    /// The current step, and the start of its changes.
     step: usize,
     first: usize,
     started: bool,
@@ -39,8 +40,8 @@ pub(crate) struct Feed {
 }
 
 impl Feed {
-    /// Starts `read` in a thread of its own; it hands its batches to the function that it is given, which says whether
-    /// somebody still listens.
+    /// Starts `read` in a separate thread. It hands its batches to the function that it gets, which returns whether
+    /// anybody still receives them.
     pub(super) fn start<F>(path: &Path, mut gatherer: Gatherer, read: F) -> Result<Self, WaveError>
     where
         F: FnOnce(&mut Gatherer, &mut dyn FnMut(&mut Gatherer) -> bool) -> Result<Ended, WaveError> + Send + 'static,
@@ -62,7 +63,7 @@ impl Feed {
                 Err(error) => Message::Failed(error),
             };
             if hand_over(&mut gatherer) {
-                // Nobody may listen any more.
+                // The receiver may be gone.
                 let _ = send_full.send(end);
             }
         };
@@ -110,7 +111,8 @@ impl Feed {
         match self.full.recv() {
             Ok(Message::Batch(batch)) => {
                 let used = std::mem::replace(&mut self.batch, batch);
-                // The first one, which never held anything, is one too many; so is one that the reader no longer takes.
+                // The first batch, which never held anything, is one too many; so is one that the reader no longer
+                // takes.
                 let _ = self.empty.try_send(used);
                 (self.step, self.first) = (0, 0);
             }
@@ -119,7 +121,7 @@ impl Feed {
                 self.ended = true;
                 return Err(error);
             }
-            // The thread is gone without a word: the crate that reads FST gave up on a file that it did not expect.
+            // The thread ended without a message: the crate that reads FST panicked on an unexpected file.
             Err(_) => {
                 self.ended = true;
                 return Err(WaveError::Damaged {
@@ -132,7 +134,7 @@ impl Feed {
         Ok(())
     }
 
-    /// The changes of the step at hand: slot and words.
+    /// Returns the changes of the current step: slot and words.
     #[inline]
     pub(crate) fn changes(&self) -> impl Iterator<Item = (u32, &[u64])> {
         let end = self.batch.steps.get(self.step).map_or(self.first, |step| step.end);
@@ -145,12 +147,13 @@ impl Feed {
         })
     }
 
-    /// Bytes of the file that were read so far.
+    /// Returns the number of bytes of the file that were read so far.
     pub(crate) fn bytes(&self) -> u64 {
         self.batch.bytes
     }
 
-    /// What is wrong with a file that has nothing more to say while another goes on: nothing, unless its last line is cut.
+    /// Returns the error of a file that has ended while another continues; only a file whose last line is cut has
+    /// one.
     pub(crate) fn cut_off(&self) -> Result<(), WaveError> {
         if self.unterminated {
             let inside = "before the other, in a line without line break";

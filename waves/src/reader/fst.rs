@@ -1,4 +1,4 @@
-//! FST, GTKWave's packed format, through the crate `fst-reader`.
+//! Reads FST, GTKWave's packed format, with the crate `fst-reader`.
 //!
 //! That crate reads block by block and calls back in the order of time, so memory is bounded by the size of a block, which
 //! the writer chooses, and not by the length of the file; but a file that is packed as a whole, as GHDL writes it, is unpacked
@@ -25,16 +25,16 @@ use crate::WaveError;
 
 type Source = FstReader<BufReader<File>>;
 
-/// First byte of a file that begins with a header block, whose length follows.
+/// Beginning of a file with a header block: its first byte and the length.
 const HEADER: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 0x49];
 /// First byte of a file that is packed as a whole.
 const PACKED: u8 = 254;
-/// How long such a file may be when it is unpacked: the crate does that in memory.
+/// Largest length of such a file after unpacking, which the crate does in memory.
 const PACKED_BYTES: u64 = 1 << 28;
-/// Bytes of a block header: kind and length.
+/// Number of bytes of a block header: kind and length.
 const BLOCK_BYTES: u64 = 9;
 
-/// Whether the file begins like an FST.
+/// Returns whether the file begins like an FST.
 pub(super) fn is_fst(beginning: &[u8]) -> bool {
     beginning.starts_with(&HEADER) || beginning.first() == Some(&PACKED)
 }
@@ -123,7 +123,7 @@ fn declare(
 }
 
 impl FstValues {
-    /// Reads to the end. `hand_over` takes full batches, and says whether to go on.
+    /// Reads to the end. `hand_over` takes full batches, and returns whether to continue.
     pub(super) fn read(
         mut self,
         gatherer: &mut Gatherer,
@@ -171,7 +171,7 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
             }
             let words = gatherer.put_words(slot);
             let (bits, unknown) = words.split_at_mut(words.len() / 2);
-            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is no digit"))?;
+            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is not a digit"))?;
             gatherer.watch_last(slot);
         }
         (Kind::Text, FstSignalValue::String(text)) => pack_text(text, gatherer.put_words(slot)),
@@ -181,7 +181,8 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
     Ok(())
 }
 
-/// The blocks must lie within the file and be told in its first part; returns the file's length.
+/// Checks that every block ends within the file, and that a file packed as a whole is not too large to unpack; returns
+/// the file's length.
 fn check_blocks(path: &Path, file: &mut File) -> Result<u64, WaveError> {
     let read = WaveError::file(path, "read");
     let walk = |file: &mut File| -> std::io::Result<Result<u64, String>> {
@@ -231,7 +232,7 @@ fn unit_fs(exponent: i8) -> Result<u64, String> {
         .ok_or_else(|| format!("a timescale of 10^{exponent} s: 1 fs to 100 s are allowed"))
 }
 
-/// Runs a call into the crate; where that panics, the file is damaged.
+/// Runs a call into the crate; if that panics, the file is damaged.
 fn guarded<T>(path: &Path, call: impl FnOnce() -> T) -> Result<T, WaveError> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|_| damaged(path, "its reader gave up"))
 }

@@ -1,4 +1,4 @@
-//! What a waveform file declares: signals, their widths and names, the unit of time.
+//! Declarations of a waveform file: signals, their widths and names, the unit of time.
 
 use std::collections::HashMap;
 
@@ -7,20 +7,20 @@ const NAME_BYTES: usize = 1 << 25;
 const DEPTH: usize = 256;
 const TOTAL_BITS: u64 = 1 << 24;
 
-/// How a signal's values are written.
+/// Type of a signal's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// So many bits, at least one.
+    /// A vector of this many bits, at least one.
     Bits(u32),
     /// A real number.
     Real,
     /// Text.
     Text,
-    /// An event: it happens, and has no value that can be compared.
+    /// An event, which happens and has no value that can be compared.
     Event,
 }
 
-/// The part of a vector that a declaration is about: `[7:0]`, or a single bit `[3]`.
+/// The part of a vector that is declared: `[7:0]`, or a single bit `[3]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Range {
     /// Index of the first digit.
@@ -34,9 +34,9 @@ pub(crate) struct Range {
 pub(crate) struct Named {
     /// Scopes and name, joined by dots; without the range of a vector, with the index of a single bit.
     pub(crate) path: String,
-    /// Its value.
+    /// Slot of its value.
     pub(crate) slot: u32,
-    /// The path without the index, and the bits it stands for, where it is declared as a part of a vector.
+    /// The path without the index, and the declared bits, if it is declared as a part of a vector.
     pub(crate) part: Option<(String, Range)>,
 }
 
@@ -45,21 +45,21 @@ pub(crate) struct Named {
 pub(crate) struct Declarations {
     /// The signals in the order of the file.
     pub(crate) names: Vec<Named>,
-    /// Of each slot; names may share one.
+    /// Kind of each slot; names may share a slot.
     pub(crate) kinds: Vec<Kind>,
-    /// Femtoseconds per unit of the file's time.
+    /// Number of femtoseconds per unit of the file's time.
     pub(crate) unit_fs: u64,
-    /// The open scopes, each followed by a dot, and where each ends.
+    /// The open scopes, each followed by a dot, and the end of each.
     scope: String,
     scope_ends: Vec<usize>,
     name_bytes: usize,
     bits: u64,
-    /// How often a path was declared, and its slot at first.
+    /// Number of times that a path was declared, and its first slot.
     seen: HashMap<String, (u32, u32)>,
 }
 
 impl Declarations {
-    /// None yet, with so many femtoseconds per unit of time.
+    /// Creates empty declarations with this many femtoseconds per unit of time.
     pub(super) fn new(unit_fs: u64) -> Self {
         Self {
             unit_fs,
@@ -89,7 +89,7 @@ impl Declarations {
         Ok(())
     }
 
-    /// All scopes must have been left.
+    /// Checks that all scopes have been left.
     pub(super) fn finish(&mut self) -> Result<(), String> {
         if !self.scope_ends.is_empty() {
             return Err("a $scope is still open at $enddefinitions: the file is damaged".to_owned());
@@ -98,7 +98,7 @@ impl Declarations {
         Ok(())
     }
 
-    /// A new value of `kind`; its slot.
+    /// Adds a value of `kind`; returns its slot.
     pub(crate) fn add_slot(&mut self, kind: Kind, name: &str) -> Result<u32, String> {
         let bits = match kind {
             Kind::Bits(0) => return Err(format!("signal `{name}` has 0 bits: the file is damaged")),
@@ -115,7 +115,7 @@ impl Declarations {
         Ok(self.kinds.len() as u32 - 1)
     }
 
-    /// A name for a slot, in the open scopes. Nothing happens if it was declared before for the same slot.
+    /// Adds a name for a slot, in the open scopes. If it was declared before for the same slot, nothing happens.
     pub(crate) fn add_name(&mut self, name: &str, slot: u32) -> Result<(), String> {
         let width = match self.kinds[slot as usize] {
             Kind::Bits(width) => u64::from(width),
@@ -140,7 +140,7 @@ impl Declarations {
             return Ok(());
         }
         if *count > 1 {
-            // Twice the same name: kept apart by range, else by their order, so that neither is lost.
+            // Equal names are distinguished by their range, or else by their order, so that neither is lost.
             path = match range {
                 Some(Range { left, right }) if left != right => format!("{vector}[{left}:{right}]"),
                 _ => format!("{path}#{count}"),
@@ -152,13 +152,13 @@ impl Declarations {
     }
 }
 
-/// An escaped name that needs no escape is the plain one.
+/// Returns the plain form of an escaped name that needs no escape.
 fn plain(name: &str) -> &str {
     name.strip_prefix('\\').unwrap_or(name)
 }
 
-/// Cuts `[7:0]` off the name of a vector, and `[3]` off that of a single bit; a range that is not as wide as the signal
-/// says nothing about its bits.
+/// Cuts `[7:0]` off the name of a vector, and `[3]` off that of a single bit; a range that does not have the signal's
+/// width does not describe its bits.
 fn split_range(name: &str, width: u64) -> (&str, Option<Range>) {
     let cut = name.rfind('[').filter(|at| *at > 0 && name.ends_with(']'));
     let Some(at) = cut else { return (name, None) };

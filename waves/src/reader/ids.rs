@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-/// Id codes up to this number are looked up in a table, others by hash.
+/// Id codes up to this number are looked up in a table, others in a hash map.
 const TABLE_IDS: u64 = 1 << 20;
 const NO_SLOT: u32 = u32::MAX;
 
-/// The number of an id code and the place behind it: the first character counts least, as most writers have it, so that
-/// numbers are dense. Ten characters and more do not fit, and give `None`.
+/// Returns the number of an id code and the position after it. The first character is the least significant, as most
+/// writers have it, so that numbers are dense. Ten characters and more do not fit, and give `None`.
 #[inline]
 pub(super) fn id_number(data: &[u8], mut at: usize) -> (Option<u64>, usize) {
     let (from, mut number, mut scale) = (at, 0u64, 1u64);

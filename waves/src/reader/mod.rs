@@ -1,4 +1,4 @@
-//! Reads waveforms in steps of time, in bounded memory, whatever the file holds.
+//! Reads waveforms in steps of time, in bounded memory, whatever the file contains.
 //!
 //! ```text
 //!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
@@ -6,12 +6,12 @@
 //!  x.fst ────┴─ declarations: crate `fst-reader` ───────────────┘                                       step by step
 //! ```
 //!
-//! Declarations are read by the crate `vcd`, value changes by [`section`]: the crate makes a string of each, and streams at
-//! a quarter of the speed. Tests hold the two, and `wellen`, against each other on every fixture.
+//! The crate `vcd` reads the declarations, [`section`] the value changes, because the crate makes a string of each
+//! and is four times as slow. Tests compare the two, and `wellen`, on every fixture.
 //!
-//! Limits, so that a hostile file cannot eat the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of names,
-//! scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file that ends in
-//! the middle of something, the answer is an error with the place.
+//! Limits keep a hostile file from using up the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of
+//! names, scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file
+//! that ends in the middle of something, the result is an error with the place.
 
 #[cfg(test)]
 mod agreement;
@@ -62,7 +62,7 @@ pub(crate) struct Wave {
 }
 
 impl Wave {
-    /// Opens a VCD or an FST, told apart by how it begins, and reads its declarations.
+    /// Opens a VCD or an FST, distinguished by its beginning, and reads its declarations.
     pub(crate) fn open(path: &Path) -> Result<Self, WaveError> {
         let file = File::open(path).map_err(WaveError::file(path, "open"))?;
         let data = file.metadata().map_err(WaveError::file(path, "read"))?;
@@ -87,12 +87,12 @@ impl Wave {
         })
     }
 
-    /// Length of the file; `None` for a pipe.
+    /// Returns the length of the file; `None` for a pipe.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.bytes
     }
 
-    /// Starts to read the values in a thread of its own, and marks the edges of a clock.
+    /// Starts to read the values in a separate thread, and marks the edges of a clock.
     pub(crate) fn play(self, watch: Option<Watch>) -> Result<(Declarations, Feed), WaveError> {
         let gatherer = Gatherer::new(self.declarations.kinds.clone(), watch);
         let feed = match self.rest {

@@ -1,13 +1,13 @@
-//! Values of a VCD on their way into a batch: all but the plain ones, which [`super::section`] takes itself.
+//! Adds values of a VCD to a batch: all except the simple ones, which [`super::section`] handles itself.
 //!
-//! Each says what is wrong with a value that does not fit the declaration of its signal.
+//! Each function returns an error for a value that does not fit the declaration of its signal.
 
 use super::batch::Gatherer;
 use super::digits::{digit, pack};
 use super::header::Kind;
 use super::values::pack_text;
 
-/// Digits of any length and kind for a slot.
+/// Adds digits of any length and kind for a slot.
 pub(super) fn put_digits(gatherer: &mut Gatherer, slot: u32, digits: &[u8]) -> Result<(), String> {
     let width = match gatherer.kind(slot) {
         Kind::Bits(width) => width,
@@ -19,7 +19,7 @@ pub(super) fn put_digits(gatherer: &mut Gatherer, slot: u32, digits: &[u8]) -> R
     }
     let bad = |byte| format!("invalid VCD logic value `{}`: the file is damaged", shown(&[byte]));
     if digits.len() > width as usize {
-        // Leading digits that say nothing are no damage: some writers dump every vector in 32 digits or 64.
+        // Leading digits without meaning are not an error: some writers dump every vector in 32 or 64 digits.
         let (extra, rest) = digits.split_at(digits.len() - width as usize);
         if extra.iter().any(|byte| *byte != b'0') {
             return Err(match digits.iter().find(|byte| digit(**byte).is_none()) {
@@ -43,7 +43,7 @@ pub(super) fn put_digits(gatherer: &mut Gatherer, slot: u32, digits: &[u8]) -> R
     pack(digits, width, bits, unknown).map_err(bad)
 }
 
-/// A real number for a slot.
+/// Adds a real number for a slot.
 pub(super) fn put_real(gatherer: &mut Gatherer, slot: u32, word: &[u8]) -> Result<(), String> {
     if gatherer.kind(slot) != Kind::Real {
         return Err("a real value for a signal that is declared as bits".to_owned());
@@ -51,12 +51,12 @@ pub(super) fn put_real(gatherer: &mut Gatherer, slot: u32, word: &[u8]) -> Resul
     let text = std::str::from_utf8(word).ok();
     let real: f64 = text
         .and_then(|text| text.parse().ok())
-        .ok_or_else(|| format!("`{}` is no number", shown(word)))?;
+        .ok_or_else(|| format!("`{}` is not a number", shown(word)))?;
     gatherer.put_word(slot, real.to_bits(), 0);
     Ok(())
 }
 
-/// A text for a slot.
+/// Adds a text for a slot.
 pub(super) fn put_text(gatherer: &mut Gatherer, slot: u32, word: &[u8]) -> Result<(), String> {
     if gatherer.kind(slot) == Kind::Text {
         pack_text(word, gatherer.put_words(slot));
@@ -64,7 +64,7 @@ pub(super) fn put_text(gatherer: &mut Gatherer, slot: u32, word: &[u8]) -> Resul
     Ok(())
 }
 
-/// Bytes for a message.
+/// Formats bytes for a message.
 pub(super) fn shown(bytes: &[u8]) -> String {
     String::from_utf8_lossy(&bytes[..bytes.len().min(60)])
         .escape_debug()

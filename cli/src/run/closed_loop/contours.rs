@@ -21,14 +21,14 @@ pub(crate) struct NamedContour {
     pub(crate) contour: Contour,
 }
 
-/// What came of it.
+/// Results of a path.
 pub(super) struct Contours<'a> {
     pub(super) path: &'a NamedContour,
-    /// Beside the Verilog; none without Verilator.
+    /// Comparison with the Verilog; `None` without Verilator.
     pub(super) compared: Option<Compared>,
-    /// Each shaper with its own delay.
+    /// Result with each shaper's own delay.
     pub(super) apart: Contoured,
-    /// All shapers with the same delay; the reason where there are no such tables.
+    /// Result with equal delays of all shapers; the error says why there are no such tables.
     pub(super) matched: Result<Contoured, String>,
 }
 
@@ -44,8 +44,7 @@ pub(crate) fn contour(
     };
     if !has_stage {
         return Err(Failure::from(miette::miette!(
-            help =
-                "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md says what makes a stage",
+            help = "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md explains the requirements of a stage",
             "--contour: the machine has no stage, whose closed loop would drive it"
         )));
     }
@@ -84,7 +83,7 @@ impl DistanceDocument {
 }
 
 impl Contours<'_> {
-    /// What the stage did not do.
+    /// The troubles of the stage on the path.
     pub(super) fn troubles(&self) -> impl Iterator<Item = Option<&Trouble>> + Clone {
         let matched = self.matched.as_ref().ok();
         std::iter::once(&self.apart)
@@ -152,7 +151,7 @@ impl Contours<'_> {
         }
     }
 
-    /// The distance over time; nothing where the stage never went.
+    /// The distance over time; `None` where the stage never moved.
     pub(super) fn panel(&self, machine: &Machine) -> Option<Panel> {
         let sample_s = machine.clock.sample_period_s();
         let samples = self.rows().map(|(_, followed)| followed.distance.len()).max()?;

@@ -1,4 +1,5 @@
-//! The closed loop of a run: the stage on its simulated machine, in Verilator beside the model, and in the model alone.
+//! The closed loop of a run: the stage on its simulated machine, in Verilator beside the model, and in the model
+//! alone.
 
 mod contours;
 mod pictures;
@@ -25,12 +26,12 @@ pub(crate) use report::StageDocument;
 
 use contours::Contours;
 
-/// Runs at a time: one may be Verilator's, which takes as long as the others together.
+/// Number of runs at a time: one may be Verilator's, which takes as long as the others together.
 const AT_ONCE: usize = 2;
-/// Machines that the shapers were not made for: their frequencies, as parts of those in the file.
+/// Frequency factors of machines for which the shapers were not designed.
 const SLOWER: f64 = 0.9;
 const FASTER: f64 = 1.1;
-/// The moves.
+/// The moves, as shaping and frequency factor.
 const MOVES: [(Shaping, f64); 4] = [
     (Shaping::Shaped, 1.0),
     (Shaping::Unshaped, 1.0),
@@ -38,37 +39,37 @@ const MOVES: [(Shaping, f64); 4] = [
     (Shaping::Shaped, FASTER),
 ];
 
-/// What the closed loop did.
+/// Results of the closed loop.
 pub(crate) struct ClosedLoop<'a> {
     machine: &'a Machine,
     moves: &'a [AxisMove],
     stage: &'a Stage,
-    /// Beside the Verilog; none without Verilator.
+    /// Comparison with the Verilog; `None` without Verilator.
     compared: Option<Compared>,
     shaped: Moved,
     unshaped: Moved,
     slower: Moved,
     faster: Moved,
-    /// What these four should come to, by axis.
+    /// Expected figures of these four moves, by axis.
     expected: [Vec<Expected>; 4],
-    /// By axis, whether its move has its acceleration from tick to tick.
+    /// By axis, whether its move has no jerk limit, so that its acceleration changes from tick to tick.
     harsh: Vec<bool>,
-    /// The circles; the reason where there are none.
+    /// The circles; the error says why there are none.
     circles: Result<Circles, String>,
     /// The path of `--contour`.
     contours: Option<Contours<'a>>,
 }
 
-/// The circle of the first two axes.
+/// Results of the circle of the first two axes.
 struct Circles {
     circle: Circle,
-    /// Each shaper with its own delay.
+    /// Result with each shaper's own delay.
     apart: Circled,
-    /// All shapers with the same delay; the reason where there are no such tables.
+    /// Result with equal delays of all shapers; the error says why there are no such tables.
     matched: Result<Circled, String>,
 }
 
-/// What is run, each on a stage of its own.
+/// A run, on a stage of its own.
 #[derive(Clone, Copy)]
 enum Task<'a> {
     Compare,
@@ -78,7 +79,7 @@ enum Task<'a> {
     CompareContour,
 }
 
-/// What came of it.
+/// Result of a run.
 enum Done {
     Compared(Compared),
     Moved(Moved),
@@ -87,11 +88,11 @@ enum Done {
     ContourCompared(Compared),
 }
 
-/// The machine file, its hardware, and what runs it.
+/// The machine file, its hardware, and the simulator.
 pub(crate) struct Job<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) moves: &'a [AxisMove],
-    /// The circle; the reason where there is none.
+    /// The circle; the error says why there is none.
     pub(crate) circle: Result<Circle, String>,
     /// The path of `--contour`.
     pub(crate) contour: Option<&'a NamedContour>,
@@ -194,7 +195,7 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Does these, some at a time; what came of them in their order.
+    /// Runs these tasks, some at a time, and returns their results in order.
     fn all(&self, own: &StageRun<'_>, circle: Option<Circle>, tasks: &[Task<'_>]) -> Result<Vec<Done>, StageRunError> {
         let bar = progress::bar("closed loop", tasks.len() as u64);
         let next = Mutex::new(tasks.iter().enumerate());
@@ -206,7 +207,7 @@ impl<'a> Job<'a> {
                 };
                 let result = self.one(own, circle, *task);
                 if result.is_err() {
-                    // What is left is not begun: the error ends the command.
+                    // The remaining tasks are not begun: the error ends the command.
                     bench::locked(&next).by_ref().for_each(drop);
                 }
                 bench::locked(&results).extend(result.transpose().map(|result| (index, result)));
@@ -225,7 +226,7 @@ impl<'a> Job<'a> {
         results.into_iter().map(|(_, result)| result).collect()
     }
 
-    /// The stage's Verilog.
+    /// Opens the stage's Verilog.
     fn device(&self) -> Result<Box<dyn Device>, StageRunError> {
         let sources = self.sources.reached_by(&self.stage.block)?;
         Ok(self.simulator.device(&self.stage.block, &sources, self.seed)?)
@@ -254,8 +255,8 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The circle of a run, with the radius that `--radius` gives in the unit of the first axis. None is a reason for the report, unless one
-/// was asked for.
+/// The circle of a run, with the radius of `--radius` in the unit of the first axis. Where there is none, the report
+/// gives the reason, unless `--radius` asked for one.
 pub(crate) fn circle(
     machine: &Machine,
     radius: Option<f64>,
@@ -277,7 +278,7 @@ pub(crate) fn circle(
     }
 }
 
-/// How what could not be run ends the command.
+/// Turns an error of a stage run into the failure of a command.
 fn failure(error: StageRunError, path: &Path) -> Failure {
     match error {
         StageRunError::Bench(error) => bench::failure(error),
@@ -285,7 +286,7 @@ fn failure(error: StageRunError, path: &Path) -> Failure {
     }
 }
 
-/// Says at the start what the closed loop of this run will not do.
+/// Says at the start what the closed loop of this run will leave out.
 pub(crate) fn announce(simulator: Simulator, has_command: bool) {
     if simulator != Simulator::Verilator {
         crate::output::say(

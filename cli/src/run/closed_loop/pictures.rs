@@ -1,4 +1,4 @@
-//! The closed loop as pictures.
+//! Plots of the closed loop.
 
 use super::ClosedLoop;
 use crate::plot::{Band, Curve, Mark, Panel, label, time_axis};
@@ -8,7 +8,7 @@ use posicast_testbench::stage_bench::AxisSample;
 use posicast_testbench::stage_run::{Circled, Moved};
 
 impl ClosedLoop<'_> {
-    /// Name in the folder and panels of each picture.
+    /// Each plot with its name in the folder and its panels.
     pub(crate) fn pictures(&self) -> Vec<(&'static str, Vec<Panel>)> {
         let axes = || 0..self.machine.axes.len();
         let mut pictures = vec![
@@ -55,7 +55,7 @@ impl ClosedLoop<'_> {
         moved.samples.get(axis).map_or(&[], Vec::as_slice)
     }
 
-    /// How the pictures of the move show time.
+    /// The unit of time in the plots of the move.
     fn time(&self) -> ShownUnit {
         let samples = self.runs().into_iter().flat_map(|(_, moved)| moved.samples.first());
         let ticks = samples.map(Vec::len).max().unwrap_or(0);
@@ -66,7 +66,7 @@ impl ClosedLoop<'_> {
         ticks as f64 / self.machine.clock.sample_hz
     }
 
-    /// Points over the time since the start.
+    /// Values over the time since the start.
     fn points(&self, samples: &[AxisSample], value: impl Fn(&AxisSample) -> f64) -> Vec<(f64, f64)> {
         let time = self.time();
         let points = samples.iter().enumerate();
@@ -75,7 +75,7 @@ impl ClosedLoop<'_> {
             .collect()
     }
 
-    /// Where a run was given up.
+    /// Marks where a run was aborted.
     fn trips<'a>(&self, runs: impl IntoIterator<Item = (&'a str, &'a Moved)>) -> Vec<Mark> {
         let time = self.time();
         let trip = |(name, moved): (&str, &Moved)| {
@@ -154,7 +154,8 @@ impl ClosedLoop<'_> {
         ]
     }
 
-    /// The load after its move; where a run was given up, all runs from their start, since there may be nothing after it.
+    /// The load after its move; if a run was aborted, all runs from their start, because there may be nothing after
+    /// the move.
     fn vibration(&self, axis: usize) -> Panel {
         if self.runs().iter().any(|(_, moved)| moved.trouble.is_some()) {
             return self.until_the_trip(axis);

@@ -1,4 +1,4 @@
-//! What the closed loop did, for people and for programs.
+//! The report of the closed loop, for people and for programs.
 
 use super::contours::{ContourDocument, Contours};
 use super::{Circles, ClosedLoop};
@@ -57,7 +57,7 @@ impl ClosedLoop<'_> {
         text
     }
 
-    /// What the load of an axis rings without its shaper and with it, in m or rad; nothing where a move was not made.
+    /// Vibration of an axis's load without its shaper and with it, in m or rad; `None` if a move was not made.
     pub(crate) fn ringing(&self, axis: usize) -> Option<[f64; 2]> {
         let of = |moved: &Moved| Some(moved.axes.get(axis)?.residual.peak);
         Some([of(&self.unshaped)?, of(&self.shaped)?])
@@ -68,7 +68,7 @@ impl ClosedLoop<'_> {
         Some(self.shaped.axes.get(axis)?.tracking.peak)
     }
 
-    /// How far and how fast each axis moves.
+    /// Distance and speed of each axis's move.
     fn moves_text(&self) -> String {
         let axes = self.machine.axes.iter().zip(self.moves);
         let texts = axes.map(|(axis, of)| {
@@ -112,7 +112,7 @@ impl ClosedLoop<'_> {
         text
     }
 
-    /// The unit of the circle: that of the axis which is named first.
+    /// The unit of the circle: that of its first axis.
     pub(super) fn circle_unit(&self) -> AxisUnit {
         self.machine.axes.first().map_or(AxisUnit::default(), |axis| axis.unit)
     }
@@ -156,7 +156,7 @@ impl ClosedLoop<'_> {
     }
 }
 
-/// `stage` in `report.json`. Lengths in m or rad.
+/// `stage` in `report.json`. Lengths are in m or rad.
 #[derive(Serialize)]
 pub(crate) struct StageDocument {
     side_by_side: Option<SideBySideDocument>,

@@ -1,4 +1,4 @@
-//! What must hold in the closed loop. `docs/closed-loop.md` derives the bounds.
+//! The checks of the closed loop. `docs/closed-loop.md` derives their bounds.
 
 use super::contours::Contours;
 use super::{ClosedLoop, MOVES};
@@ -8,7 +8,7 @@ use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shap
 use posicast_testbench::wording::counted;
 
 impl ClosedLoop<'_> {
-    /// What must hold.
+    /// All checks.
     pub(crate) fn checks(&self) -> Vec<Check> {
         let moved = self
             .compared
@@ -46,7 +46,7 @@ impl ClosedLoop<'_> {
         };
         let trouble = of_runs.find_map(|trouble| trouble);
         Check {
-            name: "the stage does what it is told, without a fault",
+            name: "the stage carries out its commands without a fault",
             passed: trouble.is_none(),
             detail: trouble.map_or_else(
                 || format!("{runs} runs, watched in every tick from reset to standstill{circles}"),
@@ -55,7 +55,7 @@ impl ClosedLoop<'_> {
         }
     }
 
-    /// Figures of every move of every axis, and what they should be. Empty for a move that was not made.
+    /// Measured and expected figures of every move of every axis. Empty for a move that was not made.
     fn figures(&self) -> impl Iterator<Item = (String, &AxisSection, &AxisFigures, &Expected)> {
         let moves = self.moves().into_iter().zip(&self.expected).zip(MOVES);
         moves.flat_map(move |((moved, expected), (shaping, factor))| {
@@ -69,7 +69,7 @@ impl ClosedLoop<'_> {
         })
     }
 
-    /// Axes whose move says nothing.
+    /// Axes whose move is too short to say anything.
     fn motionless(&self) -> Option<String> {
         let axes = self.machine.axes.iter().zip(&self.expected[0]);
         let mut short = axes.filter(|(_, expected)| !expected.moves());
@@ -83,7 +83,8 @@ impl ClosedLoop<'_> {
         })
     }
 
-    /// The error of every move stays below what lag, content of the move, friction and counts make of it.
+    /// The error of every move must stay below what the loop's lag, the move's frequency content, friction and counts
+    /// allow.
     fn follows(&self) -> Check {
         let (mut compared, mut worst) = (0, None);
         for (name, axis, found, expected) in self.figures() {
@@ -126,8 +127,8 @@ impl ClosedLoop<'_> {
         })
     }
 
-    /// The shapers take away the vibration that they are for: a check of the axes that their moves exercise, and a word about the
-    /// others. Nothing where no axis has a shaper.
+    /// The shapers must suppress the vibration for which they are designed. Returns a check for the axes whose moves
+    /// exercise it, and a note about the others; nothing where no axis has a shaper.
     fn calmer(&self) -> Vec<Check> {
         let built = &self.stage.of_machine.config.axes;
         let (mut louder, mut held, mut open) = (None, Vec::new(), Vec::new());
@@ -167,7 +168,7 @@ impl ClosedLoop<'_> {
                 open.push(text);
             }
         }
-        let name = "the shapers take the vibration of the move that they are made for";
+        let name = "the shapers suppress the vibration of the move that they are made for";
         let mut checks = Vec::new();
         if let Some(detail) = louder {
             checks.push(Check {
@@ -183,7 +184,7 @@ impl ClosedLoop<'_> {
             });
         }
         if !open.is_empty() {
-            // A move that is too short for any figure fails in the check of the error.
+            // A move that is too short for any figure already fails in the check of the error.
             checks.push(Check {
                 name: "every shaper is exercised by the move",
                 passed: self.motionless().is_none(),
@@ -196,7 +197,7 @@ impl ClosedLoop<'_> {
         checks
     }
 
-    /// The error stays below `following_error`; no check where no axis has that.
+    /// The error must stay below `following_error`; no check where no axis has that limit.
     fn limited(&self) -> Option<Check> {
         let limited = self.figures().filter_map(|(name, axis, found, _)| {
             let limit = axis.limits?.following_error?;
@@ -218,7 +219,7 @@ impl ClosedLoop<'_> {
     }
 }
 
-/// `end`: what a whole comparison comes to.
+/// The check of a comparison; `end` names the end of a complete one.
 pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
     let reach = match compared.whole {
         true => format!("from reset over switch-on to {end}"),

@@ -1,4 +1,4 @@
-//! Boards that are not known, clocks that they have not, machines without components, folders that were edited.
+//! Unknown boards, clocks that a board does not have, machines without components, edited folders.
 
 use super::{package, replace, xy_stage};
 use crate::cli::support::{example, one_axis, posicast, scratch};

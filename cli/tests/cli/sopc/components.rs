@@ -1,11 +1,11 @@
-//! Components: what they bind is what the Verilog has, and nothing came after 13.0.
+//! Components: their bindings agree with the Verilog, and they use nothing newer than version 13.0.
 
 use super::{bound_ports, check_component, file_set, findings, lint, replace, verilog_ports, xy_stage};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The files of the components, sorted.
+/// Returns the files of the components, sorted.
 fn components(output: &Path) -> Vec<PathBuf> {
     let files = fs::read_dir(output.join("sopc"))
         .unwrap()
@@ -17,7 +17,7 @@ fn components(output: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Is the component in this file good: known calls, and every port of its Verilog bound as it is?
+/// Returns whether the component in this file is valid: known calls, and every port of its Verilog bound correctly.
 fn component_holds(file: &Path) -> bool {
     let (records, content) = check_component(file);
     let top = file.file_name().unwrap().to_str().unwrap().trim_end_matches("_hw.tcl");
@@ -56,7 +56,7 @@ fn cli_components_bind_every_port_of_their_verilog() {
         let [synthesis, simulation] =
             ["QUARTUS_SYNTH", "SIM_VERILOG"].map(|kind| file_set(&records, kind, &output.join("sopc")));
         assert_eq!(synthesis, simulation);
-        // The set is whole: nothing else is needed to elaborate it.
+        // The set is complete: nothing else is needed to elaborate it.
         let top = records.iter().find(|record| record[0] == "top").unwrap()[2].clone();
         lint(&top, &synthesis);
     }
@@ -81,7 +81,7 @@ fn cli_a_component_says_what_the_hardware_says() {
     ] {
         assert_eq!(assignments.get(name), Some(&value), "{name}");
     }
-    // The parameters that the header of the Verilog lists are all there.
+    // All parameters that the header of the Verilog lists are present.
     let verilog = fs::read_to_string(output.join("rtl/xy_stage_stage.v")).unwrap();
     let table = verilog
         .lines()

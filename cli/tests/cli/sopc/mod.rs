@@ -1,5 +1,6 @@
-//! What `generate` writes for Platform Designer and Quartus, without either: its scripts run in `tclsh` with commands that
-//! know what the versions know (`tests/sopc/`), and what they say is compared with the emitted Verilog.
+//! What `generate` writes for Platform Designer and Quartus, tested without either: its scripts run in `tclsh` with
+//! commands that accept what the versions accept (`tests/sopc/`), and their results are compared with the emitted
+//! Verilog.
 
 #![cfg(test)] // lets clippy see that this is test code
 
@@ -17,7 +18,7 @@ use std::process::Command;
 /// Name, direction (`Input` or `Output`) and width of each port.
 pub(super) type Ports = BTreeMap<String, (String, u32)>;
 
-/// The package of a machine file.
+/// Writes the package of a machine file.
 pub(super) fn package(machine: &str) -> (tempfile::TempDir, PathBuf) {
     let (folder, file) = scratch(machine);
     let output = folder.path().join("out");
@@ -35,7 +36,7 @@ pub(super) fn xy_stage() -> (tempfile::TempDir, PathBuf) {
     package(&fs::read_to_string(example("xy-stage.toml")).unwrap())
 }
 
-/// The records that a checking script prints, split into words; whether it is content.
+/// Returns the records that a checking script prints, split into words, and whether it succeeds.
 fn check(script: &str, arguments: &[&str]) -> (Vec<Vec<String>>, bool) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/sopc").join(script);
     let output = Command::new("tclsh").arg(script).args(arguments).output().unwrap();
@@ -57,13 +58,13 @@ pub(super) fn check_system(quartus: &str, file: &Path) -> (Vec<Vec<String>>, boo
     )
 }
 
-/// The findings among records, each a line.
+/// Returns the findings among records, one line each.
 pub(super) fn findings(records: &[Vec<String>]) -> Vec<String> {
     let found = records.iter().filter(|record| record[0] == "finding");
     found.map(|record| record[1..].join(" ")).collect()
 }
 
-/// The ports of a Verilog module, read from its text.
+/// Returns the ports of a Verilog module, read from its text.
 pub(super) fn verilog_ports(file: &Path) -> Ports {
     let text = fs::read_to_string(file).unwrap();
     let start = text.find("\nmodule ").unwrap();
@@ -84,7 +85,7 @@ pub(super) fn verilog_ports(file: &Path) -> Ports {
     body.lines().filter_map(declaration).collect()
 }
 
-/// The ports that a component binds, each to one interface.
+/// Returns the ports that a component binds, each to one interface.
 pub(super) fn bound_ports(records: &[Vec<String>]) -> Ports {
     let ports = records.iter().filter(|record| record[0] == "port");
     ports
@@ -92,7 +93,7 @@ pub(super) fn bound_ports(records: &[Vec<String>]) -> Ports {
         .collect()
 }
 
-/// The files of a file set, as paths.
+/// Returns the files of a file set, as paths.
 pub(super) fn file_set(records: &[Vec<String>], kind: &str, folder: &Path) -> Vec<PathBuf> {
     let files = records.iter().filter(|record| record[0] == "file" && record[1] == kind);
     files.map(|record| folder.join(&record[2])).collect()
@@ -111,7 +112,7 @@ pub(super) fn lint(top: &str, files: &[PathBuf]) {
     );
 }
 
-/// Replaces in a file what must be there.
+/// Replaces text in a file, which must contain it.
 pub(super) fn replace(file: &Path, from: &str, to: &str) {
     let text = fs::read_to_string(file).unwrap();
     assert!(text.contains(from), "{from}");
@@ -124,7 +125,7 @@ pub(super) const BOARDS: [(&str, &str, &str, &str); 2] = [
     ("de1soc", "25.1", "PIN_AF14", "5CSEMA5F31C6"),
 ];
 
-/// The records of a project's file, and whether it is content; `ports` are those of the top level.
+/// Returns the records of a project's file, and whether the check succeeds; `ports` are those of the top level.
 pub(super) fn check_project(quartus: &str, file: &Path, ports: &Ports) -> (Vec<Vec<String>>, bool) {
     let ports: Vec<String> = ports
         .iter()

@@ -59,7 +59,7 @@ fn cli_a_project_places_and_constrains_every_port() {
                 .filter(|record| record[0] == "delay" && record[1] == *port);
             assert_eq!(delays.count(), 2, "{port}");
         }
-        // False paths go to first flip-flops and fault latches, and to nothing else; registers of these names are in the RTL.
+        // False paths end only at first flip-flops and fault latches; registers of these names are in the RTL.
         let ends: BTreeSet<String> = timing
             .iter()
             .filter(|record| record[0] == "false_path")
@@ -80,7 +80,7 @@ fn cli_a_project_places_and_constrains_every_port() {
 #[test]
 fn cli_lines_end_in_registers_that_the_timing_excludes_and_in_no_others() {
     let text = fs::read_to_string(example("xy-stage.toml")).unwrap();
-    // With a trace there is an encoder generator between the pins and the pulse counter.
+    // With a trace, an encoder generator is between the pins and the pulse counter.
     let with_trace = text.replacen("[axis.limits]", "[axis.trace]\nsamples = 256\n\n[axis.limits]", 1);
     assert_ne!(with_trace, text);
     for machine in [text, with_trace] {
@@ -111,7 +111,7 @@ fn check_lines(machine: &str) {
         .map(|(name, _)| name)
         .collect();
     assert_eq!(lines.len(), 1 + 2 * 9);
-    // What a line reaches through the netlist, up to flip-flops and not through them.
+    // These cells end the search for what a line reaches in the netlist.
     let kinds = ["dff", "sdff", "adff", "dffe", "sdffe", "adffe", "sdffce"];
     let stop: String = kinds.map(|kind| format!(":-${kind}[Q]")).concat();
     let mut script = String::from("hierarchy -top xy_stage_stage; proc; flatten; opt_clean; ");
@@ -187,7 +187,7 @@ fn cli_four_axes_with_scales_find_their_pins() {
     for (board, quartus, ..) in BOARDS {
         let project = output.join("sopc/quartus").join(board);
         let ports = verilog_ports(&project.join(format!("xy_stage_{board}.v")));
-        // Clock, button, serial line, emergency stop; of each axis 11 lines in and 6 out.
+        // Clock, button, serial line and emergency stop; per axis 11 inputs and 6 outputs.
         assert_eq!(ports.len(), 5 + 4 * 17);
         let (records, content) = check_project(quartus, &project.join(format!("xy_stage_{board}.qsf")), &ports);
         assert!(content, "{:#?}", findings(&records));

@@ -15,7 +15,7 @@ fn cli_a_system_is_complete_and_its_top_level_fits_it() {
             .iter()
             .find(|record| record[0] == "agent" && record[1] == "stage.avs");
         assert_eq!(stage.unwrap()[2..], ["131072", "4096"]);
-        // A box with the ports that Platform Designer would give the system; the top level must fit it.
+        // A box replaces the system, with the ports that Platform Designer would give it; the top level must fit it.
         let exports: Vec<String> = records
             .iter()
             .filter(|record| record[0] == "export")

@@ -1,13 +1,13 @@
 // posicast_accumulator
-// Sums of scaled products, exact but for the one rounding of each product; and the sum cut to the
-// words that take it.
+// Sums scaled products, exactly except for the one rounding of each product, and saturates the sum
+// to the words that take it.
 //
 // `add` adds the product to the sum, `empty` begins a new one. A one below the sum makes the
 // product's lowest bit, half an LSB, round up: one adder does both.
 //
-// At `check` the word becomes the sum, cut to 32 bits; to the 26 of a fraction with `as_fraction`,
-// to the 18 of the duty with `as_duty`. Whoever takes it finds a register: the choice between a sum
-// and its ends is there once.
+// At `check` the word becomes the sum, saturated to 32 bits; with `as_fraction` to the 26 of a
+// fraction, with `as_duty` to the 18 of the duty. The word is registered, so the choice between a
+// sum and its limits exists once.
 //
 // Five products of 49 bits and a word fit 52 bits: the accumulator never overflows.
 //

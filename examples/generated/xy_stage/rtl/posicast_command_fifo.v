@@ -1,5 +1,5 @@
 // posicast_command_fifo
-// The entries that wait: 64 of 4 words in block RAM, and the pointers.
+// The waiting entries: 64 of 4 words in block RAM, and the pointers.
 //
 // `pop` makes the oldest entry the one that plays: its slot, `head`, is read in every tick, and is
 // free again at the next `pop` or once nothing plays. The slots after it wait, those after them are

@@ -1,5 +1,6 @@
 // posicast_passes
-// Which bytes are added in which clock of a tick: six passes of eight clocks, and one that reads.
+// Controls which bytes are added in which clock of a tick: six passes of eight clocks, and one that
+// reads.
 //
 // phase    1~5       9~14     17~21            25~30       33~39       41~43    44      49~51
 // sum      a + j     v + a    a - j, -v        v + a       p + v       ticks            ticks

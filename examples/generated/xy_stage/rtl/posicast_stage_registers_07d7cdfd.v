@@ -6,19 +6,19 @@
 //
 // parameter               value  meaning
 // axes                    2      windows after this one
-// tick_clocks             5000   from tick to tick
-// control_clocks          210    from the tick to the start of the controllers
-// duty_clocks             729    from the tick to the new duty, which the PWM takes at its next boundary
-// x_pwm_period_clocks     2500   full duty
-// x_ring_samples          128    delays of a table reach up to this less 2
+// tick_clocks             5000   clocks from tick to tick
+// control_clocks          210    clocks from the tick to the start of the controllers
+// duty_clocks             729    clocks from the tick to the new duty, which the PWM takes at its next boundary
+// x_pwm_period_clocks     2500   clocks of the PWM's period, which is full duty
+// x_ring_samples          128    size of the ring buffer: delays of a table reach up to this minus 2
 // x_most_taps             64     taps per bank
-// x_machine_taps          5      taps of bank 0
-// x_coefficient_fraction  16     F of the coefficients
-// y_pwm_period_clocks     2500   full duty
-// y_ring_samples          128    delays of a table reach up to this less 2
+// x_machine_taps          5      number of taps of bank 0
+// x_coefficient_fraction  16     fraction bits F of the coefficients
+// y_pwm_period_clocks     2500   clocks of the PWM's period, which is full duty
+// y_ring_samples          128    size of the ring buffer: delays of a table reach up to this minus 2
 // y_most_taps             64     taps per bank
-// y_machine_taps          5      taps of bank 0
-// y_coefficient_fraction  16     F of the coefficients
+// y_machine_taps          5      number of taps of bank 0
+// y_coefficient_fraction  16     fraction bits F of the coefficients
 
 `default_nettype none
 
@@ -511,14 +511,14 @@ module posicast_stage_registers_07d7cdfd (
         || (write_y_encoder && !allow_y_encoder);
     wire bus_rejected = waits && ((write_commit && whole) || write_x_law || write_y_law);
 
-    // COMMIT: commit; the staged registers of all axes, together, at the next tick
+    // COMMIT: commit; applies the staged registers of all axes together at the next tick
     always @(posedge clk) if (rst) begin
         waits <= 1'd0;
     end else begin
         waits <= !applies && (waits || (write_commit && whole));
     end
 
-    // START: command; all these axes start in one tick, or none
+    // START: command; starts all these axes in one tick, or none
     always @(posedge clk) if (rst) begin
         start <= 1'd0;
         start_axes <= 4'd0;
@@ -529,7 +529,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // FLAGS: sticky; what has happened since the flag was cleared
+    // FLAGS: sticky; events since the flag was cleared
     reg flag_partial_write;
     reg flag_commit_rejected;
     reg flag_start_refused;
@@ -547,7 +547,7 @@ module posicast_stage_registers_07d7cdfd (
         flag_guard_refused <= bus_refused || (flag_guard_refused && !(write_flags && written[3]));
     end
 
-    // INTERRUPT_STATE: interrupt state; what has happened; write one to clear
+    // INTERRUPT_STATE: interrupt state; events since they were cleared; write one to clear
     reg irq_state_x_notify;
     reg irq_state_x_move_done;
     reg irq_state_x_fifo_low;
@@ -619,7 +619,7 @@ module posicast_stage_registers_07d7cdfd (
             || (irq_state_start_refused && !(write_interrupt_state && written[29]));
     end
 
-    // INTERRUPT_ENABLE: interrupt enable; what of it raises `irq`
+    // INTERRUPT_ENABLE: interrupt enable; events that raise `irq`
     reg irq_enable_x_notify;
     reg irq_enable_x_move_done;
     reg irq_enable_x_fifo_low;
@@ -678,8 +678,8 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // FEED_HOLD: configuration; these axes stand once all of them rest in one tick, and keep what
-    // waits
+    // FEED_HOLD: configuration; feed hold: these axes stand once all of them rest in one tick, and
+    // keep their waiting entries
     always @(posedge clk) if (rst) begin
         x_feed_hold <= 1'd0;
         y_feed_hold <= 1'd0;
@@ -690,7 +690,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // X_CONTROL: configuration; what is wanted of the axis
+    // X_CONTROL: configuration; enable and mode of the axis
     always @(posedge clk) if (rst) begin
         x_enable <= 1'd0;
         x_direct_enable <= 1'd0;
@@ -709,10 +709,10 @@ module posicast_stage_registers_07d7cdfd (
     // X_CLEAR_FAULTS: command; forgets the causes that are over, and the flags of all blocks
     always @(posedge clk) x_clear_faults <= !rst && write_x_clear_faults && whole;
 
-    // X_FLUSH: command; drops the entries that wait
+    // X_FLUSH: command; drops the waiting entries
     always @(posedge clk) x_flush <= !rst && write_x_flush && whole;
 
-    // X_KICK: command; of the host's watchdog
+    // X_KICK: command; kicks the host's watchdog
     always @(posedge clk) if (rst) begin
         x_kick <= 1'd0;
         x_kick_word <= 32'd0;
@@ -723,7 +723,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // X_DIRECT: command; direct mode: a duty, held for some time only
+    // X_DIRECT: command; duty of direct mode, which expires after some time
     always @(posedge clk) if (rst) begin
         x_direct_kick <= 1'd0;
         x_direct_duty <= 17'sd0;
@@ -744,8 +744,8 @@ module posicast_stage_registers_07d7cdfd (
         if (write_x_fifo_control && avs_byteenable[1]) x_extrapolation <= avs_writedata[15:8];
     end
 
-    // X_HOMED: command; the host says whether the axis is homed: until then there are no soft
-    // limits, if the machine file says so
+    // X_HOMED: command; sets whether the axis is homed; the machine file may let the soft limits
+    // act only then
     always @(posedge clk) if (rst) begin
         x_write_homed <= 1'd0;
         x_homed_value <= 1'd0;
@@ -770,7 +770,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // X_TAP_ADDRESS: configuration; which tap `TAP` is
+    // X_TAP_ADDRESS: configuration; address of the tap to write or read
     always @(posedge clk) if (rst) begin
         x_tap_index <= 6'd0;
         x_tap_bank <= 2'd0;
@@ -805,7 +805,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // X_SETTING_ADDRESS: configuration; which setting `SETTING` is
+    // X_SETTING_ADDRESS: configuration; address of the setting to write or read
     always @(posedge clk) if (rst) begin
         x_setting_row <= 4'd0;
         x_setting_bank <= 2'd0;
@@ -825,7 +825,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // X_LAW: staged; what computes the command
+    // X_LAW: staged; control law and settings in use
     reg [1:0] staged_x_law;
     reg [1:0] staged_x_law_bank;
     always @(posedge clk) if (rst) begin
@@ -856,7 +856,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) x_soft_limit_plus[31:24] <= avs_writedata[31:24];
     end
 
-    // X_SOFT_LIMIT_MINUS: configuration; the other end
+    // X_SOFT_LIMIT_MINUS: configuration; the other end of the travel
     always @(posedge clk) if (rst) begin
         x_soft_limit_minus <= -32'sd25600000;
     end else begin
@@ -870,7 +870,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) x_soft_limit_minus[31:24] <= avs_writedata[31:24];
     end
 
-    // X_FOLLOWING_ERROR_LIMIT: configuration; largest error
+    // X_FOLLOWING_ERROR_LIMIT: configuration; largest following error
     always @(posedge clk) if (rst) begin
         x_following_error_limit <= 32'd65536000;
     end else begin
@@ -884,7 +884,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) x_following_error_limit[31:24] <= avs_writedata[31:24];
     end
 
-    // X_WATCHDOG: configuration; of the host, and what follows from a cause
+    // X_WATCHDOG: configuration; the host's watchdog, and the reaction to each cause
     always @(posedge clk) if (rst) begin
         x_watchdog_ticks <= 16'd5000;
         x_off_causes <= 16'd36231;
@@ -895,7 +895,7 @@ module posicast_stage_registers_07d7cdfd (
         if (write_x_watchdog && avs_byteenable[3]) x_off_causes[15:8] <= avs_writedata[31:24];
     end
 
-    // X_STOP_DECELERATION: configuration; of a quick stop
+    // X_STOP_DECELERATION: configuration; deceleration of a quick stop
     always @(posedge clk) if (rst) begin
         x_stop_deceleration <= 31'd1342177;
     end else begin
@@ -909,7 +909,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) x_stop_deceleration[30:24] <= avs_writedata[30:24];
     end
 
-    // X_SETTLE: configuration; how long a stop rings: the longest delay of the tables in use
+    // X_SETTLE: configuration; time in which a stop settles: the longest delay of the tables in use
     always @(posedge clk) if (rst) begin
         x_settle_ticks <= 16'd78;
     end else begin
@@ -917,7 +917,7 @@ module posicast_stage_registers_07d7cdfd (
         if (write_x_settle && avs_byteenable[1]) x_settle_ticks[15:8] <= avs_writedata[15:8];
     end
 
-    // X_INDEX: configuration; what an index does, and how the velocity is measured
+    // X_INDEX: configuration; effect of an index, and measurement of the velocity
     always @(posedge clk) if (rst) begin
         x_index_always <= 1'd0;
         x_index_presets <= 1'd0;
@@ -939,7 +939,7 @@ module posicast_stage_registers_07d7cdfd (
     // X_INDEX_ARM: command; latches the next index
     always @(posedge clk) x_index_arm <= !rst && write_x_index_arm && whole;
 
-    // X_PRESET: command; the user's position becomes this; the loop's count never jumps
+    // X_PRESET: command; sets the user's position; the loop's count does not jump
     always @(posedge clk) if (rst) begin
         x_preset <= 1'd0;
         x_preset_value <= 32'sd0;
@@ -950,14 +950,15 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // X_ENCODER: guarded; the sign of the loop's feedback
+    // X_ENCODER: guarded; sign of the loop's feedback
     always @(posedge clk) if (rst) begin
         x_encoder_invert <= 1'd0;
     end else if (write_x_encoder && allow_x_encoder) begin
         x_encoder_invert <= next_x_encoder_invert;
     end
 
-    // X_PWM_TRIGGER: configuration; when the pin `pwm_trigger` is high for a clock, as for an ADC
+    // X_PWM_TRIGGER: configuration; phase at which the pin `pwm_trigger` is high for a clock, for
+    // an ADC for example
     always @(posedge clk) if (rst) begin
         x_trigger_phase <= 16'd0;
     end else begin
@@ -965,15 +966,15 @@ module posicast_stage_registers_07d7cdfd (
         if (write_x_pwm_trigger && avs_byteenable[1]) x_trigger_phase[15:8] <= avs_writedata[15:8];
     end
 
-    // X_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
+    // X_SETTING_READ: command; reads back the word at `SETTING_ADDRESS`, which must stay until
     // `setting_read_waits` is low
     always @(posedge clk) x_setting_read <= !rst && write_x_setting_read && whole;
 
-    // X_TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits`
-    // is low
+    // X_TAP_READ: command; reads back the tap at `TAP_ADDRESS`, which must stay until
+    // `tap_read_waits` is low
     always @(posedge clk) x_tap_read <= !rst && write_x_tap_read && whole;
 
-    // X_EVENTS: sticky; what has happened since the flag was cleared
+    // X_EVENTS: sticky; events since the flag was cleared
     reg flag_x_refused;
     reg flag_x_setting_refused;
     reg flag_x_direct_expired;
@@ -989,7 +990,7 @@ module posicast_stage_registers_07d7cdfd (
             || (flag_x_direct_expired && !(write_x_events && written[2]));
     end
 
-    // Y_CONTROL: configuration; what is wanted of the axis
+    // Y_CONTROL: configuration; enable and mode of the axis
     always @(posedge clk) if (rst) begin
         y_enable <= 1'd0;
         y_direct_enable <= 1'd0;
@@ -1008,10 +1009,10 @@ module posicast_stage_registers_07d7cdfd (
     // Y_CLEAR_FAULTS: command; forgets the causes that are over, and the flags of all blocks
     always @(posedge clk) y_clear_faults <= !rst && write_y_clear_faults && whole;
 
-    // Y_FLUSH: command; drops the entries that wait
+    // Y_FLUSH: command; drops the waiting entries
     always @(posedge clk) y_flush <= !rst && write_y_flush && whole;
 
-    // Y_KICK: command; of the host's watchdog
+    // Y_KICK: command; kicks the host's watchdog
     always @(posedge clk) if (rst) begin
         y_kick <= 1'd0;
         y_kick_word <= 32'd0;
@@ -1022,7 +1023,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // Y_DIRECT: command; direct mode: a duty, held for some time only
+    // Y_DIRECT: command; duty of direct mode, which expires after some time
     always @(posedge clk) if (rst) begin
         y_direct_kick <= 1'd0;
         y_direct_duty <= 17'sd0;
@@ -1043,8 +1044,8 @@ module posicast_stage_registers_07d7cdfd (
         if (write_y_fifo_control && avs_byteenable[1]) y_extrapolation <= avs_writedata[15:8];
     end
 
-    // Y_HOMED: command; the host says whether the axis is homed: until then there are no soft
-    // limits, if the machine file says so
+    // Y_HOMED: command; sets whether the axis is homed; the machine file may let the soft limits
+    // act only then
     always @(posedge clk) if (rst) begin
         y_write_homed <= 1'd0;
         y_homed_value <= 1'd0;
@@ -1069,7 +1070,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // Y_TAP_ADDRESS: configuration; which tap `TAP` is
+    // Y_TAP_ADDRESS: configuration; address of the tap to write or read
     always @(posedge clk) if (rst) begin
         y_tap_index <= 6'd0;
         y_tap_bank <= 2'd0;
@@ -1104,7 +1105,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // Y_SETTING_ADDRESS: configuration; which setting `SETTING` is
+    // Y_SETTING_ADDRESS: configuration; address of the setting to write or read
     always @(posedge clk) if (rst) begin
         y_setting_row <= 4'd0;
         y_setting_bank <= 2'd0;
@@ -1124,7 +1125,7 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // Y_LAW: staged; what computes the command
+    // Y_LAW: staged; control law and settings in use
     reg [1:0] staged_y_law;
     reg [1:0] staged_y_law_bank;
     always @(posedge clk) if (rst) begin
@@ -1155,7 +1156,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) y_soft_limit_plus[31:24] <= avs_writedata[31:24];
     end
 
-    // Y_SOFT_LIMIT_MINUS: configuration; the other end
+    // Y_SOFT_LIMIT_MINUS: configuration; the other end of the travel
     always @(posedge clk) if (rst) begin
         y_soft_limit_minus <= -32'sd25600000;
     end else begin
@@ -1169,7 +1170,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) y_soft_limit_minus[31:24] <= avs_writedata[31:24];
     end
 
-    // Y_FOLLOWING_ERROR_LIMIT: configuration; largest error
+    // Y_FOLLOWING_ERROR_LIMIT: configuration; largest following error
     always @(posedge clk) if (rst) begin
         y_following_error_limit <= 32'd65536000;
     end else begin
@@ -1183,7 +1184,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) y_following_error_limit[31:24] <= avs_writedata[31:24];
     end
 
-    // Y_WATCHDOG: configuration; of the host, and what follows from a cause
+    // Y_WATCHDOG: configuration; the host's watchdog, and the reaction to each cause
     always @(posedge clk) if (rst) begin
         y_watchdog_ticks <= 16'd5000;
         y_off_causes <= 16'd36231;
@@ -1194,7 +1195,7 @@ module posicast_stage_registers_07d7cdfd (
         if (write_y_watchdog && avs_byteenable[3]) y_off_causes[15:8] <= avs_writedata[31:24];
     end
 
-    // Y_STOP_DECELERATION: configuration; of a quick stop
+    // Y_STOP_DECELERATION: configuration; deceleration of a quick stop
     always @(posedge clk) if (rst) begin
         y_stop_deceleration <= 31'd1342177;
     end else begin
@@ -1208,7 +1209,7 @@ module posicast_stage_registers_07d7cdfd (
             && avs_byteenable[3]) y_stop_deceleration[30:24] <= avs_writedata[30:24];
     end
 
-    // Y_SETTLE: configuration; how long a stop rings: the longest delay of the tables in use
+    // Y_SETTLE: configuration; time in which a stop settles: the longest delay of the tables in use
     always @(posedge clk) if (rst) begin
         y_settle_ticks <= 16'd109;
     end else begin
@@ -1216,7 +1217,7 @@ module posicast_stage_registers_07d7cdfd (
         if (write_y_settle && avs_byteenable[1]) y_settle_ticks[15:8] <= avs_writedata[15:8];
     end
 
-    // Y_INDEX: configuration; what an index does, and how the velocity is measured
+    // Y_INDEX: configuration; effect of an index, and measurement of the velocity
     always @(posedge clk) if (rst) begin
         y_index_always <= 1'd0;
         y_index_presets <= 1'd0;
@@ -1238,7 +1239,7 @@ module posicast_stage_registers_07d7cdfd (
     // Y_INDEX_ARM: command; latches the next index
     always @(posedge clk) y_index_arm <= !rst && write_y_index_arm && whole;
 
-    // Y_PRESET: command; the user's position becomes this; the loop's count never jumps
+    // Y_PRESET: command; sets the user's position; the loop's count does not jump
     always @(posedge clk) if (rst) begin
         y_preset <= 1'd0;
         y_preset_value <= 32'sd0;
@@ -1249,14 +1250,15 @@ module posicast_stage_registers_07d7cdfd (
         end
     end
 
-    // Y_ENCODER: guarded; the sign of the loop's feedback
+    // Y_ENCODER: guarded; sign of the loop's feedback
     always @(posedge clk) if (rst) begin
         y_encoder_invert <= 1'd0;
     end else if (write_y_encoder && allow_y_encoder) begin
         y_encoder_invert <= next_y_encoder_invert;
     end
 
-    // Y_PWM_TRIGGER: configuration; when the pin `pwm_trigger` is high for a clock, as for an ADC
+    // Y_PWM_TRIGGER: configuration; phase at which the pin `pwm_trigger` is high for a clock, for
+    // an ADC for example
     always @(posedge clk) if (rst) begin
         y_trigger_phase <= 16'd0;
     end else begin
@@ -1264,15 +1266,15 @@ module posicast_stage_registers_07d7cdfd (
         if (write_y_pwm_trigger && avs_byteenable[1]) y_trigger_phase[15:8] <= avs_writedata[15:8];
     end
 
-    // Y_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
+    // Y_SETTING_READ: command; reads back the word at `SETTING_ADDRESS`, which must stay until
     // `setting_read_waits` is low
     always @(posedge clk) y_setting_read <= !rst && write_y_setting_read && whole;
 
-    // Y_TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits`
-    // is low
+    // Y_TAP_READ: command; reads back the tap at `TAP_ADDRESS`, which must stay until
+    // `tap_read_waits` is low
     always @(posedge clk) y_tap_read <= !rst && write_y_tap_read && whole;
 
-    // Y_EVENTS: sticky; what has happened since the flag was cleared
+    // Y_EVENTS: sticky; events since the flag was cleared
     reg flag_y_refused;
     reg flag_y_setting_refused;
     reg flag_y_direct_expired;

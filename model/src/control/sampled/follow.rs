@@ -1,26 +1,27 @@
-//! How a loop follows a command, tick by tick, without the steps of the encoder and without friction at standstill.
+//! Simulates how a loop follows a command, tick by tick, without the quantisation of the encoder and without friction
+//! at standstill.
 
 use nalgebra::Complex;
 
 use super::{LinearLaw, SampledLoop};
 
-/// Largest input of the plant, either way: an acceleration of a torque drive, a velocity of a velocity drive.
+/// Limits of the plant's input, which is an acceleration for a torque drive and a velocity for a velocity drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FollowLimits {
-    /// In m/s² or m/s.
+    /// Largest magnitude of the input, in m/s² or m/s.
     pub input: f64,
-    /// Added to every input: what friction, or a load, takes.
+    /// Disturbance by friction or load, which is added to every input, in its unit.
     pub disturbance: f64,
 }
 
-/// An axis at a tick, in m or rad.
+/// Positions of an axis at a tick, in m or rad.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Followed {
-    /// Reference.
+    /// Reference position.
     pub reference: f64,
-    /// Reference less position of the loop.
+    /// Reference minus position of the loop.
     pub error: f64,
-    /// The load.
+    /// Position of the load.
     pub load: f64,
 }
 
@@ -29,7 +30,7 @@ impl SampledLoop {
     pub fn follow(&self, law: &LinearLaw, limits: &FollowLimits, references: &[[f64; 3]]) -> Vec<Followed> {
         let zero = Complex::from(0.0);
         let mut states = vec![zero; self.poles.len()];
-        // The newest input first.
+        // The newest input comes first.
         let mut inputs = vec![0.0; self.delay_ticks + 2];
         let (mut motor_before, mut integral) = (0.0, 0.0);
         let output = |states: &[Complex<f64>], of: fn(&super::PlantPole) -> Complex<f64>| {
@@ -48,7 +49,7 @@ impl SampledLoop {
                 + law.velocity * rate
                 + law.velocity_reference * velocity
                 + law.acceleration_reference * acceleration;
-            // Frozen while clamped in that direction.
+            // The integral is frozen while the command is clamped in its direction.
             let clamped = wanted.abs() > limits.input && (wanted < 0.0) == (error < 0.0);
             if !clamped {
                 integral += self.tick_s * error;

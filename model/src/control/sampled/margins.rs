@@ -1,7 +1,8 @@
 //! Stability and margins of a sampled loop, from its Nyquist curve.
 //!
-//! The open loop has no poles outside of the unit circle, so the closed loop has as many as `1 + L(z)` turns round 0, clockwise,
-//! while `z` goes once round a circle a little outside. The curve is refined until no step of it turns far.
+//! The open loop has no poles outside the unit circle. So the closed loop has as many poles there as `1 + L(z)` turns
+//! clockwise round 0 while `z` goes once round a circle slightly larger than the unit circle. The curve is refined
+//! until the direction changes little in each step.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,37 +10,39 @@ use nalgebra::Complex;
 
 use super::{LinearLaw, SampledLoop};
 
-/// Points of the curve per decade of frequency, before it is refined.
+/// Points of the curve per decade of frequency, before refinement.
 const PER_DECADE: f64 = 24.0;
-/// Lowest frequency, as a part of π/T.
+/// Lowest frequency, as a fraction of π/T.
 const LOWEST: f64 = 1e-7;
-/// Growth per s that counts as none, as a part of the lowest frequency: the open loop's integrators stay inside.
+/// Growth rate that still counts as stable, as a fraction of the lowest frequency, so that the open loop's
+/// integrators stay inside the circle.
 const GROWTH: f64 = 0.1;
-/// Largest turn of `L` or `1 + L` between two points, rad, and largest change of |L|.
+/// Largest change of the direction of `L` or `1 + L` between two points, in rad, and largest relative change of |L|.
 const TURN: f64 = 0.12;
 const CHANGE: f64 = 1.2;
-/// So much less than the limit is within it.
+/// Fraction of the stability limit up to which a gain counts as within it.
 const NEARLY: f64 = 0.98;
-/// Most bisections of a step.
+/// Largest number of bisections of a step.
 const DEPTH: u32 = 40;
 
-/// How far a loop is from instability.
+/// Stability margins of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
-    /// Whether the loop is stable. The other figures are of a stable loop; of an unstable one they say how far it is beyond.
+    /// Whether the loop is stable. For an unstable loop the other figures say how far it is beyond the limit.
     pub stable: bool,
-    /// The feedback times this is at the limit: above 1 for a stable loop, below for one that lower gains make stable.
-    /// Infinite where no gain is too high; none where the loop is unstable at any gain.
+    /// Factor on the feedback at which the loop reaches the stability limit: above 1 for a stable loop, below 1 for
+    /// one that lower gains make stable. Infinite where no gain is too high; `None` where the loop is unstable at any
+    /// gain.
     pub gain_margin: Option<f64>,
-    /// The feedback times this is at the limit below, for a loop that lower gains make unstable.
+    /// The lower factor at which the loop reaches the limit, for a loop that lower gains make unstable.
     pub gain_reduction: Option<f64>,
-    /// Smallest distance of the phase from −180° where |L| is 1, degrees; none where it never is.
+    /// Smallest distance of the phase from −180° where |L| is 1, in degrees; `None` where |L| never is 1.
     pub phase_margin_deg: Option<f64>,
-    /// More dead time than this makes it unstable, s.
+    /// Additional dead time at which the loop becomes unstable, s.
     pub delay_margin_s: Option<f64>,
-    /// Smallest distance of `L` from −1: the inverse of the largest sensitivity.
+    /// Smallest distance of `L` from −1, which is the inverse of the largest sensitivity.
     pub modulus_margin: f64,
-    /// Highest frequency at which |L| is 1, Hz.
+    /// Highest frequency at which |L| is 1, in Hz.
     pub crossover_hz: Option<f64>,
 }
 
@@ -53,14 +56,14 @@ impl Margins {
 /// A point of the Nyquist curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NyquistPoint {
-    /// Hz.
+    /// Frequency in Hz.
     pub frequency_hz: f64,
-    /// `L` at this frequency.
+    /// Open loop `L` at this frequency.
     pub open_loop: Complex<f64>,
 }
 
 impl SampledLoop {
-    /// Stability and margins under a law.
+    /// Margins of the loop with this law.
     pub fn margins(&self, law: &LinearLaw) -> Margins {
         let curve = self.curve(law, 0.0);
         let stable = self.is_stable(law);
@@ -75,7 +78,7 @@ impl SampledLoop {
         };
         let unity = unity_crossings(&curve);
         let distances = unity.iter().map(|(_, phase)| (PI - phase.abs()).to_degrees());
-        // The phase falls to −180° from where it is: a lead beyond is a whole turn away.
+        // The phase falls towards −180° from where it is; a lead is a whole turn away from it.
         let delays = unity.iter().map(|(omega, phase)| (phase + PI).rem_euclid(TAU) / omega);
         Margins {
             stable,
@@ -88,13 +91,13 @@ impl SampledLoop {
         }
     }
 
-    /// Whether the loop is stable under a law, and its modulus margin at least this.
+    /// Whether the loop with this law is stable and has at least this modulus margin.
     pub fn holds(&self, law: &LinearLaw, modulus_margin: f64) -> bool {
         let curve = self.curve(law, 0.0);
         distance(&curve) >= modulus_margin && self.is_stable(law)
     }
 
-    /// Whether no oscillation grows.
+    /// Whether the loop with this law is stable.
     pub fn is_stable(&self, law: &LinearLaw) -> bool {
         let lowest = LOWEST * PI / self.tick_s;
         let growth = GROWTH * lowest;
@@ -109,11 +112,11 @@ impl SampledLoop {
             return false;
         }
         let turned: f64 = points.windows(2).map(|step| (step[1] / step[0]).arg()).sum();
-        // From the real axis to the real axis: a whole number of half turns.
+        // The curve goes from the real axis to the real axis, so it makes a whole number of half turns.
         turned.abs() < PI / 2.0 && points.first().is_some_and(|first| first.re > 0.0)
     }
 
-    /// The Nyquist curve, by frequency, from a ten-millionth of the highest frequency on.
+    /// The Nyquist curve by frequency, from a ten-millionth of the highest frequency on.
     pub fn nyquist(&self, law: &LinearLaw) -> Vec<NyquistPoint> {
         let points = self.curve(law, 0.0).into_iter();
         points
@@ -154,7 +157,7 @@ impl SampledLoop {
         curve
     }
 
-    /// The largest factor below 1 on the feedback with which the loop is stable, of those at which its curve goes through −1.
+    /// The largest factor below 1 on the feedback at which the loop is stable, of those at which the curve passes −1.
     fn largest_stable(&self, law: &LinearLaw, crossings: &[f64]) -> Option<f64> {
         let mut below: Vec<f64> = crossings.iter().copied().filter(|factor| *factor < 1.0).collect();
         below.sort_by(|a, b| b.total_cmp(a));
@@ -164,7 +167,7 @@ impl SampledLoop {
     }
 }
 
-/// Puts points between two until no step turns far.
+/// Adds points between two until the direction changes little in each step.
 fn refine(
     at: &impl Fn(f64) -> (f64, Complex<f64>),
     from: (f64, Complex<f64>),
@@ -175,7 +178,7 @@ fn refine(
     let turns = |a: Complex<f64>, b: Complex<f64>| (b / a).arg().abs() > TURN;
     let (a, b) = (from.1, to.1);
     let ratio = b.norm() / a.norm();
-    // Far below 1 and far above nothing is decided but how often it turns.
+    // Where |L| is far below or far above 1, only the number of turns matters.
     let matters = a.norm().max(b.norm()) > 1e-3;
     let far = turns(1.0 + a, 1.0 + b) || matters && (turns(a, b) || !(1.0 / CHANGE..CHANGE).contains(&ratio));
     if !far || depth == 0 {
@@ -187,12 +190,12 @@ fn refine(
     refine(at, middle, to, depth - 1, curve);
 }
 
-/// Smallest distance from −1 of the lines from point to point.
+/// Smallest distance of −1 from the lines between the points.
 fn distance(curve: &[(f64, Complex<f64>)]) -> f64 {
     let steps = curve.windows(2).map(|step| {
         let (from, along) = (1.0 + step[0].1, step[1].1 - step[0].1);
         let nearest = -(from * along.conj()).re / along.norm_sqr();
-        // A step without length, or one that is not finite, is where it begins.
+        // A step without length, or one that is not finite, is represented by its start.
         let part = if nearest.is_finite() {
             nearest.clamp(0.0, 1.0)
         } else {
@@ -203,17 +206,17 @@ fn distance(curve: &[(f64, Complex<f64>)]) -> f64 {
     steps.fold(f64::INFINITY, f64::min)
 }
 
-/// The factors on `L` with which it goes through −1.
+/// The factors on `L` at which it passes through −1.
 fn axis_crossings(curve: &[(f64, Complex<f64>)]) -> Vec<f64> {
     let steps = curve.windows(2).filter_map(|step| {
         let (a, b) = (step[0].1, step[1].1);
-        // Phases from the negative real axis, between which both phase and logarithm are straight.
+        // Phases count from the negative real axis; between two points phase and logarithm are interpolated linearly.
         let (of_a, of_b) = ((-a).arg(), (-b).arg());
         let crosses = (of_a < 0.0) != (of_b < 0.0) && (of_a - of_b).abs() < PI;
         let part = of_a / (of_a - of_b);
         crosses.then(|| 1.0 / (a.norm() * (b.norm() / a.norm()).powf(part)))
     });
-    // At the highest frequency L is real.
+    // L is real at the highest frequency.
     let last = curve
         .last()
         .map(|(_, open)| -1.0 / open.re)
@@ -221,7 +224,7 @@ fn axis_crossings(curve: &[(f64, Complex<f64>)]) -> Vec<f64> {
     steps.chain(last).collect()
 }
 
-/// Frequency in rad/s and phase in ±π wherever |L| is 1.
+/// Frequency in rad/s and phase in ±π of each point where |L| is 1.
 fn unity_crossings(curve: &[(f64, Complex<f64>)]) -> Vec<(f64, f64)> {
     let steps = curve.windows(2).filter_map(|step| {
         let [(omega, a), (next, b)] = [step[0], step[1]];

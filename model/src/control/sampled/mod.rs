@@ -1,4 +1,5 @@
-//! The loop of an axis as it is sampled: the drive, the mass and the modes between two ticks, exactly, and the law at the ticks.
+//! The sampled loop of an axis: an exact solution for drive, mass and modes between two ticks, and the law at the
+//! ticks.
 //!
 //! ```text
 //!           tick n                                      T: tick, τ: capture to new duty, T_p: period of the PWM
@@ -9,10 +10,11 @@
 //! C(z) = P + D (1 − z⁻¹)/T + I T z⁻¹/(1 − z⁻¹) − V (1 − z⁻¹)/T
 //! ```
 //!
-//! The input of `G` is an acceleration (torque drive) or a velocity (velocity drive), `V` is the measured velocity that the law
-//! feeds forward against viscous friction. `Γ0` and `Γ1` are what an input of 1 from this tick, and from the one before, leaves
-//! in `x′ = p·x + u` at the next tick. The plant is that of [`crate::plant::axis`], without friction at standstill, without the
-//! steps of the encoder and without limits. [`SampledLoop::margins`] is for stability, [`SampledLoop::follow`] for motion.
+//! The input of `G` is an acceleration (torque drive) or a velocity (velocity drive); `V` is the measured velocity
+//! that the law feeds forward against viscous friction. `Γ0` and `Γ1` are the state of `x′ = p·x + u` at the next
+//! tick after an input of 1 in this tick, and in the one before. The plant is that of [`crate::plant::axis`], without
+//! friction at standstill, without the quantisation of the encoder and without limits. [`SampledLoop::margins`] gives
+//! its stability, [`SampledLoop::follow`] its motion.
 
 mod follow;
 mod margins;
@@ -27,32 +29,32 @@ use crate::plant::Plant;
 pub use follow::{FollowLimits, Followed};
 pub use margins::{Margins, NyquistPoint};
 
-/// Friction of a frictionless mass, 1/T: two poles at 0 have no partial fractions.
+/// Friction that replaces that of a frictionless mass, 1/T, because a double pole at 0 has no partial fractions.
 const NO_FRICTION: f64 = 1e-7;
-/// Relative distance of two poles that would be one.
+/// Relative distance to which two equal poles are moved apart.
 const APART: f64 = 1e-6;
-/// Most whole ticks of delay: beyond that, a loop is no loop.
+/// Largest delay in whole ticks.
 const DELAY_TICKS_MAX: f64 = 1e4;
 
-/// A feedback law without its limits, in m and s (rad and s).
+/// A linear control law without limits, in m and s (rad and s).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LinearLaw {
-    /// Per error.
+    /// Gain on the error.
     pub proportional: f64,
-    /// Per rate of the error.
+    /// Gain on the rate of the error.
     pub derivative: f64,
-    /// Per integrated error.
+    /// Gain on the integral of the error.
     pub integral: f64,
-    /// Per measured velocity, positive feedback.
+    /// Gain on the measured velocity; positive feedback.
     pub velocity: f64,
-    /// Per reference velocity.
+    /// Gain on the reference velocity.
     pub velocity_reference: f64,
-    /// Per reference acceleration.
+    /// Gain on the reference acceleration.
     pub acceleration_reference: f64,
 }
 
 impl LinearLaw {
-    /// With the feedback `factor` times as strong.
+    /// The law with its feedback multiplied by `factor`.
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             proportional: factor * self.proportional,
@@ -63,41 +65,41 @@ impl LinearLaw {
     }
 }
 
-/// A pole of the plant, and how much of its state is in what is measured.
+/// A pole of the plant, with its residues in the measured quantities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct PlantPole {
     pole: Complex<f64>,
-    /// e^{pT}.
+    /// Factor `e^{pT}` by which its state changes in a tick.
     per_tick: Complex<f64>,
-    /// What an input of 1 leaves at the next tick: from this tick, from the one before, and both.
+    /// Its state at the next tick after an input of 1: in this tick, in the one before, and in both.
     gamma: [Complex<f64>; 2],
-    /// In the position of the loop.
+    /// Residue in the position of the loop.
     position: Complex<f64>,
-    /// In the position whose change is the loop's velocity.
+    /// Residue in the position whose change is the loop's velocity.
     motor: Complex<f64>,
-    /// In the load.
+    /// Residue in the position of the load.
     load: Complex<f64>,
 }
 
-/// The loop of an axis, all but its law.
+/// The loop of an axis without its control law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledLoop {
     tick_s: f64,
-    /// Whole ticks from the capture to the duty.
+    /// Delay from the capture to the duty, in whole ticks.
     delay_ticks: usize,
     poles: Vec<PlantPole>,
 }
 
-/// A part of a transfer function: `gain · s^zeros / Π (s − p)`.
+/// A term of a transfer function: `gain · s^zeros / Π (s − p)`.
 struct Term {
     gain: f64,
     zeros: i32,
-    /// Indices of the poles.
+    /// Indices of its poles.
     poles: Vec<usize>,
 }
 
 impl SampledLoop {
-    /// The plant of an axis whose modes are at `frequency_factor` times their frequencies, in a loop of this lag
+    /// The plant of an axis whose modes are at `frequency_factor` times their frequencies, in a loop with this lag
     /// ([`super::loop_lag_s`]). `None` for an axis without PWM or drive, or with invalid participations.
     pub fn new(axis: &AxisSection, clock: ClockSection, lag_s: f64, frequency_factor: f64) -> Option<Self> {
         let (drive, pwm) = (axis.drive.as_ref()?, axis.pwm.as_ref()?);
@@ -126,7 +128,7 @@ impl SampledLoop {
         })
     }
 
-    /// The open loop `L(z)` under a law.
+    /// The open loop `L(z)` with this law.
     pub fn open_loop(&self, law: &LinearLaw, z: Complex<f64>) -> Complex<f64> {
         let one = Complex::from(1.0);
         let before = z.inv();
@@ -143,12 +145,12 @@ impl SampledLoop {
     }
 }
 
-/// When a duty acts.
+/// The time at which a duty acts.
 struct Delay {
     ticks: usize,
-    /// What is left of a tick.
+    /// Fraction of a tick that remains, in s.
     rest_s: f64,
-    /// Over which the drive takes the mean.
+    /// Period in s over which the drive takes the mean of the duty.
     period_s: f64,
 }
 
@@ -157,9 +159,9 @@ impl Delay {
         let of_drive_s = drive
             .bandwidth_hz
             .map_or(0.0, |bandwidth_hz| 1.0 / (TAU * bandwidth_hz));
-        // A lag counts half a tick for the duty that is held, and half a tick for the velocity.
+        // A lag contains half a tick for the duty that is held, and half a tick for the velocity.
         let capture_s = (lag_s - of_drive_s - tick_s).max(0.0);
-        // A sum of decimals that is a whole number of ticks may be a little below it.
+        // A sum of decimals that is a whole number of ticks may come out slightly below it.
         let ticks = (capture_s / tick_s + 1e-9).floor().min(DELAY_TICKS_MAX);
         let rest_s = (capture_s - ticks * tick_s).clamp(0.0, tick_s);
         let period_s = 1.0 / pwm.frequency_hz;
@@ -170,14 +172,14 @@ impl Delay {
         }
     }
 
-    /// What an input of 1 from this tick, and from the one before, leaves at the next.
+    /// State at the next tick after an input of 1 in this tick, and in the one before.
     fn gamma(&self, pole: Complex<f64>, tick_s: f64) -> [Complex<f64>; 2] {
         let both = tick_s * first(pole * tick_s);
         let open_s = tick_s - self.rest_s;
         let now = if self.period_s < 1e-6 * tick_s {
             open_s * first(pole * open_s)
         } else {
-            // The mean of t·φ1(pt) for t from the end of the mean's period on.
+            // The mean of t·φ1(pt), for t from the end of the period of the mean on.
             let integral = |time_s: f64| time_s * time_s * second(pole * time_s);
             (integral(open_s) - integral(open_s - self.period_s)) / self.period_s
         };
@@ -202,7 +204,7 @@ fn second(x: Complex<f64>) -> Complex<f64> {
         * 0.5
 }
 
-/// The plant's poles, and the terms of its outputs.
+/// The plant's poles, with the terms of its outputs.
 struct PlantTerms {
     poles: Vec<Complex<f64>>,
     position: Vec<Term>,
@@ -244,7 +246,7 @@ impl PlantTerms {
             let at = poles.len();
             poles.push(Complex::new(-decay, omega_damped));
             poles.push(Complex::new(-decay, -omega_damped));
-            // A torque drive's modes are driven by its acceleration, s² of the driven coordinate.
+            // The input of a torque drive's modes is its acceleration, s² times the driven coordinate.
             let (zeros, share, without) = match torque {
                 true => (1, -of.share, 1),
                 false => (0, of.share * of.mode.omega().powi(2), 0),
@@ -282,7 +284,7 @@ impl Term {
     }
 }
 
-/// The residue of a term at a pole; 0 where it has not that pole.
+/// The residue of a term at a pole; 0 where the term does not have that pole.
 fn residue(term: &Term, poles: &[Complex<f64>], at: usize) -> Complex<f64> {
     if !term.poles.contains(&at) {
         return Complex::from(0.0);

@@ -1,4 +1,4 @@
-//! Keys that no table of this kind has, and keys that are missing: often one and the same, misspelt.
+//! Keys that a table of this kind does not have, and keys that are missing: often one and the same, misspelt.
 
 use std::fmt::Display;
 
@@ -9,8 +9,8 @@ use crate::machine_file::machine;
 use crate::spelling::{did_you_mean, nearest};
 
 impl Table<'_, '_> {
-    /// Refuses every key that is not in the list. A key of the list that one of these is most likely a misspelling of is
-    /// not reported as missing afterwards.
+    /// Refuses every key that is not in the list. Where an unknown key is most likely a misspelling of a listed one,
+    /// the listed one is not reported as missing afterwards.
     pub(in crate::machine_file) fn allow(&self, keys: &[Key]) {
         let keys: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
         let unknown = self
@@ -36,17 +36,17 @@ impl Table<'_, '_> {
         }
     }
 
-    /// Whether the key is absent, and not there under a misspelt name, which is reported already.
+    /// Returns whether the key is absent and was not found under a misspelt name, which has been reported already.
     pub(in crate::machine_file) fn lacks(&self, key: &str) -> bool {
         !self.has(key) && !self.misspelt.borrow().contains(&key)
     }
 
-    /// Records that a key is missing, if it is.
+    /// Records a missing key where the key is absent.
     pub(in crate::machine_file) fn require(&self, key: &str, allowed: impl Display) {
         self.require_with(key, allowed, format!("add `{key}`"));
     }
 
-    /// The same with a remedy of its own.
+    /// Records a missing key, as [`Table::require`] does, with its own remedy.
     pub(in crate::machine_file) fn require_with(&self, key: &str, allowed: impl Display, remedy: impl Into<String>) {
         if self.lacks(key) {
             let allowed = allowed.to_string();
@@ -55,7 +55,7 @@ impl Table<'_, '_> {
     }
 }
 
-/// The table that has a key of this name, where there is one such table.
+/// Header of the table that has a key of this name, if there is exactly one.
 fn home_of(name: &str) -> Option<String> {
     let mut homes = Vec::new();
     collect(machine::KEYS, "", name, &mut homes);

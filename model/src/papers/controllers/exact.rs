@@ -1,4 +1,4 @@
-//! The hardware's controller on the same machine: integers in, integers out.
+//! The hardware's controller on the same machine, with integers as inputs and outputs.
 
 use super::run::{Law, Seen};
 use super::{CURRENT_LIMIT_A, CURRENT_LOOP, ControllerCase, ControllerLaw, RATE, SLOPE, VISCOUS, nominal};
@@ -6,11 +6,12 @@ use crate::control::{COMMAND_FRACTION, Gains};
 use crate::plant::drive_train::Amplifier;
 use crate::rtl::sliding_mode::{self, SettingRow, Settings, TickController, TickMotion};
 
-/// Counts per tick in the place of ideal feedback, m/s: 10 nm at 10 kHz. Finer ones would not leave room for r″ in its word.
+/// Size of a count per tick in m/s that replaces ideal feedback: 10 nm at 10 kHz. A finer one would leave no room for
+/// r″ in its word.
 const FINE_COUNT_M_S: f64 = 1e-4;
-/// Command units per A.
+/// Number of command units per A.
 const MILLIAMPERES: f64 = 1e3;
-/// The steepest slope that a row of this exponent holds: what stands for a sign.
+/// The steepest slope that a row of this exponent can hold; it replaces a sign function.
 const STEEPEST: f64 = 255.0;
 
 /// The controller with its settings.
@@ -39,7 +40,8 @@ impl ExactLaw {
     }
 }
 
-/// The law of the hardware with its gains in counts, ticks and mA; `None` for one that it has not.
+/// Returns the law of the hardware with its gains in counts, ticks and mA; `None` for a law that the hardware does
+/// not have.
 fn gains(law: &ControllerLaw, count_m: f64, tick_s: f64) -> Option<(sliding_mode::Law, Gains)> {
     let known = nominal(Amplifier::TunedCurrent {
         bandwidth_rad_s: CURRENT_LOOP,
@@ -91,7 +93,7 @@ fn gains(law: &ControllerLaw, count_m: f64, tick_s: f64) -> Option<(sliding_mode
     }
 }
 
-/// The nearest word with so many fraction bits.
+/// Rounds to the nearest word with this many fraction bits.
 fn word(value: f64, fraction: i32) -> i32 {
     (value * f64::from(fraction).exp2()).round() as i32
 }

@@ -9,11 +9,11 @@ use crate::plant::drive_train::{Amplifier, DriveTrain};
 /// A law with its integral.
 pub(super) struct FloatLaw {
     law: ControllerLaw,
-    /// The machine that the law knows.
+    /// The machine parameters that the law uses.
     known: DriveTrain,
     tick_s: f64,
     in_volts: bool,
-    /// ∫e of the ticks before, m·s.
+    /// Sum of the errors of the previous ticks, ∫e, m·s.
     integral: f64,
 }
 
@@ -32,7 +32,7 @@ impl FloatLaw {
     }
 }
 
-/// Linear between −1 and 1 over ±φ; the sign where φ is 0.
+/// Returns a value that is linear between −1 and 1 over ±φ, or the sign if φ is 0.
 fn switched(sliding: f64, boundary: f64) -> f64 {
     if boundary > 0.0 {
         (sliding / boundary).clamp(-1.0, 1.0)

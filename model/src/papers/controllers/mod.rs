@@ -7,9 +7,10 @@
 //! PD, PID        a = k_p e + k_d e′ (+ k_i ∫e) (+ r″),  k_p = c k, k_d = c + k,  b = 0
 //! ```
 //!
-//! The law is that of section 8.2 of the notes, for a fast current loop: eq (4-11) has no relative degree to stand on. The plant is the X axis
-//! of [`crate::plant::drive_train`] with assumed friction and limits. [`ControllerCase::float`] runs the law in floating point,
-//! [`ControllerCase::bit_exact`] the hardware's [`TickController`](crate::rtl::sliding_mode::TickController) in its place.
+//! The law is that of section 8.2 of the notes, for a fast current loop, since eq (4-11) has no relative degree. The
+//! plant is the X axis of [`crate::plant::drive_train`] with assumed friction and limits. [`ControllerCase::float`]
+//! runs the law in floating point, [`ControllerCase::bit_exact`] runs the hardware's
+//! [`TickController`](crate::rtl::sliding_mode::TickController) instead.
 
 mod exact;
 mod float;
@@ -21,9 +22,9 @@ use super::drive::x_axis;
 use crate::plant::drive_train::{Amplifier, Contact, DriveTrain, Friction, Stribeck, Winding};
 use std::f64::consts::TAU;
 
-/// Slope c of the sliding line, 1/s: the thesis's.
+/// Slope c of the sliding line in 1/s, from the thesis.
 pub(super) const SLOPE: f64 = 150.0;
-/// Reaching rate k, 1/s: the thesis's.
+/// Reaching rate k in 1/s, from the thesis.
 pub(super) const RATE: f64 = 50.0;
 /// Integral gain of PID, 1/s³.
 const PID_INTEGRAL: f64 = 2e5;
@@ -31,21 +32,21 @@ const PID_INTEGRAL: f64 = 2e5;
 const SLIDING_INTEGRAL: f64 = 7500.0;
 /// Bandwidth of the tuned current loop, rad/s.
 const CURRENT_LOOP: f64 = TAU * 1000.0;
-/// Lag of the loop at 10 kHz, s: the current loop's, and half a tick for which the command is held.
+/// Lag of the loop at 10 kHz in s: that of the current loop plus half a tick, for which the command is held.
 pub(super) const LOOP_LAG_S: f64 = 1.0 / CURRENT_LOOP + 50e-6;
-/// Largest current, A: three times the rated.
+/// Largest current in A: three times the rated one.
 const CURRENT_LIMIT_A: f64 = 2.73;
-/// Largest voltage, V.
+/// Largest voltage in V.
 const VOLTAGE_LIMIT_V: f64 = 282.0;
-/// Viscous friction of the table, N·s/m, which the laws of the sliding mode know.
+/// Viscous friction of the table in N·s/m, which the sliding-mode laws know.
 const VISCOUS: f64 = 200.0;
 
 /// A law with its gains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ControllerLaw {
-    /// PD, or PID where it has an integral gain in 1/s³.
+    /// PD; PID if the integral gain is not 0.
     Linear {
-        /// Integral gain k_i, 1/s³; 0: PD.
+        /// Integral gain k_i in 1/s³; 0 for PD.
         integral: f64,
         /// Whether r″ is fed forward.
         acceleration: bool,
@@ -54,9 +55,9 @@ pub enum ControllerLaw {
     Sliding {
         /// Reaching gain ε, m/s².
         epsilon: f64,
-        /// Boundary layer φ, m/s; 0: the sign.
+        /// Width φ of the boundary layer in m/s; 0 for the sign function.
         boundary: f64,
-        /// Integral slope c_i, 1/s²; 0: none.
+        /// Integral slope c_i in 1/s²; 0 for no integral.
         integral: f64,
         /// Whether Coulomb friction is fed forward by the sign of r′.
         coulomb: bool,
@@ -71,20 +72,21 @@ pub enum ControllerLaw {
     },
 }
 
-/// A row of the comparison: a law, and what it runs on.
+/// A row of the comparison: a law and its conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControllerCase {
-    /// What the row is called.
+    /// Name of the row.
     pub name: &'static str,
     /// The law.
     pub law: ControllerLaw,
-    /// The mass of the table over that which the law knows.
+    /// Mass of the table divided by the mass that the law assumes.
     pub mass_factor: f64,
-    /// Period of the controller, s.
+    /// Period of the controller in s.
     pub tick_s: f64,
-    /// Resolution of the scale in m, the velocity then being its difference through a 300 Hz filter; `None`: ideal feedback.
+    /// Resolution of the scale in m; the velocity is then its difference through a 300 Hz filter. `None` means ideal
+    /// feedback.
     pub scale_m: Option<f64>,
-    /// Inductance of the winding in H of a drive without a current loop; `None`: with one.
+    /// Inductance of the winding in H for a drive without a current loop; `None` for a drive with one.
     pub voltage_mode_h: Option<f64>,
 }
 
@@ -131,11 +133,11 @@ impl ControllerCase {
     pub const PD_FORWARD: Self = case("PD + r″", linear(0.0, true));
     /// PID with r″ fed forward.
     pub const PID_FORWARD: Self = case("PID + r″", linear(PID_INTEGRAL, true));
-    /// The thesis's ε of 150, read in m/s².
+    /// Sliding mode with the thesis's ε of 150, read in m/s².
     pub const SIGN_150_SI: Self = case("sliding mode, sgn, ε = 150 m/s²", sliding(150.0, 0.0));
-    /// The thesis's ε of 150, read in mm/s².
+    /// Sliding mode with the thesis's ε of 150, read in mm/s².
     pub const SIGN_150_MM: Self = case("sliding mode, sgn, ε = 150 mm/s²", sliding(0.15, 0.0));
-    /// An ε above friction, with the sign.
+    /// Sliding mode with an ε above the friction and the sign function.
     pub const SIGN: Self = case("sliding mode, sgn, ε = 4 m/s²", sliding(4.0, 0.0));
     /// The same with a boundary layer.
     pub const LAYER: Self = case("sliding mode, ε = 4 m/s², φ = 0.02 m/s", sliding(4.0, 0.02));
@@ -227,7 +229,7 @@ impl ControllerCase {
         Self::EQUATION_PRINTED,
     ];
 
-    /// The plant.
+    /// Returns the plant.
     fn train(&self) -> DriveTrain {
         let amplifier = match self.voltage_mode_h {
             None => Amplifier::TunedCurrent {
@@ -248,22 +250,23 @@ impl ControllerCase {
         }
     }
 
-    /// The law in floating point; the figures of its steady part.
+    /// Runs the law in floating point and returns the figures of its steady part.
     pub fn float(&self) -> ControllerFigures {
         run::run(self, &mut float::FloatLaw::new(self))
     }
 
-    /// The hardware's controller in its place, bit for bit; `None` for a law that it has not, and for a drive without current loop.
+    /// Runs the hardware's controller instead, bit for bit; `None` for a law that the hardware does not have, and for
+    /// a drive without a current loop.
     ///
-    /// Its counts are those of the scale; in the place of ideal feedback it has counts of 10 nm, or 100 nm at 1 kHz, and
-    /// the true velocity.
+    /// Its counts are those of the scale. With ideal feedback it has counts of 10 nm, or 100 nm at 1 kHz, and the
+    /// true velocity.
     pub fn bit_exact(&self) -> Option<ControllerFigures> {
         let mut law = exact::ExactLaw::new(self)?;
         Some(run::run(self, &mut law))
     }
 }
 
-/// The X axis with friction and limits, which the thesis does not give: section 7 of the notes assumes them.
+/// Returns the X axis with friction and limits. The thesis does not give them; section 7 of the notes assumes them.
 fn nominal(amplifier: Amplifier) -> DriveTrain {
     DriveTrain {
         current_limit_a: CURRENT_LIMIT_A,

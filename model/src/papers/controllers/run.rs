@@ -1,17 +1,17 @@
-//! A controller on its machine, tick by tick, and the figures of the steady part.
+//! Runs a controller on its machine, tick by tick, and computes the figures of the steady part.
 
 use super::ControllerCase;
 use crate::plant::drive_train::{DriveTrainPlant, quantised};
 use std::f64::consts::TAU;
 
-/// Radius in m and frequency in Hz of the sine that is followed.
+/// Radius in m and frequency in Hz of the sine that the axis follows.
 const SINE: (f64, f64) = (0.01, 2.0);
-/// The steady part, s: two periods.
+/// Start and end of the steady part in s: two periods.
 const STEADY_S: (f64, f64) = (0.5, 1.5);
-/// Filter of a velocity that is differenced from a scale, Hz.
+/// Cutoff frequency in Hz of the filter of a velocity that is differenced from a scale.
 const VELOCITY_FILTER_HZ: f64 = 300.0;
 
-/// What a law sees in a tick: m and s.
+/// Inputs of a law in a tick, in m and s.
 pub(super) struct Seen {
     /// r, r′, r″.
     pub(super) reference: [f64; 3],
@@ -21,32 +21,32 @@ pub(super) struct Seen {
     pub(super) motor_speed: f64,
 }
 
-/// What computes a command each tick.
+/// A law that computes a command each tick.
 pub(super) trait Law {
-    /// s of this error and its rate, m/s.
+    /// Returns s of this error and its rate, in m/s.
     fn surface(&self, error: f64, rate: f64) -> f64;
-    /// The command, A or V.
+    /// Returns the command in A or V.
     fn command(&mut self, seen: &Seen) -> f64;
 }
 
-/// How a controller followed, over two periods of the sine.
+/// Tracking figures of a controller over two periods of the sine.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ControllerFigures {
-    /// Largest error, m.
+    /// Largest error in m.
     pub error_peak: f64,
-    /// Root of its mean square, m.
+    /// Root mean square of the error in m.
     pub error_rms: f64,
-    /// Largest error of the velocity, m/s.
+    /// Largest error of the velocity in m/s.
     pub rate_peak: f64,
-    /// Root of the mean square of the command, A; V without a current loop.
+    /// Root mean square of the command in A; in V without a current loop.
     pub command_rms: f64,
-    /// Way of the command per second, A/s or V/s: chatter.
+    /// Total variation of the command per second, in A/s or V/s, which measures chatter.
     pub chatter: f64,
-    /// Largest s as the controller sees it, m/s.
+    /// Largest s as the controller sees it, in m/s.
     pub surface_peak: f64,
-    /// Share of the ticks in which a limit cuts the command, 0 to 1.
+    /// Share of the ticks in which a limit clips the command, 0 to 1.
     pub limited: f64,
-    /// Changes of the sign of s per second.
+    /// Number of sign changes of s per second.
     pub crossings: f64,
 }
 

@@ -1,6 +1,6 @@
-//! The drive: it follows its command with a bandwidth, as a current or as a velocity.
+//! The drive, which follows its command with a bandwidth, as a current or as a velocity.
 //!
-//! Everything is exact for a command that is constant over a cell of the grid.
+//! The result is exact for a command that is constant over a cell of the time grid.
 
 use std::f64::consts::TAU;
 
@@ -10,11 +10,11 @@ use super::two_mass::TwoMass;
 use crate::machine_file::{Drive, DriveMode};
 use crate::mechanics::{ScrewDrive, Stiction};
 
-/// `y' = ω (u − y)`, or `y = u` for a drive without a stated bandwidth.
+/// A first-order lag `y' = ω (u − y)`, or `y = u` for a drive without a stated bandwidth.
 #[derive(Debug, Clone, PartialEq)]
 struct FirstOrder {
     state: f64,
-    /// What is left of a distance from the command after a cell, and its mean over the cell.
+    /// Fraction of a distance from the command that remains after a cell, and its mean over the cell.
     left: f64,
     mean: f64,
 }
@@ -25,12 +25,12 @@ impl FirstOrder {
         Self {
             state: 0.0,
             left: (-cells).exp(),
-            // A bandwidth so low that nothing moves within a cell.
+            // With so low a bandwidth nothing moves within a cell.
             mean: if cells > 0.0 { -(-cells).exp_m1() / cells } else { 1.0 },
         }
     }
 
-    /// Follows `command` for a cell: its mean in it.
+    /// Follows `command` for a cell, and returns the mean of the output in it.
     fn follow(&mut self, command: f64) -> f64 {
         let away = self.state - command;
         self.state = command + self.left * away;
@@ -38,14 +38,14 @@ impl FirstOrder {
     }
 }
 
-/// What the drive moves, with the drive.
+/// The drive with the mass that it moves.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Driven {
     kind: Kind,
     cell_s: f64,
-    /// m or rad.
+    /// Position in m or rad.
     pub(super) position: f64,
-    /// m/s or rad/s, at the end of the cell.
+    /// Velocity in m/s or rad/s, at the end of the cell.
     pub(super) velocity: f64,
 }
 
@@ -59,7 +59,7 @@ enum Kind {
         full_scale_a: f64,
         limit_a: f64,
         current: FirstOrder,
-        /// m/s² per A.
+        /// Acceleration per current, m/s² per A.
         acceleration_per_a: f64,
         sliding: Sliding,
     },
@@ -95,7 +95,7 @@ impl Driven {
         }
     }
 
-    /// The same with motor and table on their screw, and friction that sticks.
+    /// Replaces the single mass by motor and table on their screw, with stick-slip friction.
     pub(super) fn with_stiction(self, drive: &Drive, screw: &ScrewDrive, stiction: &Stiction) -> Self {
         match TwoMass::new(drive, screw, stiction, self.cell_s, self.position) {
             Some(two_mass) => Self {
@@ -106,7 +106,7 @@ impl Driven {
         }
     }
 
-    /// Where the load is, and the amplitude with which it rings, where it is no matter of modes.
+    /// Position of the load, and the amplitude with which it rings, where these are not computed from modes.
     pub(super) fn load(&self) -> Option<(f64, f64)> {
         match &self.kind {
             Kind::Screw(two_mass) => Some(two_mass.load()),
@@ -114,7 +114,7 @@ impl Driven {
         }
     }
 
-    /// Puts it all so far away.
+    /// Moves the whole by this distance.
     pub(super) fn displace(&mut self, distance: f64) {
         self.position += distance;
         if let Kind::Screw(two_mass) = &mut self.kind {
@@ -122,7 +122,7 @@ impl Driven {
         }
     }
 
-    /// What the drive gives now: current in A, or velocity in m/s.
+    /// Output of the drive: current in A, or velocity in m/s.
     pub(super) fn output(&self) -> f64 {
         match &self.kind {
             Kind::Velocity { velocity, .. } => velocity.state,
@@ -131,7 +131,7 @@ impl Driven {
         }
     }
 
-    /// One cell.
+    /// Simulates one cell.
     pub(super) fn cell(&mut self, command: &Command) {
         let travel = match &mut self.kind {
             Kind::Screw(two_mass) => {
@@ -231,7 +231,7 @@ mod tests {
         let left = (-pole * time_s).exp();
         assert!((soft.velocity - 0.2 * (1.0 - left)).abs() < 1e-12);
         assert!((soft.position - 0.2 * (time_s - (1.0 - left) / pole)).abs() < 1e-12);
-        // Off: it brakes by its bandwidth. The brake: it stands.
+        // Switched off, the drive brakes with its bandwidth. With the brake applied, the axis stands.
         run(&mut soft, Command { enabled: false, ..ON }, 5000);
         assert!(soft.velocity.abs() < 1e-6);
         run(&mut soft, ON, 1000);
@@ -244,7 +244,7 @@ mod tests {
     fn unit_a_torque_drive_accelerates_its_mass_within_the_limit() {
         let mut driven = torque_drive(0.0, 0.0);
         run(&mut driven, ON, 50_000);
-        // Half of 8 A is asked for, 2 A is the limit: 16 m/s², late by the time constant of the current.
+        // Half of 8 A is commanded, but 2 A is the limit: 16 m/s², late by the time constant of the current.
         let late_s = 1.0 / (TAU * 1000.0);
         assert!((driven.velocity - 16.0 * (0.1 - late_s)).abs() < 1e-9);
         let coasting = driven.velocity;

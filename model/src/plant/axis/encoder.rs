@@ -1,8 +1,9 @@
-//! A position to the edges of A, B and index.
+//! The encoder: turns a position into edges of A, B and index.
 //!
-//! A count is 1/counts_per_unit, from half a count below its number to half above. In the cell of the grid after a new
-//! position the encoder moves there in a straight line; an edge comes in the clock in which this line crosses to another
-//! count, and at the earliest a clock after the edge before it. What is faster comes late; nothing is lost.
+//! A count is 1/counts_per_unit long, from half a count below its number to half above. In the cell of the time grid
+//! after a new position the encoder moves there in a straight line. An edge comes in the clock in which this line
+//! crosses to another count, at the earliest a clock after the edge before it. Edges of a faster motion come late,
+//! but none is lost.
 //!
 //! ```text
 //! count   …  0   1   2   3   0  …       up: A leads B
@@ -17,7 +18,7 @@ pub struct EncoderPins {
     pub a: bool,
     /// Line B.
     pub b: bool,
-    /// Index: high for one count. Always low without an index.
+    /// Index, high for one count; always low without an index.
     pub z: bool,
 }
 
@@ -26,14 +27,14 @@ pub(super) struct Encoder {
     counts_per_unit: f64,
     cell_clocks: u32,
     index_at: Option<i64>,
-    /// A and B are exchanged: the lines count down where the count goes up.
+    /// Whether A and B are exchanged, so that the lines count down where the count goes up.
     reversed: bool,
-    /// The count on the lines.
+    /// The count that the lines show.
     shown: i64,
-    /// Ends of the cell's line, counts.
+    /// Start and end of the motion in the cell, in counts.
     from: f64,
     to: f64,
-    /// Clocks from the start of the cell to the next edge; beyond the cell if none comes in it.
+    /// Clocks from the start of the cell to the next edge; beyond the cell if it has none.
     next_edge: u32,
 }
 
@@ -52,12 +53,12 @@ impl Encoder {
         }
     }
 
-    /// With A and B exchanged, as by its wiring.
+    /// Exchanges A and B, as the wiring may do.
     pub(super) fn reversed(self, reversed: bool) -> Self {
         Self { reversed, ..self }
     }
 
-    /// So many counts in m or rad.
+    /// Length of this many counts in m or rad.
     pub(super) fn length(&self, counts: f64) -> f64 {
         counts / self.counts_per_unit
     }
@@ -76,21 +77,21 @@ impl Encoder {
         }
     }
 
-    /// Clocks from the start of the cell up to which the lines stay as they are, as far as it is known.
+    /// Clocks from the start of the cell for which the lines are known not to change.
     #[inline]
     pub(super) fn quiet_until(&self) -> u32 {
         // The first edge of the next cell comes after its first clock.
         self.next_edge.min(self.cell_clocks + 1)
     }
 
-    /// A cell begins, which ends at this position.
+    /// Begins a cell, at whose end this position is reached.
     pub(super) fn move_to(&mut self, position: f64) {
         self.from = self.to;
         self.to = position * self.counts_per_unit;
         self.plan(0);
     }
 
-    /// The cell has lasted so many clocks.
+    /// Advances the time by this many clocks of the cell.
     #[inline]
     pub(super) fn pass(&mut self, clocks: u32) {
         while self.next_edge <= clocks {
@@ -99,7 +100,7 @@ impl Encoder {
         }
     }
 
-    /// Finds the next edge, later than so many clocks.
+    /// Finds the next edge, later than this many clocks.
     fn plan(&mut self, clocks: u32) {
         let goal = nearest(self.to);
         if goal == self.shown {
@@ -108,7 +109,7 @@ impl Encoder {
         }
         let border = self.shown as f64 + if goal > self.shown { 0.5 } else { -0.5 };
         let part = (border - self.from) / (self.to - self.from);
-        // An edge that is late is not on the line: it comes at once.
+        // An edge that is late is not on the line, and comes at once.
         let clock = match part {
             0.0..=1.0 => (part * f64::from(self.cell_clocks)).ceil() as u32,
             _ => 0,
@@ -129,7 +130,7 @@ mod tests {
         u8::from(pins.a) | u8::from(pins.b) << 1
     }
 
-    /// Clocks (from 0) at whose end an edge comes while it moves to each position, a cell of 10 clocks each.
+    /// Clocks (from 0) at whose end an edge comes, while the encoder moves to each position in a cell of 10 clocks.
     fn edges(encoder: &mut Encoder, positions: &[f64]) -> Vec<(u32, i64)> {
         let mut found = vec![];
         for (cell, position) in positions.iter().enumerate() {
@@ -151,12 +152,12 @@ mod tests {
     #[test]
     fn unit_edges_lie_where_the_line_crosses() {
         let mut encoder = Encoder::new(1.0, 10, Some(2), 0.0);
-        // Crossings of 0.5, 1.5 on the way from 0 to 2, then back from 2 to 1.
+        // The motion crosses 0.5 and 1.5 on the way from 0 to 2, then 1.5 on the way back to 1.
         assert_eq!(edges(&mut encoder, &[2.0]), [(2, 1), (7, 2)]);
         assert!(encoder.pins().z);
         assert_eq!(edges(&mut encoder, &[2.4, 1.0]), [(16, 1)]);
         assert!(!encoder.pins().z);
-        // Exactly on the border it is in the upper count.
+        // A position exactly on the border belongs to the upper count.
         assert_eq!(edges(&mut encoder, &[0.5, 0.49]), [(10, 0)]);
     }
 
@@ -167,7 +168,7 @@ mod tests {
         assert_eq!(found.len(), 25);
         assert!(found.windows(2).all(|pair| pair[1].0 > pair[0].0));
         assert_eq!(encoder.count(), 25);
-        // Turning before all has come.
+        // The motion reverses before all edges have come.
         edges(&mut encoder, &[60.0, 30.0, 30.0]);
         assert_eq!(encoder.count(), 30);
     }

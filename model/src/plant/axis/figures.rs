@@ -1,18 +1,18 @@
-//! Figures of a move from its samples: how far it was off, how it rang, how round it was.
+//! Figures of a move from its samples: tracking error, residual vibration, and distance from a circle.
 //!
 //! Samples may come at any pace and in any unit; the figures have the unit of the samples.
 
 /// Peak and root mean square of an error.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ErrorFigures {
-    /// Largest size.
+    /// Largest magnitude of the error.
     pub peak: f64,
-    /// Root of the mean square; 0 of no samples.
+    /// Root mean square of the error; 0 without samples.
     pub rms: f64,
 }
 
 impl ErrorFigures {
-    /// Of these errors. One that is no number makes both figures NaN.
+    /// Figures of these errors. A NaN among them makes both figures NaN.
     pub fn of(errors: impl IntoIterator<Item = f64>) -> Self {
         let (mut peak, mut squares, mut samples) = (0.0f64, 0.0, 0u64);
         for error in errors {
@@ -28,18 +28,18 @@ impl ErrorFigures {
     }
 }
 
-/// How far positions were from their reference, sample by sample, up to the end of the shorter.
+/// Distance of positions from their reference, sample by sample, up to the end of the shorter sequence.
 pub fn tracking_error(reference: &[f64], positions: &[f64]) -> ErrorFigures {
     ErrorFigures::of(reference.iter().zip(positions).map(|(wanted, found)| wanted - found))
 }
 
-/// How the load moved about its `target` in `load`, the samples after the command has come to its end. The peak is the
-/// residual displacement of [`response_figures`](crate::plant::response::response_figures), seen at samples.
+/// Motion of the load about `target` in `load`, the samples after the end of the command. The peak is the residual
+/// displacement of [`response_figures`](crate::plant::response::response_figures), as seen at the samples.
 pub fn residual_vibration(load: &[f64], target: f64) -> ErrorFigures {
     ErrorFigures::of(load.iter().map(|position| position - target))
 }
 
-/// How far points `(x, y)` were from a circle, along its radius.
+/// Distance of points `(x, y)` from a circle, along its radius.
 ///
 /// ```
 /// use posicast_model::plant::axis::contour_error;

@@ -1,32 +1,33 @@
-//! A mass under a constant force, viscous and Coulomb friction: closed forms between its stops.
+//! A mass with viscous and Coulomb friction under a constant force: closed forms between its stops.
 //!
 //! ```text
 //! v' = a − β·v − f·sgn(v)      at v = 0: it stays for |a| ≤ f
 //! ```
 //!
-//! Where the velocity would change its sign, the instant of the stop is computed, and from there the mass either stays or
-//! slides on the other way. So there is no chatter at rest, and no threshold of velocity that would have to be chosen.
+//! Where the velocity would change its sign, the instant of the stop is computed, and from there the mass either
+//! stays or slides in the other direction. So there is no chatter at rest, and no velocity threshold that would have
+//! to be chosen.
 
-/// How a mass has moved.
+/// Motion of a mass in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slide {
-    /// At the end, m/s.
+    /// Velocity at the end, m/s.
     pub(super) velocity: f64,
-    /// Way, m.
+    /// Distance, m.
     pub(super) distance: f64,
 }
 
-/// A mass with friction, over cells of one length.
+/// A mass with friction, for cells of one length.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sliding {
-    /// β: viscous friction per mass, 1/s.
+    /// Viscous friction per mass β, 1/s.
     viscous: f64,
-    /// f: Coulomb friction per mass, m/s².
+    /// Coulomb friction per mass f, m/s².
     coulomb: f64,
     cell: Decay,
 }
 
-/// `e^{−βt}`, its integral and the integral of that.
+/// The function `e^{−βt}`, its integral and the integral of that.
 #[derive(Debug, Clone, PartialEq)]
 struct Decay {
     time_s: f64,
@@ -38,7 +39,7 @@ struct Decay {
 impl Decay {
     fn new(viscous: f64, time_s: f64) -> Self {
         let z = viscous * time_s;
-        // (1 − e^−z)/z and (z − 1 + e^−z)/z², by their series where the differences would cancel.
+        // The terms are (1 − e^−z)/z and (z − 1 + e^−z)/z², by their series where the differences would cancel.
         let (once, twice) = if z < 1e-3 {
             let once = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0));
             (once, 0.5 - z / 6.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0)))
@@ -71,7 +72,7 @@ impl Sliding {
         }
     }
 
-    /// A cell from this velocity, with what the drive gives per mass.
+    /// Moves for a cell, starting with this velocity; `drive` is the drive's force per mass.
     pub(super) fn slide(&self, velocity: f64, drive: f64) -> Slide {
         if velocity == 0.0 {
             return self.leave(drive, &self.cell);
@@ -90,7 +91,7 @@ impl Sliding {
         }
     }
 
-    /// From rest.
+    /// Moves for a cell from rest.
     fn leave(&self, drive: f64, decay: &Decay) -> Slide {
         if drive.abs() <= self.coulomb {
             return Slide {
@@ -101,7 +102,7 @@ impl Sliding {
         decay.slide(0.0, drive - self.coulomb.copysign(drive))
     }
 
-    /// When a velocity is 0 that an acceleration works against, at most a cell.
+    /// Time in s, at most a cell, at which an acceleration against the velocity has reduced it to 0.
     fn stop_s(&self, velocity: f64, acceleration: f64) -> f64 {
         let ratio = -velocity / acceleration;
         let stop_s = if self.viscous * ratio < 1e-9 {
@@ -109,7 +110,7 @@ impl Sliding {
         } else {
             (self.viscous * ratio).ln_1p() / self.viscous
         };
-        // Also where it is viscous friction alone that makes the last of the velocity vanish.
+        // This is also reached where viscous friction alone makes the last of the velocity vanish.
         if stop_s >= 0.0 {
             stop_s.min(self.cell.time_s)
         } else {
@@ -122,7 +123,7 @@ impl Sliding {
 mod tests {
     use super::*;
 
-    /// The same by small steps.
+    /// Simulates the motion by small steps instead.
     fn by_steps(viscous: f64, coulomb: f64, drive: f64, mut velocity: f64, time_s: f64) -> Slide {
         let steps = 1_000_000;
         let step = time_s / f64::from(steps);

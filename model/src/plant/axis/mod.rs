@@ -1,4 +1,4 @@
-//! An axis of the machine as the hardware feels it: PWM pins in, encoder pins out.
+//! An axis of the machine as the hardware sees it: PWM pins in, encoder pins out.
 //!
 //! ```text
 //! gates ─► mean of a PWM period ─► drive (first order) ─┬─ velocity ───────────────┬─► x ─► modes ─► load y
@@ -10,16 +10,16 @@
 //! | | velocity drive | torque drive |
 //! |---|---|---|
 //! | `x`, the driven coordinate | the motor; the drive is stiff, so nothing acts back on it | the centre of all that is moved |
-//! | a mode | `y/x = ω²/(s² + 2ζωs + ω²)` | free vibration inside the mass: `d″ + 2ζωd′ + ω²d = −x″`, `y = x + d` |
-//! | the encoder sees | `x`: the loop does not feel the modes that the shaper is for | `y`: the loop has the mode in it |
+//! | a mode | `y/x = ω²/(s² + 2ζωs + ω²)` | free vibration within the mass: `d″ + 2ζωd′ + ω²d = −x″`, `y = x + d` |
+//! | the encoder sees | `x`: the modes for which the shaper is designed are outside the loop | `y`: the modes are inside the loop |
 //! | friction | none: the drive overcomes it | viscous and Coulomb, on `x` |
 //!
-//! Vibration is measured at the load, always. `docs/plant.md` has the reasons, and what is idealised.
+//! Vibration is always measured at the load. `docs/plant.md` has the reasons, and the idealisations.
 //!
-//! **Time** is clocks. A grid of [`AxisPlant::cell_clocks`] divides it; at the end of a cell the drive gets the mean of the pins
-//! over the last period of the PWM, the cell is integrated exactly, and the encoder plays its way during the next cell. How a
-//! time is cut into calls changes nothing:
-//! 5,000 calls with a clock each and one call with 5,000 give the same edges, bit for bit.
+//! **Time** counts in clocks and is divided into cells of [`AxisPlant::cell_clocks`]. At the end of a cell the drive
+//! gets the mean of the pins over the last period of the PWM, the cell is integrated exactly, and the encoder moves
+//! to the new position during the next cell. How a time is divided into calls changes nothing: 5,000 calls with a
+//! clock each and one call with 5,000 clocks give the same edges, bit for bit.
 //!
 //! ```
 //! use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
@@ -71,21 +71,22 @@ use self::pins::PinMean;
 use super::{Plant, PlantError};
 use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode};
 
-/// Longest cell of the grid, s: little beside a tick and beside the period of any mode.
+/// Longest cell of the time grid, s: short compared with a tick and with the period of any mode.
 const CELL_S: f64 = 2e-6;
-/// Positions up to here are exact to a small part of a count.
+/// Largest position in counts; up to it positions are exact to a small fraction of a count.
 const COUNTS_MAX: f64 = (1u64 << 40) as f64;
 
-/// What the machine file does not say.
+/// Settings of the simulation that the machine file does not have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlantOptions {
-    /// All mode frequencies times this: 0.9 is a machine 10 % slower than its file. More than 0, at most 10.
+    /// Factor on all mode frequencies: 0.9 is a machine 10 % slower than its file. More than 0, at most 10.
     pub frequency_factor: f64,
-    /// Where it stands at first, m or rad.
+    /// Initial position, m or rad.
     pub position: f64,
-    /// What the encoder sees; `None`: the driven coordinate of a velocity drive, the load of a torque drive.
+    /// Position that the encoder measures; `None`: the driven coordinate of a velocity drive, the load of a torque
+    /// drive.
     pub encoder_at: Option<Coordinate>,
-    /// The count with the index, if the encoder has one.
+    /// Count at which the index is, if the encoder has one.
     pub index_at: i64,
 }
 
@@ -103,87 +104,88 @@ impl Default for PlantOptions {
 /// A point of the machine whose position can be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coordinate {
-    /// What the drive moves, without the modes.
+    /// The coordinate that the drive moves, without the modes.
     Driven,
-    /// The load, on its modes.
+    /// The load, with the modes.
     Load,
 }
 
-/// Why an axis is no plant.
+/// Why an axis cannot be simulated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AxisPlantError {
-    /// A table is missing.
+    /// A table of the axis is missing.
     #[error("axis {axis} has no [axis.{table}]: a simulated axis needs [axis.pwm] and [axis.drive]; add it")]
     Missing {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The table.
+        /// Name of the missing table.
         table: &'static str,
     },
-    /// Invalid modes.
+    /// The modes are invalid.
     #[error("axis {axis}: {source}")]
     Modes {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// What is wrong with them.
+        /// Why they are invalid.
         source: PlantError,
     },
-    /// An invalid frequency factor.
+    /// The frequency factor is invalid.
     #[error(
         "a frequency factor of {0}: allowed is more than 0, at most 10; 0.9 is a machine 10 % slower than its file"
     )]
     FrequencyFactor(f64),
-    /// A start outside of what can be counted.
+    /// The initial position is outside the range of the simulation.
     #[error(
         "axis {axis}: a start at {position} is {counts:e} counts: at most 2^40 either way can be simulated; start nearer to 0"
     )]
     Position {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The start, m or rad.
+        /// Initial position, m or rad.
         position: f64,
-        /// The same in counts.
+        /// Initial position in counts.
         counts: f64,
     },
-    /// More than one edge in a clock.
+    /// The axis can be faster than one edge per clock.
     #[error(
         "axis {axis}: {what} is {found:e} counts per clock, and an encoder gives at most 1: use coarser counts per unit, \
          a faster clock, or a smaller full scale"
     )]
     TooFast {
-        /// The axis.
+        /// Name of the axis.
         axis: String,
-        /// The speed of the velocity drive at full scale, or what a torque drive gains within a tick.
+        /// The fast quantity: the velocity drive's full scale, or the velocity that a torque drive gains within a
+        /// tick.
         what: &'static str,
         /// Counts per clock.
         found: f64,
     },
 }
 
-/// Where an axis is, at the end of the last whole cell. Lengths in m or rad.
+/// Motion of an axis at the end of the last whole cell. Lengths are in m or rad.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AxisMotion {
-    /// Of the driven coordinate.
+    /// Position of the driven coordinate.
     pub position: f64,
-    /// Of the driven coordinate, per s.
+    /// Velocity of the driven coordinate, per s.
     pub velocity: f64,
     /// Position of the load.
     pub load: f64,
-    /// Sum of the amplitudes with which the modes ring: if the driven coordinate keeps its velocity, the load is never
-    /// farther from where it would be without ringing.
+    /// Sum of the amplitudes with which the modes ring: if the driven coordinate keeps its velocity, the load is
+    /// never farther than this from where it would be without ringing.
     pub vibration: f64,
-    /// Mean command of the pins in the last period of the PWM, part of full scale, −1 to 1.
+    /// Mean command of the pins over the last period of the PWM, as a fraction of full scale, −1 to 1.
     pub command: f64,
-    /// What the drive gives: current in A, or velocity per s.
+    /// Output of the drive: current in A, or velocity per s.
     pub drive: f64,
 }
 
-/// An axis in motion.
+/// The simulation of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisPlant {
     cell_clocks: u32,
     cell_s: f64,
-    /// Clocks of the present cell that are over.
+    /// Clocks of the present cell that have passed.
     passed: u32,
     pins: PinMean,
     command: f64,
@@ -195,10 +197,12 @@ pub struct AxisPlant {
 }
 
 impl AxisPlant {
-    /// The axis of the machine file at rest. `[axis.encoder]` says whether there is an index, and which way the lines count.
+    /// Makes the axis of the machine file, at rest. `[axis.encoder]` says whether there is an index, and in which
+    /// direction the lines count.
     ///
     /// # Errors
-    /// [`AxisPlantError`] for an axis without PWM or drive, for invalid options, and for speeds beyond a count per clock.
+    /// [`AxisPlantError`] for an axis without PWM or drive, for invalid options, and for speeds above a count per
+    /// clock.
     pub fn new(axis: &AxisSection, clock: &ClockSection, options: &PlantOptions) -> Result<Self, AxisPlantError> {
         let name = || axis.name.clone();
         let missing = |table| AxisPlantError::Missing { axis: name(), table };
@@ -208,7 +212,7 @@ impl AxisPlant {
         if !(factor > 0.0 && factor <= 10.0) {
             return Err(AxisPlantError::FrequencyFactor(factor));
         }
-        // A second encoder, at the load.
+        // The scale is a second encoder, at the load.
         let scale = axis.scale.map(|scale| scale.counts_per_unit);
         let scales = [Some(axis.counts_per_unit), scale];
         for counts_per_unit in scales.into_iter().flatten() {
@@ -221,12 +225,12 @@ impl AxisPlant {
         let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
         let encoder =
             |counts_per_unit, index_at| Encoder::new(counts_per_unit, cell_clocks, index_at, options.position);
-        // The machine file says how the machine is wired: what the hardware inverts.
+        // The machine file says where the machine's wiring counts down, which the hardware inverts.
         let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
         let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
         let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
         let driven = Driven::new(drive, cell_s, options.position);
-        // Motor and table with friction that sticks have their mode in them.
+        // Motor and table with stick-slip friction contain their mode.
         let screw = axis.mechanics.as_ref();
         let (driven, plant) = match screw.and_then(|screw| screw.stiction.map(|stiction| (screw, stiction))) {
             Some((screw, stiction)) => {
@@ -254,12 +258,12 @@ impl AxisPlant {
         })
     }
 
-    /// Clocks of a cell: the largest part of a PWM period that divides it and lasts at most 2 µs.
+    /// Clocks of a cell: the largest divisor of the PWM period that lasts at most 2 µs.
     pub fn cell_clocks(&self) -> u32 {
         self.cell_clocks
     }
 
-    /// Lets so many clocks pass with these pins.
+    /// Simulates this many clocks with these pins.
     #[inline]
     pub fn clocks(&mut self, pins: DrivePins, clocks: u64) {
         let mut left = clocks;
@@ -278,7 +282,7 @@ impl AxisPlant {
         }
     }
 
-    /// Puts the whole axis so many counts of the encoder away from where it is, as a hand or a shock does. The lines follow in
+    /// Displaces the whole axis by this many counts of the encoder, as a hand or a shock would. The lines follow in
     /// the cell after the present one.
     pub fn displace(&mut self, counts: f64) {
         self.driven.displace(self.encoder.length(counts));
@@ -308,37 +312,37 @@ impl AxisPlant {
             .map_or_else(|| self.driven.position + self.modes.deflection(), |(load, _)| load)
     }
 
-    /// The encoder's lines in the clock to come.
+    /// The encoder's lines in the next clock.
     #[inline]
     pub fn encoder(&self) -> EncoderPins {
         self.encoder.pins()
     }
 
-    /// The scale's lines in the clock to come; without a scale they are low.
+    /// The scale's lines in the next clock; without a scale they are low.
     #[inline]
     pub fn scale(&self) -> EncoderPins {
         self.scale.as_ref().map_or_else(EncoderPins::default, Encoder::pins)
     }
 
-    /// For so many clocks from now on, at least one, the lines of encoder and scale stay as they are, whatever the pins do.
-    /// At most a cell and a clock: what comes after that is not yet known.
+    /// Number of clocks from now on, at least one, in which the lines of encoder and scale do not change, whatever
+    /// the pins do. It is at most a cell and a clock, because later motion is not yet known.
     #[inline]
     pub fn quiet_clocks(&self) -> u64 {
         let scale = self.scale.as_ref().map_or(u32::MAX, Encoder::quiet_until);
         u64::from(self.encoder.quiet_until().min(scale) - self.passed)
     }
 
-    /// The encoder's count: what a counter that missed nothing shows, from the start's count on.
+    /// The encoder's count, as a counter that missed nothing shows it, counted from the initial position.
     pub fn count(&self) -> i64 {
         self.encoder.count()
     }
 
-    /// The scale's count.
+    /// The scale's count, if there is a scale.
     pub fn scale_count(&self) -> Option<i64> {
         self.scale.as_ref().map(Encoder::count)
     }
 
-    /// Where the axis is, at the end of the last whole cell.
+    /// Motion of the axis at the end of the last whole cell.
     pub fn motion(&self) -> AxisMotion {
         AxisMotion {
             position: self.driven.position,
@@ -353,7 +357,7 @@ impl AxisPlant {
         }
     }
 
-    /// Clocks in which both sides of a leg were on: a short circuit, which a PWM must never make.
+    /// Number of clocks in which both sides of a leg were on: a short circuit, which a PWM must never make.
     pub fn shorted_clocks(&self) -> u64 {
         self.pins.shorted()
     }
@@ -366,7 +370,7 @@ fn cell_clocks(clock: &ClockSection, period_clocks: u32) -> u32 {
     (1..=longest).rev().find(divides).unwrap_or(1)
 }
 
-/// Whether an encoder of so many counts per unit can follow.
+/// Checks that an encoder with this many counts per unit can follow the axis.
 fn check(
     axis: &AxisSection,
     drive: &Drive,

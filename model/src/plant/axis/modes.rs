@@ -1,4 +1,4 @@
-//! The load on its modes, seen from what the drive moves.
+//! Vibration of the load on its modes, relative to the driven coordinate.
 //!
 //! With `x` the driven coordinate, `y` the load, `w = x'`, each mode `k` has `d_k`, its distance from `x`, and `v_k = x' + d_k'`:
 //!
@@ -8,22 +8,23 @@
 //! y = x + Σ share_k · d_k
 //! ```
 //!
-//! Within a cell of the grid `x` is a ramp, under which both have one closed form: a free oscillation about `−lag·w`. The frequency of a mode
-//! that moves with the position stays while `x` goes 1/4096 of the range of its points.
+//! Within a cell of the time grid `x` is a ramp, for which both have one closed form: a free oscillation about
+//! `−lag·w`. The frequency of a mode that moves with the position is updated when `x` has moved by 1/4096 of the
+//! range of its points.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::super::{Plant, PlantMode, free_amplitude, free_motion};
 use crate::machine_file::AxisSection;
 
-/// Steps of the position, over the range of the points of a moving mode, in which its frequency stays.
+/// Steps of the position, over the range of a moving mode's points, in which its frequency is updated.
 const STEPS: f64 = 4096.0;
 
 #[derive(Debug, Clone, PartialEq)]
 struct LoadMode {
     of: PlantMode,
     cell: Matrix2<f64>,
-    /// How long the mode trails a ramp: 2ζ/ω in s, or 0.
+    /// Time by which the mode lags a ramp, 2ζ/ω, in s; 0 where it does not.
     lag_s: f64,
     distance: f64,
     velocity: f64,
@@ -38,19 +39,19 @@ pub(super) struct LoadModes {
     path: Option<Path>,
 }
 
-/// Where the modes of an axis are along its position.
+/// Modes of an axis that move with its position.
 #[derive(Debug, Clone, PartialEq)]
 struct Path {
     axis: AxisSection,
-    /// All frequencies times this.
+    /// Factor on all frequencies.
     factor: f64,
-    /// The position that the modes are for now.
+    /// Position for which the modes are valid now.
     at: f64,
     step: f64,
 }
 
 impl LoadModes {
-    /// At rest. `trails`: the modes of a velocity drive, which trail a ramp.
+    /// Makes modes at rest. `trails` says that they lag a ramp, as those of a velocity drive do.
     pub(super) fn new(plant: &Plant, cell_s: f64, trails: bool) -> Self {
         let modes = plant.modes().iter().map(|of| LoadMode {
             of: *of,
@@ -67,7 +68,7 @@ impl LoadModes {
         }
     }
 
-    /// The same with modes that move with the position, if those of the axis do.
+    /// Makes the modes move with the position, if those of the axis do.
     pub(super) fn along(mut self, axis: &AxisSection, factor: f64, position: f64) -> Self {
         if let Some(family) = axis.family.as_ref().filter(|family| family.is_position()) {
             self.path = Some(Path {
@@ -81,7 +82,7 @@ impl LoadModes {
         self
     }
 
-    /// Takes the modes of a position, where it is a step from the last.
+    /// Updates the modes for a position that is a step away from the last one.
     fn follow(&mut self, position: f64) {
         let Some(path) = &mut self.path else {
             return;
@@ -97,7 +98,7 @@ impl LoadModes {
         }
     }
 
-    /// A cell in which the driven coordinate comes to `position` at this velocity.
+    /// Simulates a cell at whose end the driven coordinate has reached `position` at this velocity.
     pub(super) fn cell(&mut self, velocity: f64, position: f64) {
         self.follow(position);
         for mode in &mut self.modes {
@@ -123,7 +124,7 @@ impl LoadModes {
     }
 }
 
-/// How long a mode trails a ramp.
+/// Time by which a mode lags a ramp, s.
 fn lag_s(of: &PlantMode, trails: bool) -> f64 {
     match trails {
         true => 2.0 * of.mode.damping / of.mode.omega(),

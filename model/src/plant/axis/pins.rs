@@ -1,31 +1,33 @@
-//! From gate pins to the drive's command: what the levels mean in each mode, and their mean over a period of the PWM.
+//! Turns gate pins into the drive's command: the meaning of the levels in each mode, and their mean over a period of
+//! the PWM.
 //!
-//! A drive smooths its command, or its answer would move by micrometres in each pulse. It is taken as the mean of the last
-//! period, which has no ripple whatever the duty and the phase are, and is half a period late.
+//! A drive smooths its command; otherwise its response would move by micrometres in each pulse. Its command is taken
+//! as the mean over the last period, which has no ripple for any duty and phase, and lags by half a period.
 
 use crate::machine_file::PwmMode;
 
 /// Levels of the pins that go to the power stage, the drive and the brake.
 ///
-/// The default is all low: without power, and braked.
+/// The default has all pins low: the drive is disabled and the brake applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct DrivePins {
-    /// High side of leg A; the PWM of mode `direction`.
+    /// High side of leg A; in mode `direction` the PWM.
     pub a_high: bool,
     /// Low side of leg A.
     pub a_low: bool,
-    /// High side of leg B; the direction of mode `direction`.
+    /// High side of leg B; in mode `direction` the direction.
     pub b_high: bool,
     /// Low side of leg B.
     pub b_low: bool,
-    /// The drive may follow its command.
+    /// Whether the drive may follow its command.
     pub drive_enable: bool,
-    /// The brake is open.
+    /// Whether the brake is open.
     pub brake_release: bool,
 }
 
 impl DrivePins {
-    /// Part of full scale that the gates ask for in a mode: −1, 0 or 1. `active_low`: a gate is on at a low level.
+    /// Fraction of full scale that the gates command in a mode: −1, 0 or 1. `active_low`: a gate is on at a low
+    /// level.
     #[inline]
     fn command(&self, mode: PwmMode, active_low: bool) -> i64 {
         let [a_high, a_low, b_high, b_low] =
@@ -37,7 +39,7 @@ impl DrivePins {
         }
     }
 
-    /// Whether both sides of a leg are on.
+    /// Returns whether both sides of a leg are on.
     #[inline]
     fn shorts(&self, mode: PwmMode, active_low: bool) -> bool {
         let both = |high: bool, low: bool| high != active_low && low != active_low;
@@ -45,28 +47,29 @@ impl DrivePins {
     }
 }
 
-/// What a cell of the grid asks for.
+/// Command in a cell of the time grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Command {
-    /// Mean command of the last period, part of full scale, −1 to 1.
+    /// Mean command over the last period, as a fraction of full scale, −1 to 1.
     pub(super) share: f64,
-    /// The drive was enabled in every clock.
+    /// Whether the drive was enabled in every clock.
     pub(super) enabled: bool,
-    /// The brake was open in every clock.
+    /// Whether the brake was open in every clock.
     pub(super) released: bool,
 }
 
-/// Sums of the pins over the cells of a period: integers, so that it does not matter how a time is cut into calls.
+/// Sums of the pins over the cells of a period. They are integers, so that the result does not depend on how a time
+/// is divided into calls.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PinMean {
     mode: PwmMode,
     active_low: bool,
     cell_clocks: u32,
-    /// Of the cells before this one, the oldest at `oldest`; all of a period together.
+    /// Sums of the cells before this one, the oldest at `oldest`; together they make a period.
     cells: Vec<i64>,
     oldest: usize,
     period: i64,
-    /// Of this cell.
+    /// Sum of this cell.
     command: i64,
     enabled: i64,
     released: i64,
@@ -74,7 +77,7 @@ pub(super) struct PinMean {
 }
 
 impl PinMean {
-    /// Nothing was asked for before now. A period is `cells` cells of so many clocks.
+    /// Starts with a command of 0 so far. A period has `cells` cells of this many clocks.
     pub(super) fn new(mode: PwmMode, active_low: bool, cell_clocks: u32, cells: u32) -> Self {
         Self {
             mode,
@@ -101,7 +104,7 @@ impl PinMean {
         }
     }
 
-    /// Ends a cell.
+    /// Ends a cell, and returns its command.
     pub(super) fn take(&mut self) -> Command {
         let all = i64::from(self.cell_clocks);
         self.period += self.command - std::mem::replace(&mut self.cells[self.oldest], self.command);
@@ -115,7 +118,7 @@ impl PinMean {
         command
     }
 
-    /// Clocks in which both sides of a leg were on.
+    /// Number of clocks in which both sides of a leg were on.
     pub(super) fn shorted(&self) -> u64 {
         self.shorted
     }
@@ -126,7 +129,7 @@ mod tests {
     use super::*;
     use crate::rtl::pwm::{ActiveLow, Inputs, Pwm, PwmConfig};
 
-    /// Mean command of the PWM's own pins, cell by cell over 20 periods, after 20 to settle.
+    /// Mean command of the PWM's own pins, cell by cell over 20 periods, after 20 periods to settle.
     fn of_pwm(mode: PwmMode, register: u8, duty: i32, active_low: bool) -> f64 {
         let all = ActiveLow {
             a_high: active_low,
@@ -168,7 +171,7 @@ mod tests {
             }
         }
         assert_eq!(mean.shorted(), 0);
-        // Once a period is over there is no ripple.
+        // After one period there is no ripple.
         assert!(shares[10..].iter().all(|share| *share == shares[10]));
         shares[10]
     }
@@ -178,7 +181,7 @@ mod tests {
         for active_low in [false, true] {
             for duty in [-1000, -600, 0, 400, 1000] {
                 let share = f64::from(duty) / 1000.0;
-                // One side alone loses the dead time, and goes one way only.
+                // One side alone loses the dead time, and moves in one direction only.
                 let less =
                     |share: f64| share.signum() * (share.abs() - if share.abs() == 1.0 { 0.0 } else { 0.01 }).max(0.0);
                 let of = |mode, register| of_pwm(mode, register, duty, active_low);

@@ -1,4 +1,4 @@
-//! The axis against closed forms, against two masses on a spring, and against itself in other pieces.
+//! Compares the axis with closed forms, with two masses on a spring, and with itself in other time steps.
 
 use proptest::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::plant::response::response_figures;
 const VELOCITY: &str = "mode = \"velocity\"\nfull_scale_velocity = 0.5\n";
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
     full_scale_a = 3.0\n";
-/// Gx of the notes.
+/// Mode Gx of the notes.
 const GX: &str = "frequency_hz = 131.117015808451\ndamping = 0.157799065776";
 
 fn machine(drive: &str, mode: &str) -> Machine {
@@ -27,7 +27,7 @@ fn plant(drive: &str, mode: &str, options: PlantOptions) -> AxisPlant {
     AxisPlant::new(&machine.axes[0], &machine.clock, &options).unwrap()
 }
 
-/// Full scale one way; with `false`, the other.
+/// Pins for full scale forward, or backward for `false`.
 fn full(forward: bool) -> DrivePins {
     DrivePins {
         a_high: forward,
@@ -49,7 +49,7 @@ fn stop() -> DrivePins {
 
 #[test]
 fn golden_a_short_move_overshoots_as_a_step_does() {
-    // 5 µm within 10 µs: to a mode of 131 Hz that is a step. The notes: 60.53 %.
+    // A motion of 5 µm within 10 µs is a step for a mode of 131 Hz, for which the notes give 60.53 %.
     let mut axis = plant(VELOCITY, GX, PlantOptions::default());
     axis.clocks(full(true), 500);
     let mut highest = 0.0f64;
@@ -61,7 +61,7 @@ fn golden_a_short_move_overshoots_as_a_step_does() {
     assert!((highest / 5e-6 - 1.0 - 0.60530).abs() < 1e-4, "{highest}");
 }
 
-/// A change of the velocity as the mean of a period makes it, in 25 cells.
+/// A change of the velocity in 25 cells, as the mean over a period makes it.
 fn staircase((start_s, velocity): (f64, f64)) -> impl Iterator<Item = Jump> {
     (0..25).map(move |cell| Jump {
         time_s: start_s + f64::from(cell) * 2e-6,
@@ -74,7 +74,7 @@ fn staircase((start_s, velocity): (f64, f64)) -> impl Iterator<Item = Jump> {
 
 #[test]
 fn unit_the_load_is_that_of_the_plant_in_closed_form() {
-    // 1.5 ms at full speed: a ramp and a stop, for any frequency factor.
+    // 1.5 ms at full speed, a ramp and a stop, for any frequency factor.
     for factor in [0.9, 1.0, 1.1] {
         let options = PlantOptions {
             frequency_factor: factor,
@@ -99,7 +99,7 @@ fn unit_the_load_is_that_of_the_plant_in_closed_form() {
             (highest / expected.highest - 1.0).abs() < 1e-6,
             "{factor}: {highest} {expected:?}"
         );
-        // Of the last step's instant, and 2 µs later.
+        // The amplitude counts from the last step's instant, and 2 µs later.
         let residual = expected.residual_displacement[0];
         assert!(
             (amplitude / residual - 1.0).abs() < 2e-3,
@@ -108,7 +108,8 @@ fn unit_the_load_is_that_of_the_plant_in_closed_form() {
     }
 }
 
-/// Motor and table of the notes' X axis on their spring, by small steps: where the table is under a force on the motor.
+/// Simulates motor and table of the notes' X axis on their spring by small steps, and returns the position of the
+/// table under a force on the motor.
 fn two_masses(force: impl Fn(f64) -> f64, end_s: f64) -> f64 {
     let (motor, table, spring, damper) = (14.274, 50.0, 33.9357e6, 1.3e4);
     let (mut x, mut step) = ([0.0f64; 4], 2e-8);
@@ -126,7 +127,7 @@ fn two_masses(force: impl Fn(f64) -> f64, end_s: f64) -> f64 {
 
 #[test]
 fn unit_a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
-    // The free vibration of the two: √(K (1/m₁ + 1/m₂)), 278.2 Hz in the notes.
+    // Free vibration of the two: √(K (1/m₁ + 1/m₂)), 278.2 Hz in the notes.
     let mode = "frequency_hz = 278.2393\ndamping = 0.334847";
     let reach = |mode: &str| {
         let mut axis = plant(TORQUE, mode, PlantOptions::default());
@@ -135,7 +136,7 @@ fn unit_a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
         axis.motion()
     };
     let found = reach(mode);
-    // The mean of the last 25 cells, of which the last ones turn.
+    // The mean is over the last 25 cells, in the last of which the command changes.
     let force = |time_s: f64| {
         let cells = (time_s / 2e-6).floor() + 1.0;
         let turned = (cells - 1000.0).clamp(0.0, 25.0);
@@ -148,7 +149,7 @@ fn unit_a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
         found.load
     );
     assert!((found.load - found.position).abs() > 1e-6);
-    // Rigid, it would be somewhere else.
+    // A rigid axis would be elsewhere.
     assert!((found.position - expected).abs() > 1e-6);
 }
 
@@ -193,7 +194,7 @@ fn unit_without_power_or_with_the_brake_nothing_moves() {
             axis.clocks(pins, 1_000_000);
             assert_eq!((axis.motion().position, axis.count()), (0.0, 0));
         }
-        // The brake stops it, and the load rings.
+        // The brake stops the axis, and the load rings.
         let mut axis = plant(drive, GX, PlantOptions::default());
         axis.clocks(full(true), 500_000);
         axis.clocks(DrivePins::default(), 100);
@@ -218,7 +219,7 @@ fn unit_an_index_is_a_count_wide() {
         assert_eq!(axis.encoder().z, axis.count() == 100);
         axis.clocks(full(true), 1);
     }
-    // A micrometre at 0.5 m/s, 2 µs.
+    // The index is a micrometre wide, which takes 2 µs at 0.5 m/s.
     assert!((99..=101).contains(&wide), "{wide}");
 }
 
@@ -262,7 +263,7 @@ fn any_pins() -> impl Strategy<Value = DrivePins> {
         a_low,
         b_high,
         b_low,
-        // Mostly on.
+        // The drive is enabled most of the time.
         drive_enable: drive || a_high,
         brake_release: brake || b_high,
     })

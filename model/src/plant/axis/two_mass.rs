@@ -1,7 +1,7 @@
-//! Motor and table on a screw, with friction that sticks: a torque drive whose machine file says so.
+//! Motor and table on a screw, with stick-slip friction, for a torque drive whose machine file asks for it.
 //!
-//! The machine is [`super::super::drive_train`]'s, with Karnopp's contact at the table. What it drives is the motor's way; the load is the
-//! table. Below the breakaway force nothing moves.
+//! The machine is that of [`super::super::drive_train`], with Karnopp's contact at the table. Its driven coordinate
+//! is the motor's displacement, and its load is the table. Below the breakaway force nothing moves.
 
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use crate::machine_file::{Drive, DriveMode};
 use crate::mechanics::{ScrewDrive, Stiction};
 use crate::mode::Mode;
 
-/// Karnopp's band, m/s: far below a count per tick.
+/// Karnopp's velocity band, m/s: far below a count per tick.
 const REST_VELOCITY: f64 = 1e-6;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ pub(super) struct TwoMass {
 }
 
 impl TwoMass {
-    /// At rest; `None` for a velocity drive, and for one without a bandwidth, which the machine file refuses.
+    /// Starts at rest; `None` for a velocity drive, and for one without a bandwidth, which the machine file refuses.
     pub(super) fn new(
         drive: &Drive,
         screw: &ScrewDrive,
@@ -83,7 +83,8 @@ impl TwoMass {
         self.plant.state().current_a
     }
 
-    /// Position of the table, and the amplitude of the free swing of table against motor that starts as they are now.
+    /// Position of the table, and the amplitude of the free vibration of table against motor that starts from the
+    /// present state.
     pub(super) fn load(&self) -> (f64, f64) {
         let state = self.plant.state();
         let apart = Vector2::new(
@@ -106,11 +107,11 @@ impl TwoMass {
         self.plant = self.plant.clone().starting(state);
     }
 
-    /// One cell: position and velocity of the motor, as ways of the table.
+    /// Simulates one cell; returns position and velocity of the motor, referred to the table.
     pub(super) fn cell(&mut self, command: &Command) -> (f64, f64) {
         let state = self.plant.state();
         if !command.enabled && state.current_a != 0.0 {
-            // The current ends at once.
+            // The current is switched off at once.
             self.put(TrainState {
                 current_a: 0.0,
                 ..state
@@ -123,7 +124,7 @@ impl TwoMass {
         };
         self.plant.hold(asked);
         if !command.released {
-            // Both stand at once.
+            // Both masses stand at once.
             self.put(TrainState {
                 speed: 0.0,
                 velocity: 0.0,

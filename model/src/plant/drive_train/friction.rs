@@ -1,17 +1,17 @@
-//! Stribeck friction: what it takes to slide, and to leave.
+//! Stribeck friction, sliding and at rest.
 
 /// Friction over velocity, eq (2-20) of the thesis on the XY stage: `[F_c + (F_s − F_c) e^{−(v/v_s)²}] sgn v + b v`.
 ///
-/// Forces in N over m/s, or torques in N·m over rad/s. All at least 0.
+/// Forces are in N over m/s, or torques in N·m over rad/s. All fields are at least 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stribeck {
-    /// Dry friction F_c while it slides fast.
+    /// Dry friction F_c at high velocity.
     pub coulomb: f64,
     /// Dry friction F_s at rest, at least `coulomb`.
     pub breakaway: f64,
-    /// Velocity v_s over which the one becomes the other; 0: at once.
+    /// Velocity v_s over which friction falls from `breakaway` to `coulomb`; 0: at once.
     pub velocity: f64,
-    /// Viscous friction b, per velocity.
+    /// Viscous friction b, per unit of velocity.
     pub viscous: f64,
 }
 
@@ -24,7 +24,7 @@ impl Stribeck {
         viscous: 0.0,
     };
 
-    /// Size of the dry part at this velocity: without its sign, and without what is viscous.
+    /// Magnitude of the dry friction at this velocity, without the viscous part.
     ///
     /// ```
     /// use posicast_model::plant::drive_train::Stribeck;
@@ -39,24 +39,24 @@ impl Stribeck {
             return self.coulomb;
         }
         let ratio = velocity / self.velocity;
-        // Over no velocity at all the excess is there at rest only.
+        // With a Stribeck velocity of 0 the excess exists at rest only.
         let left = if velocity == 0.0 { 1.0 } else { (-ratio * ratio).exp() };
         self.coulomb + excess * left
     }
 
-    /// Whether there is a dry part.
+    /// Returns whether there is dry friction.
     pub fn is_dry(&self) -> bool {
         self.coulomb != 0.0 || self.breakaway != 0.0
     }
 }
 
-/// Friction of one mass.
+/// Friction of one mass and its treatment near rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
-    /// Over velocity.
+    /// Friction as a function of velocity.
     pub stribeck: Stribeck,
-    /// The velocity near rest, at least 0: `v_0` of the smooth contact, where it must be above 0, or Karnopp's band, in which a mass whose
-    /// friction holds it stands still.
+    /// Velocity near rest, at least 0: `v_0` of the smooth contact, which must be above 0, or Karnopp's band, in
+    /// which a mass that friction holds stands still.
     pub rest_velocity: f64,
 }
 
@@ -67,7 +67,7 @@ impl Friction {
         rest_velocity: 0.0,
     };
 
-    /// Dry part of the smooth contact, with its sign.
+    /// Dry friction of the smooth contact, with its sign.
     pub(super) fn smooth(&self, velocity: f64) -> f64 {
         if self.stribeck.is_dry() {
             self.stribeck.dry(velocity) * (velocity / self.rest_velocity).tanh()
@@ -76,7 +76,7 @@ impl Friction {
         }
     }
 
-    /// Which way dry friction lets a mass slide on which this force acts: 1, −1, or 0 where it holds it.
+    /// Direction in which a mass under this force slides against dry friction: 1, −1, or 0 where friction holds it.
     pub(super) fn direction(&self, velocity: f64, applied: f64) -> f64 {
         let holds = applied.abs() <= self.stribeck.breakaway;
         if velocity == 0.0 && applied == 0.0 || velocity.abs() <= self.rest_velocity && holds {
@@ -89,11 +89,12 @@ impl Friction {
     }
 }
 
-/// What becomes of dry friction at rest.
+/// Model of dry friction at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contact {
-    /// `tanh(v/v_0)` in the place of the sign: smooth, and it creeps at rest.
+    /// `tanh(v/v_0)` in place of the sign: smooth, but the mass creeps at rest.
     Smooth,
-    /// Karnopp's: a mass within its band of rest stands still while the force on it is at most the breakaway friction.
+    /// Karnopp's model: a mass within its velocity band stands still while the force on it is at most the breakaway
+    /// friction.
     StickSlip,
 }

@@ -1,4 +1,5 @@
-//! The drive without dry friction and limits, as matrices: `s′ = A s + b u` with `s = (i, θ, ω, x, v)`.
+//! The linear part of the drive, without dry friction and limits, as matrices: `s′ = A s + b u` with
+//! `s = (i, θ, ω, x, v)`.
 
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix5, Matrix6, Vector5, Vector6};
 use std::f64::consts::TAU;
@@ -6,13 +7,13 @@ use std::f64::consts::TAU;
 use super::{Amplifier, DriveTrain, Winding};
 use crate::mode::Mode;
 
-/// Newton steps on an eigenvalue: each doubles its digits.
+/// Newton steps on an eigenvalue; each doubles its digits.
 const POLISH: usize = 3;
-/// A pole this small beside the fastest is one at 0.
+/// A pole whose magnitude relative to the fastest is below this counts as a pole at 0.
 const AT_REST: f64 = 1e-5;
 
 impl Amplifier {
-    /// Rates of the current by itself, by the motor's speed and by the command.
+    /// Rates of change of the current due to the current itself, the motor's speed and the command.
     pub(super) fn rates(&self) -> [f64; 3] {
         let of_winding = |winding: &Winding, current_gain: f64, per_command: f64, velocity_gain: f64| {
             [
@@ -37,8 +38,8 @@ impl Amplifier {
 }
 
 impl DriveTrain {
-    /// `A` and `b` of `s′ = A s + b u`, with the states current, angle, speed, position, velocity: what is left without dry friction and
-    /// limits.
+    /// `A` and `b` of `s′ = A s + b u`, with the states current, angle, speed, position, velocity, without dry
+    /// friction and limits.
     pub fn matrices(&self) -> (Matrix5<f64>, Vector5<f64>) {
         let [by_current, by_speed, by_command] = self.amplifier.rates();
         let (lead, inertia, mass) = (self.lead_per_radian, self.motor_inertia, self.load_mass);
@@ -55,13 +56,14 @@ impl DriveTrain {
         (matrix, Vector5::new(by_command, 0.0, 0.0, 0.0, 0.0))
     }
 
-    /// `A_d` and `b_d` for a command that is held for so many seconds: exact.
+    /// Exact `A_d` and `b_d` for a command that is held for this many seconds.
     pub fn held_matrices(&self, time_s: f64) -> (Matrix5<f64>, Vector5<f64>) {
         let (matrix, input) = self.matrices();
         let mut generator = Matrix6::zeros();
         generator.fixed_view_mut::<5, 5>(0, 0).copy_from(&(matrix * time_s));
         generator.fixed_view_mut::<5, 1>(0, 5).copy_from(&(input * time_s));
-        // With the motor's way in place of its angle the entries are of one size, and nothing small is lost beside them.
+        // With the motor's displacement in place of its angle all entries are of similar size, so that small ones
+        // keep their digits.
         let lead = self.lead_per_radian;
         let to_ways = Vector6::new(1.0, lead, lead, 1.0, 1.0, 1.0);
         let scaled = generator.map_with_location(|row, column, entry| entry * to_ways[row] / to_ways[column]);
@@ -74,18 +76,18 @@ impl DriveTrain {
         )
     }
 
-    /// The poles, 1/s, in no order.
+    /// The poles in 1/s, in no particular order.
     pub fn poles(&self) -> Vec<Complex<f64>> {
         let (matrix, _) = self.matrices();
         polished(DMatrix::from_column_slice(5, 5, matrix.as_slice()))
     }
 
-    /// What rings: the pairs of complex poles, lowest frequency first.
+    /// The modes, which are the pairs of complex poles, lowest frequency first.
     pub fn modes(&self) -> Vec<Mode> {
         modes_of(&self.poles())
     }
 
-    /// `A` of current and speed alone, with the table fixed to the motor: the loop that a drive is tuned by.
+    /// `A` of current and speed alone, with the table fixed to the motor: the loop for which a drive is tuned.
     pub fn rigid_matrix(&self) -> Matrix2<f64> {
         let [by_current, by_speed, _] = self.amplifier.rates();
         let lead = self.lead_per_radian;
@@ -94,21 +96,21 @@ impl DriveTrain {
         Matrix2::new(by_current, by_speed, self.torque_constant / inertia, -viscous / inertia)
     }
 
-    /// What rings with the table fixed to the motor, if anything does.
+    /// The mode with the table fixed to the motor, if there is one.
     pub fn rigid_mode(&self) -> Option<Mode> {
         let matrix = self.rigid_matrix();
         let poles = polished(DMatrix::from_column_slice(2, 2, matrix.as_slice()));
         modes_of(&poles).into_iter().next()
     }
 
-    /// Largest size of a pole, rad/s: what a step must be short beside.
+    /// Magnitude of the fastest pole, rad/s; a step must be short compared with its inverse.
     pub(super) fn fastest(&self) -> f64 {
         self.poles().iter().map(|pole| pole.norm()).fold(0.0, f64::max)
     }
 }
 
-/// Pairs of complex poles as modes, lowest frequency first. The double pole at 0 of masses that nothing holds may come out as a pair; it
-/// is no mode.
+/// Pairs of complex poles as modes, lowest frequency first. The double pole at 0 of free masses may come out as a
+/// pair, which is not a mode.
 fn modes_of(poles: &[Complex<f64>]) -> Vec<Mode> {
     let fastest = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let above = poles
@@ -124,8 +126,8 @@ fn modes_of(poles: &[Complex<f64>]) -> Vec<Mode> {
     modes
 }
 
-/// Eigenvalues, with Newton's steps on `det(sI − A)` to the precision of the matrix: its entries span ten decades, which the plain
-/// iteration pays for with four digits. The slope over the value is the trace of `(sI − A)⁻¹`.
+/// Eigenvalues, refined by Newton's steps on `det(sI − A)` to the precision of the matrix: its entries span ten
+/// decades, so the plain iteration gives only four digits. The slope over the value is the trace of `(sI − A)⁻¹`.
 fn polished(matrix: DMatrix<f64>) -> Vec<Complex<f64>> {
     let size = matrix.nrows();
     let complex = matrix.map(Complex::from);
@@ -133,7 +135,7 @@ fn polished(matrix: DMatrix<f64>) -> Vec<Complex<f64>> {
     for pole in &mut poles {
         for _ in 0..POLISH {
             let shifted = DMatrix::from_diagonal_element(size, size, *pole) - &complex;
-            // Where it cannot be inverted the pole is exact.
+            // Where the matrix cannot be inverted the pole is exact.
             let Some(inverse) = shifted.try_inverse() else { break };
             let moved = *pole - inverse.trace().inv();
             if !(moved.re.is_finite() && moved.im.is_finite()) {

@@ -1,4 +1,5 @@
-//! A drive with its screw: winding or current loop, motor and table as two masses on a damped spring, friction on both.
+//! A drive with its screw: winding or current loop, motor and table as two masses on a damped spring, and friction on
+//! both.
 //!
 //! ```text
 //! command ─► amplifier ─► i ─► K_t i ─► [ motor J, θ, ω ]──/\/\/\──[ table m, x, v ]
@@ -16,12 +17,13 @@
 //! The equations are those of the thesis on the XY stage (chapters 2 and 4). `B` acts on the *relative* velocity of motor and table: to
 //! the ground it would take 3,250 N at 0.25 m/s.
 //!
-//! **Friction** is Stribeck's, eq (2-20): `F(v) = [F_c + (F_s − F_c) e^{−(v/v_s)²}] sgn v + b v`. [`Contact::Smooth`] puts
-//! `tanh(v/v_0)` in the place of `sgn v`: it creeps under a force at rest. [`Contact::StickSlip`] is Karnopp's: a mass at rest stays there up to
-//! `F_s`.
+//! **Friction** is Stribeck's, eq (2-20): `F(v) = [F_c + (F_s − F_c) e^{−(v/v_s)²}] sgn v + b v`. [`Contact::Smooth`]
+//! replaces `sgn v` by `tanh(v/v_0)`, with which the mass creeps under a force at rest. [`Contact::StickSlip`] is
+//! Karnopp's: a mass at rest stays there up to `F_s`.
 //!
-//! **Time**: [`DriveTrainPlant`] holds a command for a period, in equal steps of at most [`DriveTrain::longest_step_s`]. A step without dry
-//! friction and within the limits is exact, by the matrix exponential; any other is one of Runge and Kutta's, of fourth order.
+//! **Time**: [`DriveTrainPlant`] holds a command for a period, in equal steps of at most
+//! [`DriveTrain::longest_step_s`]. A step without dry friction and within the limits is exact, by the matrix
+//! exponential; any other is a fourth-order Runge–Kutta step.
 //!
 //! ```
 //! use posicast_model::plant::drive_train::{Amplifier, DriveTrain, DriveTrainPlant, Winding};
@@ -47,7 +49,7 @@
 //! assert!((plant.state().speed - 1.0).abs() < 0.01);
 //! ```
 //!
-//! Not in it: cogging, backlash, the ripple of the PWM, iron losses, temperature.
+//! The model leaves out cogging, backlash, the ripple of the PWM, iron losses and temperature.
 
 mod friction;
 mod linear;
@@ -58,7 +60,7 @@ pub use plant::{DriveTrainPlant, TrainState, quantised};
 
 use crate::mode::Mode;
 
-/// What a winding does to a voltage.
+/// Electrical data of a winding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Winding {
     /// Inductance L in H, above 0.
@@ -69,7 +71,7 @@ pub struct Winding {
     pub back_emf: f64,
 }
 
-/// How the command becomes a current.
+/// The amplifier that turns the command into a current.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplifier {
     /// A current loop that is tuned to a bandwidth; the command is a current in A.
@@ -81,10 +83,10 @@ pub enum Amplifier {
     ProportionalCurrent {
         /// The winding.
         winding: Winding,
-        /// Gain K_c in V/A. The thesis's Table 2-2 has its name and that of the velocity gain exchanged.
+        /// Gain K_c in V/A. The thesis's Table 2-2 exchanges its name with that of the velocity gain.
         current_gain: f64,
     },
-    /// The same in a proportional velocity loop, eq (2-18); the command is a speed in rad/s.
+    /// A proportional current loop within a proportional velocity loop, eq (2-18); the command is a speed in rad/s.
     Velocity {
         /// The winding.
         winding: Winding,
@@ -93,7 +95,7 @@ pub enum Amplifier {
         /// Gain K_v in A·s/rad.
         velocity_gain: f64,
     },
-    /// No loop: the command, times a gain, is the voltage, eq (4-2).
+    /// No loop: the voltage is the command times a gain, eq (4-2).
     Voltage {
         /// The winding.
         winding: Winding,
@@ -102,14 +104,16 @@ pub enum Amplifier {
     },
 }
 
-/// Drive, motor, screw and table. Lengths in m, angles in rad.
+/// Drive, motor, screw and table. Lengths are in m, angles in rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveTrain {
-    /// How the command becomes a current.
+    /// The amplifier.
     pub amplifier: Amplifier,
-    /// Largest current that is asked for, A: cuts commanded currents, not those of [`Amplifier::Voltage`]. Infinite: no limit.
+    /// Largest commanded current, A; it clamps commanded currents, but does not act with [`Amplifier::Voltage`].
+    /// Infinite: no limit.
     pub current_limit_a: f64,
-    /// Largest voltage at the winding, V; without effect on [`Amplifier::TunedCurrent`], which has no winding. Infinite: no limit.
+    /// Largest voltage at the winding, V; it has no effect on [`Amplifier::TunedCurrent`], which has no winding.
+    /// Infinite: no limit.
     pub voltage_limit_v: f64,
     /// Torque constant K_t in N·m/A.
     pub torque_constant: f64,
@@ -117,22 +121,23 @@ pub struct DriveTrain {
     pub motor_inertia: f64,
     /// Moved mass m of the table in kg, above 0.
     pub load_mass: f64,
-    /// Way of the table per radian of the motor p in m/rad: the lead over 2π. Above 0.
+    /// Displacement of the table per radian of the motor p in m/rad: the lead over 2π. Above 0.
     pub lead_per_radian: f64,
-    /// Stiffness K between motor and table, as the table feels it, N/m.
+    /// Stiffness K between motor and table, at the table, N/m.
     pub stiffness: f64,
-    /// Damping B beside that spring, on the relative velocity, N·s/m.
+    /// Damping B in parallel with that spring, on the relative velocity, N·s/m.
     pub damping: f64,
     /// Friction at the motor: N·m over rad/s.
     pub motor_friction: Friction,
     /// Friction at the table: N over m/s.
     pub load_friction: Friction,
-    /// What becomes of dry friction at rest.
+    /// Model of dry friction at rest.
     pub contact: Contact,
 }
 
 impl DriveTrain {
-    /// This amplifier on unit masses, a radian per metre, without spring, limit or friction: what the other fields are set on.
+    /// This amplifier with unit masses and a radian per metre, without spring, limit or friction; the other fields
+    /// are set from there.
     pub fn rigid(amplifier: Amplifier) -> Self {
         Self {
             amplifier,
@@ -150,7 +155,7 @@ impl DriveTrain {
         }
     }
 
-    /// Mass M in kg that the motor's force feels below the mode: `m + J/p²`.
+    /// Mass M in kg that the motor's force accelerates below the mode's frequency: `m + J/p²`.
     pub fn equivalent_mass(&self) -> f64 {
         self.load_mass + self.motor_mass()
     }
@@ -170,17 +175,17 @@ impl DriveTrain {
         self.load_friction.stribeck.breakaway + self.motor_friction.stribeck.breakaway / self.lead_per_radian
     }
 
-    /// Sliding friction of both masses as a force at the table, N: `F_c + T_c/p`. What a controller feeds forward.
+    /// Sliding friction of both masses as a force at the table, N: `F_c + T_c/p`. A controller feeds this forward.
     pub fn coulomb_force(&self) -> f64 {
         self.load_friction.stribeck.coulomb + self.motor_friction.stribeck.coulomb / self.lead_per_radian
     }
 
-    /// The table on its spring while the motor is held: `ω² = K/m`, `2ζω = B/m`.
+    /// Mode of the table on its spring while the motor is held: `ω² = K/m`, `2ζω = B/m`.
     pub fn held_mode(&self) -> Mode {
         Mode::of_spring(self.stiffness, self.damping, self.load_mass)
     }
 
-    /// Motor against table, both free: the same with `m J/p² / (m + J/p²)` for the mass.
+    /// Mode of motor against table, both free: as for the held motor, with the mass `m J/p² / (m + J/p²)`.
     pub fn free_mode(&self) -> Mode {
         let reduced = self.load_mass * self.motor_mass() / self.equivalent_mass();
         Mode::of_spring(self.stiffness, self.damping, reduced)

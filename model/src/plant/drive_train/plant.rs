@@ -1,4 +1,4 @@
-//! The drive in motion: a command held for a period, in steps.
+//! Simulates the drive: a command is held for a period, which is integrated in steps.
 
 use nalgebra::{Matrix5, Vector5};
 
@@ -6,10 +6,11 @@ use super::{Amplifier, Contact, DriveTrain, Winding};
 
 /// Longest step, s.
 const STEP_S: f64 = 20e-6;
-/// Largest step times the fastest pole: a tenth of what Runge and Kutta's steps are stable at, and an error of 1e-5 of that pole's decay.
+/// Largest product of step and fastest pole: a tenth of the stability limit of Runge–Kutta steps, with an error of
+/// 1e-5 of that pole's decay.
 const POLE_STEP: f64 = 0.3;
 
-/// Where drive and masses are.
+/// State of drive and masses.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TrainState {
     /// Current i, A.
@@ -41,7 +42,8 @@ impl TrainState {
     }
 }
 
-/// What an encoder or a scale of this resolution shows of a position: the whole steps below it, in the unit of the position.
+/// Position as an encoder or a scale of this resolution shows it: rounded down to whole steps, in the unit of the
+/// position.
 ///
 /// ```
 /// use posicast_model::plant::drive_train::quantised;
@@ -54,8 +56,8 @@ pub fn quantised(position: f64, resolution: f64) -> f64 {
 }
 
 impl DriveTrain {
-    /// Longest step in s: 20 µs; with a smooth contact at most `2 v_0 m/F_s`, beyond which it rings about rest; and short beside the
-    /// fastest pole.
+    /// Longest step in s: 20 µs; with a smooth contact at most `2 v_0 m/F_s`, beyond which it oscillates about rest;
+    /// and short compared with the inverse of the fastest pole.
     pub fn longest_step_s(&self) -> f64 {
         let mut longest = STEP_S.min(POLE_STEP / self.fastest());
         if self.contact == Contact::Smooth {
@@ -73,7 +75,7 @@ impl DriveTrain {
         longest
     }
 
-    /// Current that is asked for: `None` where the command is a voltage.
+    /// Commanded current; `None` where the command is a voltage.
     fn wanted_current(&self, state: &Vector5<f64>, command: f64) -> Option<f64> {
         match self.amplifier {
             Amplifier::TunedCurrent { .. } | Amplifier::ProportionalCurrent { .. } => Some(command),
@@ -82,7 +84,7 @@ impl DriveTrain {
         }
     }
 
-    /// The winding, and the voltage that its amplifier wants for the current that is asked for.
+    /// The winding, and the voltage that its amplifier asks for at this commanded current.
     fn wanted_voltage(&self, state: &Vector5<f64>, command: f64, asked_a: f64) -> Option<(Winding, f64)> {
         match self.amplifier {
             Amplifier::TunedCurrent { .. } => None,
@@ -94,7 +96,7 @@ impl DriveTrain {
         }
     }
 
-    /// Whether a limit cuts the command in this state.
+    /// Returns whether a limit clamps the command in this state.
     fn is_limited(&self, state: &Vector5<f64>, command: f64) -> bool {
         let asked = self.wanted_current(state, command).unwrap_or(0.0);
         let voltage = self
@@ -103,7 +105,7 @@ impl DriveTrain {
         asked.abs() > self.current_limit_a || voltage.abs() > self.voltage_limit_v
     }
 
-    /// Rate of the current within the limits.
+    /// Rate of change of the current, with the limits.
     fn current_rate(&self, state: &Vector5<f64>, command: f64) -> f64 {
         let limit_a = self.current_limit_a;
         let asked = self
@@ -121,7 +123,7 @@ impl DriveTrain {
         }
     }
 
-    /// Torque on the motor and force on the table, but for dry friction.
+    /// Torque on the motor and force on the table, without dry friction.
     fn applied(&self, state: &Vector5<f64>) -> [f64; 2] {
         let [current, angle, speed, position, velocity] = (*state).into();
         let lead = self.lead_per_radian;
@@ -132,7 +134,8 @@ impl DriveTrain {
         ]
     }
 
-    /// Rates of all states. `directions`: of a stick-slip contact, which way motor and table slide, 0 where they stick.
+    /// Rates of change of all states. For a stick-slip contact, `directions` are those in which motor and table
+    /// slide; 0 where they stick.
     fn rates(&self, state: &Vector5<f64>, command: f64, directions: Option<[f64; 2]>) -> Vector5<f64> {
         let [torque, force] = self.applied(state);
         let [motor, load] = match directions {
@@ -154,7 +157,7 @@ impl DriveTrain {
         )
     }
 
-    /// A step of fourth order by Runge and Kutta.
+    /// A fourth-order Runge–Kutta step.
     fn step(&self, state: &Vector5<f64>, command: f64, step_s: f64, directions: Option<[f64; 2]>) -> Vector5<f64> {
         let first = self.rates(state, command, directions);
         let second = self.rates(&(state + first * (step_s / 2.0)), command, directions);
@@ -163,7 +166,8 @@ impl DriveTrain {
         state + (first + (second + third) * 2.0 + fourth) * (step_s / 6.0)
     }
 
-    /// The same with a stick-slip contact: a mass that friction holds stands still, one that would turn round in the step ends it at rest.
+    /// A step with a stick-slip contact: a mass that friction holds stands still, and one whose velocity would change
+    /// its sign in the step ends it at rest.
     fn stick_slip(&self, state: &Vector5<f64>, command: f64, step_s: f64) -> Vector5<f64> {
         let frictions = [self.motor_friction, self.load_friction];
         let (mut from, applied) = (*state, self.applied(state));
@@ -184,19 +188,19 @@ impl DriveTrain {
     }
 }
 
-/// A drive in motion. Commands are held for one period each.
+/// A simulated drive. Each command is held for one period.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveTrainPlant {
     train: DriveTrain,
     state: Vector5<f64>,
     steps: u32,
     step_s: f64,
-    /// The exact step, where there is no dry friction.
+    /// Matrices of the exact step, where there is no dry friction.
     exact: Option<(Matrix5<f64>, Vector5<f64>)>,
 }
 
 impl DriveTrainPlant {
-    /// At rest at 0, with commands that are held for so many seconds, above 0 and finite.
+    /// Starts at rest at 0. Commands are held for this many seconds, which must be above 0 and finite.
     pub fn new(train: DriveTrain, period_s: f64) -> Self {
         let steps = (period_s / train.longest_step_s() * (1.0 - 1e-9)).ceil().max(1.0) as u32;
         let step_s = period_s / f64::from(steps);
@@ -210,7 +214,7 @@ impl DriveTrainPlant {
         }
     }
 
-    /// The same in another state.
+    /// Starts in another state.
     pub fn starting(self, state: TrainState) -> Self {
         Self {
             state: state.vector(),
@@ -218,12 +222,12 @@ impl DriveTrainPlant {
         }
     }
 
-    /// The drive.
+    /// The drive's data.
     pub fn train(&self) -> &DriveTrain {
         &self.train
     }
 
-    /// Where it is.
+    /// The present state.
     pub fn state(&self) -> TrainState {
         TrainState::of_vector(&self.state)
     }
@@ -233,7 +237,7 @@ impl DriveTrainPlant {
         self.step_s
     }
 
-    /// Holds a command for one period: A, rad/s or V, by the amplifier.
+    /// Holds a command, in A, rad/s or V by the amplifier, for one period.
     pub fn hold(&mut self, command: f64) {
         for _ in 0..self.steps {
             self.state = self.stepped(command);

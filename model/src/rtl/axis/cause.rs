@@ -1,49 +1,50 @@
-//! What can go wrong, and what follows: the cause word, one bit each.
+//! The causes of a fault, as bits of the cause word, and their consequences.
 
-/// A cause: the number of its bit in `causes` and `off_causes`.
+/// A cause; its number is that of its bit in `causes` and `off_causes`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// The emergency stop's line is low, or that of another axis.
+    /// The emergency stop line of this axis, or of another one, is low.
     EmergencyStop = 0,
-    /// The PWM has tripped; after a reset it always has.
+    /// The PWM has tripped; after a reset it always is tripped.
     PwmTripped = 1,
-    /// The drive is no longer ready while on.
+    /// The drive is no longer ready while the outputs are on.
     DriveLost = 2,
-    /// On the limit switch + and moving towards it.
+    /// The axis is on limit switch + and moves towards it.
     LimitPlus = 3,
-    /// On the limit switch − and moving towards it.
+    /// The axis is on limit switch − and moves towards it.
     LimitMinus = 4,
-    /// The shaped position passed the soft limit +, or moves on behind it.
+    /// The shaped position passed soft limit +, or moves on beyond it.
     SoftLimitPlus = 5,
-    /// The same for the soft limit −.
+    /// The shaped position passed soft limit −, or moves on beyond it.
     SoftLimitMinus = 6,
-    /// |e| above its limit.
+    /// |e| exceeds its limit.
     FollowingError = 7,
-    /// Motor and scale apart by more than their limit.
+    /// Motor and scale differ by more than their limit.
     Deviation = 8,
-    /// The controller's command was cut for too many ticks in a row.
+    /// The controller's command was clamped for too many consecutive ticks.
     Saturation = 9,
-    /// A command above its threshold, and for too many ticks no motion, or one against it where the direction is watched.
+    /// The command exceeds its threshold, and for too many ticks there was no motion, or motion against the command
+    /// where the direction is checked.
     EncoderLost = 10,
-    /// An illegal transition, or a pair that disagrees, of motor encoder or scale.
+    /// An illegal transition, or two lines of a pair that disagree, at the motor encoder or the scale.
     EncoderError = 11,
-    /// The segments stopped by themselves: underrun or overflow.
+    /// The segments stopped by themselves because of an underrun or overflow.
     Segments = 12,
-    /// The host did not kick in time.
+    /// The host did not kick the watchdog in time.
     Watchdog = 13,
-    /// Another axis wants all to stop.
+    /// Another axis wants all axes to stop.
     GroupStop = 14,
-    /// A tick was missed, or a pass was not over in time.
+    /// A tick was missed, or a computation was not finished in time.
     Schedule = 15,
     /// A position left the range of its word: the count, the shaped command, or e.
     Range = 16,
 }
 
-/// Bits of the cause word. Those above the 16 of `off_causes` leave no choice: they always switch off.
+/// Width of the cause word. Causes above the 16 bits of `off_causes` always switch the outputs off.
 pub const CAUSE_BITS: u32 = 17;
 
 impl Cause {
-    /// All, in the order of their bits.
+    /// All causes, in the order of their bits.
     pub const ALL: [Self; CAUSE_BITS as usize] = [
         Self::EmergencyStop,
         Self::PwmTripped,
@@ -64,7 +65,7 @@ impl Cause {
         Self::Range,
     ];
 
-    /// Its name, as the machine file has it.
+    /// Name of the cause in the machine file.
     pub const fn name(self) -> &'static str {
         match self {
             Self::EmergencyStop => "emergency-stop",
@@ -87,7 +88,7 @@ impl Cause {
         }
     }
 
-    /// Its bit.
+    /// Bit of the cause in the cause word.
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
@@ -96,14 +97,14 @@ impl Cause {
 /// Causes that always switch off, whatever `off_causes` says.
 pub const ALWAYS_OFF: u32 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::Range.bit();
 
-/// Causes that act in the clock in which they become active; all others act when they stand, a clock later.
+/// Causes that act in the clock in which they become active; all others act one clock later, when their bit is set.
 pub const AT_ONCE: u32 =
     Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::DriveLost.bit() | Cause::Range.bit();
 
-/// Causes after which an axis is in order: it only waits, in HOLD, for the others.
+/// Causes that are not this axis's own fault: it waits in HOLD.
 pub const HARMLESS: u32 = Cause::GroupStop.bit();
 
-/// Causes after which the position may be another one: the axis is no longer homed.
+/// Causes that put the position in doubt, so that the axis is no longer homed.
 pub const DOUBTFUL: u32 = Cause::EncoderLost.bit() | Cause::EncoderError.bit();
 
 /// Those of `causes` that switch the outputs off at once.

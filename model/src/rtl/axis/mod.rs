@@ -1,17 +1,19 @@
-//! The supervisor of an axis: when its outputs are on, what its command does, and what happens when something goes wrong.
+//! The supervisor of an axis decides when its outputs are on, what its command does, and what happens when something
+//! goes wrong.
 //!
-//! The datasheet is `docs/axis.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/axis.md`; the hardware is compared with this reference model.
 //!
 //! | part | what it does |
 //! |---|---|
 //! | [`TRANSITIONS`], [`next`] | the states, as data |
-//! | [`Cause`], [`switching_off`] | what can go wrong, and which of it switches off |
-//! | `monitors` | limits, soft limits, following error and the rest of what is watched at ticks |
-//! | `timer` | how long brake and shaper take |
+//! | [`Cause`], [`switching_off`] | the causes of a fault, and which of them switch off |
+//! | `monitors` | checks at ticks: limits, soft limits, following error and others |
+//! | `timer` | the times of brake and shaper |
 //! | `registers` | lines, sticky causes, the state and brake, clock by clock |
 //! | [`Axis`] | the ports |
 //!
-//! [`Axis::step`] is one clock; [`Axis::hold`] is many with the same inputs, and skips those that change nothing.
+//! [`Axis::step`] simulates one clock; [`Axis::hold`] simulates many with the same inputs, and skips those that
+//! change nothing.
 //!
 //! ```
 //! use posicast_model::rtl::axis::{Axis, Inputs, SupervisorState};
@@ -43,7 +45,7 @@ pub use transition::{Condition, Conditions, SupervisorState, TRANSITIONS, Transi
 use self::registers::Registers;
 use super::{FOREVER, Moore, clocked_block};
 
-/// The supervisor, cycle accurate at its ports.
+/// The cycle-accurate model of the supervisor.
 #[derive(Debug, Clone)]
 pub struct Axis {
     registers: Registers,
@@ -63,7 +65,7 @@ impl Axis {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         let registers = &self.registers;
         let pulses = registers.pulses;
@@ -103,7 +105,7 @@ impl Axis {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();
@@ -111,7 +113,8 @@ impl Axis {
         outputs
     }
 
-    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    /// Simulates this many clocks with the same inputs. It ends early once a clock changes nothing, since no later
+    /// one would.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
         for _ in 0..clocks {
             let before = self.registers.clone();
@@ -132,7 +135,7 @@ impl Moore for Axis {
         }
     }
 
-    /// Tries a clock: one that changes nothing is followed by others like it.
+    /// Tries one clock: if it changes nothing, the following ones do not either.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
@@ -145,7 +148,7 @@ impl Moore for Axis {
         if next == self.registers { FOREVER } else { 0 }
     }
 
-    /// What is watched at ticks only, and the word of a kick.
+    /// Inputs that are read only at ticks, and the word of a kick.
     fn ignores(&self, input: &str) -> bool {
         matches!(
             input,

@@ -1,35 +1,35 @@
-//! What is watched at ticks: limits, soft limits, errors against their limits, and what has lasted too long.
+//! The checks at ticks: limits, soft limits, errors against their limits, and time limits.
 //!
-//! At the tick levels are taken as they are ([`Shown`]). Numbers follow byte by byte ([`Taken`]) and are compared in two rounds,
-//! so that a limit that is written meanwhile, half old and half new, is no cause: what both have found is. The causes are
-//! there [`WATCH_CLOCKS`](super::WATCH_CLOCKS) after the tick, with the state's.
+//! Levels are taken as they are at the tick ([`Shown`]). Numbers follow byte by byte ([`Taken`]) and are compared in
+//! two rounds; a cause is what both rounds have found, so that a limit that is written meanwhile, half old and half
+//! new, causes nothing. The causes act on the state [`WATCH_CLOCKS`](super::WATCH_CLOCKS) after the tick.
 
 use super::cause::Cause;
 use super::ports::Inputs;
 
-/// Clocks after the tick in which a round is over: what it has found is known.
+/// Clocks after the tick in which a round is over and its result known.
 const FIRST_ROUND: u8 = 5;
 const SECOND_ROUND: u8 = 10;
-/// A motion of fewer counts is none: −4 to 3.
+/// A change of fewer counts is no motion: −4 to 3.
 pub(super) const STILL_COUNTS: i32 = 4;
 
-/// What a tick shows.
+/// Levels at a tick.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Shown {
-    /// The outputs are on.
+    /// Whether the outputs are on.
     on: bool,
-    /// The command's velocity is positive; negative.
+    /// Whether the command's velocity is positive, and whether it is negative.
     ways: [bool; 2],
-    /// The shaped velocity is.
+    /// Whether the shaped velocity is positive, and whether it is negative.
     shaped_ways: [bool; 2],
-    /// On limit +, limit −.
+    /// Whether limit switch + and limit switch − are active.
     on_limits: [bool; 2],
-    /// e, deviation and command are negative.
+    /// Whether e, deviation and command are negative.
     negative: [bool; 3],
 }
 
 impl Shown {
-    /// `on_limits` are the filtered switches.
+    /// Takes the levels; `on_limits` are the filtered switches.
     fn new(inputs: &Inputs, on_limits: [bool; 2], on: bool) -> Self {
         let ways = |velocity: i32| [velocity > 0, velocity < 0];
         Self {
@@ -42,23 +42,23 @@ impl Shown {
     }
 }
 
-/// Numbers and limits of a round, a byte of each in a clock; of those of 16 bits a nibble.
+/// Numbers and limits of a round, of which a byte each is taken per clock; of those of 16 bits a nibble.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Taken {
     reference_position: u32,
     soft_limits: [u32; 2],
-    /// e, deviation and command.
+    /// The numbers e, deviation and command.
     numbers: [u32; 3],
     /// Their limits.
     limits: [u32; 3],
     limited_ticks: u16,
-    /// Of saturation, a lost encoder and the watchdog.
+    /// Time limits of saturation, of a lost encoder and of the watchdog.
     most_ticks: [u16; 3],
 }
 
 impl Taken {
-    /// One clock: byte `part`, the lowest is 0. A linear scale computes its next deviation from the tick on, so that of
-    /// the tick is kept.
+    /// Simulates one clock, in which byte `part` is taken; the lowest is 0. A linear scale computes its next
+    /// deviation from the tick on, so the deviation of the tick is passed.
     fn take(&mut self, inputs: &Inputs, deviation: i32, part: u8) {
         let mask = 0xff << (8 * part);
         let byte = |taken: &mut u32, word: u32| *taken = *taken & !mask | word & mask;
@@ -93,35 +93,36 @@ impl Taken {
     }
 }
 
-/// Registers of what is watched, all quiet soon after a tick.
+/// Registers of the checks, which are all quiet soon after a tick.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Monitors {
     /// The position at the last tick.
     pub(super) captured_position: i32,
-    /// Causes that a tick has found.
+    /// Causes that the last tick's checks have found.
     pub(super) found: u32,
     /// Clocks since the tick; 0 once the second round is over.
     clocks: u8,
     shown: Shown,
-    /// Of the tick.
+    /// Deviation at the tick.
     deviation: i32,
     taken: Taken,
     /// Causes that the first round has found.
     first_found: u32,
-    /// Limit +, limit −, soft limit +, soft limit − were passed at the last tick.
+    /// Whether limit +, limit −, soft limit +, soft limit − were passed at the last tick.
     were_passed: [bool; 4],
-    /// Ticks in a row with a command to one side and without a motion of more than [`STILL_COUNTS`].
+    /// Consecutive ticks with a command in one direction and without a motion of more than [`STILL_COUNTS`].
     still_ticks: u16,
-    /// The command's sign of the last tick that was not one of them, and the position of it or, if later, of the last motion.
+    /// Position at the last tick that was not one of them or, if later, at the last motion; and sign of the command
+    /// then.
     still_since: (i32, bool),
     /// Ticks since the last kick.
     unkicked_ticks: u16,
-    /// A kick during a comparison.
+    /// Whether a kick came during a comparison.
     kick_waits: bool,
 }
 
 impl Monitors {
-    /// Limit +, limit −, soft limit +, soft limit − are passed. `waits`: there are no soft limits yet.
+    /// Whether limit +, limit −, soft limit +, soft limit − are passed. `waits`: the soft limits do not act yet.
     fn passed(&self, waits: bool) -> [bool; 4] {
         let [plus, minus] = self.taken.soft_limits.map(|limit| limit as i32);
         let reference = self.taken.reference_position as i32;
@@ -135,22 +136,22 @@ impl Monitors {
         ]
     }
 
-    /// e, deviation, command: is its size above its limit?
+    /// Whether the magnitude of e, deviation or command (by index) exceeds its limit.
     fn exceeds(&self, at: usize) -> bool {
         let word = self.taken.numbers[at];
         let size = if self.shown.negative[at] { !word } else { word };
         size > self.taken.limits[at]
     }
 
-    /// A motion since the position was last seen to move: backward, forward. A line that is stuck lets the count dither by
-    /// one: that is none.
+    /// Whether the axis has moved backward, and forward, since the position was last seen to move. The count of a
+    /// stuck line may dither by one, which does not count as motion.
     fn motion(&self) -> [bool; 2] {
         let motion = self.captured_position.wrapping_sub(self.still_since.0);
         [motion < -STILL_COUNTS, motion >= STILL_COUNTS]
     }
 
-    /// A command above its threshold, to the same side as when the position was last seen to move, and no motion since
-    /// then. With `watches_direction` a motion against the command is as none.
+    /// Whether the command exceeds its threshold, in the same direction as when the position was last seen to move,
+    /// and there was no motion since then. With `watches_direction` a motion against the command does not count.
     fn stands(&self, watches_direction: bool) -> bool {
         let negative = self.still_since.1;
         let [backward, forward] = self.motion();
@@ -164,7 +165,7 @@ impl Monitors {
         let shown = &self.shown;
         let newly = |at: usize| !self.were_passed[at];
         let ([plus, minus], [shaped_plus, shaped_minus]) = (shown.ways, shown.shaped_ways);
-        // A switch bounces while the axis leaves it; a shaped position does not.
+        // A switch bounces while the axis leaves it; a shaped position does not bounce.
         let [limit_plus, limit_minus, soft_plus, soft_minus] = [
             plus || (newly(0) && shaped_plus),
             minus || (newly(1) && shaped_minus),
@@ -189,7 +190,7 @@ impl Monitors {
         bits.into_iter().fold(0, |all, bit| all | bit)
     }
 
-    /// One clock.
+    /// Simulates one clock.
     pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], waits: bool, on: bool, kicked: bool) {
         let clocks = self.clocks;
         self.found = 0;
@@ -210,13 +211,14 @@ impl Monitors {
             if !stands {
                 self.still_ticks = 0;
             }
-            // A motion against the command counts as none, but the position follows it: an axis that a torque has slowed down
-            // and turned round moves the command's way from there on, however far it is from where it began to slow down.
+            // A motion against the command does not count as motion, but the reference position follows it: an axis
+            // that a torque has slowed down and reversed then moves with the command, however far it is from where it
+            // began to slow down.
             if !stands || self.motion().contains(&true) {
                 self.still_since = (self.captured_position, self.shown.negative[2]);
             }
         }
-        // While counts are compared, a kick waits.
+        // A kick waits while counts are compared.
         let compares = matches!(clocks, 1..=4 | 6..=9);
         let kicked = kicked || self.kick_waits;
         self.kick_waits = kicked && compares;
@@ -242,7 +244,7 @@ impl Monitors {
     }
 }
 
-/// Has it lasted too long? 0: not watched.
+/// Whether a time limit is exceeded; 0 disables the check.
 fn lasts(ticks: u16, limit: u16) -> bool {
     limit != 0 && ticks >= limit
 }

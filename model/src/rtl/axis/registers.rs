@@ -1,4 +1,4 @@
-//! What the supervisor knows, and what a clock makes of it.
+//! The registers of the supervisor, and their update in a clock.
 
 use super::cause::{AT_ONCE, Cause, DOUBTFUL, HARMLESS, switching_off};
 use super::clocks::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
@@ -10,7 +10,7 @@ use crate::rtl::pulse_counter::GlitchFilter;
 use crate::rtl::segments::{self, STAND_COUNTS};
 use crate::rtl::sliding_mode::Saturation;
 
-/// A line: synchroniser, then filter.
+/// A line with its synchroniser and filter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Line {
     synchroniser: [bool; 2],
@@ -24,7 +24,7 @@ impl Line {
     }
 }
 
-/// Pulses, and what follows a clock after its reason.
+/// Output pulses, which come a clock after their reason.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Pulses {
     pub(super) quick_stop: bool,
@@ -40,30 +40,30 @@ pub(super) struct Pulses {
     pub(super) refused: bool,
 }
 
-/// Everything that is a register.
+/// All registers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Registers {
-    /// Emergency stop, limit +, limit −, drive ready, home.
+    /// Lines of emergency stop, limit +, limit −, drive ready and home.
     lines: [Line; 5],
     /// Clocks since the reset, at most [`PRIMING_CLOCKS`].
     primed: u8,
     pub(super) monitors: Monitors,
     pub(super) state: SupervisorState,
     pub(super) causes: u32,
-    /// A position left the range of its word, as of the clock before.
+    /// Whether a position left the range of its word, as of the clock before.
     out_of_range: bool,
-    /// Causes were forgotten in the clock before.
+    /// Whether causes were forgotten in the clock before.
     forgot: bool,
-    /// A cause that stands switches off, by `off_causes` of the clock before.
+    /// Whether a cause that is set switches off, by `off_causes` of the clock before.
     cuts: bool,
     timer: Timer,
-    /// In HOLD after READY: the timer is that of the brake's release.
+    /// In HOLD after READY: the timer counts the brake's release.
     opening: bool,
-    /// In HOLD and FAULT: the brake is applied and the outputs are still on.
+    /// In HOLD and FAULT: the brake is applied while the outputs are still on.
     closing: bool,
     pub(super) on: bool,
     pub(super) released: bool,
-    /// The shaper's start is kept until the first sample.
+    /// Whether the shaper's start is still high, until the first sample.
     pub(super) starting: bool,
     start_waits: bool,
     /// Clocks until causes are forgotten.
@@ -99,10 +99,10 @@ impl Default for Registers {
     }
 }
 
-/// What a clock is about, from inputs and registers.
+/// Causes and conditions of a clock, from inputs and registers.
 struct Now {
     causes: u32,
-    /// Those that act in this clock.
+    /// Causes that act in this clock.
     seen: u32,
     forgets: bool,
     cut: bool,
@@ -110,15 +110,15 @@ struct Now {
     wants_start: bool,
     able: bool,
     stopped: bool,
-    /// A tick with the timer over.
+    /// Whether this is a tick at which the timer is over.
     timed_out: bool,
-    /// `enable` is low in HOLD, and nothing has to be waited for: the brake is applied.
+    /// Whether the brake is applied: `enable` is low in HOLD, and nothing else must be waited for.
     closes: bool,
     conditions: Conditions,
 }
 
-/// Is a number at the end of its word: the count of the last tick, of an axis that is not modulo, the shaped command, or e? What it means is
-/// wrong from there on, so the outputs must not be on.
+/// Whether a number is at the end of its word: the count of the last tick on an axis that is not modulo, the shaped
+/// command, or e. Its meaning is wrong from there on, so the outputs must not be on.
 fn leaves_range(inputs: &Inputs, position: i32) -> bool {
     let far = !(-STAND_COUNTS..STAND_COUNTS).contains(&position);
     let error = (inputs.saturated_high | inputs.saturated_low) & Saturation::Error.bit() != 0;
@@ -154,7 +154,7 @@ impl Registers {
         }
         let now = self.look(inputs);
         let (was_on, waits) = (self.on, inputs.limits_after_homing && !self.homed);
-        // What stands in the clock before: a write has no effect until it is forgotten.
+        // `homed` is that of the clock before: a write has no effect until causes are forgotten.
         let is_homed = if inputs.write_homed {
             inputs.homed_value
         } else {
@@ -175,7 +175,7 @@ impl Registers {
         let kicked = inputs.kick && inputs.kick_word == KICK;
         let on_limits = self.on_limits();
         self.monitors.clock(inputs, on_limits, waits, was_on, kicked);
-        // Nothing to filter: a level is its line.
+        // Without a filter a level equals its line.
         let filters = self.ready() && inputs.filter_clocks != 0;
         let pins = [
             inputs.emergency_stop_n,
@@ -194,7 +194,7 @@ impl Registers {
         };
     }
 
-    /// The causes of this clock, those that the monitors have found among them.
+    /// The causes of this clock, including those that the monitors have found.
     fn active(&self, inputs: &Inputs, group_stop: bool) -> u32 {
         let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
         let scale = inputs.scale_illegal || inputs.scale_disagreement;
@@ -218,10 +218,10 @@ impl Registers {
         bits.into_iter().fold(self.monitors.found, |all, bit| all | bit)
     }
 
-    /// Causes and conditions of this clock.
+    /// Evaluates causes and conditions of this clock.
     fn look(&self, inputs: &Inputs) -> Now {
         let group_stop = inputs.group_stop && !self.wants_group_stop();
-        // Not what has still to act.
+        // Causes that must still act are not forgotten.
         let may_forget = match self.state {
             SupervisorState::Off => true,
             SupervisorState::Ready | SupervisorState::Hold | SupervisorState::Run => self.causes & !HARMLESS == 0,
@@ -292,14 +292,15 @@ impl Registers {
         }
     }
 
-    /// The timer begins with a state, and counts ticks; in QUICK_STOP those after the segments' stop.
+    /// Runs the timer. It begins with a state and counts ticks; in QUICK_STOP it counts those after the segments'
+    /// stop.
     fn run_timer(&mut self, inputs: &Inputs, now: &Now, after: SupervisorState) {
         use SupervisorState::{Fault, Hold, QuickStop, Ready, Run};
         let before = self.state;
         let counts = inputs.tick && (before != QuickStop || now.stopped);
         let begins = match (before, after) {
             (Ready, Hold) => Some(Begins::Release),
-            // In RUN in every clock: whatever ends it finds the timer loaded.
+            // In RUN it is loaded in every clock, so that it is ready whatever ends the state.
             (Run, _) | (Hold, QuickStop) => Some(Begins::Settle),
             (QuickStop, Fault) => Some(Begins::Apply),
             (Hold, Hold) if now.closes => Some(Begins::Apply),
@@ -308,7 +309,7 @@ impl Registers {
         self.timer.clock(inputs, counts, begins);
     }
 
-    /// Outputs and brake.
+    /// Updates outputs and brake.
     fn switch(&mut self, now: &Now, after: SupervisorState) {
         use SupervisorState::{Fault, Hold, QuickStop, Ready};
         let before = self.state;
@@ -327,12 +328,12 @@ impl Registers {
 mod tests {
     use super::*;
 
-    /// Bit `at` of a case.
+    /// Returns bit `at` of a case.
     fn is(case: u32, at: u32) -> bool {
         case >> at & 1 != 0
     }
 
-    /// Registers and inputs of a case, and the conditions that they mean.
+    /// Registers and inputs of a case, and the conditions that they should give.
     fn situation(state: SupervisorState, case: u32) -> (Registers, Inputs, Conditions) {
         let drive_ready = is(case, 0);
         let (cut, quick, group) = (is(case, 1), is(case, 2), is(case, 3));
@@ -361,13 +362,13 @@ mod tests {
             start: is(case, 14),
             segments_empty: is(case, 15),
             segments_state,
-            // A line, so that it is not forgotten while it is active.
+            // This cause is a line, so that it is not forgotten while it is active.
             pwm_tripped: cut,
             group_stop: group,
             drive_ready,
             ..Inputs::default()
         };
-        // Whose own stop it is does not see it.
+        // An axis does not see the group stop that it causes itself.
         let wants = state == SupervisorState::Fault || (state == SupervisorState::QuickStop && quick);
         let seen_group = group && !wants;
         let any = cut || quick || (on && seen_group);
@@ -401,7 +402,7 @@ mod tests {
         for state in SupervisorState::ALL {
             for case in 0..1 << 16 {
                 let (mut registers, mut inputs, conditions) = situation(state, case);
-                // Drive lost is a cause of its own: here it is one that does not switch off.
+                // A lost drive is a cause of its own; here it is one that does not switch off.
                 let lost = registers.on && !is(case, 0);
                 let conditions = conditions.with(Condition::Fault, lost).with(Condition::Cause, lost);
                 inputs.off_causes = 0;

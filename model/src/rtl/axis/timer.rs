@@ -1,8 +1,8 @@
-//! The timer of brake and shaper, in ticks.
+//! The timer of brake and shaper, which counts ticks.
 
 use super::ports::Inputs;
 
-/// What begins, and how long it lasts.
+/// Event that starts the timer, with the time that it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Begins {
     /// The brake is released: `brake_release_ticks`.
@@ -13,18 +13,19 @@ pub(super) enum Begins {
     Apply,
 }
 
-/// Loaded a clock after what begins, and over two clocks after that at the earliest: both are between two ticks.
+/// A timer that is loaded a clock after its event and over two clocks after that at the earliest; both come between
+/// two ticks.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Timer {
     left: u16,
-    /// No tick was left a clock ago.
+    /// Whether no tick was left one clock ago.
     over: bool,
-    /// What began a clock ago.
+    /// Event of the clock before, which loads the timer.
     loads: Option<Begins>,
 }
 
 impl Timer {
-    /// With so many ticks left, and nothing that begins.
+    /// A timer with this many ticks left and no event.
     #[cfg(test)]
     pub(super) fn left(left: u16) -> Self {
         Self {
@@ -34,12 +35,12 @@ impl Timer {
         }
     }
 
-    /// Is it over?
+    /// Returns whether the time is over.
     pub(super) fn elapsed(&self) -> bool {
         self.over && self.loads.is_none()
     }
 
-    /// One clock: `counts` a tick, and what begins in it.
+    /// Simulates one clock: `counts` says that a tick counts, and `begins` is the event of this clock.
     pub(super) fn clock(&mut self, inputs: &Inputs, counts: bool, begins: Option<Begins>) {
         self.over = self.left == 0 && self.loads.is_none();
         self.left = match self.loads {

@@ -1,12 +1,12 @@
-//! The transition table, as data: what the clocked model follows, what the datasheet prints, what lock step watches.
+//! The transition table as data: the clocked model follows it, the datasheet prints it, and lock step observes it.
 
-/// What the axis is doing: the value of the port `state`.
+/// State of the axis: the value of the port `state`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum SupervisorState {
     /// Outputs off, not ready.
     #[default]
     Off = 0,
-    /// Outputs off, all in order: waits for `enable`.
+    /// Outputs off, everything in order: waits for `enable`.
     Ready = 1,
     /// Outputs on, the command stands still.
     Hold = 2,
@@ -14,12 +14,12 @@ pub enum SupervisorState {
     Run = 3,
     /// Outputs on, the command slows down through the shaper.
     QuickStop = 4,
-    /// Outputs off, at the latest after the brake has closed; until `clear_faults`.
+    /// Outputs off at the latest after the brake has closed; stays until `clear_faults`.
     Fault = 5,
 }
 
 impl SupervisorState {
-    /// All, in the order of their values.
+    /// All states, in the order of their values.
     pub const ALL: [Self; 6] = [
         Self::Off,
         Self::Ready,
@@ -29,12 +29,12 @@ impl SupervisorState {
         Self::Fault,
     ];
 
-    /// From the port's value; none for 6 and above.
+    /// The state with this port value; `None` for 6 and above.
     pub fn from_value(value: u64) -> Option<Self> {
         Self::ALL.into_iter().find(|state| *state as u64 == value)
     }
 
-    /// Its name in the datasheet.
+    /// Name in the datasheet.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Off => "OFF",
@@ -46,11 +46,11 @@ impl SupervisorState {
         }
     }
 
-    /// What it means for the outputs and the command, in words of the register map.
+    /// Meaning for the outputs and the command, in the words of the register map.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Off => "outputs off",
-            Self::Ready => "outputs off, nothing wrong",
+            Self::Ready => "outputs off, no fault",
             Self::Hold => "outputs on, the command stands",
             Self::Run => "segments play",
             Self::QuickStop => "slowing down",
@@ -59,30 +59,30 @@ impl SupervisorState {
     }
 }
 
-/// What a transition can depend on. Causes count in the clock in which they become active.
+/// Condition on which a transition can depend. Causes count in the clock in which they become active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Condition {
-    /// A cause that switches off.
+    /// There is a cause that switches off.
     Cut = 0,
-    /// A cause other than the group stop.
+    /// There is a cause other than the group stop.
     Fault = 1,
-    /// Any cause.
+    /// There is a cause.
     Cause = 2,
     /// The drive is ready, and the lines are known.
     DriveReady = 3,
-    /// `enable`.
+    /// `enable` is high.
     Enable = 4,
-    /// `tick`.
+    /// `tick` is high.
     Tick = 5,
-    /// Another axis wants all to stop.
+    /// Another axis wants all axes to stop.
     GroupStop = 6,
-    /// `stop`.
+    /// `stop` is high.
     Stop = 7,
-    /// A `start` since the last tick, and nothing against it: brake open, segments in hold.
+    /// A `start` came since the last tick and nothing prevents it: the brake is open and the segments hold.
     Start = 8,
-    /// Segments in hold, and none waits.
+    /// The segments hold, and no entry waits.
     Done = 9,
-    /// Segments stopped.
+    /// The segments have stopped.
     Stopped = 10,
     /// The timer is over.
     Elapsed = 11,
@@ -93,7 +93,7 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// All, in the order of their bits.
+    /// All conditions, in the order of their bits.
     pub const ALL: [Self; 14] = [
         Self::Cut,
         Self::Fault,
@@ -111,7 +111,7 @@ impl Condition {
         Self::Cleared,
     ];
 
-    /// Its name, in small letters with underscores.
+    /// Name in small letters with underscores.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cut => "cut",
@@ -141,28 +141,28 @@ impl Condition {
 pub struct Conditions(u16);
 
 impl Conditions {
-    /// The same, and `condition` if `holds`.
+    /// Returns the conditions with `condition` added if `holds`.
     #[must_use]
     #[inline]
     pub const fn with(self, condition: Condition, holds: bool) -> Self {
         Self(self.0 | if holds { condition.bit() } else { 0 })
     }
 
-    /// Does it hold?
+    /// Returns whether a condition holds.
     #[inline]
     pub const fn has(self, condition: Condition) -> bool {
         self.0 & condition.bit() != 0
     }
 }
 
-/// A row: from a state to another, if all of `needs` and none of `forbids` hold.
+/// A transition from one state to another, taken if all of `needs` and none of `forbids` hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
-    /// Where it begins.
+    /// State before.
     pub from: SupervisorState,
-    /// Where it leads.
+    /// State after.
     pub to: SupervisorState,
-    /// In words, as in the datasheet.
+    /// Reason in words, as in the datasheet.
     pub why: &'static str,
     needs: u16,
     forbids: u16,
@@ -185,12 +185,12 @@ impl Transition {
         }
     }
 
-    /// Is it only taken while `condition` holds?
+    /// Returns whether the transition needs `condition`.
     pub const fn needs(&self, condition: Condition) -> bool {
         self.needs & condition.bit() != 0
     }
 
-    /// Is it only taken while `condition` does not hold?
+    /// Returns whether `condition` forbids the transition.
     pub const fn forbids(&self, condition: Condition) -> bool {
         self.forbids & condition.bit() != 0
     }
@@ -211,7 +211,7 @@ const fn bits(conditions: &[Condition]) -> u16 {
     bits
 }
 
-/// All transitions. Of the rows of a state, the first that applies is taken; if none does, the state stays.
+/// All transitions. Of those of a state, the first that applies is taken; if none does, the state stays.
 pub const TRANSITIONS: [Transition; 19] = {
     use Condition as C;
     use SupervisorState::{Fault, Hold, Off, QuickStop, Ready, Run};
@@ -303,7 +303,7 @@ pub fn next(state: SupervisorState, conditions: Conditions) -> SupervisorState {
 mod tests {
     use super::*;
 
-    /// The same in other words: branches instead of rows.
+    /// The same transitions, written as branches.
     fn in_branches(state: SupervisorState, conditions: Conditions) -> SupervisorState {
         use Condition as C;
         let is = |condition| conditions.has(condition);

@@ -1,4 +1,4 @@
-//! The cascade at its ports, clock by clock.
+//! The cascade, simulated clock by clock at its ports.
 
 use super::config::{CascadeConfig, pass_clocks};
 use super::rounded;
@@ -13,9 +13,9 @@ ports! {
     inputs Inputs {
         /// Synchronous reset, active high.
         rst: Bit as bool;
-        /// For one clock: `x` is the next sample; ignored while a pass runs.
+        /// For one clock: `x` is the next sample; ignored during a computation.
         strobe: Bit as bool;
-        /// For one clock: begin anew, all samples before now count as `x`.
+        /// For one clock: restart; all samples before now count as `x`.
         start: Bit as bool;
         /// Command word.
         x: Signed(W) as i64;
@@ -29,26 +29,28 @@ ports! {
         y: Signed(W) as i64;
         /// For one clock: `y` is new.
         valid: Bit as bool;
-        /// A pass runs.
+        /// A sample is being computed.
         busy: Bit as bool;
-        /// Sticky: a strobe came while a pass ran, and its sample was lost. Set wins over `clear_flags` in the same clock.
+        /// Sticky: a strobe came during a computation, and its sample was lost. Setting wins over `clear_flags` in
+        /// the same clock.
         overrun: Bit as bool;
     }
 }
 
-/// The cascade, cycle accurate at its ports.
+/// The cycle-accurate model of the cascade.
 ///
-/// A pass is computed when its strobe comes, and shown when its clocks are over: no other strobe gets in between.
+/// A sample is computed when its strobe comes, and shown when its clocks are over: no other strobe is accepted in
+/// between.
 pub struct Cascade {
     config: CascadeConfig,
     ports: Vec<Port>,
-    /// One ring per stage, of what went into it.
+    /// Ring buffer of each stage, with the samples that went into it.
     rings: Vec<Vec<i64>>,
     head: usize,
     /// Samples since the start, at most 2^A − 1.
     age: u32,
     start_value: i64,
-    /// Clocks until the pass has its result; 0 while none runs.
+    /// Clocks until the sample is finished; 0 while none is computed.
     clocks_left: u32,
     result: i64,
     y: i64,
@@ -57,7 +59,7 @@ pub struct Cascade {
 }
 
 impl Cascade {
-    /// A cascade after reset. `seed` gives the arbitrary contents of its memory, which no output ever shows.
+    /// A cascade after reset. `seed` determines the arbitrary contents of its memory, which no output ever shows.
     pub fn new(config: &CascadeConfig, seed: u64) -> Self {
         let mut contents = Arbitrary::new(seed);
         let ring_samples = 1 << config.ring_address_bits();
@@ -78,12 +80,12 @@ impl Cascade {
         }
     }
 
-    /// What it was built from.
+    /// Its build parameters.
     pub fn config(&self) -> &CascadeConfig {
         &self.config
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         Outputs {
             y: self.y,
@@ -93,7 +95,7 @@ impl Cascade {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();
@@ -135,7 +137,7 @@ impl Cascade {
         self.clocks_left = self.clocks_left.saturating_sub(1);
     }
 
-    /// The sample goes through all stages, each of which keeps what went into it.
+    /// Passes the sample through all stages, each of which stores its input.
     fn take_sample(&mut self, word: i64) {
         let mask = (1 << self.config.ring_address_bits()) - 1;
         self.head = (self.head + 1) & mask;

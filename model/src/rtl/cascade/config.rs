@@ -1,24 +1,24 @@
-//! What is fixed when a cascade is built.
+//! Build parameters of a cascade.
 
 use crate::taps::{Tap, TapTable, TapTableError};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-/// Word widths that a cascade may have.
+/// Widths of a command word in bits that a cascade may have.
 pub const WORD_BITS: RangeInclusive<u32> = 8..=32;
-/// Sizes of a stage's ring, as bits of address: 64 … 4096 samples.
+/// Sizes of a stage's ring buffer as address bits: 64 … 4096 samples.
 pub const RING_ADDRESS_BITS: RangeInclusive<u32> = 6..=12;
-/// Numbers of stages, as bits of their index: up to 4, 8 and 16 stages.
+/// Numbers of stages as bits of their index: up to 4, 8 and 16 stages.
 pub const STAGE_INDEX_BITS: RangeInclusive<u32> = 2..=4;
-/// Clocks of a pass beyond two per stage: the sample into the sum, and rounding.
+/// Clocks of a sample in addition to two per stage: one takes it into the sum, one rounds.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 2;
 
-/// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`.
+/// Clocks from a strobe to its `valid`, which is also the smallest distance of two strobes without `overrun`.
 pub fn pass_clocks(stages: u32) -> u32 {
     stages.saturating_mul(2).saturating_add(PASS_OVERHEAD_CLOCKS)
 }
 
-/// What is fixed when a cascade is built: the word, the delay of each stage, and the sizes that hold them.
+/// Build parameters of a cascade: the word width, the delay of each stage, and the sizes that hold them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CascadeConfig {
     word_bits: u32,
@@ -27,22 +27,22 @@ pub struct CascadeConfig {
     delays_samples: Vec<u32>,
 }
 
-/// Why no cascade can be built.
+/// Why a cascade cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum CascadeConfigError {
-    /// A word width that is not in [`WORD_BITS`].
+    /// The word width is not in [`WORD_BITS`].
     #[error("command words of {0} bits: a cascade has 8 to 32")]
     WordBits(u32),
-    /// No stage, or too many.
+    /// There is no stage, or there are too many.
     #[error("{0} half sums: a cascade has 1 to 16; choose a lower order or fewer modes")]
     Stages(usize),
-    /// A delay of zero, or one that the largest ring does not reach.
+    /// A delay is zero, or longer than the largest ring buffer.
     #[error(
         "stage {stage} is delayed by {found} samples, a half sum by 1 to 4094: \
          choose another sample rate or a higher order"
     )]
     Delay {
-        /// The stage, from 1.
+        /// Number of the stage, from 1.
         stage: usize,
         /// Its delay in samples.
         found: u32,
@@ -50,8 +50,8 @@ pub enum CascadeConfigError {
 }
 
 impl CascadeConfig {
-    /// The smallest cascade for these delays, in samples, one per stage: the smallest ring that has the longest delay + 2
-    /// samples, the fewest stages.
+    /// The smallest cascade for these delays in samples, one per stage: the smallest ring buffer that has the longest
+    /// delay + 2 samples, and the fewest stages.
     ///
     /// # Errors
     /// [`CascadeConfigError`] for a width that is not in [`WORD_BITS`], other than 1 to 16 stages, or a delay that is not
@@ -79,17 +79,17 @@ impl CascadeConfig {
         })
     }
 
-    /// W: width of a command word in bits.
+    /// Width W of a command word in bits.
     pub fn word_bits(&self) -> u32 {
         self.word_bits
     }
 
-    /// A: the ring of each stage holds 2^A samples.
+    /// Address bits A: the ring buffer of each stage holds 2^A samples.
     pub fn ring_address_bits(&self) -> u32 {
         self.ring_address_bits
     }
 
-    /// I: room for 2^I stages.
+    /// Index bits I: there is room for 2^I stages.
     pub fn stage_index_bits(&self) -> u32 {
         self.stage_index_bits
     }
@@ -99,12 +99,12 @@ impl CascadeConfig {
         &self.delays_samples
     }
 
-    /// n: the number of stages, 1 to 16.
+    /// Number of stages n, 1 to 16.
     pub fn stages(&self) -> u32 {
         self.delays_samples.len() as u32
     }
 
-    /// W + 2^I: width of the sum and of a word of the rings.
+    /// Width of the sum and of a word of the ring buffers in bits: W + 2^I.
     pub fn sum_bits(&self) -> u32 {
         self.word_bits + (1 << self.stage_index_bits)
     }
@@ -119,8 +119,8 @@ impl CascadeConfig {
         -self.word_min() - 1
     }
 
-    /// The table whose weighted sum is this cascade: an impulse of 2^−n after the sum of each subset of the delays, equal
-    /// delays added up. A shaper with this table gives the same samples, bit by bit.
+    /// The tap table with the same result as this cascade, bit by bit: an impulse of 2^−n at the sum of each subset
+    /// of the delays, with equal delays added up.
     ///
     /// # Errors
     /// [`TapTableError::Fraction`] where F = `coefficient_fraction` is above 16 or below the number of stages.

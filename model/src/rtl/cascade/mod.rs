@@ -1,13 +1,13 @@
 //! The cascade of half sums: `y_k[n] = y_{k−1}[n] + y_{k−1}[n − d_k]` for k = 1 … n, rounded once at the end.
 //!
-//! The datasheet is `docs/cascade.md`; this is the reference that the hardware is compared with. It is what the
-//! `vibrationless` kind needs: 2^n impulses of weight 2^−n with n additions and no multiplication.
+//! The datasheet is `docs/cascade.md`; the hardware is compared with this reference model. The `vibrationless` kind
+//! needs it: 2^n impulses of weight 2^−n with n additions and no multiplication.
 //!
 //! | type | what it is |
 //! |---|---|
-//! | [`CascadeConfig`] | what is fixed when a cascade is built: word width, the delays, sizes of its memory |
+//! | [`CascadeConfig`] | the build parameters of a cascade: word width, the delays, sizes of its memory |
 //! | [`Cascade`] | cycle accurate at the ports, one [`Cascade::step`] per clock, from typed [`Inputs`] to typed [`Outputs`] |
-//! | [`SampleCascade`] | the same samples without the clocks: one [`SampleCascade::push`] per sample |
+//! | [`SampleCascade`] | the same results without the clocks: one [`SampleCascade::push`] per sample |
 //!
 //! ```text
 //! clock     0   1   2   3      2n+1 2n+2 2n+3
@@ -18,8 +18,8 @@
 //! y        ------- as before -------< y[n] ------
 //! ```
 //!
-//! History before the first sample since a start is the start value, so a constant command gives a constant output. Each
-//! stage makes words one bit wider; nothing overflows and nothing saturates.
+//! The history before the first sample since a start is the start value, so a constant command gives a constant
+//! output. Each stage makes words one bit wider; nothing overflows and nothing saturates.
 //!
 //! ```
 //! use posicast_model::rtl::cascade::{Cascade, CascadeConfig, Inputs, SampleCascade, pass_clocks};
@@ -50,7 +50,7 @@ pub use config::{
 };
 pub use sample::SampleCascade;
 
-/// The sum of 2^`stages` words as one word: half is added, `stages` bits are dropped (an arithmetic shift).
+/// Rounds the sum of 2^`stages` words to one word: half is added, `stages` bits are dropped (an arithmetic shift).
 fn rounded(sum: i64, stages: u32) -> i64 {
     (sum + (1 << (stages - 1))) >> stages
 }

@@ -1,17 +1,18 @@
-//! The same samples without the clocks.
+//! The cascade sample by sample, without the clocks.
 
 use super::config::CascadeConfig;
 use super::rounded;
 use crate::rtl::shaper::wrap;
 use std::collections::VecDeque;
 
-/// The cascade sample by sample: what [`super::Cascade`] gives if its strobes come slowly enough.
+/// The cascade sample by sample. It gives the results of [`super::Cascade`] where strobes come slowly enough.
 ///
-/// Unlike it, this one fills its history at a start instead of knowing its age, and keeps no more of it than each delay.
+/// Unlike that model, this one fills its history at a start instead of knowing its age, and keeps no more of it than
+/// each delay.
 #[derive(Debug, Clone)]
 pub struct SampleCascade {
     word_bits: u32,
-    /// What went into each stage, the last d_k samples, the oldest in front.
+    /// Inputs of each stage: the last d_k samples, the oldest first.
     histories: Vec<VecDeque<i64>>,
 }
 
@@ -25,7 +26,8 @@ impl SampleCascade {
         }
     }
 
-    /// Begins anew: all samples before now count as `x` (wrapped to the word width), which is what the output then is.
+    /// Restarts: all samples before now count as `x` (wrapped to the word width), which is also the output after
+    /// that.
     pub fn start(&mut self, x: i64) -> i64 {
         let x = wrap(x, self.word_bits);
         for (stage, history) in self.histories.iter_mut().enumerate() {
@@ -34,7 +36,8 @@ impl SampleCascade {
         x
     }
 
-    /// One sample in, one sample out. `x` is wrapped to the word width, as a port of that width would.
+    /// Takes one sample and returns the shaped one. `x` is wrapped to the word width, as a port of that width would
+    /// do.
     pub fn push(&mut self, x: i64) -> i64 {
         let mut sum = wrap(x, self.word_bits);
         for history in &mut self.histories {

@@ -1,4 +1,4 @@
-//! Blocks of any kind joined to one: what is needed to make the model and the Verilog of the whole.
+//! Blocks of any kind joined to one, as needed for the model and the Verilog of the whole.
 
 use crate::rtl::Moore;
 use crate::rtl::axis::Axis;
@@ -23,18 +23,18 @@ use crate::rtl::sliding_mode::{Settings, SlidingMode};
 use crate::rtl::time_base::TimeBase;
 use crate::rtl::trace::{Trace, TraceConfig};
 
-/// A block in a component, with what it is built from.
+/// A block in a component, with its build parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ComponentPart {
     /// The register bank.
     Registers(Box<RegisterMap>),
     /// The shaper.
     Shaper(Box<ShaperConfig>),
-    /// Where samples come from: registers or pins.
+    /// The selection of samples from registers or pins.
     SampleSelect {
-        /// Width of a word.
+        /// Width of a word in bits.
         word_bits: u32,
-        /// Words per sample.
+        /// Number of words per sample.
         channels: usize,
     },
     /// The pulse counter.
@@ -47,36 +47,36 @@ pub enum ComponentPart {
     Pwm(PwmConfig),
     /// The controller.
     SlidingMode,
-    /// Its settings, the machine's in bank 0.
+    /// The settings of the controller, with the machine's in bank 0.
     SettingBanks(Box<Settings>),
     /// The segments.
     Segments,
     /// The supervisor of an axis.
     Axis,
-    /// What the PWM is told.
+    /// The drive command, which selects what the PWM gets.
     DriveCommand,
-    /// Motor against scale.
+    /// The linear scale, which compares motor and scale.
     LinearScale,
     /// A measured error over position, the machine's in bank 0.
     ErrorTable(Box<ErrorTableConfig>),
     /// A source of encoder edges in front of the pulse counter.
     EncoderGenerator,
-    /// Test signals behind the shaper.
+    /// The test signal behind the shaper.
     Excitation,
-    /// A memory of what the axis did.
+    /// The trace memory.
     Trace(TraceConfig),
-    /// One divider for so many pulse counters.
+    /// The share of one divider among this many pulse counters.
     DividerShare(usize),
-    /// When the controllers start.
+    /// The schedule, which starts the controllers.
     Schedule(ScheduleConfig),
-    /// What so many axes have to do with each other.
+    /// The group, which couples this many axes.
     Group(usize),
     /// Blocks joined to one.
     Joined(Box<JoinedBlocks>),
 }
 
 impl ComponentPart {
-    /// Its name, as in the Verilog.
+    /// Name of the block, as in the Verilog.
     pub fn name(&self) -> &str {
         match self {
             Self::Registers(_) => "registers",
@@ -103,7 +103,7 @@ impl ComponentPart {
         }
     }
 
-    /// The same for every axis of a stage? Then one module serves all.
+    /// Whether it is the same for every axis of a stage, so that one module serves all.
     pub fn is_common(&self) -> bool {
         !matches!(
             self,
@@ -117,7 +117,7 @@ impl ComponentPart {
         )
     }
 
-    /// Its model, after reset. `seed` gives the arbitrary contents of memories.
+    /// Its model after reset. `seed` determines the arbitrary contents of memories.
     pub fn model(&self, seed: u64) -> Box<dyn Moore> {
         match self {
             Self::Registers(map) => Box::new(RegisterBank::new(map)),
@@ -145,7 +145,7 @@ impl ComponentPart {
     }
 }
 
-/// Blocks joined to one, each the part of a composition.
+/// Blocks joined to one, as parts of a composition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JoinedBlocks {
     name: String,
@@ -153,10 +153,10 @@ pub struct JoinedBlocks {
     composition: Composition,
 }
 
-/// Puts the ports of a block on other nets than those of their names.
+/// Puts ports of a block on nets with other names.
 type Rewire<'a> = Box<dyn Fn(&ComponentPart, Part) -> Part + 'a>;
 
-/// What is not connected by name alone, and the ports of the whole.
+/// Connections that do not follow from names alone, and the ports of the whole.
 pub(crate) struct Wiring<'a> {
     pub(crate) part: Rewire<'a>,
     pub(crate) inputs: Vec<String>,
@@ -182,7 +182,7 @@ impl JoinedBlocks {
         })
     }
 
-    /// Its name.
+    /// Name of the whole.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -192,13 +192,13 @@ impl JoinedBlocks {
         self.blocks.iter()
     }
 
-    /// How they are joined.
+    /// Connections of the blocks.
     pub fn composition(&self) -> &Composition {
         &self.composition
     }
 
-    /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories. Blocks within blocks are
-    /// clocked side by side: a level between them would cost time and change nothing.
+    /// The model of the whole after reset. `seed` determines the arbitrary contents of its memories. Nested
+    /// compositions are flattened: a level between them would cost time and change nothing.
     pub fn model(&self, seed: u64) -> Composed {
         let (composition, blocks) = self.flattened(seed);
         Composed::new(composition, blocks)

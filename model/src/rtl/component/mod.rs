@@ -1,19 +1,19 @@
-//! Blocks that stand alone: each with its registers on an Avalon-MM agent, and what else it needs.
+//! Components: blocks that stand alone, each with its registers on an Avalon-MM agent and the blocks that it needs.
 //!
 //! ```text
 //! avs_* ─► registers ─┬─► configuration, commands ─► block ─► conduit pins
 //!   irq ◄─            └─◄ live words, events ◄──────
 //! ```
 //!
-//! | component | block | beside it |
+//! | component | block | additional blocks |
 //! |---|---|---|
 //! | [`Component::shaper`] | [`shaper`](super::shaper) | [`sample_select`](super::sample_select) |
 //! | [`Component::pwm`] | [`pwm`](super::pwm) | [`sample_select`](super::sample_select) |
 //! | [`Component::sliding_mode`] | [`sliding_mode`](super::sliding_mode) | [`sample_select`](super::sample_select), [`setting_banks`](super::setting_banks) |
 //! | [`Component::pulse_counter`] | [`pulse_counter`](super::pulse_counter) | [`divider`](super::divider), [`time_base`](super::time_base) |
 //!
-//! A component is its register map and its [`Composition`]; from these come this crate's model and
-//! `posicast_hdl::component`'s Verilog.
+//! A component consists of its register map and its [`Composition`]; this crate's model and
+//! `posicast_hdl::component`'s Verilog are made from these.
 //!
 //! ```
 //! use posicast_model::rtl::ClockedBlock;
@@ -43,7 +43,7 @@ use super::registers::{Description, MapError, RegisterMap};
 use super::shaper::ShaperConfig;
 use super::sliding_mode::{Law, Settings};
 
-/// Ports of the agent that are inputs, with reset.
+/// Input ports of the agent, with reset.
 const BUS_INPUTS: [&str; 6] = [
     "rst",
     "avs_address",
@@ -52,7 +52,7 @@ const BUS_INPUTS: [&str; 6] = [
     "avs_byteenable",
     "avs_writedata",
 ];
-/// Those that are outputs.
+/// Output ports of the agent.
 const BUS_OUTPUTS: [&str; 2] = ["avs_readdata", "irq"];
 
 /// A block that stands alone, with its registers.
@@ -62,34 +62,34 @@ pub struct Component {
     joined: JoinedBlocks,
 }
 
-/// Why there is no such component.
+/// Why a component cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ComponentError {
-    /// Ticks that are shorter than a division.
+    /// Ticks are shorter than a division.
     #[error(
         "ticks of {0} clocks: a division takes {DIVISION_CLOCKS}; ticks must be longer, so choose a lower sample rate or a \
          faster clock"
     )]
     Tick(u32),
-    /// A filter that its register does not hold.
+    /// The register does not hold the filter length.
     #[error("a filter of {0} clocks: the pulse counter has one of 0 to 63")]
     Filter(u32),
-    /// A period that the carrier does not have.
+    /// The carrier cannot have this period.
     #[error("a PWM period of {0} clocks: 2 to 65536 are possible; choose another PWM frequency")]
     Period(u32),
-    /// An error of the component's register map.
+    /// The register map has an error.
     #[error(transparent)]
     Map(#[from] MapError),
-    /// An error of the component's composition.
+    /// The composition has an error.
     #[error(transparent)]
     Composition(#[from] CompositionError),
 }
 
 impl Component {
-    /// The stand-alone shaper: samples by register or pins, tables loaded through registers.
+    /// The stand-alone shaper: samples come from registers or pins, tables are loaded through registers.
     ///
     /// # Errors
-    /// [`ComponentError`] never, for a `config` that could be made.
+    /// This never returns an error for a valid `config`.
     pub fn shaper(config: ShaperConfig) -> Result<Self, ComponentError> {
         let blocks = vec![
             ComponentPart::SampleSelect {
@@ -102,8 +102,8 @@ impl Component {
         Self::new(super::registers::maps::shaper(&config), blocks, wiring)
     }
 
-    /// The pulse counter with a divider and a time base of its own. Its filter is `filter_clocks` long after reset,
-    /// its direction reversed with `invert`.
+    /// The pulse counter with its own divider and time base. After reset its filter is `filter_clocks` long, and its
+    /// direction is reversed with `invert`.
     ///
     /// # Errors
     /// [`ComponentError`] for ticks no longer than a division, or a filter above 63.
@@ -123,10 +123,11 @@ impl Component {
         Self::new(map, blocks, pulse_counter::wiring())
     }
 
-    /// The controller with its settings in banks, the machine's in bank 0: reference and measurement by register or pins.
+    /// The controller with its settings in banks, the machine's in bank 0. Reference and measurement come from
+    /// registers or pins.
     ///
     /// # Errors
-    /// [`ComponentError`] never.
+    /// This never returns an error.
     pub fn sliding_mode(settings: &Settings, law: Law, modulo: bool) -> Result<Self, ComponentError> {
         let blocks = vec![
             ComponentPart::SampleSelect {
@@ -140,7 +141,7 @@ impl Component {
         Self::new(map, blocks, sliding_mode::wiring())
     }
 
-    /// The PWM, with this mode and period after reset: its duty by register or pins.
+    /// The PWM, with this mode and period after reset. Its duty comes from a register or from pins.
     ///
     /// # Errors
     /// [`ComponentError`] for periods other than 2 to 65,536 clocks.
@@ -165,7 +166,7 @@ impl Component {
         Self::joined(RegisterMap::new(description)?, &name, blocks.collect(), wiring)
     }
 
-    /// A bank of `map`, and blocks, each under the name of its part.
+    /// Joins a register bank of `map` with blocks, each under the name of its part.
     pub(super) fn joined(
         map: RegisterMap,
         name: &str,
@@ -189,22 +190,22 @@ impl Component {
         })
     }
 
-    /// The name of its block: `shaper`, for example.
+    /// Name of its block, for example `shaper`.
     pub fn name(&self) -> &str {
         self.map.name()
     }
 
-    /// Its registers.
+    /// Its register map.
     pub fn map(&self) -> &RegisterMap {
         &self.map
     }
 
-    /// Its blocks, the bank first.
+    /// Its blocks; the register bank comes first.
     pub fn blocks(&self) -> impl Iterator<Item = &ComponentPart> {
         self.joined.blocks()
     }
 
-    /// How they are joined: one part per block, in order.
+    /// Connections of its blocks: one part per block, in order.
     pub fn composition(&self) -> &Composition {
         self.joined.composition()
     }
@@ -214,7 +215,7 @@ impl Component {
         &self.joined
     }
 
-    /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
+    /// The model of the whole after reset. `seed` determines the arbitrary contents of its memories.
     pub fn model(&self, seed: u64) -> Composed {
         self.joined.model(seed)
     }

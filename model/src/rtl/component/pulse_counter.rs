@@ -1,8 +1,9 @@
-//! The pulse counter: the time base says when, the divider divides what the counter shows, one clock after each tick.
+//! The pulse counter component: the time base makes ticks, and one clock after each the divider divides the counter's
+//! operands.
 
 use super::{ComponentPart, Wiring};
 
-/// Conduit pins.
+/// Input pins of the conduit.
 const INPUTS: [&str; 6] = ["a", "b", "z", "a_n", "b_n", "z_n"];
 const OUTPUTS: [&str; 4] = ["tick", "position", "velocity", "velocity_valid"];
 

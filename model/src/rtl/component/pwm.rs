@@ -1,17 +1,18 @@
-//! The PWM: its duty and the watchdog's feed come from registers or pins, one clock later. The pins of the gates and of the
-//! raw faults are the block's own: no clock lies between them.
+//! The PWM component: its duty and the feed of its watchdog come from registers or pins, one clock later. The pins of
+//! the gates and of the raw faults are the block's own, without a register between.
 //!
-//! Its `clear_flags` is tied high. A flag is then high as long as what it tells of, and the bank keeps it.
+//! Its `clear_flags` is tied high: a flag is then high as long as its condition holds, and the register bank keeps
+//! it.
 
 use super::super::composition::Part;
 use super::{ComponentPart, Wiring};
 
-/// Conduit pins.
+/// Input pins of the conduit.
 const INPUTS: [&str; 6] = ["feed", "duty", "sync", "fault_n", "pll_locked", "filtered_fault_n"];
 const OUTPUTS: [&str; 9] = [
     "a_high", "a_low", "b_high", "b_low", "running", "tripped", "valley", "peak", "trigger",
 ];
-/// Bits of a duty.
+/// Width of a duty in bits.
 pub(super) const DUTY_BITS: u32 = 17;
 
 pub(super) fn wiring() -> Wiring<'static> {

@@ -1,6 +1,7 @@
-//! The shaper: its samples come from registers or from the pins `strobe`, `start` and `x`, one clock later.
+//! The shaper component: its samples come from registers or from the pins `strobe`, `start` and `x`, one clock later.
 //!
-//! Its `clear_flags` is tied high. A flag is then high for the one clock after what it tells of, and the bank keeps it.
+//! Its `clear_flags` is tied high: a flag is then high for the one clock after its event, and the register bank keeps
+//! it.
 
 use super::super::composition::Part;
 use super::super::registers::maps::word_name;
@@ -21,7 +22,7 @@ fn words(config: &ShaperConfig, name: &str) -> Vec<String> {
     channels.map(|channel| word_name(config, name, channel)).collect()
 }
 
-/// `xs`: the pins of the words, and the shaper's ports.
+/// Connects the words; `xs` has their pins, which are also the shaper's ports.
 fn rewire(xs: Vec<String>) -> impl Fn(&ComponentPart, Part) -> Part {
     move |block, part| {
         let words = xs.iter().enumerate();

@@ -1,9 +1,10 @@
-//! The controller: its motion comes from registers or pins, one clock later; its settings from the active bank.
+//! The controller component: reference and measurement come from registers or pins, one clock later; its settings
+//! come from the active bank.
 
 use super::super::composition::Part;
 use super::{ComponentPart, Wiring};
 
-/// What a tick is about: pins of the component, and ports of the controller.
+/// Reference and measurement of a tick: pins of the component, and ports of the controller.
 pub(super) const MOTION: [&str; 5] = [
     "position_reference",
     "velocity_reference",
@@ -11,7 +12,7 @@ pub(super) const MOTION: [&str; 5] = [
     "position",
     "velocity",
 ];
-/// Conduit pins.
+/// Output pins of the conduit.
 const OUTPUTS: [&str; 3] = ["command", "duty", "valid"];
 
 pub(super) fn wiring() -> Wiring<'static> {

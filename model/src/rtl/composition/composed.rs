@@ -1,4 +1,4 @@
-//! The blocks of a composition, clocked together: each only when something happens in it.
+//! The blocks of a composition, simulated together; each is clocked only when something happens in it.
 
 use super::member::Member;
 use super::wire::Wire;
@@ -7,34 +7,36 @@ use crate::rtl::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 
 /// The model of a composition.
 ///
-/// A block sleeps while it is [quiet](Moore::quiet_clocks), and is woken by its time, or by a change of an input that it does
-/// not ignore; then it catches up. So a clock costs what happens in it, and [`hold`](Self::hold) leaves out those in which
-/// nothing does. What the outputs show is what clocking every block in every clock would give.
+/// A block sleeps while it is [quiet](Moore::quiet_clocks). It is woken when that time is over, or by a change of an
+/// input that it does not ignore; then it catches up. So a clock costs only what happens in it, and
+/// [`hold`](Self::hold) skips clocks in which nothing happens. The outputs are the same as if every block were
+/// clocked in every clock.
 ///
-/// What one block shows another is registers, known before any block is clocked, in whatever order. An output that depends on
-/// inputs of the same clock ([`OutputKind::Combinational`]) may be an output of the whole, and may feed registers and
-/// combinational outputs of later parts.
+/// Outputs of one block that another reads come from registers, and are known before any block is clocked, in any
+/// order. An output that depends on inputs of the same clock ([`OutputKind::Combinational`]) may be an output of the
+/// whole, and may feed registers and combinational outputs of later parts.
 ///
-/// It is [`Moore`] itself, so that compositions can be parts of others.
+/// It implements [`Moore`] itself, so that compositions can be parts of others.
 pub struct Composed {
     composition: Composition,
     members: Vec<Member>,
-    /// The clock in which each member must be clocked next. By themselves, since every clock looks at all of them.
+    /// The clock in which each member must be clocked next. They are in a list of their own, since every clock looks
+    /// at all of them.
     wakes: Vec<u64>,
     wires: Vec<Wire>,
     input_count: usize,
-    /// Net of each output of the whole.
+    /// Net of each output of the composition.
     output_nets: Vec<usize>,
-    /// Members with combinational outputs, in order.
+    /// Indices of the members with combinational outputs, in order.
     combinational: Vec<usize>,
-    /// The clock that comes next, counted from 1.
+    /// The next clock, counted from 1.
     now: u64,
-    /// Members that were clocked in this clock.
+    /// Indices of the members that were clocked in this clock.
     clocked: Vec<usize>,
 }
 
 impl Composed {
-    /// `blocks` are those of the parts, in their order, with the parts' ports.
+    /// Makes the model from the blocks of the parts, in their order, with the parts' ports.
     pub fn new(composition: Composition, blocks: Vec<Box<dyn Moore>>) -> Self {
         let wire = |net: &Net| match kind(&composition, &blocks, net) {
             OutputKind::Counter => Wire::counter(net.port.width),
@@ -70,23 +72,22 @@ impl Composed {
         composed
     }
 
-    /// The place of the net of that name, for [`value`](Self::value).
+    /// Index of the net with this name, for [`value`](Self::value).
     pub fn net(&self, name: &str) -> Option<usize> {
         self.composition.nets.iter().position(|net| net.port.name == name)
     }
 
-    /// What a net carries in the clock that comes, as far as registers say.
+    /// Value of a net in the next clock, as far as registers determine it.
     pub fn value(&self, net: usize) -> u64 {
         self.wires[net].at(self.now)
     }
 
-    /// Clocks with the same inputs, for as long as the outputs stay as they are, but at most `clocks`. Puts what the outputs
-    /// show in all of them into `outputs`, and returns how many they were: at least 1, unless `clocks` is 0. Outputs that are
-    /// [counters](OutputKind::Counter) go up by one per clock instead. The same as so many calls of
-    /// [`step`](ClockedBlock::step), in the time of those in which something happens inside.
+    /// Simulates clocks with the same inputs for as long as the outputs stay as they are, but at most `clocks`.
+    /// Writes the outputs of these clocks to `outputs`, and returns the number of clocks: at least 1, unless `clocks`
+    /// is 0. Outputs that are [counters](OutputKind::Counter) go up by one per clock instead. The result is that of
+    /// as many calls of [`step`](ClockedBlock::step), in the time of those in which something happens inside.
     ///
-    /// To run on, call it again; to know what the outputs show in the clock that comes, ask
-    /// [`show_with`](Moore::show_with).
+    /// Call it again to continue; [`show_with`](Moore::show_with) gives the outputs of the next clock.
     ///
     /// # Errors
     /// [`StepError`] for a wrong number of inputs or outputs.
@@ -123,7 +124,7 @@ impl Composed {
         )))
     }
 
-    /// Do the outputs still show what they showed so many clocks ago?
+    /// Whether the outputs still show what they showed this many clocks ago.
     fn shows(&self, outputs: &[u64], clocks: u64) -> bool {
         let wires = self.output_nets.iter().map(|net| &self.wires[*net]);
         let mut pairs = wires.zip(outputs);
@@ -135,7 +136,7 @@ impl Composed {
         self.wakes.iter().copied().fold(u64::MAX, u64::min)
     }
 
-    /// Gives a net a value from now on, and wakes who watches it.
+    /// Sets a net from now on, and wakes its watchers.
     #[inline]
     fn set(&mut self, net: usize, value: u64) {
         if self.wires[net].set(value, self.now) {
@@ -146,7 +147,7 @@ impl Composed {
         }
     }
 
-    /// Combinational outputs of the members that were clocked or have new inputs.
+    /// Updates combinational outputs of the members that were clocked or have new inputs.
     fn combine(&mut self) {
         for place in 0..self.combinational.len() {
             let at = self.combinational[place];
@@ -162,7 +163,7 @@ impl Composed {
         }
     }
 
-    /// A member that was clocked to its next event, unless an input has changed.
+    /// Lets a member that was clocked sleep until its next event or a change of an input.
     #[inline]
     fn sleep(&mut self, at: usize) {
         if self.wakes[at] > self.now && self.members[at].is_clocked_to(self.now) {
@@ -185,7 +186,8 @@ impl Composed {
         Ok(())
     }
 
-    /// Nets to what the registers of the members that were clocked show; then they sleep, if their inputs let them.
+    /// Sets the nets that the registers of the clocked members drive; then lets these members sleep if their inputs
+    /// allow it.
     fn settle(&mut self) {
         for place in 0..self.clocked.len() {
             let at = self.clocked[place];
@@ -205,7 +207,7 @@ impl Composed {
     }
 }
 
-/// How a net gets its value.
+/// The way in which a net gets its value.
 fn kind(composition: &Composition, blocks: &[Box<dyn Moore>], net: &Net) -> OutputKind {
     let Some((part, output)) = net.driver else {
         return OutputKind::Register;

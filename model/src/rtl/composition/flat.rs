@@ -1,12 +1,12 @@
-//! A composition whose parts are compositions, as one of their parts.
+//! Flattens a composition whose parts are compositions.
 
 use super::{Composition, Connection, Net, Part, Port};
 use crate::rtl::Direction;
 
 impl Composition {
-    /// The same with the parts of its parts: `inner` has, for every part, the composition that it is, or None for a block.
-    /// Parts and nets of the whole keep their names; those inside have the part's name before theirs. The nets of the whole
-    /// keep their places.
+    /// Replaces parts by their own parts: `inner` has the composition of every part, or `None` for a block. Parts and
+    /// nets of the whole keep their names; those inside are prefixed with the part's name. The nets of the whole keep
+    /// their indices.
     ///
     /// An inner composition has the ports of its part, in the same order.
     #[must_use]
@@ -43,7 +43,7 @@ impl Composition {
         }
     }
 
-    /// A net inside a part.
+    /// Adds a net from inside a part.
     fn add_net(&mut self, part: &Part, net: &Net) -> Connection {
         let name = format!("{}_{}", part.name, net.port.name);
         self.nets.push(Net {
@@ -57,7 +57,7 @@ impl Composition {
         Connection::Net(self.nets.len() - 1)
     }
 
-    /// The part drives the nets that its outputs are on.
+    /// Adds a part, which drives the nets at its outputs.
     fn add_part(&mut self, part: Part, connections: Vec<Connection>) {
         let at = self.parts.len();
         let ports = part.ports.iter().zip(&connections);

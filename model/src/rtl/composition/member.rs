@@ -1,30 +1,31 @@
-//! A block in a composition, and up to which clock it has been brought.
+//! A block in a composition, with the clock up to which it has been simulated.
 
 use super::wire::Wire;
 use super::{Connection, Part};
 use crate::rtl::{Direction, Moore, OutputKind, StepError};
 
-/// A block while its composition is clocked. Its state is that before the clock `clocked_to`; from there on it is quiet until
-/// the clock in which it [sleeps](Self::sleep_until) no longer, unless an input changes.
+/// A block in a running composition. Its state is that before the clock `clocked_to`; from there on it is quiet until
+/// the clock given by [`sleep_until`](Self::sleep_until), unless an input changes.
 pub(super) struct Member {
     pub(super) block: Box<dyn Moore>,
-    /// Places among the inputs, and their nets; the other inputs are tied.
+    /// Indices of inputs with their nets; the other inputs are constants.
     inputs_from: Vec<(usize, usize)>,
     inputs: Vec<u64>,
-    /// Places among the outputs, and their nets.
+    /// Indices of registered outputs with their nets.
     pub(super) registers_to: Vec<(usize, usize)>,
     pub(super) combinational_to: Vec<(usize, usize)>,
     pub(super) outputs: Vec<u64>,
     kinds: Vec<OutputKind>,
-    /// It watches a net that counts, so that it has something to do in every clock.
+    /// Whether it watches a net that counts, so that it must be clocked in every clock.
     never_sleeps: bool,
     clocked_to: u64,
-    /// Its combinational outputs are those of its state and inputs.
+    /// Whether its combinational outputs are up to date with its state and inputs.
     pub(super) is_combined: bool,
 }
 
 impl Member {
-    /// The block at that place of the composition. The wires get to know whether it watches them.
+    /// Makes the member for the part with this index of the composition, and registers it with the wires that it
+    /// watches.
     pub(super) fn new(
         at: usize,
         block: Box<dyn Moore>,
@@ -80,7 +81,7 @@ impl Member {
         !self.combinational_to.is_empty()
     }
 
-    /// After it was clocked to `now`, with all nets known and no input changed: the clock of its next event.
+    /// The clock of its next event, after it was clocked to `now`, with all nets known and no input changed.
     pub(super) fn sleep_until(&self, now: u64) -> u64 {
         if self.never_sleeps {
             return now;
@@ -88,7 +89,7 @@ impl Member {
         now.saturating_add(self.block.quiet_clocks(&self.inputs))
     }
 
-    /// Has it been clocked in the clock before `now`?
+    /// Whether it was clocked in the clock before `now`.
     pub(super) fn is_clocked_to(&self, now: u64) -> bool {
         self.clocked_to == now
     }
@@ -100,14 +101,14 @@ impl Member {
         }
     }
 
-    /// Its outputs in this clock, of which the combinational ones are new.
+    /// Updates its outputs in this clock, of which the combinational ones are new.
     pub(super) fn combine(&mut self, wires: &[Wire], now: u64) {
         self.read(wires, now);
         self.block.show_with(&self.inputs, &mut self.outputs);
         self.is_combined = true;
     }
 
-    /// This clock, after those that it has slept through.
+    /// Clocks it for this clock, after those that it has slept through.
     pub(super) fn clock(&mut self, wires: &[Wire], now: u64) -> Result<(), StepError> {
         if self.clocked_to < now {
             self.read(wires, now - 1);

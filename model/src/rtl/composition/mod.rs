@@ -1,8 +1,8 @@
-//! Blocks joined to one: which port of which block is on which net. Plain data, checked, and the model that steps it.
+//! Compositions: blocks joined by nets, as checked plain data, and the model that steps them.
 //!
-//! A port is on the net of its own name, unless its part says otherwise; so blocks that call a thing by one name are
-//! connected. A net has one driver: an output of a part, or an input of the whole. Verilog of the same composition is
-//! written by `posicast_hdl::emit::connect`.
+//! A port is on the net of its own name, unless its part says otherwise; so blocks that use the same name for a
+//! signal are connected. A net has one driver: an output of a part, or an input of the whole.
+//! `posicast_hdl::emit::connect` writes the Verilog of the same composition.
 //!
 //! ```
 //! use posicast_model::rtl::composition::{Composed, Composition, Part};
@@ -46,7 +46,7 @@ pub struct Part {
     wiring: Vec<(String, Wiring)>,
 }
 
-/// Where a port goes.
+/// Connection of a port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Wiring {
     Net(String),
@@ -63,21 +63,21 @@ impl Part {
         }
     }
 
-    /// The same, with `port` on `net`.
+    /// Puts `port` on `net`.
     #[must_use]
     pub fn on(mut self, port: &str, net: &str) -> Self {
         self.wiring.push((port.to_owned(), Wiring::Net(net.to_owned())));
         self
     }
 
-    /// The same, with the input `port` at `value` for ever.
+    /// Ties the input `port` to the constant `value`.
     #[must_use]
     pub fn tied(mut self, port: &str, value: u64) -> Self {
         self.wiring.push((port.to_owned(), Wiring::Tied(value)));
         self
     }
 
-    /// Its name.
+    /// Name of the part.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -96,89 +96,87 @@ impl Part {
 /// What a port of a part is connected to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Connection {
-    /// The net of that place in [`Composition::nets`].
+    /// The net with this index in [`Composition::nets`].
     Net(usize),
-    /// Always so.
+    /// A constant.
     Tied(u64),
 }
 
-/// A net: its driver's name, width and sign, and who is on it.
+/// A net: its driver's name, width and sign, and its users.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Net {
-    /// As the driver: an input of the whole, or an output of a part. The name is the net's.
+    /// Port of the driver, which is an input of the whole or an output of a part, with the name of the net.
     pub port: Port,
-    /// The output that drives it: part, and place among the part's outputs. None: an input of the whole.
+    /// Part and index of the output that drives it; `None` for an input of the whole.
     pub driver: Option<(usize, usize)>,
-    /// Does a part read it?
+    /// Whether a part reads it.
     pub is_read: bool,
-    /// Is it an output of the whole?
+    /// Whether it is an output of the whole.
     pub is_output: bool,
 }
 
-/// Why parts make no whole. Every one is an error of a composition in this project, never of its user.
+/// Why parts cannot be joined. Each is an error of a composition in this project, never of its user.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CompositionError {
-    /// A wiring of a port that the part has not, or a second one of the same port.
-    #[error("the part `{part}` has no port `{port}` left to connect: correct the name, or connect it once")]
+    /// The wiring names a port that the part does not have, or names a port twice.
+    #[error("the part `{part}` has no unconnected port `{port}`: correct the name, or connect it only once")]
     NoSuchPort {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The port.
+        /// Name of the port.
         port: String,
     },
-    /// Two parts of one name.
+    /// Two parts have the same name.
     #[error("two parts are called `{0}`: rename one")]
     PartTwice(String),
-    /// A constant at an output, or one that the port has no bits for.
+    /// An output is tied to a constant, or the constant does not fit the port.
     #[error("`{part}.{port}` cannot be tied to {value}: only an input can, to a value of its width")]
     Tied {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The port.
+        /// Name of the port.
         port: String,
         /// The constant.
         value: u64,
     },
-    /// Two outputs on one net, or an output on an input of the whole.
+    /// A net has two drivers.
     #[error("the net `{net}` is driven by `{part}.{port}` and by something else: put one of them on another net")]
     TwoDrivers {
-        /// The net.
+        /// Name of the net.
         net: String,
-        /// The second driver's part.
+        /// Part of the second driver.
         part: String,
-        /// The second driver's port.
+        /// Port of the second driver.
         port: String,
     },
-    /// An input on a net that nothing drives.
+    /// An input is on a net that nothing drives.
     #[error(
         "nothing drives the net `{net}` that `{part}.{port}` reads: list it as an input, or name a net that is driven"
     )]
     Undriven {
-        /// The net.
+        /// Name of the net.
         net: String,
-        /// The part that reads it.
+        /// Name of the part that reads it.
         part: String,
-        /// The port that reads it.
+        /// Name of the port that reads it.
         port: String,
     },
-    /// An input that differs from its net in width or sign.
+    /// An input differs from its net in width or sign.
     #[error("`{part}.{port}` has other bits than the net `{net}` (width or sign): they must be equal")]
     Type {
-        /// The net.
+        /// Name of the net.
         net: String,
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The port.
+        /// Name of the port.
         port: String,
     },
-    /// An input of the whole that no part reads, or an output that no part drives.
-    #[error(
-        "`{0}` is no net that can be a port of the whole: an input must be read, an output driven by a part; remove it"
-    )]
+    /// No part reads an input of the whole, or no part drives an output.
+    #[error("`{0}` cannot be a port of the whole: an input must be read, an output driven by a part; remove it")]
     NoSuchNet(String),
 }
 
-/// Parts, and how they are joined.
+/// Parts with their connections.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Composition {
     parts: Vec<Part>,
@@ -188,11 +186,11 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// Joins the parts. `inputs` and `outputs` name the nets that are ports of the whole, in their order; an input has the
+    /// Joins the parts. `inputs` and `outputs` name the nets that are ports of the whole, in order; an input has the
     /// width and sign of the first port that reads it.
     ///
     /// # Errors
-    /// [`CompositionError`] for nets with no driver or two, ports of unequal type, and names that there are not.
+    /// [`CompositionError`] for nets with no driver or two, ports of different types, and names that do not exist.
     pub fn new(parts: Vec<Part>, inputs: &[&str], outputs: &[&str]) -> Result<Self, CompositionError> {
         check_wiring(&parts)?;
         let mut nets = Vec::new();
@@ -246,12 +244,12 @@ impl Composition {
         &self.parts
     }
 
-    /// The nets: the inputs of the whole first.
+    /// The nets; the inputs of the whole come first.
     pub fn nets(&self) -> &[Net] {
         &self.nets
     }
 
-    /// What each port of each part is connected to, in the order of the parts and of their ports.
+    /// The connection of each port of each part, in the order of the parts and of their ports.
     pub fn connections(&self) -> &[Vec<Connection>] {
         &self.connections
     }
@@ -291,7 +289,7 @@ fn check_wiring(parts: &[Part]) -> Result<(), CompositionError> {
     Ok(())
 }
 
-/// The input `name` of the whole, like the first port that reads it.
+/// The input `name` of the whole, with the type of the first port that reads it.
 fn input_net(parts: &[Part], name: &str) -> Result<Net, CompositionError> {
     let reads = |part: &&Part, port: &&Port| {
         port.direction == Direction::Input && part.wiring_of(port) == Wiring::Net(name.to_owned())

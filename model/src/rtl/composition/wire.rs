@@ -1,21 +1,21 @@
-//! A net while its composition is clocked: its value, now and in the clock before.
+//! A net in a running composition: its value, now and in the clock before.
 
-/// A net. Times are in clocks of the composition.
+/// A net. Times count in clocks of the composition.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Wire {
-    /// In the clock `since`, and in those after it.
+    /// Value in the clock `since` and after it.
     value: u64,
-    /// In the clock before `since`.
+    /// Value in the clock before `since`.
     before: u64,
     since: u64,
-    /// Of a counter: ones in its width. It goes up by one per clock from `value` on.
+    /// For a counter, the mask of its width: it goes up by one per clock, starting from `value`.
     counts: Option<u64>,
-    /// The members that look at it even while they are quiet.
+    /// Members that depend on it even while they are quiet.
     pub(super) watchers: Vec<usize>,
 }
 
 impl Wire {
-    /// A net whose driver is a [counter](crate::rtl::OutputKind::Counter) of so many bits.
+    /// A net whose driver is a [counter](crate::rtl::OutputKind::Counter) of this many bits.
     pub(super) fn counter(width: u32) -> Self {
         Self {
             counts: Some(u64::MAX >> (64 - width.clamp(1, 64))),
@@ -27,7 +27,7 @@ impl Wire {
         self.counts.is_some()
     }
 
-    /// What it shows so many clocks after it showed `value`, if nothing happens.
+    /// Its value this many clocks after `value`, if nothing happens.
     #[inline]
     pub(super) fn later(&self, value: u64, clocks: u64) -> u64 {
         match self.counts {
@@ -36,7 +36,7 @@ impl Wire {
         }
     }
 
-    /// Its value in a clock: from the one before its last change on.
+    /// Its value in a clock, which must not lie before the one before its last change.
     #[inline]
     pub(super) fn at(&self, clock: u64) -> u64 {
         if clock < self.since {
@@ -46,7 +46,7 @@ impl Wire {
         }
     }
 
-    /// Gives it a value from this clock on. Returns whether that is a change.
+    /// Sets its value from this clock on. Returns whether that is a change.
     #[inline]
     pub(super) fn set(&mut self, value: u64, clock: u64) -> bool {
         if self.at(clock) == value {

@@ -1,17 +1,18 @@
-//! What the PWM is told: the controller's duty, or in direct mode a manual one, or nothing.
+//! The drive command selects what the PWM gets: the controller's duty, in direct mode a manual one, or 0.
 //!
-//! The datasheet is `docs/drive_command.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/drive_command.md`; the hardware is compared with this reference model.
 //!
-//! - **Normal**: the outputs are the supervisor's, a clock later. A duty of the controller is saturated to 17 bits and taken
-//!   with `controller_valid`; while the PWM is off it is 0.
-//! - **Direct mode**, for bring-up: in READY alone, with `direct_enable`, from a `direct_kick` until as many ticks have come as
-//!   `direct_hold_ticks` said then. All outputs are on; each tick takes `direct_duty`, at most `direct_limit` in size. A sign
-//!   that turns is 0 for a tick; on a limit switch the duty is 0 in its direction, at once.
-//! - `drive_fault_n` is asynchronous: it passes one register that no reset touches, to the synchroniser in the PWM.
-//! - A change between the two, either way, begins with a duty of 0.
-//! - **Self-test** of the PWM: direct mode with `self_test` masks the pins and leaves drive and brake off. Only the PWM runs,
-//!   and the clocks that its gates of leg A are on are counted. A change of `self_test` ends direct mode. The mask stays for
-//!   the first clock in which `pwm_enable` is low again, and that clock there always is.
+//! - **Normal mode**: the outputs are the supervisor's, a clock later. A duty of the controller is saturated to 17
+//!   bits and taken with `controller_valid`; while the PWM is off it is 0.
+//! - **Direct mode**, for bring-up: it is possible in READY only, with `direct_enable`, from a `direct_kick` for as
+//!   many ticks as `direct_hold_ticks` said then. All outputs are on; each tick takes `direct_duty`, with a magnitude
+//!   of at most `direct_limit`. When the sign changes the duty is 0 for a tick; on a limit switch the duty in its
+//!   direction is 0 at once.
+//! - `drive_fault_n` is asynchronous: it passes one register without reset on its way to the synchroniser in the PWM.
+//! - A change between the two modes begins with a duty of 0.
+//! - **Self-test** of the PWM: direct mode with `self_test` masks the pins and leaves drive and brake off. Only the
+//!   PWM runs, and the clocks in which its gates of leg A are on are counted. A change of `self_test` ends direct
+//!   mode. The mask stays for the first clock in which `pwm_enable` is low again, and there is always such a clock.
 //!
 //! ```text
 //! clock           0    1             100  101            200  201
@@ -56,25 +57,25 @@ use super::axis::SupervisorState;
 use super::shaper::wrap;
 use super::{Moore, clocked_block, quiet_at_rest};
 
-/// The controller's duty in the PWM's 17 bits: saturated, never cut.
+/// Saturates the controller's duty to the PWM's 17 bits.
 pub fn saturated(controller_duty: i32) -> i32 {
     (wrap(i64::from(controller_duty), CONTROLLER_DUTY_BITS) as i32).clamp(DUTY_MIN, DUTY_MAX)
 }
 
-/// The manual duty, at most `limit` in size.
+/// The manual duty, with a magnitude of at most `limit`.
 pub fn limited(direct_duty: i32, limit: u16) -> i32 {
     let limit = i32::from(limit);
     (wrap(i64::from(direct_duty), DUTY_BITS) as i32).clamp(-limit, limit)
 }
 
-/// The block, cycle accurate at its ports.
+/// The cycle-accurate model of the drive command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DriveCommand {
-    /// Ticks until direct mode expires; of no meaning outside of it.
+    /// Ticks until direct mode expires; meaningless outside it.
     ticks_left: u16,
-    /// The sign of the last manual duty wanted.
+    /// Whether the last manual duty that was requested is negative.
     backward: bool,
-    /// Clocks of this period that a gate was on: `a_high`, `a_low`.
+    /// Clocks of this period in which a gate was on: `a_high`, `a_low`.
     on_clocks: [u16; 2],
     shown: Outputs,
 }
@@ -96,12 +97,12 @@ impl DriveCommand {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         self.shown
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let shown = self.shown;
@@ -154,7 +155,7 @@ impl DriveCommand {
         shown
     }
 
-    /// Counts the gates while the pins are masked; the results after this clock.
+    /// Counts the gates while the pins are masked, and returns the results after this clock.
     fn count(&mut self, inputs: &Inputs) -> [u16; 2] {
         let results = [self.shown.self_test_high, self.shown.self_test_low];
         if !self.shown.mask_pins {
@@ -169,7 +170,7 @@ impl DriveCommand {
         if inputs.valley { counted } else { results }
     }
 
-    /// The duty after this clock, with direct mode on or off after it.
+    /// The duty after this clock; `direct` says whether direct mode is on after it.
     fn next_duty(&self, inputs: &Inputs, direct: bool) -> i32 {
         let Outputs {
             duty, direct_active, ..

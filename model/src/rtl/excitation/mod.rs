@@ -1,6 +1,7 @@
-//! The excitation: a test signal on the position reference, between shaper and controller, so that it is not shaped.
+//! The excitation adds a test signal to the position reference between shaper and controller, so that it is not
+//! shaped.
 //!
-//! The datasheet is `docs/excitation.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/excitation.md`; the hardware is compared with this reference model.
 //!
 //! ```text
 //! valid ─► position_reference = y_0 + signal        velocity and acceleration: y_1, y_2 as they are
@@ -13,11 +14,11 @@
 //!
 //! | part | what it does |
 //! |---|---|
-//! | [`Excitation`] | start, end, abort; the sum |
-//! | `wave` | angle, frequency, PRBS, and the amplitude times the wave, by one bit per clock |
+//! | [`Excitation`] | start, end and abort of a signal; the sum |
+//! | `wave` | angle, frequency and PRBS; the product of amplitude and wave, one bit per clock |
 //!
-//! A signal starts at a `valid` with `enable`, `allowed`, a kind and a duration, and is added to the `duration_ticks` that
-//! follow. `enable` or `allowed` low ends it at once. Before the next one `enable` must have been low.
+//! A signal starts at a `valid` with `enable`, `allowed`, a kind and a duration, and is added to the `duration_ticks`
+//! samples that follow. `enable` or `allowed` low ends it at once. `enable` must have been low before the next one.
 //!
 //! ```text
 //! clock               0   1     n   n+1          k·n  +1  +2       k = duration_ticks
@@ -55,34 +56,35 @@ use super::{Moore, clocked_block, quiet_at_rest};
 
 /// Clocks from `valid` to `reference_valid`.
 pub const LATENCY_CLOCKS: u32 = 1;
-/// From a `valid` until the signal is ready for the next: advance, fewer than two turns, the step that is none, the scale.
-/// Closer ones change the shape of the signal, never its bound.
+/// Clocks from a `valid` until the next value of the signal is ready: one to advance, fewer than two turns, the step
+/// that finds no more to turn, and the scaling. Samples that come closer change the shape of the signal, but never
+/// exceed its bound.
 pub const TICK_CLOCKS: u32 = 2 * TURN_STEPS + 2 + SCALE_CLOCKS as u32;
 
-/// What is done between two `valid`.
+/// Phase between two `valid`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Phase {
     #[default]
     Rest,
     Advance,
     Turn,
-    /// So many of its clocks are over.
+    /// Scales the value; the number of its clocks that are over.
     Scale(u8),
 }
 
-/// Everything that is a register, but the outputs.
+/// All registers except the outputs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Signal {
     phase: Phase,
     wave: Wave,
-    /// For the next `valid`, Q24.8 counts, 17 bits.
+    /// Value for the next `valid`, Q24.8 counts, 17 bits.
     value: i32,
-    /// Times that it was added, 24 bits.
+    /// Number of samples to which it was added, 24 bits.
     ticks: u32,
 }
 
 impl Signal {
-    /// One clock of a signal that runs. Whether it ends by itself: it is too fast.
+    /// Simulates one clock of a running signal. Returns whether it ends by itself because it is too fast.
     fn clock(&mut self, inputs: &Inputs) -> bool {
         match self.phase {
             Phase::Rest => false,
@@ -110,11 +112,11 @@ impl Signal {
     }
 }
 
-/// The excitation, cycle accurate at its ports.
+/// The cycle-accurate model of the excitation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Excitation {
     signal: Signal,
-    /// `enable` was low since the last signal.
+    /// Whether `enable` was low since the last signal.
     armed: bool,
     shown: Outputs,
 }
@@ -135,12 +137,12 @@ impl Excitation {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         self.shown
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let before = self.shown;
         if inputs.rst {

@@ -3,21 +3,21 @@
 use crate::rtl::ports;
 use crate::rtl::ports::choices;
 
-/// What the signal is.
+/// Kind of the signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ExcitationKind {
-    /// None; 0.
+    /// 0: no signal.
     #[default]
     None,
-    /// A pseudo-random binary sequence, a bit per period; 1.
+    /// 1: a pseudo-random binary sequence, one bit per period.
     Prbs,
-    /// A triangle whose frequency rises; 2.
+    /// 2: a triangle whose frequency rises.
     Chirp,
-    /// A square wave; 3.
+    /// 3: a square wave.
     Square,
 }
 
-/// Width of `duration_ticks`.
+/// Width of `duration_ticks` in bits.
 pub const DURATION_BITS: u32 = 24;
 
 choices!(ExcitationKind: None, Prbs, Chirp, Square);
@@ -37,23 +37,23 @@ ports! {
         y_1: Signed(32) as i32, "counts per tick, Q16.16";
         /// Shaped acceleration, Q8.24 counts per tick².
         y_2: Signed(32) as i32, "counts per tick², Q8.24";
-        /// A host wants the signal.
+        /// The host requests the signal.
         enable: Bit as bool;
         /// The axis is in HOLD or RUN, and nothing is wrong.
         allowed: Bit as bool;
-        /// 0 none, 1 PRBS, 2 chirp (a triangle), 3 square.
+        /// Kind of the signal: 0 none, 1 PRBS, 2 chirp (a triangle), 3 square.
         kind: Bits(2) as ExcitationKind;
-        /// Q8.8 counts: 0 to 255.996.
+        /// Amplitude in Q8.8 counts: 0 to 255.996.
         amplitude: Bits(16) as u16, "counts, Q8.8";
-        /// Largest amplitude, Q8.8 counts; tied, from the machine file.
+        /// Constant from the machine file: largest amplitude in Q8.8 counts.
         amplitude_limit: Bits(16) as u16, "counts, Q8.8";
-        /// Ticks of a PRBS bit, of a square's period, of a chirp's first period.
+        /// Ticks of a PRBS bit, of a square's period, or of a chirp's first period.
         period_ticks: Bits(16) as u16, "ticks";
-        /// Of a chirp: in every tick the frequency rises by so many 65,536ths of the first.
+        /// Rise of a chirp's frequency in every tick, in 65,536ths of the first.
         sweep: Bits(16) as u16;
-        /// Ticks of the signal; 0: it never starts.
+        /// Duration of the signal in ticks; with 0 it never starts.
         duration_ticks: Bits(24) as u32, "ticks";
-        /// The position is modulo 2^32 LSB (a rotary axis); tied.
+        /// Constant; high: the position wraps modulo 2^32 LSB (a rotary axis).
         modulo: Bit as bool;
     }
 
@@ -61,17 +61,17 @@ ports! {
     outputs Outputs {
         /// `y_0` plus the signal, Q24.8 counts.
         position_reference: Signed(32) as i32, "counts, Q24.8";
-        /// `y_1`.
+        /// `y_1`, in the clock of `position_reference`.
         velocity_reference: Signed(32) as i32, "counts per tick, Q16.16";
-        /// `y_2`.
+        /// `y_2`, in the clock of `position_reference`.
         acceleration_reference: Signed(32) as i32, "counts per tick², Q8.24";
         /// One clock: the references are new.
         reference_valid: Bit as bool;
-        /// The signal in `position_reference`, Q24.8 counts; for the trace.
+        /// The signal that is contained in `position_reference`, Q24.8 counts; for the trace.
         excitation_value: Signed(32) as i32, "counts, Q24.8";
-        /// A signal runs.
+        /// A signal is running.
         excitation_active: Bit as bool;
-        /// One clock: it has ended by itself.
+        /// One clock: the signal has ended by itself.
         excitation_done: Bit as bool;
     }
 }

@@ -1,36 +1,36 @@
-//! The wave: an angle that turns once in a period, the bits of the PRBS, and their size.
+//! The wave: an angle that turns once per period, the bits of the PRBS, and their scaling.
 
 use super::ports::{ExcitationKind, Inputs};
 
-/// Fraction bits of the frequency, in first frequencies.
+/// Fraction bits of the frequency, whose unit is the first frequency.
 pub const FREQUENCY_FRACTION: u32 = 16;
-/// Width of the frequency: below 64 first frequencies.
+/// Width of the frequency in bits: it stays below 64 times the first.
 pub const FREQUENCY_BITS: u32 = 22;
 /// Steps of a turn of the angle.
 pub const TURN_STEPS: u32 = 256;
-/// Bits of the PRBS's shift register, x^15 + x^14 + 1.
+/// Number of bits of the PRBS's shift register, x^15 + x^14 + 1.
 pub const PRBS_BITS: u32 = 15;
 
-/// The frequency at first, and that of all kinds but the chirp.
+/// First frequency of a chirp, and the frequency of all other kinds.
 const FIRST_FREQUENCY: u32 = 1 << FREQUENCY_FRACTION;
-/// Fraction bits of what the angle is ahead; a tick adds 256 frequencies to it.
+/// Fraction bits of the amount by which the angle is behind; a tick adds 256 times the frequency to it.
 const AHEAD_FRACTION: u32 = 4;
-/// Width of what the angle is ahead.
+/// Width of that amount in bits.
 const AHEAD_BITS: u32 = 21;
-/// Clocks to scale a value: the last eight are for the bits of the triangle.
+/// Clocks to scale a value; the last eight are for the bits of the triangle.
 pub(super) const SCALE_CLOCKS: u8 = 16;
 
 /// The wave's registers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Wave {
-    /// Of a turn, in 256ths.
+    /// Angle in 256ths of a turn.
     angle: u8,
-    /// Not yet in the angle: periods of 256 steps each, Q17.4.
+    /// Amount by which the angle is behind: periods of 256 steps each, Q17.4.
     ahead: u32,
     frequency: u32,
-    /// The angle has passed a whole turn in this tick.
+    /// Whether the angle has passed a whole turn in this tick.
     turned: bool,
-    /// The PRBS's shift register, every bit inverted: the seed, all ones, is 0 here.
+    /// Shift register of the PRBS with every bit inverted: its seed, all ones, is 0 here.
     noise: u16,
 }
 
@@ -46,12 +46,12 @@ impl Default for Wave {
     }
 }
 
-/// The wave is too fast to go on.
+/// The wave is too fast to continue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct TooFast;
 
 impl Wave {
-    /// A tick begins.
+    /// Begins a tick.
     pub(super) fn advance(&mut self, inputs: &Inputs) -> Result<(), TooFast> {
         self.ahead += self.frequency >> (FREQUENCY_FRACTION - 8 - AHEAD_FRACTION);
         self.ahead &= (1 << AHEAD_BITS) - 1;
@@ -66,14 +66,14 @@ impl Wave {
         }
     }
 
-    /// In every clock: only a chirp keeps its frequency.
+    /// Resets the frequency in every clock, except that of a chirp.
     pub(super) fn keep_frequency(&mut self, kind: ExcitationKind) {
         if kind != ExcitationKind::Chirp {
             self.frequency = FIRST_FREQUENCY;
         }
     }
 
-    /// A step of the angle, if it is ahead by one.
+    /// Turns the angle by one step if it is behind by at least one.
     pub(super) fn turn(&mut self, period_ticks: u16) -> Result<bool, TooFast> {
         let Some(rest) = self.ahead.checked_sub(u32::from(period_ticks) << AHEAD_FRACTION) else {
             return Ok(false);
@@ -97,12 +97,14 @@ impl Wave {
         }
     }
 
-    /// One of the clocks that scale: halves `value` plus or minus the amplitude, or plus nothing, away from 0.
+    /// One of the scaling clocks: halves the sum of `value` and plus or minus the amplitude, or of `value` alone,
+    /// rounded away from 0.
     ///
-    /// The bits of the fraction come lowest first. A square has ones only, and after 16 clocks is exactly the amplitude.
+    /// The bits of the fraction come lowest first. For a square they are all ones, so that after 16 clocks the value
+    /// is exactly the amplitude.
     pub(super) fn scale(&self, value: i32, clock: u8, inputs: &Inputs) -> i32 {
         let quarter = self.angle & 0x3f ^ if self.angle & 0x40 != 0 { 0x3f } else { 0 };
-        // Half a step more, so that the steps around 0 are equal to the others.
+        // Half a step is added, so that the steps around 0 are equal to the others.
         let bits = u16::from(quarter) << 10 | 1 << 9;
         let adds = inputs.kind != ExcitationKind::Chirp || bits >> clock & 1 != 0;
         let amplitude = i32::from(inputs.amplitude.min(inputs.amplitude_limit));
@@ -144,7 +146,7 @@ mod tests {
 
     #[test]
     fn unit_the_triangle_is_straight_and_odd() {
-        // 64 · 256: every step is 256, and half of it at the ends.
+        // With 64 · 256 every step is 256, and half of that at the ends.
         let inputs = Inputs {
             kind: ExcitationKind::Chirp,
             amplitude: u16::MAX,

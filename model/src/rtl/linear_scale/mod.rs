@@ -1,18 +1,19 @@
 //! Relates the counts of a motor's encoder to those of a linear scale.
 //!
-//! The datasheet is `docs/linear_scale.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/linear_scale.md`; the hardware is compared with this reference model.
 //!
-//! | `use_scale` | position, velocity and deviation are in | deviation, since `align` | ratio |
+//! | `use_scale` | unit of position, velocity and deviation | deviation, since `align` | ratio |
 //! |---|---|---|---|
 //! | 1: the loop runs on the scale | scale counts | ratio · motor − scale | [`ScaleRatio::new`] |
-//! | 0: the scale is watched | motor counts | motor − ratio · scale | [`ScaleRatio::for_monitor`] |
+//! | 0: the scale is only compared | motor counts | motor − ratio · scale | [`ScaleRatio::for_monitor`] |
 //!
-//! - Differences since `align` are modulo 2^32, their products exact; each is rounded once, half up, and the deviation
-//!   saturates at 32 bits: no drift, however far and often the axis moves.
-//! - `velocity`, with `use_scale`: ratio · `motor_velocity`, rounded and saturated; without, `motor_velocity`, a clock late.
-//! - One multiplier, a bit per clock, serves both: a pass takes [`PASS_CLOCKS`] and works in the registers of the outputs.
-//!   `deviation` is read from `deviation_valid` to the next tick, `velocity` from the end of its pass to the next
-//!   `velocity_valid`; in between they show bits that come and go.
+//! - Differences since `align` are modulo 2^32, and their products exact; each is rounded once, half up, and the
+//!   deviation saturates at 32 bits. So nothing drifts, however far and often the axis moves.
+//! - `velocity` is with `use_scale` ratio · `motor_velocity`, rounded and saturated; without, it is `motor_velocity`,
+//!   a clock later.
+//! - One multiplier, which takes a bit per clock, serves both: a product takes [`PASS_CLOCKS`] and is computed in the
+//!   registers of the outputs. So read `deviation` from `deviation_valid` to the next tick, and `velocity` from the
+//!   end of its computation to the next `velocity_valid`; in between they show intermediate bits.
 //!
 //! ```text
 //! clock            0   1                 64  65              t   t+1             t+64 t+65
@@ -50,9 +51,10 @@ pub use ratio::{MANTISSA_BITS, RELATIVE_ERROR_MAX, SHIFT_BITS, ScaleRatio, Scale
 use self::ratio::scaled;
 use super::{Moore, clocked_block, quiet_at_rest};
 
-/// Clocks that the multiplier works for one product.
+/// Clocks of the multiplier for one product.
 pub const PASS_CLOCKS: u32 = 64;
-/// Clocks from `tick` to `deviation_valid`, and from `velocity_valid` to a new `velocity`, where the other is not being computed.
+/// Clocks from `tick` to `deviation_valid`, and from `velocity_valid` to a new `velocity`, if the other is not being
+/// computed.
 pub const LATENCY_CLOCKS: u32 = PASS_CLOCKS + 1;
 
 /// Both positions at a tick: the one that is multiplied, and the other one.
@@ -62,38 +64,38 @@ struct Pair {
     other: i32,
 }
 
-/// What the multiplier works on.
+/// A product that is being computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pass {
     of_position: bool,
-    /// Clocks done.
+    /// Number of clocks done.
     done: u32,
-    /// Of all clocks, those that shift the register: the operand leaves, then the result is in.
+    /// Number of clocks that shift the register: first the operand leaves, then the result enters.
     shifts: u32,
-    /// What the register held at the start.
+    /// Contents of the register at the start.
     operand: i32,
     /// The result before saturation.
     exact: i64,
 }
 
-/// Everything that is a register.
+/// All registers.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Registers {
-    /// Positions that are waiting for a pass, or in it.
+    /// Positions that wait for their product, or are in it.
     captured: Option<Pair>,
-    /// A velocity that is waiting for a pass, or in it.
+    /// A velocity that waits for its product, or is in it.
     velocity: Option<i32>,
     pass: Option<Pass>,
     /// Positions at which the deviation is 0.
     reference: Pair,
-    /// An `align` that no pass has begun with yet.
+    /// Whether an `align` waits for the next product of the positions.
     asked: bool,
-    /// The pass of the positions takes them as the reference.
+    /// Whether the present product of the positions takes them as the reference.
     aligning: bool,
     shown: Outputs,
 }
 
-/// The block, cycle accurate at its ports. The three tied inputs stay as they are but in reset.
+/// The cycle-accurate model of the linear scale. The three constant inputs may change only in reset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinearScale {
     registers: Registers,
@@ -113,12 +115,12 @@ impl LinearScale {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         self.registers.shown
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let shown = self.registers.shown;
@@ -161,7 +163,7 @@ impl LinearScale {
 }
 
 impl Registers {
-    /// A clock of the pass, if there is one.
+    /// Simulates a clock of the present product, if there is one.
     fn go_on(&mut self) {
         let Some(pass) = &mut self.pass else {
             return;
@@ -190,7 +192,7 @@ impl Registers {
         self.reference = captured.filter(|_| self.aligning).unwrap_or(self.reference);
     }
 
-    /// The next pass, if anything waits: positions first.
+    /// Begins the next product, if one waits; positions come first.
     fn begin(&mut self, inputs: &Inputs) {
         let shift = u32::from(inputs.ratio_shift);
         let product = |operand| scaled(operand, inputs.ratio_mantissa, shift);
@@ -217,7 +219,7 @@ impl Registers {
 }
 
 impl Pass {
-    /// The register while it shifts down: the operand leaves, zeros follow, then the result's bits.
+    /// Contents of the register while it shifts down: the operand leaves, zeros follow, then the result's bits.
     fn register(&self) -> i32 {
         let bits = i128::from(self.operand as u32) | i128::from(self.exact) << self.shifts;
         (bits >> self.done.min(self.shifts)) as i32

@@ -9,35 +9,36 @@ ports! {
     inputs Inputs {
         /// Synchronous reset.
         rst: Bit as bool;
-        /// One clock: both positions are taken.
+        /// One clock: takes both positions.
         tick: Bit as bool;
-        /// Counts of the motor, live.
+        /// Position of the motor, changing at any time.
         motor_position: Signed(32) as i32, "counts";
-        /// Counts of the scale, live.
+        /// Position of the scale, changing at any time.
         scale_position: Signed(32) as i32, "counts";
         /// Q16.16 counts of the motor per tick.
         motor_velocity: Signed(32) as i32, "counts per tick, Q16.16";
         /// One clock: `motor_velocity` is new.
         velocity_valid: Bit as bool;
-        /// One clock: from now on the deviation is 0.
+        /// One clock: the deviation counts from now on, and is 0 here.
         align: Bit as bool;
-        /// Mantissa of the ratio, of `ScaleRatio`; tied.
+        /// Constant: mantissa of the ratio, from `ScaleRatio`.
         ratio_mantissa: Signed(18) as i32;
-        /// Shift of the ratio, of `ScaleRatio`; tied.
+        /// Constant: shift of the ratio, from `ScaleRatio`.
         ratio_shift: Bits(5) as u8;
-        /// Tied: 1 the position loop runs on the scale, 0 the scale is watched.
+        /// Constant: 1 the position loop runs on the scale, 0 the scale is only compared.
         use_scale: Bit as bool;
     }
 
     /// The output ports, all of them registers.
     outputs Outputs {
-        /// Motor less scale since `align`, counts of the loop. Read it from `deviation_valid` to the next tick.
+        /// Motor minus scale since `align`, in counts of the loop. Read it from `deviation_valid` to the next tick.
         deviation: Signed(32) as i32, "counts";
         /// One clock: `deviation` is that of the last tick.
         deviation_valid: Bit as bool;
-        /// Of the counter that the loop runs on, live, a clock late.
+        /// Position of the counter that the loop runs on, one clock late.
         position: Signed(32) as i32, "counts";
-        /// Q16.16 counts of that counter per tick. Read it from the end of its pass to the next `velocity_valid`.
+        /// Velocity of that counter in Q16.16 counts per tick. Read it from the end of its computation to the next
+        /// `velocity_valid`.
         velocity: Signed(32) as i32, "counts per tick, Q16.16";
     }
 }

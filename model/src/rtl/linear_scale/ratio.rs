@@ -1,8 +1,8 @@
-//! The ratio of two counters, as the hardware has it: an 18-bit mantissa and a right shift.
+//! The ratio of two counters as the hardware represents it: an 18-bit mantissa and a right shift.
 
-/// Width of the mantissa.
+/// Width of the mantissa in bits.
 pub const MANTISSA_BITS: u32 = 18;
-/// Width of the shift.
+/// Width of the shift in bits.
 pub const SHIFT_BITS: u32 = 5;
 /// Largest shift.
 const SHIFT_MAX: u32 = (1 << SHIFT_BITS) - 1;
@@ -29,20 +29,20 @@ pub struct ScaleRatio {
     relative_error: f64,
 }
 
-/// Why two counters cannot be related.
+/// Why the ratio of two counters cannot be represented.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ScaleRatioError {
-    /// No number of counts, or none at all.
+    /// The counts per unit are 0 or not a number.
     #[error(
         "{found} counts per unit of the {counter}: give a number other than 0; it is negative where that counter counts backward"
     )]
     Counts {
-        /// `motor` or `scale`.
+        /// Name of the counter: `motor` or `scale`.
         counter: &'static str,
-        /// What was given.
+        /// Value that was given.
         found: f64,
     },
-    /// A ratio that the hardware does not have.
+    /// The ratio is outside the range of the hardware.
     #[error(
         "{motor} counts per unit of the motor and {scale} of the scale: the ratio is {found}; the hardware has 2^-15 to 131071 \
          in size; choose another resolution of one of them"
@@ -52,28 +52,29 @@ pub enum ScaleRatioError {
         motor: f64,
         /// Counts of the scale per unit.
         scale: f64,
-        /// The ratio.
+        /// The ratio that is needed.
         found: f64,
     },
 }
 
 impl ScaleRatio {
-    /// Scale counts per motor count, for a position loop on the scale: the motor's counts become the scale's.
+    /// Scale counts per motor count, for a position loop on the scale: it converts the motor's counts to the scale's.
     ///
     /// A counter that counts backward has negative counts per unit.
     ///
     /// # Errors
-    /// [`ScaleRatioError`] unless both are finite and not 0, and the ratio is 2^−15 to 131,071 in size. Then the relative
-    /// error is at most 2^−17.
+    /// [`ScaleRatioError`] unless both are finite and not 0, and the magnitude of the ratio is 2^−15 to 131,071. The
+    /// relative error is then at most 2^−17.
     pub fn new(motor_counts_per_unit: f64, scale_counts_per_unit: f64) -> Result<Self, ScaleRatioError> {
         let (motor, scale) = (motor_counts_per_unit, scale_counts_per_unit);
         Self::of(motor, scale, scale / motor)
     }
 
-    /// Motor counts per scale count, for a scale that is only watched: the scale's counts become the motor's.
+    /// Motor counts per scale count, for a scale that is only compared: it converts the scale's counts to the
+    /// motor's.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Those of [`Self::new`].
     pub fn for_monitor(motor_counts_per_unit: f64, scale_counts_per_unit: f64) -> Result<Self, ScaleRatioError> {
         let (motor, scale) = (motor_counts_per_unit, scale_counts_per_unit);
         Self::of(motor, scale, motor / scale)
@@ -85,7 +86,7 @@ impl ScaleRatio {
                 return Err(ScaleRatioError::Counts { counter, found });
             }
         }
-        // The largest shift that fits keeps most bits.
+        // The largest shift that fits keeps the most bits.
         let fitting = (0..=SHIFT_MAX).rev().find_map(|shift| {
             let mantissa = (ratio * f64::from(1u32 << shift)).round();
             (mantissa.abs() <= MANTISSA_MAX).then_some((mantissa, shift))
@@ -97,7 +98,7 @@ impl ScaleRatio {
         };
         let (mantissa, shift) = fitting.ok_or(range)?;
         let relative_error = ((mantissa / f64::from(1u32 << shift)) / ratio - 1.0).abs();
-        // Not a number where the ratio itself is 0 or none.
+        // The error is NaN where the ratio itself is 0 or not a number.
         if relative_error.is_nan() || relative_error > RELATIVE_ERROR_MAX {
             return Err(range);
         }
@@ -108,28 +109,28 @@ impl ScaleRatio {
         })
     }
 
-    /// To tie `ratio_mantissa` to.
+    /// Value for `ratio_mantissa`.
     pub fn mantissa(&self) -> i32 {
         self.mantissa
     }
 
-    /// To tie `ratio_shift` to.
+    /// Value for `ratio_shift`.
     pub fn shift(&self) -> u32 {
         self.shift
     }
 
-    /// The ratio that the hardware has.
+    /// The ratio that the hardware uses.
     pub fn value(&self) -> f64 {
         f64::from(self.mantissa) / f64::from(1u32 << self.shift)
     }
 
-    /// What rounding the mantissa changed, relative to the ratio: 0 to 2^−17. Times the travel in counts, it is the deviation
-    /// that a machine without any would show.
+    /// Relative error by rounding the mantissa: 0 to 2^−17. Multiplied by the travel in counts, it is the deviation
+    /// that an ideal machine would show.
     pub fn relative_error(&self) -> f64 {
         self.relative_error
     }
 
-    /// A number of counts, converted: exact product, rounded half up once.
+    /// Converts a number of counts: an exact product, rounded half up once.
     pub fn apply(&self, counts: i32) -> i64 {
         scaled(counts, self.mantissa, self.shift)
     }

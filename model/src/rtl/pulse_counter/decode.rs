@@ -1,8 +1,8 @@
-//! Levels of this clock and of the one before to steps.
+//! Decodes the levels of this clock and of the one before into steps.
 
 use super::ports::Inputs;
 
-/// What a clock brings.
+/// Result of decoding a clock.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Event {
     pub(super) step: bool,
@@ -10,7 +10,7 @@ pub(super) struct Event {
     pub(super) illegal: bool,
 }
 
-/// `levels` and `before` are A and B.
+/// Decodes a clock; `levels` and `before` are A and B.
 pub(super) fn decode(inputs: &Inputs, levels: [bool; 2], before: [bool; 2]) -> Event {
     let ordered = |[a, b]: [bool; 2]| if inputs.swap { [b, a] } else { [a, b] };
     let ([a, b], [a_before, b_before]) = (ordered(levels), ordered(before));

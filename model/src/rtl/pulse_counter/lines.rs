@@ -1,13 +1,14 @@
-//! A line from its pins to a clean level.
+//! Synchronises and filters a line from its pins.
 
 use super::ports::Inputs;
 use crate::rtl::FOREVER;
 
-/// Takes a new level once it has stood for more than `filter_clocks` clocks.
+/// Takes a new level once it has lasted for more than `filter_clocks` clocks.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(in crate::rtl) struct GlitchFilter {
     level: bool,
-    /// Clocks that the input must differ from the level until it passes; `filter_clocks` as of the clock before it differed.
+    /// Clocks that the input must still differ from the level to pass; it starts from `filter_clocks` of the clock
+    /// before it differed.
     left: u8,
 }
 
@@ -16,7 +17,7 @@ impl GlitchFilter {
         self.level
     }
 
-    /// One clock. Until `ready`, the level follows the input.
+    /// Simulates one clock. Until `ready`, the level follows the input.
     pub(in crate::rtl) fn clock(&mut self, input: bool, filter_clocks: u8, ready: bool) {
         let passes = !ready || self.left == 0;
         if input != self.level && !passes {
@@ -27,7 +28,7 @@ impl GlitchFilter {
         self.left = filter_clocks & 63;
     }
 
-    /// Clocks with this input that only count, if it is ready.
+    /// Number of clocks with this input, if ready, in which the filter only counts.
     pub(super) fn quiet_clocks(&self, input: bool, filter_clocks: u8) -> u64 {
         match input == self.level {
             false => self.left.into(),
@@ -43,7 +44,7 @@ impl GlitchFilter {
     }
 }
 
-/// One line: pin and complement through two flip-flops each, then the filter.
+/// One line: pin and complement with two flip-flops each, and the filter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Line {
     pin: [bool; 2],
@@ -56,7 +57,7 @@ impl Line {
         self.filter.level()
     }
 
-    /// A pair whose two lines are equal says nothing.
+    /// Whether the two lines of a differential pair are equal, which is invalid.
     pub(super) fn disagrees(&self, differential: bool) -> bool {
         differential && self.pin[1] == self.complement[1]
     }

@@ -1,16 +1,16 @@
-//! The pulse counter: encoder or scale signals to position, index and velocity.
+//! The pulse counter turns the signals of an encoder or scale into position, index and velocity.
 //!
-//! The datasheet is `docs/pulse_counter.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/pulse_counter.md`; the hardware is compared with this reference model.
 //!
 //! | part | what it does |
 //! |---|---|
 //! | `lines` | synchronises and filters A, B and Z; compares differential pairs |
 //! | `decode` | levels to steps: quadrature ×4 ×2 ×1, step and direction, up and down |
 //! | [`PulseCounter`] | the count, which never jumps; `origin`; the index latch |
-//! | `velocity` | M/T: which steps in which time, for the divider; its quotient, bounded and smoothed |
+//! | `velocity` | M/T: selects steps and time for the divider; bounds and smooths its quotient |
 //!
-//! [`PulseCounter::step`] is one clock; [`PulseCounter::hold`] is many with the same inputs, and jumps over those that change
-//! nothing but the time.
+//! [`PulseCounter::step`] simulates one clock; [`PulseCounter::hold`] simulates many with the same inputs, and skips
+//! those that change nothing but the time.
 //!
 //! ```
 //! use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
@@ -38,10 +38,11 @@ use self::lines::Line;
 use self::velocity::Velocity;
 use super::{Moore, clocked_block};
 
-/// Clocks after a reset until levels count as known: two of the synchroniser, the filter's, the decoder's.
+/// Clocks after a reset until levels count as known: two for the synchroniser, one for the filter, one for the
+/// decoder.
 pub const PRIMING_CLOCKS: u32 = 4;
 
-/// Everything that is a register.
+/// All registers.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct State {
     lines: [Line; 3],
@@ -52,7 +53,7 @@ struct State {
     index_before: bool,
     count: i32,
     origin: i32,
-    /// A preset in the clock before: the origin moves in this one.
+    /// Whether there was a preset in the clock before, so that the origin moves in this one.
     presets: bool,
     index_count: i32,
     index_seen: bool,
@@ -64,9 +65,9 @@ struct State {
 }
 
 impl State {
-    /// Whether nothing but the time tells the two apart.
+    /// Whether the two states are equal except for the time.
     fn is_but_for_time(&self, other: &Self) -> bool {
-        // Mostly the lines differ or the velocity: those first.
+        // If they differ, it is mostly in the lines or the velocity, so those are compared first.
         self.lines == other.lines
             && self.velocity.is_but_for_time(&other.velocity)
             && Self {
@@ -79,7 +80,7 @@ impl State {
         self.lines.iter().any(|line| line.disagrees(inputs.differential))
     }
 
-    /// Clocks with these inputs in which only filters and the time count.
+    /// Number of clocks with these inputs in which only filters and the time count.
     fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
         let [level_a, level_b, index_level] = [0, 1, 2].map(|line: usize| self.lines[line].level());
         let levels = [level_a, level_b];
@@ -100,7 +101,7 @@ impl State {
         of_lines.fold(of_filter, u64::min)
     }
 
-    /// So many of them. `inputs` are those of the last.
+    /// Advances by this many such clocks. `inputs` are those of the last.
     fn pass(&mut self, inputs: &Inputs, clocks: u64) {
         let disagree = self.disagree(inputs);
         self.disagreement_filter.pass(disagree, clocks);
@@ -111,12 +112,12 @@ impl State {
     }
 }
 
-/// The time stamp so many clocks after that of `inputs`.
+/// The time stamp this many clocks after that of `inputs`.
 fn time_after(inputs: &Inputs, clocks: u64) -> u32 {
     inputs.time_stamp.wrapping_add(clocks as u32)
 }
 
-/// The pulse counter, cycle accurate at its ports.
+/// The cycle-accurate model of the pulse counter.
 pub struct PulseCounter {
     state: State,
 }
@@ -135,7 +136,7 @@ impl PulseCounter {
         }
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         let state = &self.state;
         let [level_a, level_b, level_z] = [0, 1, 2].map(|line: usize| state.lines[line].level());
@@ -161,15 +162,15 @@ impl PulseCounter {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();
         self.clock(inputs);
         outputs
     }
 
-    /// So many clocks with the same inputs, but for the time stamp, which counts on. Once a clock has changed nothing but the
-    /// time, the rest is one jump.
+    /// Simulates this many clocks with the same inputs, except that the time stamp counts. Once a clock has changed
+    /// nothing but the time, it jumps over the rest.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
         let mut now = *inputs;
         for clock in 0..clocks {
@@ -258,7 +259,8 @@ impl Moore for PulseCounter {
         }
     }
 
-    /// The time stamp counts when something happens, and in the clock before: it is among the inputs of the last clock.
+    /// The time stamp matters when something happens, and in the clock before, which the inputs of the last clock
+    /// include.
     fn ignores(&self, input: &str) -> bool {
         matches!(input, "time_stamp" | "quotient" | "preset_value")
     }

@@ -6,12 +6,12 @@ use crate::rtl::ports;
 pub const FILTER_CLOCKS_MAX: u32 = 63;
 
 impl Inputs {
-    /// Pin and complement of A, B and Z.
+    /// Pins and complements of A, B and Z.
     pub(super) fn pins(&self) -> [(bool, bool); 3] {
         [(self.a, self.a_n), (self.b, self.b_n), (self.z, self.z_n)]
     }
 
-    /// Whether the filtered levels of A and B let an index through.
+    /// Whether the filtered levels of A and B allow an index.
     pub(super) fn index_gate_open(&self, [a, b]: [bool; 2]) -> bool {
         let bit = |place: u32| self.index_gate >> place & 1 != 0;
         (!bit(0) || a == bit(1)) && (!bit(2) || b == bit(3))
@@ -25,11 +25,11 @@ ports! {
     inputs Inputs {
         /// Synchronous reset.
         rst: Bit as bool;
-        /// Line A, or step, or up; any time.
+        /// Line A, or step, or up; asynchronous.
         a: Bit as bool;
-        /// Line B, or direction (high is up), or down; any time.
+        /// Line B, or direction (high is up), or down; asynchronous.
         b: Bit as bool;
-        /// Index line; any time.
+        /// Index line; asynchronous.
         z: Bit as bool;
         /// Complement of A, used if `differential`.
         a_n: Bit as bool;
@@ -37,83 +37,83 @@ ports! {
         b_n: Bit as bool;
         /// Complement of Z, used if `differential`.
         z_n: Bit as bool;
-        /// The lines are pairs.
+        /// The lines are differential pairs.
         differential: Bit as bool;
-        /// Pulses of up to so many clocks are ignored.
+        /// Pulses of up to this many clocks are ignored.
         filter_clocks: Bits(6) as u8, "clocks";
-        /// 0 quadrature ×4, 1 ×2, 2 ×1, 3 step and direction, 4 up and down, else none; 3 bits.
+        /// 0 quadrature ×4, 1 ×2, 2 ×1, 3 step and direction, 4 up and down, 5 to 7 nothing counts.
         mode: Bits(3) as u8;
         /// Exchanges A and B.
         swap: Bit as bool;
         /// Reverses the direction.
         invert: Bit as bool;
-        /// One clock: latch the next index.
+        /// One clock: latches the next index.
         index_arm: Bit as bool;
-        /// Latch every index.
+        /// Latches every index.
         index_always: Bit as bool;
-        /// A latched index also presets.
+        /// A latched index also presets the position.
         index_presets: Bit as bool;
-        /// Bit 0: only while A is as bit 1; bit 2: only while B is as bit 3.
+        /// Bit 0: an index counts only while A equals bit 1; bit 2: only while B equals bit 3.
         index_gate: Bits(4) as u8;
-        /// One clock: the position becomes `preset_value`, shown 2 clocks later; 0 clears it.
+        /// One clock: the position becomes `preset_value`, visible 2 clocks later; with 0 it is cleared.
         preset: Bit as bool;
-        /// What a preset makes of the position; read in the clock after it.
+        /// Position after a preset; read in the clock after `preset`.
         preset_value: Signed(32) as i32, "counts";
         /// Clears `illegal`, `illegal_count`, `disagreement`, `velocity_missed`.
         clear_flags: Bit as bool;
         /// One clock: the sample tick.
         tick: Bit as bool;
-        /// The stage's clock counter, lowest 24 bits.
+        /// Lowest 24 bits of the stage's clock counter.
         time_stamp: Bits(24) as u32, "clocks";
-        /// Velocity by M alone: counts per tick.
+        /// Velocity by method M alone: counts per tick.
         velocity_m: Bit as bool;
-        /// K of the one-pole filter with coefficient 2^−k, 0 to 3.
+        /// Exponent k of the one-pole filter with coefficient 2^−k, 0 to 3.
         smoothing: Bits(2) as u8;
-        /// Without an edge for so many times 65,536 clocks, the velocity is 0.
+        /// Time without an edge after which the velocity is 0, in units of 65,536 clocks.
         timeout: Bits(8) as u8;
         /// One clock: `quotient` is that of `steps` and `elapsed`.
         quotient_valid: Bit as bool;
-        /// From the divider, Q16.16 counts per tick.
+        /// Quotient of the divider, Q16.16 counts per tick.
         quotient: Signed(32) as i32, "counts per tick, Q16.16";
     }
 
     /// The output ports. `position` is a difference of registers, all others are registers.
     outputs Outputs {
-        /// Steps since reset, modulo 2^32; never jumps.
+        /// Steps since reset, modulo 2^32; a preset does not change it.
         count: Signed(32) as i32, "counts";
-        /// The count at which the position is 0.
+        /// Count at which the position is 0.
         origin: Signed(32) as i32, "counts";
-        /// `count − origin`.
+        /// Position, `count − origin`.
         position: Signed(32) as i32, "counts";
-        /// The count at the index.
+        /// Count at the last latched index.
         index_count: Signed(32) as i32, "counts";
-        /// One clock, the one in which `index_count` is new: an index was latched.
+        /// One clock, in which `index_count` is new: an index was latched.
         index_seen: Bit as bool;
         /// The next index will be latched.
         index_armed: Bit as bool;
-        /// Transitions in which A and B changed together; stops at 255.
+        /// Number of transitions in which A and B changed together; stops at 255.
         illegal_count: Bits(8) as u8;
-        /// Sticky: there was one.
+        /// Sticky: there was such a transition.
         illegal: Bit as bool;
-        /// Sticky: a pair was equal for longer than the filter.
+        /// Sticky: the lines of a differential pair were equal for longer than the filter.
         disagreement: Bit as bool;
-        /// Filtered A.
+        /// Filtered level of A.
         level_a: Bit as bool;
-        /// Filtered B.
+        /// Filtered level of B.
         level_b: Bit as bool;
-        /// Filtered Z.
+        /// Filtered level of Z.
         level_z: Bit as bool;
-        /// For the divider: counts.
+        /// Dividend for the divider: counts.
         steps: Signed(18) as i32, "counts";
-        /// For the divider: clocks; 0 is one tick.
+        /// Divisor for the divider: clocks; 0 stands for one tick.
         elapsed: Bits(24) as u32, "clocks";
         /// A tick waits for its quotient.
         velocity_pending: Bit as bool;
-        /// Q16.16 counts per tick.
+        /// Velocity in counts per tick, Q16.16.
         velocity: Signed(32) as i32, "counts per tick, Q16.16";
         /// One clock: `velocity` is that of the last tick.
         velocity_valid: Bit as bool;
-        /// Sticky: a tick came while one waited.
+        /// Sticky: a tick came while another one waited for its quotient.
         velocity_missed: Bit as bool;
     }
 }

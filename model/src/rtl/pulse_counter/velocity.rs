@@ -1,4 +1,4 @@
-//! Velocity by M/T: the steps of a tick over the time between the last edges before successive ticks.
+//! Velocity by M/T: the steps of a tick divided by the time between the last edges before successive ticks.
 
 use super::ports::Inputs;
 use crate::rtl::divider::{ELAPSED_BITS, STEP_BITS};
@@ -6,46 +6,48 @@ use crate::rtl::shaper::wrap;
 
 /// Fraction bits of the smoothed velocity beyond those of Q16.16.
 pub const SMOOTHING_BITS: u32 = 3;
-/// What the smoothed velocity has more, so that cutting its extra bits rounds: it then settles on its input exactly.
+/// Offset of the smoothed velocity, so that truncating its extra bits rounds: it then settles exactly on its input.
 const ROUNDING: i64 = (1 << (SMOOTHING_BITS - 1)) - 1;
-/// Bits of a time stamp that are kept of the last edge: a tick later it is less than half of that ago.
+/// Number of bits of the last edge's time stamp that are kept: at the next tick it is less than half of that range
+/// ago.
 const LAST_STAMP_BITS: u32 = 19;
 
-/// The lowest bits of a time stamp.
+/// The lowest bits of a time stamp, as many as are kept.
 fn low_stamp(time_stamp: u32) -> u32 {
     time_stamp & ((1 << LAST_STAMP_BITS) - 1)
 }
 
-/// What the quotient is.
+/// Meaning of the quotient.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Job {
     /// A measured velocity.
     #[default]
     Measured,
-    /// One count in the time since the last edge: the velocity is no larger.
+    /// One count in the time since the last edge: an upper bound of the velocity.
     Bound,
-    /// Nothing: the velocity is 0.
+    /// No quotient is used: the velocity is 0.
     Halt,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Velocity {
-    /// Of the last edge; without one since the last tick, of the clock before: [`LAST_STAMP_BITS`].
+    /// Time stamp ([`LAST_STAMP_BITS`]) of the last edge; without an edge since the last tick, that of the clock
+    /// before.
     last_stamp: u32,
     last_up: bool,
-    /// Of the last edge before the last tick, if `known`.
+    /// Time stamp of the last edge before the last tick, valid if `known`.
     reference_stamp: u32,
     known: bool,
-    /// An edge since the last tick, or one against the edge before it.
+    /// Whether there was an edge since the last tick, or one against the direction of the edge before it.
     moved: bool,
     turned: bool,
-    /// The count at the last tick.
+    /// Count at the last tick.
     captured: i32,
     job: Job,
     steps: i32,
     elapsed: u32,
     pending: bool,
-    /// Q16.19 and [`ROUNDING`].
+    /// Smoothed velocity, Q16.19, plus [`ROUNDING`].
     smoothed: i64,
     valid: bool,
     missed: bool,
@@ -97,8 +99,8 @@ impl Velocity {
         self.missed
     }
 
-    /// One clock with a step up or down or none. `count` is that before the step: a step belongs to the tick after it, or,
-    /// in the clock of a tick, to the next.
+    /// Simulates one clock with a step up or down, or none. `count` is that before the step: a step belongs to the
+    /// tick after it; one in the clock of a tick belongs to the next tick.
     pub(super) fn clock(&mut self, inputs: &Inputs, step: Option<bool>, count: i32) {
         let resolved = self.pending && inputs.quotient_valid;
         self.valid = resolved;
@@ -126,7 +128,7 @@ impl Velocity {
         }
     }
 
-    /// Whether nothing but the time tells the two apart.
+    /// Whether the two states are equal except for the time.
     pub(super) fn is_but_for_time(&self, other: &Self) -> bool {
         let last_stamp = if self.moved { self.last_stamp } else { other.last_stamp };
         Self {
@@ -135,14 +137,14 @@ impl Velocity {
         } == *other
     }
 
-    /// Clocks without tick, edge or quotient up to the one of this time stamp.
+    /// Advances through clocks without tick, edge or quotient, up to the clock with this time stamp.
     pub(super) fn pass_time(&mut self, time_stamp: u32) {
         if !self.moved {
             self.last_stamp = low_stamp(time_stamp);
         }
     }
 
-    /// The last edge's time stamp: its high bits are those of now, or one less if a carry came since.
+    /// The last edge's complete time stamp: its high bits are those of now, or one less if there was a carry since.
     fn whole_last_stamp(&self, now: u32) -> u32 {
         let top = 1 << (LAST_STAMP_BITS - 1);
         let carried = self.last_stamp & top != 0 && now & top == 0;
@@ -177,7 +179,7 @@ impl Velocity {
         self.pending = true;
     }
 
-    /// Takes the quotient: `smoothed += (quotient − smoothed) · 2^−k`, halves up.
+    /// Takes the quotient: `smoothed += (quotient − smoothed) · 2^−k`, rounded half up.
     fn resolve(&mut self, inputs: &Inputs) {
         let target = (i64::from(inputs.quotient) << SMOOTHING_BITS) + ROUNDING;
         let difference = target - self.smoothed;

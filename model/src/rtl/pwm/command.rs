@@ -1,23 +1,25 @@
-//! From a duty to the pattern and the edges of a half period, with one adder.
+//! Computes the pattern and the edges of a half period from a duty, with one adder.
 //!
-//! The accumulator holds four times the clocks from the edge and counts them, so that its sign is the level. In the 16 clocks
-//! before a boundary it computes the next half's instead. The table of steps is in `posicast_hdl::pwm`'s `command`.
+//! The accumulator holds four times the number of clocks from the edge and counts them, so that its sign is the
+//! level. In the 16 clocks before a boundary it computes the values of the next half instead. The table of steps is
+//! in `posicast_hdl::pwm`'s `command`.
 
 use super::ports::{BridgeMode, Inputs};
 
 /// The step in which a valley's command is read; a peak's is read in step 0.
 const READ_STEP: u8 = 16;
-/// The last one: the boundary is the next clock.
+/// The last step: the boundary is in the next clock.
 const LAST_STEP: u8 = 31;
-/// Where a peak without a command takes the dead time from the count, and makes up for the clocks that are missing.
+/// Step in which a peak without a command takes the dead time from the count, and makes up for the clocks that are
+/// missing.
 const RESUME_STEP: u8 = 27;
 
 /// Bits of the accumulator.
 const BITS: u32 = 19;
-/// What it counts in a clock: four times a clock.
+/// Amount by which it counts in a clock: four per clock.
 const COUNT: i32 = 4;
 
-/// What is in use, and where the carrier is.
+/// Settings in use, and position of the carrier.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surroundings {
     pub(super) period: i32,
@@ -29,18 +31,18 @@ pub(super) struct Surroundings {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Command {
-    /// Clocks since the lead, 16 more at a peak; 0 between the boundaries.
+    /// Clocks since the lead, plus 16 at a peak; 0 between the boundaries.
     pub(super) step: u8,
-    /// The accumulator computes, or what is left of it counts.
+    /// Whether the accumulator is computing, or counts what remains of its result.
     pub(super) works: bool,
-    /// Which computation, 1 to 15; 0 is none.
+    /// Number of the computation, 1 to 15; 0 is none.
     slot: u8,
-    /// The half that is computed, and then counted, has the rise.
+    /// Whether the half that is computed, and then counted, has the rising edge.
     pub(super) rises: bool,
     takes: bool,
     pub(super) mode: BridgeMode,
     duty: i32,
-    /// 19 bits.
+    /// The accumulator, of 19 bits.
     pub(super) accumulator: i32,
     early: u8,
     pub(super) level: bool,
@@ -49,16 +51,16 @@ pub(super) struct Command {
     pub(super) too_long: bool,
 }
 
-/// What a step adds, and what becomes of the sum.
+/// What happens to the sum of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fate {
     Kept,
-    /// Only its sign is looked at.
+    /// Only the sign of the sum is used.
     Seen,
 }
 
 impl Command {
-    /// A boundary comes with this clock.
+    /// Whether a boundary comes with this clock.
     pub(super) fn ends(&self) -> bool {
         self.step == LAST_STEP
     }
@@ -136,14 +138,14 @@ impl Command {
         };
     }
 
-    /// So many clocks in which it only counts.
+    /// Advances by this many clocks in which it only counts.
     #[inline]
     pub(super) fn count(&mut self, clocks: u16) {
         let steps = i32::from(clocks) * COUNT;
         self.accumulator += if self.rises { steps } else { -steps };
     }
 
-    /// Clocks that only count for which the level stays.
+    /// Number of clocks that only count and in which the level stays.
     pub(super) fn same_level(&self) -> u16 {
         let from_least = self.accumulator + (1 << (BITS - 1));
         let left = match (self.rises, self.accumulator < 0) {
@@ -159,7 +161,7 @@ impl Command {
         self.mode == BridgeMode::HalfBridge && self.duty < 0
     }
 
-    /// The duty, limited; its size where the mode has no use for the sign.
+    /// The limited duty; its magnitude where the mode does not use the sign.
     fn limited_duty(&self, inputs: &Inputs) -> i32 {
         let size = if self.limited {
             i32::from(inputs.max_duty)

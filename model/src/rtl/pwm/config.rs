@@ -1,9 +1,10 @@
-//! What is fixed when a PWM is built: polarities, the floors that no register can undercut, and whether it waits for a time base.
+//! Build parameters of a PWM: polarities, lower limits that no register can undercut, and whether it waits for a time
+//! base.
 
-/// Width of the dead time and of the minimum pulse.
+/// Width of the dead time and of the minimum pulse in bits.
 pub const TIME_BITS: u32 = 10;
 
-/// What is fixed when a PWM is built.
+/// Build parameters of a PWM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PwmConfig {
     active_low: ActiveLow,
@@ -12,29 +13,29 @@ pub struct PwmConfig {
     on_time_base: bool,
 }
 
-/// Which pins are on at a low level. Such a pin is off at a high level: the off level follows from the polarity, so that a
-/// gate that is off never conducts.
+/// The pins that are active low. Such a pin is off at a high level: the off level follows from the polarity, so that
+/// a gate that is off never conducts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ActiveLow {
-    /// High side of leg A; the PWM of mode `direction`.
+    /// High side of leg A; in mode `direction` the PWM.
     pub a_high: bool,
     /// Low side of leg A.
     pub a_low: bool,
-    /// High side of leg B; the direction of mode `direction`.
+    /// High side of leg B; in mode `direction` the direction.
     pub b_high: bool,
     /// Low side of leg B.
     pub b_low: bool,
 }
 
-/// Why no PWM can be built.
+/// Why a PWM cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum PwmConfigError {
-    /// No dead time at all, or one that the register does not hold.
+    /// The dead time is 0, or the register does not hold it.
     #[error(
         "a dead time of at least {0} clocks: 1 to 1023 are allowed; take the driver's dead time, rounded up to whole clocks"
     )]
     DeadTime(u64),
-    /// No minimum pulse at all, or one that the register does not hold.
+    /// The minimum pulse is 0, or the register does not hold it.
     #[error(
         "a minimum pulse of at least {0} clocks: 1 to 1023 are allowed; take the shortest pulse that the driver passes on, \
          or 1 if there is none"
@@ -43,7 +44,7 @@ pub enum PwmConfigError {
 }
 
 impl PwmConfig {
-    /// A PWM whose dead time and minimum pulse never go below these, in clocks.
+    /// A PWM whose dead time and minimum pulse never go below these values in clocks.
     ///
     /// # Errors
     /// [`PwmConfigError`] unless both are 1 to 1023.
@@ -67,8 +68,8 @@ impl PwmConfig {
         })
     }
 
-    /// With a time base on `sync`: it does not start before a `sync` has found it in phase. Without, one that has not seen
-    /// any `sync` since its reset starts as it is.
+    /// Makes the PWM wait for a time base at `sync`: it does not start before a `sync` has found it in phase.
+    /// Otherwise a PWM that has not seen a `sync` since its reset starts as it is.
     #[must_use]
     pub fn on_time_base(self) -> Self {
         Self {
@@ -82,7 +83,7 @@ impl PwmConfig {
         self.on_time_base
     }
 
-    /// Which pins are on at a low level.
+    /// The pins that are active low.
     pub fn active_low(&self) -> ActiveLow {
         self.active_low
     }

@@ -1,9 +1,9 @@
-//! The leg: what stands between the carrier and the gates, clock by clock.
+//! The leg stands between the carrier and the gates, and is simulated clock by clock.
 //!
-//! Whatever it is told, and from whatever state: never are both sides on; between one side's off and the other's on there is
-//! the dead time; a side that is on stays on for the minimum pulse, unless all goes off.
+//! For any command, and from any state: both sides are never on together; between one side's off and the other's on
+//! there is the dead time; a side that is on stays on for the minimum pulse, unless everything is switched off.
 
-/// What the carrier wants of the leg: nothing, or one side on.
+/// Command of the carrier to the leg: nothing, or one side on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Want {
     #[default]
@@ -14,13 +14,13 @@ pub(super) enum Want {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Leg {
-    /// A side has been on since all was off.
+    /// Whether a side has been on since everything was off.
     awake: bool,
-    /// `side` is on, not yet to be.
+    /// Whether `side` is on, as opposed to waiting to be on.
     lit: bool,
-    /// The high side, else the low side.
+    /// Whether the side is the high one.
     high: bool,
-    /// Clocks of dead time or minimum pulse that are left.
+    /// Remaining clocks of dead time or minimum pulse.
     pub(super) timer: u16,
 }
 
@@ -29,17 +29,18 @@ impl Leg {
         self.awake
     }
 
-    /// High side on, low side on.
+    /// Whether the high side is on, and whether the low side is on.
     pub(super) fn sides(&self) -> (bool, bool) {
         (self.lit && self.high, self.lit && !self.high)
     }
 
-    /// Whether the other leg of a bridge may take over: all is off, or the low side is on.
+    /// Whether the other leg of a bridge may take over: everything is off, or the low side is on.
     pub(super) fn may_turn(&self) -> bool {
         !self.awake || (self.lit && !self.high)
     }
 
-    /// `low_first`: after all was off, the low side comes first, whatever is wanted by then.
+    /// Simulates one clock. `low_first`: after everything was off, the low side comes on first, whatever is commanded
+    /// by then.
     #[inline]
     pub(super) fn clock(&mut self, want: Want, low_first: bool, dead_time: u16, minimum_pulse: u16) {
         let wants_high = want == Want::High;

@@ -1,18 +1,19 @@
-//! The PWM: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.
+//! The PWM turns a duty into the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.
 //!
-//! The datasheet is `docs/pwm.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/pwm.md`; the hardware is compared with this reference model.
 //!
 //! | part | what it does |
 //! |---|---|
-//! | [`PwmConfig`] | polarities and floors, fixed when the PWM is built |
-//! | `command` | duty and mode to pattern and edges, in the 16 clocks before a boundary; then the clocks to an edge |
+//! | [`PwmConfig`] | the build parameters: polarities and lower limits |
+//! | `command` | computes pattern and edges from duty and mode in the 16 clocks before a boundary, then counts the clocks to an edge |
 //! | [`Pwm`] | the carrier, what is latched at its boundaries, and the ports |
 //! | `leg` | dead time and minimum pulse, from any state |
 //! | `quiet` | the clocks in which only the carrier and a timer count |
 //! | `trip` | fault latch, filtered faults, PLL, watchdog |
 //! | [`pulses`] | the pin rule as a pure function: the edges of half a period, without clocks |
 //!
-//! [`Pwm::step`] is one clock; [`Pwm::hold`] is many with the same inputs, and goes from event to event.
+//! [`Pwm::step`] simulates one clock; [`Pwm::hold`] simulates many with the same inputs, and goes from event to
+//! event.
 //!
 //! ```
 //! use posicast_model::rtl::pwm::{ActiveLow, Inputs, Pwm, PwmConfig};
@@ -56,17 +57,17 @@ use super::clocked_block;
 /// Clocks before a boundary at which duty and mode are read.
 pub const COMMAND_CLOCKS: u32 = 15;
 
-/// The shortest period with both boundaries, in clocks. Below, a period has no peak; below the half of it, it lasts 65,536
-/// clocks longer.
+/// The shortest period with both boundaries, in clocks. A shorter period has no peak; one shorter than half of this
+/// lasts 65,536 clocks longer.
 pub const SHORTEST_PERIOD_CLOCKS: u32 = 64;
 
-/// Clocks from a valley's lead to the valley; half of them from a peak's.
+/// Clocks from a valley's lead to the valley; a peak's lead is half as long.
 const LEAD_CLOCKS: u16 = 32;
 
-/// What the leg does until the next boundary.
+/// Pattern of the leg until the next boundary.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Pattern {
-    /// All is off.
+    /// Both sides are off.
     #[default]
     Off,
     /// The low side is on.
@@ -77,7 +78,7 @@ enum Pattern {
     Pulse,
 }
 
-/// Everything that is a register.
+/// All registers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct State {
     position: u16,
@@ -85,25 +86,26 @@ struct State {
     dead_time: u16,
     minimum_pulse: u16,
     command: Command,
-    /// Latched at the last boundary with an update.
+    /// Mode, latched at the last boundary with an update.
     mode: BridgeMode,
     negative: bool,
     pattern: Pattern,
     leg: Leg,
     gates: Gates,
     running: bool,
-    /// The times in use stood at the inputs ever since the command is computed.
+    /// Whether the times in use have been at the inputs ever since the command is computed.
     stable: bool,
     /// `sync` of the clock before.
     synced: bool,
-    /// Out of phase as far as it is known: a `sync` came at another phase, or none has come since the period changed.
+    /// Whether the carrier is out of phase, as far as is known: a `sync` came at another phase, or none has come
+    /// since the period changed.
     astray: bool,
-    /// There is a time base: by the build, or since a `sync` came.
+    /// Whether there is a time base: by build parameter, or because a `sync` came.
     timed: bool,
     /// `mask_pins` of the clock before.
     masked: bool,
     trip: Trip,
-    /// The carrier is at its valley, its peak; one clock later the pins are.
+    /// Whether the carrier is at its valley, and at its peak; the pins are there one clock later.
     at_valley: bool,
     at_peak: bool,
     valley: bool,
@@ -119,7 +121,7 @@ impl State {
     fn new(config: &PwmConfig) -> Self {
         Self {
             position: 0,
-            // The shortest, so that the first one set soon comes into use.
+            // The shortest period, so that the first one set soon comes into use.
             period: LEAD_CLOCKS,
             dead_time: config.dead_time_floor_clocks(),
             minimum_pulse: config.minimum_pulse_floor_clocks(),
@@ -149,7 +151,7 @@ impl State {
     }
 }
 
-/// The PWM, cycle accurate at its ports.
+/// The cycle-accurate model of the PWM.
 pub struct Pwm {
     config: PwmConfig,
     state: State,
@@ -164,7 +166,7 @@ impl Pwm {
         }
     }
 
-    /// What the outputs show now. The raw inputs of this moment act on the pins without a clock.
+    /// The outputs in this clock. The raw inputs act on the pins in the same clock.
     #[inline]
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
         let state = &self.state;
@@ -192,7 +194,7 @@ impl Pwm {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs(inputs);
@@ -200,8 +202,8 @@ impl Pwm {
         outputs
     }
 
-    /// So many clocks with the same inputs: the fast path. It goes from event to event; between two of them only the carrier
-    /// and a timer count.
+    /// Simulates this many clocks with the same inputs, from event to event; between two events only the carrier and
+    /// a timer count.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
         let mut left = clocks;
         while left > 0 {
@@ -211,7 +213,7 @@ impl Pwm {
             let skipped = self.state.more_of(&before, inputs).unwrap_or(0).min(left);
             left -= skipped;
             let state = &mut self.state;
-            // At most the distance to a position of 16 bits, and to the end of the timer.
+            // This is at most the distance to a position of 16 bits, and to the end of the timer.
             state.position = state.position.wrapping_add(skipped as u16);
             state.command.count(skipped as u16);
             if state.leg.timer != before.leg.timer {
@@ -239,7 +241,7 @@ impl State {
         let (dead_time, minimum_pulse) = (inputs.dead_time & 0x3ff, inputs.minimum_pulse & 0x3ff);
         let low = dead_time < floors.0 || minimum_pulse < floors.1;
         let (dead_time, minimum_pulse) = (dead_time.max(floors.0), minimum_pulse.max(floors.1));
-        // Both sides for the minimum pulse and no longer: a leg that is late once would stay late.
+        // With no slack a leg that is late once would stay late.
         let no_slack = inputs.period == 2 * (state.dead_time + state.minimum_pulse);
         let settled = (state.dead_time, state.minimum_pulse, state.period) == (dead_time, minimum_pulse, inputs.period);
 
@@ -248,7 +250,7 @@ impl State {
         let goes_on = was_running && may_run;
         let starts = !was_running && may_run && valley && settled && state.stable && !state.astray && !no_slack;
 
-        // The gates, for the present position.
+        // The gates are those for the present position.
         let want = match (goes_on, state.pattern, state.command.level) {
             (false, ..) | (_, Pattern::Off, _) => Want::Off,
             (_, Pattern::Low, _) | (_, Pattern::Pulse, false) => Want::Low,
@@ -287,7 +289,8 @@ impl State {
             state.command.clock(inputs, &around);
             state.position = if valley { 0 } else { state.position.wrapping_add(1) };
         }
-        // While off, it waits there for the next one; with another period it is in phase by chance only.
+        // While off, the carrier waits there for the next boundary; with another period it is in phase only by
+        // chance.
         let other_period = !was_running && valley && state.period != inputs.period && state.timed;
         state.astray = out_of_step || other_period || (state.astray && !(waits && inputs.sync));
         state.synced = inputs.sync;

@@ -3,22 +3,22 @@
 use crate::rtl::ports;
 use crate::rtl::ports::PortValue;
 
-/// What the four pins do.
+/// Use of the four pins.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum BridgeMode {
-    /// `a_high` is the PWM of |duty|, `b_high` its direction (on is negative); the others are off.
+    /// `a_high` is the PWM of |duty|, `b_high` its direction (on is negative); the other pins are off.
     #[default]
     Direction,
     /// Leg A switches with a duty from 0; leg B is off.
     HalfBridge,
     /// One leg switches with |duty|, the other stays on its low side: A for positive duty, B for negative.
     Unipolar,
-    /// A's high side and B's low side switch together, against the other two: duty 0 is 50 %.
+    /// The high side of A and the low side of B switch together, in antiphase to the other two: duty 0 is 50 %.
     Locked,
 }
 
 impl BridgeMode {
-    /// From the register's value, 2 bits.
+    /// The mode for the register's value of 2 bits.
     #[inline]
     pub fn from_register(value: u8) -> Self {
         match value & 3 {
@@ -35,22 +35,23 @@ impl BridgeMode {
     }
 }
 
-/// Four gates, in a port bit 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`: high side and low side of two legs: true is on (of the gate, not of the level).
+/// The four gates: high and low side of two legs. In a port bit 0 is `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`. True
+/// means that the gate is on, whatever its level.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Gates {
-    /// High side of leg A; the PWM of mode `direction`.
+    /// High side of leg A; in mode `direction` the PWM.
     pub a_high: bool,
     /// Low side of leg A.
     pub a_low: bool,
-    /// High side of leg B; the direction of mode `direction`.
+    /// High side of leg B; in mode `direction` the direction.
     pub b_high: bool,
     /// Low side of leg B.
     pub b_low: bool,
 }
 
 impl Gates {
-    /// What a leg, and the rest of the bridge, are in a mode. `leg` is the leg that switches: its high side, its low side.
-    /// `awake`: its first dead time is over.
+    /// The gates of the bridge in a mode. `leg` has the high and the low side of the leg that switches; `awake` says
+    /// that its first dead time is over.
     #[inline]
     pub(super) fn of(mode: BridgeMode, negative: bool, awake: bool, leg: (bool, bool)) -> Self {
         let (high, low) = leg;
@@ -96,65 +97,65 @@ ports! {
     inputs Inputs {
         /// Synchronous reset.
         rst: Bit as bool;
-        /// Outputs on, from the next start of a period; off at once.
+        /// High: outputs on from the next start of a period. Low: off at once.
         enable: Bit as bool;
         /// 0 direction, 1 half bridge, 2 full bridge unipolar, 3 full bridge locked antiphase.
         mode: Bits(2) as u8;
-        /// Clocks per period, from 64; 0 is 65,536. Taken while off.
+        /// Clocks per period, from 64; 0 stands for 65,536. Taken while off.
         period: Bits(16) as u16, "clocks";
-        /// Clocks of the ideal high time; beyond ±`period` is full.
+        /// Duty: clocks of the ideal high time; beyond ±`period` it is full.
         duty: Signed(17) as i32, "clocks";
-        /// Largest |`duty`|; still for the 16 clocks before a boundary.
+        /// Largest |`duty`|; must not change in the 16 clocks before a boundary.
         max_duty: Bits(16) as u16, "clocks";
         /// Duty and mode are taken at the peak too.
         update_at_peak: Bit as bool;
-        /// Time from one side's off to the other's on; below the floor, the floor counts. Taken while off.
+        /// Dead time from one side's off to the other's on; not below its lower limit. Taken while off.
         dead_time: Bits(10) as u16, "clocks";
-        /// Shortest pulse; below the floor, the floor counts. Taken while off.
+        /// Minimum pulse: the shortest on time of a side; not below its lower limit. Taken while off.
         minimum_pulse: Bits(10) as u16, "clocks";
-        /// One clock: the time base is here.
+        /// One clock: the synchronisation pulse of the time base.
         sync: Bit as bool;
-        /// Clocks after the valley at which the carrier is in the clock after `sync`; below `period`.
+        /// Phase of the carrier in the clock after `sync`, in clocks after the valley; below `period`.
         phase: Bits(16) as u16, "clocks";
-        /// Clocks after the valley at which `trigger` comes.
+        /// Phase at which `trigger` comes, in clocks after the valley.
         trigger_phase: Bits(16) as u16, "clocks";
-        /// One clock: the controller lives; every tick.
+        /// One clock: the controller is alive; it feeds the watchdog at every tick.
         feed: Bit as bool;
-        /// Valleys without `feed` that pass; the next one trips. 0: no watchdog.
+        /// Valleys without `feed` that are allowed; the next one trips. 0 disables the watchdog.
         watchdog_periods: Bits(8) as u8, "valleys";
-        /// Clocks that a filtered fault may last without effect.
+        /// Clocks for which a filtered fault may last without effect.
         filter_clocks: Bits(8) as u8, "clocks";
-        /// Raw fault, any time: low is a fault, or a broken wire.
+        /// Raw fault, asynchronous; low, as with a broken wire, is a fault.
         fault_n: Bit as bool;
-        /// Any time: low trips as `fault_n` does.
+        /// Asynchronous; low trips as `fault_n` does.
         pll_locked: Bit as bool;
-        /// Two faults behind synchroniser and filter, any time; low is a fault, or a broken wire.
+        /// Two faults with synchroniser and filter, asynchronous; low, as with a broken wire, is a fault.
         filtered_fault_n: Bits(2) as u8;
-        /// One clock: forget the causes that are over.
+        /// One clock: clear the causes that are over.
         clear_trip: Bit as bool;
         /// Clears `saturated`, `refused`, `below_floor`, `unaligned`.
         clear_flags: Bit as bool;
-        /// High: all pins off, a clock later; all else goes on.
+        /// High: all pins are off one clock later; everything else continues.
         mask_pins: Bit as bool;
     }
 
     /// The output ports.
     outputs Outputs {
-        /// The level of pin A high.
+        /// Level of the pin for the high side of leg A.
         a_high: Bit as bool;
-        /// The level of pin A low.
+        /// Level of the pin for the low side of leg A.
         a_low: Bit as bool;
-        /// The level of pin B high.
+        /// Level of the pin for the high side of leg B.
         b_high: Bit as bool;
-        /// The level of pin B low.
+        /// Level of the pin for the low side of leg B.
         b_low: Bit as bool;
         /// The outputs are on.
         running: Bit as bool;
-        /// A cause stands; the outputs are off.
+        /// The outputs are off because of a cause.
         tripped: Bit as bool;
-        /// 0 fault latch, 1 and 2 filtered faults, 3 PLL, 4 watchdog.
+        /// Causes of a trip: 0 fault latch, 1 and 2 filtered faults, 3 PLL, 4 watchdog.
         trip_causes: Bits(5) as u8;
-        /// The direction in use.
+        /// The direction in use is negative.
         negative: Bit as bool;
         /// One clock: the pins are at the first clock of a period.
         valley: Bit as bool;
@@ -162,20 +163,20 @@ ports! {
         peak: Bit as bool;
         /// One clock: the pins are `trigger_phase` clocks after the valley.
         trigger: Bit as bool;
-        /// Sticky: a duty was limited, by `max_duty`, the period, or the half bridge at 0.
+        /// Sticky: a duty was limited by `max_duty`, by the period, or by the half bridge at 0.
         saturated: Bit as bool;
-        /// Sticky: another period, dead time or minimum pulse was wanted while running.
+        /// Sticky: another period, dead time or minimum pulse was requested while running.
         refused: Bit as bool;
-        /// Sticky: while enabled, a time below its floor was wanted, and the floor is used; or the period is 2 · (dead time
-        /// + minimum pulse), and the PWM does not start.
+        /// Sticky: while enabled, a time below its lower limit was requested, and the limit is used; or the period is
+        /// 2 · (dead time + minimum pulse), and the PWM does not start.
         below_floor: Bit as bool;
-        /// Sticky: `sync` came at another phase while running.
+        /// Sticky: a `sync` came at another phase while running.
         unaligned: Bit as bool;
         /// Dead time in use.
         dead_time_used: Bits(10) as u16, "clocks";
         /// Minimum pulse in use.
         minimum_pulse_used: Bits(10) as u16, "clocks";
-        /// The gates before fault path, mask and polarity, 1 is on: 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`.
+        /// The gates before fault path, mask and polarity; 1 is on: 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`.
         gates: Bits(4) as Gates;
     }
 }

@@ -1,4 +1,4 @@
-//! The pin rule: the edges of half a period, as a function of what is latched at its start. No clocks are stepped.
+//! The pin rule: the edges of half a period as a function of what is latched at its start, without stepping clocks.
 //!
 //! ```text
 //! leg duty   direction, unipolar: |duty|;  half bridge: duty;  locked: (period + duty) / 2, rounded down
@@ -12,11 +12,12 @@
 //!            |← h−D−⌊W/2⌋ →|← D →|←⌊W/2⌋ → ← ⌈W/2⌉ →|← D →|          h = ⌊period / 2⌋
 //! ```
 //!
-//! At none and full there are no edges. Where a pattern follows another, the leg obeys in any case: a side stays on for the
-//! minimum pulse; then both are off for the dead time; then the other comes on, and so on until the pattern is reached.
+//! With the patterns none and full there are no edges. Where one pattern follows another, the leg always obeys its
+//! rules: a side stays on for the minimum pulse, then both are off for the dead time, then the other comes on, and so
+//! on until the pattern is reached.
 //!
-//! Two boundaries are special. A new mode keeps all off until the next update. A new direction waits, with pattern low, for a
-//! boundary before which the low side is on: then the legs change over, and no pin moves.
+//! Two boundaries are special. A new mode keeps everything off until the next update. A new direction waits, with the
+//! pattern low, for a boundary before which the low side is on: then the legs change over without an edge at a pin.
 //!
 //! ```
 //! use posicast_model::rtl::pwm::BridgeMode;
@@ -37,34 +38,34 @@
 
 use super::ports::{BridgeMode, Gates};
 
-/// What is taken while the outputs are off, in clocks.
+/// Times that are taken while the outputs are off, in clocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timing {
-    /// Valley to valley, 1 to 65,536.
+    /// Clocks from valley to valley, 1 to 65,536.
     pub period: i64,
-    /// One side's off to the other's on, from 1.
+    /// Dead time from one side's off to the other's on, at least 1.
     pub dead_time: i64,
-    /// Shortest pulse of a side, from 1.
+    /// Minimum pulse of a side, at least 1.
     pub minimum_pulse: i64,
 }
 
-/// What is latched at a boundary with an update.
+/// Values that are latched at a boundary with an update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Latched {
-    /// What the pins do.
+    /// Use of the pins.
     pub mode: BridgeMode,
-    /// Clocks, signed.
+    /// Duty in clocks, signed.
     pub duty: i64,
     /// Largest |duty|.
     pub max_duty: i64,
 }
 
-/// Half of a period: both begin at a boundary.
+/// A half period, which begins at a boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Half {
     /// From the valley to the peak: ⌊period / 2⌋ clocks.
     Rising,
-    /// From the peak to the valley: the rest.
+    /// From the peak to the valley: the rest of the period.
     Falling,
 }
 
@@ -77,31 +78,31 @@ pub struct PulseEdge {
     pub gates: Gates,
 }
 
-/// What the leg is told for a half, or both halves of a period.
+/// Pattern of the leg for a half or for both halves of a period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pattern {
-    /// All off.
+    /// Both sides are off.
     Off,
     /// None: the low side is on.
     Low,
     /// Full: the high side is on.
     High,
-    /// The high side is on for so many clocks about the peak.
+    /// The high side is on for this many clocks about the peak.
     Pulse(i64),
 }
 
-/// What the leg is at a moment; times in clocks since the boundary, before it negative.
+/// State of the leg. Times are in clocks since the boundary, negative before it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Leg {
     #[default]
     Off,
-    /// Dead time until a moment. Then comes the high side or the low side; after `Off`, the one that is wanted then.
+    /// Dead time until `until`. Then the high or the low side comes on; after `Off` the one that is commanded then.
     Dead { until: i64, high: Option<bool> },
-    /// A side is on since a moment.
+    /// A side has been on since `since`.
     On { since: i64, high: bool },
 }
 
-/// A bridge at a boundary: all that one half hands to the next. The default is one that is off.
+/// State of a bridge at a boundary, which one half hands to the next. By default everything is off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Bridge {
     mode: BridgeMode,
@@ -112,7 +113,7 @@ pub struct Bridge {
 }
 
 impl Timing {
-    /// The pattern of a leg's pulse of so many clocks.
+    /// The pattern for a pulse of this many clocks.
     pub fn pattern(&self, width: i64) -> Pattern {
         let low_side_width = self.period - width - 2 * self.dead_time;
         if width < self.minimum_pulse {
@@ -124,7 +125,7 @@ impl Timing {
         }
     }
 
-    /// Width of the high side's pulse, before minimum and full: any sign.
+    /// Width of the high side's pulse before the minimum pulse and full are applied; it may have any value.
     pub fn width(&self, latched: &Latched) -> i64 {
         let duty = latched.duty.clamp(-latched.max_duty, latched.max_duty);
         let of_leg = match latched.mode {
@@ -137,7 +138,7 @@ impl Timing {
 }
 
 impl Bridge {
-    /// The edges of half a period. `latched`: what is taken at its boundary; none, and the last values hold.
+    /// The edges of half a period. `latched` has the values taken at its boundary; without them the last values hold.
     pub fn half(&mut self, timing: &Timing, half: Half, latched: Option<&Latched>) -> Vec<PulseEdge> {
         if let Some(latched) = latched {
             self.pattern = Some(self.take(timing, latched));
@@ -178,7 +179,7 @@ impl Bridge {
         edges
     }
 
-    /// All off, at once: a trip, or the end of `enable`.
+    /// Switches everything off at once, as a trip or the end of `enable` does.
     pub fn switch_off(&mut self) {
         (self.leg, self.pattern, self.gates) = (Leg::Off, None, Gates::default());
     }
@@ -207,7 +208,7 @@ impl Bridge {
         }
     }
 
-    /// Wants a side on in a span of time.
+    /// Commands a side to be on for a span of time.
     fn drive(&mut self, timing: &Timing, span: std::ops::Range<i64>, wants_high: bool, edges: &mut Vec<PulseEdge>) {
         if span.is_empty() {
             return;
@@ -243,7 +244,7 @@ impl Bridge {
         }
     }
 
-    /// Notes the gates from a clock on, if they differ.
+    /// Records the gates from a clock on, if they differ.
     fn show(&mut self, clock: i64, edges: &mut Vec<PulseEdge>) {
         let (awake, sides) = match self.leg {
             Leg::Off | Leg::Dead { high: None, .. } => (false, (false, false)),

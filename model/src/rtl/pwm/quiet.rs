@@ -1,12 +1,12 @@
-//! The clocks in which nothing happens: only the carrier and a timer count.
+//! The quiet clocks of the PWM, in which only the carrier and a timer count.
 
 use super::ports::{INPUT_PORTS, Inputs};
 use super::{LEAD_CLOCKS, Pwm, State};
 use crate::rtl::{Moore, OutputKind};
 
 impl State {
-    /// How many more clocks will be like the last, in which `before` became the present state; none if it did more than
-    /// count.
+    /// Number of further clocks like the last one, in which `before` became the present state; `None` if more
+    /// happened in it than counting.
     pub(super) fn more_of(&self, before: &Self, inputs: &Inputs) -> Option<u64> {
         let state = self;
         let mut counted = *before;
@@ -16,7 +16,7 @@ impl State {
         if counts {
             counted.leg.timer = before.leg.timer.wrapping_sub(1);
         }
-        // A strobe that is on falls in the next clock.
+        // A strobe that is high falls in the next clock.
         let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
         let computes = state.command.step != 0 || state.command.works;
         if counted != *state || strobes || computes || inputs.sync || inputs.rst {
@@ -40,7 +40,7 @@ impl State {
     }
 }
 
-/// The pins of the gates depend on the raw faults of the same clock, and are shown as in a fault.
+/// The pins of the gates depend on the raw faults of the same clock; `show` writes them as during a fault.
 impl Moore for Pwm {
     fn show(&self, outputs: &mut [u64]) {
         for (output, value) in outputs.iter_mut().zip(self.outputs(&Inputs::default()).to_raw()) {
@@ -62,7 +62,7 @@ impl Moore for Pwm {
         }
     }
 
-    /// Tries a clock: if it only counts, it and all like it are quiet.
+    /// Tries one clock: if it only counts, it and all like it are quiet.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;

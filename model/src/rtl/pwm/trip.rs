@@ -1,8 +1,8 @@
-//! All that turns the outputs off: fault latch, filtered faults, PLL, watchdog.
+//! The sources that turn the outputs off: fault latch, filtered faults, PLL, watchdog.
 
 use super::ports::Inputs;
 
-/// A synchroniser, then a filter: active once the line has been low for more than `filter_clocks`.
+/// A synchroniser and a filter; the fault is active once the line has been low for more than `filter_clocks`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct FilteredFault {
     fault: [bool; 2],
@@ -26,7 +26,7 @@ impl FilteredFault {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Trip {
-    /// The fault latch is clear. Set (not armed) after reset.
+    /// Whether the fault latch is clear; it is set after reset.
     armed: bool,
     armed_seen: [bool; 2],
     fault_free: [bool; 2],
@@ -35,12 +35,12 @@ pub(super) struct Trip {
     filtered: [bool; 2],
     pll: bool,
     watchdog: bool,
-    /// Valleys since the last `feed`.
+    /// Number of valleys since the last `feed`.
     unfed: u8,
 }
 
 impl Trip {
-    /// Whether the pins may be on, given the raw inputs of this very moment.
+    /// Whether the pins may be on, given the raw inputs of this clock.
     #[inline]
     pub(super) fn armed(&self, inputs: &Inputs) -> bool {
         self.armed && inputs.fault_n && inputs.pll_locked
@@ -62,7 +62,7 @@ impl Trip {
         (0..).zip(causes).map(|(at, cause)| u8::from(cause) << at).sum()
     }
 
-    /// One clock; `running` and `valley` are of this clock.
+    /// Simulates one clock; `running` and `valley` are of this clock.
     #[inline]
     pub(super) fn clock(&mut self, inputs: &Inputs, running: bool, valley: bool) {
         let armed = self.armed(inputs);

@@ -1,4 +1,4 @@
-//! The bank, clock by clock: an interpreter of the register map.
+//! The register bank, clock by clock: an interpreter of the register map.
 
 mod plan;
 
@@ -7,13 +7,13 @@ use super::description::{Access, FlagSource};
 use super::map::RegisterMap;
 use crate::rtl::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
-/// What an output shows.
+/// Source of an output.
 #[derive(Debug, Clone, Copy)]
 enum Shown {
     ReadData,
     Irq,
     Strobe(usize),
-    /// Which of a register's words was written last.
+    /// The word of a register that was written last.
     Word(usize),
     Field {
         register: usize,
@@ -22,23 +22,23 @@ enum Shown {
     },
 }
 
-/// Everything that is a register in hardware.
+/// All registers of the hardware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct State {
-    /// What the hardware sees, or what a read gives: one word per register.
+    /// Words of the registers, as the hardware sees them or as they read.
     words: Vec<u32>,
-    /// What the host has written to staged registers.
+    /// Words that the host has written to staged registers.
     staged: Vec<u32>,
     /// The command whose strobe is high.
     strobe: Option<usize>,
-    /// Of commands with several words: which was written last, one per register.
+    /// For commands with several words, the one written last; one per register.
     places: Vec<u32>,
     commit_waits: bool,
     read_data: u32,
     irq: bool,
 }
 
-/// What a clock's write did wrong.
+/// Errors of a write in a clock.
 #[derive(Debug, Clone, Copy, Default)]
 struct Refusals {
     partial: bool,
@@ -46,23 +46,23 @@ struct Refusals {
     commit: bool,
 }
 
-/// Places of the bus among the inputs; the outputs begin with `avs_readdata`.
+/// Index of the bus among the inputs; the outputs begin with `avs_readdata`.
 const ADDRESS: usize = 1;
 const READ: usize = 2;
 const WRITE: usize = 3;
 const BYTE_ENABLE: usize = 4;
 const WRITE_DATA: usize = 5;
 
-/// A register bank, cycle accurate at its ports.
+/// The cycle-accurate model of a register bank.
 #[derive(Debug, Clone)]
 pub struct RegisterBank {
     ports: Vec<Port>,
     inputs: usize,
     plan: Vec<Plan>,
-    /// Register of each word of the windows, and the word's place in it.
+    /// For each word of the windows, its register and the word's index in it.
     decode: Vec<Option<(usize, u32)>>,
     outputs: Vec<Shown>,
-    /// Registers that take part in every clock.
+    /// Registers that are updated in every clock.
     flags: Vec<usize>,
     staged: Vec<usize>,
     commit: Option<usize>,
@@ -118,7 +118,8 @@ impl RegisterBank {
         }
     }
 
-    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    /// Simulates this many clocks with the same inputs. It ends early once a clock changes nothing, since no later
+    /// one would.
     ///
     /// # Errors
     /// [`StepError`] for a wrong number of inputs.
@@ -276,7 +277,7 @@ impl RegisterBank {
     }
 }
 
-/// Ones in the bytes that are enabled.
+/// A mask with ones in the enabled bytes.
 fn bytes(enabled: u64) -> u32 {
     (0..4).fold(0, |mask, byte| {
         mask | if enabled >> byte & 1 != 0 {
@@ -287,7 +288,7 @@ fn bytes(enabled: u64) -> u32 {
     })
 }
 
-/// What each output shows, in port order.
+/// Source of each output, in port order.
 fn outputs(map: &RegisterMap) -> Vec<Shown> {
     let shown = |port: &Port| match port.name.as_str() {
         "avs_readdata" => Some(Shown::ReadData),

@@ -1,15 +1,15 @@
-//! Does a description hold together?
+//! Checks a description for consistency.
 
 use super::description::{
     Access, Description, Field, FlagSource, Format, MOST_WINDOWS, Register, WINDOW_WORDS, WORD_BITS,
 };
 use super::error::MapError;
 
-/// Names that the bank's Verilog has for itself.
+/// Names that the bank's Verilog uses itself.
 const RESERVED: [&str; 9] = [
     "clk", "rst", "irq", "mask", "whole", "written", "waits", "applies", "unused",
 ];
-/// Beginnings of such names.
+/// Prefixes of such names.
 const RESERVED_PREFIXES: [&str; 9] = [
     "avs_",
     "bus_",
@@ -54,7 +54,8 @@ pub(super) fn check(description: &Description) -> Result<(), MapError> {
     together(registers)
 }
 
-/// A field's name stands once among the registers of an access, so that its flag or shadow has a name.
+/// Checks that each field name occurs once among the registers of an access, so that its flag or shadow has a unique
+/// name.
 fn once(registers: &[Register], access: &Access) -> Result<(), MapError> {
     let mut seen = Vec::new();
     for register in registers.iter().filter(|register| register.access == *access) {
@@ -82,7 +83,7 @@ fn form(name: &str) -> Result<(), MapError> {
     }
 }
 
-/// A name that can be a port's.
+/// Checks that a name can be that of a port.
 fn port_name(name: &str) -> Result<(), MapError> {
     form(name)?;
     if RESERVED.contains(&name) || RESERVED_PREFIXES.iter().any(|prefix| name.starts_with(prefix)) {
@@ -163,7 +164,7 @@ fn values(register: &Register, field: &Field) -> Result<(), MapError> {
     }
 }
 
-/// What an access asks of its own register.
+/// Checks the requirements of an access on its own register.
 fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
     let wrong = |rule| {
         Err(MapError::Fields {
@@ -207,7 +208,7 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
         {
             return wrong("flags of one bit, 0 after reset");
         }
-        Access::Live if register.reset() != 0 => return wrong("what is live has no reset value"),
+        Access::Live if register.reset() != 0 => return wrong("a live register has no reset value"),
         Access::Live | Access::Configuration | Access::Staged if register.fields.is_empty() => {
             return wrong("it needs a field");
         }
@@ -223,7 +224,7 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
     Ok(())
 }
 
-/// What registers ask of each other.
+/// Checks the requirements of registers on each other.
 fn together(registers: &[Register]) -> Result<(), MapError> {
     let count = |holds: &dyn Fn(&Access) -> bool| registers.iter().filter(|r| holds(&r.access)).count();
     let shadows = count(&|a| matches!(a, Access::Shadow { .. }));

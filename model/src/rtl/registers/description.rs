@@ -1,11 +1,11 @@
-//! What a register map is made of: plain data, to be checked by [`RegisterMap::new`](super::RegisterMap::new).
+//! The parts of a register map as plain data, which [`RegisterMap::new`](super::RegisterMap::new) checks.
 //!
-//! A name is one name everywhere: a register `index_gate` is `INDEX_GATE` in Verilog and C, a field `mode` is the bank's port
-//! `mode`, which [composition](crate::rtl::composition) connects to the core's port `mode`.
+//! A name is the same everywhere: a register `index_gate` is `INDEX_GATE` in Verilog and C, a field `mode` is the
+//! bank's port `mode`, which [composition](crate::rtl::composition) connects to the core's port `mode`.
 
-/// Words of a window on the bus: a component has one, a stage one of its own and one per axis.
+/// Number of words of a window on the bus: a component has one window, a stage one of its own and one per axis.
 pub const WINDOW_WORDS: u32 = 256;
-/// Most windows of a map: the stage's and those of four axes.
+/// Largest number of windows of a map: the stage's and those of four axes.
 pub const MOST_WINDOWS: u32 = 5;
 /// Bits of a word.
 pub const WORD_BITS: u32 = 32;
@@ -13,90 +13,93 @@ pub const WORD_BITS: u32 = 32;
 /// All registers of a component.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Description {
-    /// The component's name, lower-case snake case.
+    /// Name of the component, in lower-case snake case.
     pub name: String,
-    /// What the component is, in a sentence.
+    /// Description of the component, in a sentence.
     pub about: String,
-    /// Windows of [`WINDOW_WORDS`] words, 1 to [`MOST_WINDOWS`].
+    /// Number of windows of [`WINDOW_WORDS`] words, 1 to [`MOST_WINDOWS`].
     pub windows: u32,
-    /// Its registers. The first are constants: `magic` at 0, `version` at 1, then the build's parameters.
+    /// Its registers. The first are constants: `magic` at 0, `version` at 1, then the parameters of the build.
     pub registers: Vec<Register>,
 }
 
-/// One 32-bit word.
+/// A register, which is one 32-bit word unless its access has several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Register {
-    /// Name, lower-case snake case.
+    /// Name, in lower-case snake case.
     pub name: String,
-    /// Place in the window, in words.
+    /// Offset in the window, in words.
     pub offset: u32,
-    /// What reads and writes do.
+    /// Effect of reads and writes.
     pub access: Access,
-    /// What it is for.
+    /// Purpose of the register.
     pub meaning: String,
-    /// Its fields; bits of none read as 0.
+    /// Its fields; bits without a field read as 0.
     pub fields: Vec<Field>,
 }
 
-/// What reads and writes of a register do, and what the hardware sees.
+/// Effect of reads and writes of a register, and what the hardware sees of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Access {
-    /// Reads as its fields' reset values, for ever.
+    /// It always reads as its fields' reset values.
     Constant,
-    /// Reads as the hardware inputs of its fields' names in the clock of the read.
+    /// It reads as the hardware inputs with its fields' names in the clock of the read.
     Live,
-    /// Reads as the live register `of` was when [`Access::Snapshot`] was last written. It has the fields of that register.
+    /// It reads as the live register `of` did when [`Access::Snapshot`] was last written. It has the fields of that
+    /// register.
     Shadow {
-        /// The live register's name.
+        /// Name of the live register.
         of: String,
     },
-    /// Read and write, by bytes; fields are outputs.
+    /// Read and write, by bytes; its fields are outputs.
     Configuration,
-    /// As configuration, while the one-bit input is low; else writes are refused and flagged. So is a write that would put
-    /// a field below its minimum.
+    /// Like configuration, but a write is refused and flagged while the one-bit input is high, and if it would set a
+    /// field below its minimum.
     Guarded {
         /// Name of the input.
         while_low: String,
     },
-    /// Read and write, by bytes; the fields' outputs take it when a commit is applied. Refused while one waits.
+    /// Read and write, by bytes; the fields' outputs take the value when a commit is applied. Writes are refused
+    /// while a commit waits.
     Staged,
-    /// Write only, whole words: the strobe output is high for one clock, with the fields' outputs, which then stay.
+    /// Write only, whole words: the strobe output is high for one clock, with the fields' outputs, which then hold
+    /// their value.
     Command {
-        /// Name of the strobe.
+        /// Name of the strobe output.
         strobe: String,
     },
-    /// As a command, at so many words in a row, a power of two, the first at a multiple of it. The port `word` says which
-    /// of them was written: the entry of a FIFO, or a row of a memory.
+    /// Like a command, at this many consecutive words, a power of two, the first at a multiple of it. The port `word`
+    /// says which of them was written: the entry of a FIFO, or a row of a memory.
     Words {
-        /// Name of the strobe.
+        /// Name of the strobe output.
         strobe: String,
-        /// Name of the port with the word's place, 0 to `words` − 1.
+        /// Name of the port with the index of the word, 0 to `words` − 1.
         word: String,
-        /// How many words: 2, 4, … 64.
+        /// Number of words: 2, 4, … 64.
         words: u32,
     },
     /// Each field is a sticky flag of one bit: set while its [`FlagSource`] is high, cleared by writing one; set wins.
     Sticky,
-    /// A whole word of any value asks for a commit, which the next `tick` applies: all staged registers at once. Its one
-    /// field reads as one while a commit waits.
+    /// A whole word of any value requests a commit, which the next `tick` applies: all staged registers take effect
+    /// together. Its one field reads as one while a commit waits.
     Commit {
-        /// Name of the one-bit input that applies it.
+        /// Name of the one-bit input that applies the commit.
         tick: String,
     },
     /// A whole word of any value freezes all live registers that have a shadow.
     Snapshot,
-    /// As sticky; the component's `irq` is high while an enabled flag is set.
+    /// Like sticky; the component's `irq` is high while an enabled flag is set.
     InterruptState,
-    /// Read and write, by bytes: which flags of [`Access::InterruptState`] raise `irq`.
+    /// Read and write, by bytes: enables flags of [`Access::InterruptState`] to raise `irq`.
     InterruptEnable,
-    /// Write only, whole words: sets the flags that are written as one.
+    /// Write only, whole words: sets the flags whose bits are written as one.
     InterruptTest,
 }
 
-/// Some bits of a register.
+/// A field: some bits of a register.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {
-    /// Name, lower-case snake case.
+    /// Name, in lower-case snake case.
     pub name: String,
     /// Its lowest bit.
     pub low: u32,
@@ -104,33 +107,33 @@ pub struct Field {
     pub width: u32,
     /// Value after reset and at power-up.
     pub reset: u32,
-    /// What it is for.
+    /// Purpose of the field.
     pub meaning: String,
-    /// Unit, or nothing.
+    /// Unit; empty where there is none.
     pub unit: String,
-    /// How its bits are a number.
+    /// Number format of its bits.
     pub format: Format,
-    /// Of flags: what sets it.
+    /// For flags: the source that sets it.
     pub source: FlagSource,
-    /// Of guarded fields: the smallest value that a write may give, unsigned.
+    /// For guarded fields: the smallest value that a write may set, unsigned.
     pub minimum: u32,
 }
 
-/// How a field's bits are a number.
+/// Number format of a field.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Format {
     /// A natural number.
     Unsigned,
     /// Two's complement.
     Signed,
-    /// Two's complement, so many bits of it behind the point.
+    /// Two's complement with fraction bits.
     Fixed {
-        /// Fraction bits.
+        /// Number of fraction bits.
         fraction: u32,
     },
-    /// One bit: yes or no.
+    /// One bit, true or false.
     Flag,
-    /// One of these; others are not to be written.
+    /// One of these values; others must not be written.
     Enumeration(Vec<Choice>),
 }
 
@@ -141,26 +144,26 @@ pub struct Choice {
     pub value: u32,
     /// Its name, lower-case snake case.
     pub name: String,
-    /// What it does.
+    /// Effect of the value.
     pub meaning: String,
 }
 
-/// What sets a flag.
+/// Source that sets a flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FlagSource {
-    /// The input of the field's name.
+    /// The input with the field's name.
     Input,
-    /// A write of a part of a word that only takes whole words.
+    /// A write of part of a word to a register that takes only whole words.
     PartialWrite,
-    /// A write of a guarded register while that was not allowed, or below a minimum.
+    /// A write to a guarded register while that was not allowed, or with a value below a minimum.
     GuardRefused,
-    /// A commit, or a write of a staged register, while a commit waits.
+    /// A commit, or a write to a staged register, while a commit waits.
     CommitRejected,
 }
 
 impl Description {
-    /// `magic` (four letters, the first in the lowest byte), `version` (major in the upper half word), and a word for each
-    /// of the build's parameters; other registers are added by [`with`](Self::with).
+    /// Makes a description with `magic` (four letters, the first in the lowest byte), `version` (major in the upper
+    /// half word), and a word for each parameter of the build; [`with`](Self::with) adds other registers.
     pub fn new(name: &str, about: &str, magic: [u8; 4], version: (u16, u16), parameters: Vec<Field>) -> Self {
         let constant = |name: &str, offset, meaning: &str, fields| Register {
             name: name.to_owned(),
@@ -174,19 +177,31 @@ impl Description {
             constant(
                 "magic",
                 0,
-                "what stands here",
+                "identifies the component",
                 vec![
-                    Field::new("magic", 0, 32, &format!("the letters {letters}, first lowest"))
-                        .with_reset(u32::from_le_bytes(magic)),
+                    Field::new(
+                        "magic",
+                        0,
+                        32,
+                        &format!("the letters {letters}, the first in the lowest byte"),
+                    )
+                    .with_reset(u32::from_le_bytes(magic)),
                 ],
             ),
             constant(
                 "version",
                 1,
-                "of this register map",
+                "version of this register map",
                 vec![
-                    Field::new("minor", 0, 16, "counts additions").with_reset(version.1.into()),
-                    Field::new("major", 16, 16, "counts what breaks a driver").with_reset(version.0.into()),
+                    Field::new("minor", 0, 16, "goes up with additions").with_reset(version.1.into()),
+                    Field::new(
+                        "major",
+                        16,
+                        16,
+                        "goes up with changes that break a \
+                        driver",
+                    )
+                    .with_reset(version.0.into()),
                 ],
             ),
         ];
@@ -206,7 +221,7 @@ impl Description {
         }
     }
 
-    /// With so many windows.
+    /// Sets the number of windows.
     #[must_use]
     pub fn with_windows(mut self, windows: u32) -> Self {
         self.windows = windows;
@@ -246,28 +261,28 @@ impl Description {
             "interrupt_state",
             offset,
             Access::InterruptState,
-            "what has happened; write one to clear",
+            "events since they were cleared; write one to clear",
             fields.clone(),
         )
         .with(
             "interrupt_enable",
             offset + 1,
             Access::InterruptEnable,
-            "what of it raises `irq`",
+            "events that raise `irq`",
             fields.clone(),
         )
         .with(
             "interrupt_test",
             offset + 2,
             Access::InterruptTest,
-            "sets the flags that are written as one",
+            "sets the flags whose bits are written as one",
             fields,
         )
     }
 }
 
 impl Field {
-    /// An unsigned number, 0 after reset, without unit.
+    /// An unsigned field, 0 after reset, without unit.
     pub fn new(name: &str, low: u32, width: u32, meaning: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -282,12 +297,12 @@ impl Field {
         }
     }
 
-    /// One bit.
+    /// A one-bit flag.
     pub fn flag(name: &str, low: u32, meaning: &str) -> Self {
         Self::new(name, low, 1, meaning).with_format(Format::Flag)
     }
 
-    /// One of some values, each with its name and meaning.
+    /// A field with a list of values, each with its name and meaning.
     pub fn choice(name: &str, low: u32, width: u32, meaning: &str, choices: &[(u32, &str, &str)]) -> Self {
         let choices = choices.iter().map(|(value, name, meaning)| Choice {
             value: *value,
@@ -297,76 +312,76 @@ impl Field {
         Self::new(name, low, width, meaning).with_format(Format::Enumeration(choices.collect()))
     }
 
-    /// Two's complement.
+    /// Makes the format two's complement.
     #[must_use]
     pub fn signed(self) -> Self {
         self.with_format(Format::Signed)
     }
 
-    /// Two's complement with so many fraction bits.
+    /// Makes the format two's complement with this many fraction bits.
     #[must_use]
     pub fn fixed(self, fraction: u32) -> Self {
         self.with_format(Format::Fixed { fraction })
     }
 
-    /// With this format.
+    /// Sets the format.
     #[must_use]
     pub fn with_format(mut self, format: Format) -> Self {
         self.format = format;
         self
     }
 
-    /// With this value after reset.
+    /// Sets the value after reset.
     #[must_use]
     pub fn with_reset(mut self, reset: u32) -> Self {
         self.reset = reset;
         self
     }
 
-    /// In this unit.
+    /// Sets the unit.
     #[must_use]
     pub fn with_unit(mut self, unit: &str) -> Self {
         unit.clone_into(&mut self.unit);
         self
     }
 
-    /// Set by this.
+    /// Sets the source of a flag.
     #[must_use]
     pub fn set_by(mut self, source: FlagSource) -> Self {
         self.source = source;
         self
     }
 
-    /// Never below this.
+    /// Sets the smallest value.
     #[must_use]
     pub fn at_least(mut self, minimum: u32) -> Self {
         self.minimum = minimum;
         self
     }
 
-    /// Is its port two's complement?
+    /// Whether its port is two's complement.
     pub fn is_signed(&self) -> bool {
         matches!(self.format, Format::Signed | Format::Fixed { .. })
     }
 
-    /// Ones in as many bits as it has, at the lowest.
+    /// A mask of its width, at the lowest bits.
     pub fn ones(&self) -> u32 {
         u32::MAX.checked_shr(WORD_BITS - self.width.min(WORD_BITS)).unwrap_or(0)
     }
 
-    /// Ones in its bits of the word.
+    /// A mask of its bits in the word.
     pub fn mask(&self) -> u32 {
         self.ones().checked_shl(self.low).unwrap_or(0)
     }
 
-    /// What the word says about it.
+    /// The field's value in a word.
     pub fn of(&self, word: u32) -> u32 {
         word.checked_shr(self.low).unwrap_or(0) & self.ones()
     }
 }
 
 impl Register {
-    /// How many words it takes, from its offset on.
+    /// Number of words that it takes, from its offset on.
     pub fn words(&self) -> u32 {
         match self.access {
             Access::Words { words, .. } => words,
@@ -374,12 +389,12 @@ impl Register {
         }
     }
 
-    /// Ones where it has fields of its own.
+    /// A mask of all its fields.
     pub fn mask(&self) -> u32 {
         self.fields.iter().fold(0, |mask, field| mask | field.mask())
     }
 
-    /// The word of its fields' reset values.
+    /// The word with its fields' reset values.
     pub fn reset(&self) -> u32 {
         self.fields
             .iter()
@@ -388,7 +403,7 @@ impl Register {
 }
 
 impl Access {
-    /// Takes it whole words only?
+    /// Whether it takes only whole words.
     pub fn whole_words(&self) -> bool {
         matches!(
             self,
@@ -396,12 +411,12 @@ impl Access {
         )
     }
 
-    /// Are its fields flags that hardware sets and a one clears?
+    /// Whether its fields are flags that the hardware sets and that are cleared by writing one.
     pub fn is_sticky(&self) -> bool {
         matches!(self, Self::Sticky | Self::InterruptState)
     }
 
-    /// Are its fields outputs of the bank?
+    /// Whether its fields are outputs of the bank.
     pub fn drives_fields(&self) -> bool {
         matches!(
             self,
@@ -409,7 +424,7 @@ impl Access {
         )
     }
 
-    /// The kind, in a word or two, as the documentation says it.
+    /// Kind of access in a word or two, as the documentation states it.
     pub fn words(&self) -> &'static str {
         match self {
             Self::Constant => "constant",

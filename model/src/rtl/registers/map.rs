@@ -1,10 +1,10 @@
-//! A description that holds together, and the ports of its bank.
+//! A checked description, and the ports of its bank.
 
 use super::description::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
 use super::error::MapError;
 use crate::rtl::{Direction, Port};
 
-/// A checked [`Description`]: what bank, model and documents are made from.
+/// A checked [`Description`], from which bank, model and documents are made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RegisterMap {
     description: Description,
@@ -15,7 +15,7 @@ impl RegisterMap {
     /// Checks a description.
     ///
     /// # Errors
-    /// [`MapError`] for the first thing that does not hold together: names, places, reset values, references.
+    /// [`MapError`] for the first inconsistency: names, offsets, reset values, references.
     pub fn new(mut description: Description) -> Result<Self, MapError> {
         description.registers.sort_by_key(|register| register.offset);
         super::check::check(&description)?;
@@ -23,22 +23,22 @@ impl RegisterMap {
         Ok(Self { description, ports })
     }
 
-    /// The component's name.
+    /// Name of the component.
     pub fn name(&self) -> &str {
         &self.description.name
     }
 
-    /// What the component is.
+    /// Description of the component.
     pub fn about(&self) -> &str {
         &self.description.about
     }
 
-    /// Words on the bus: all windows.
+    /// Number of words on the bus, of all windows.
     pub fn words(&self) -> u32 {
         self.description.windows * WINDOW_WORDS
     }
 
-    /// Bits of an address.
+    /// Number of bits of an address.
     pub fn address_bits(&self) -> u32 {
         address_bits(&self.description)
     }
@@ -48,17 +48,17 @@ impl RegisterMap {
         &self.description.registers
     }
 
-    /// The place of the register of that name.
+    /// Index of the register with this name.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.registers().iter().position(|register| register.name == name)
     }
 
-    /// The register of that name.
+    /// The register with this name.
     pub fn register(&self, name: &str) -> Option<&Register> {
         self.registers().iter().find(|register| register.name == name)
     }
 
-    /// The first register for whose access that holds.
+    /// The first register whose access satisfies `holds`.
     pub fn find(&self, holds: impl Fn(&Access) -> bool) -> Option<&Register> {
         self.registers().iter().find(|register| holds(&register.access))
     }
@@ -78,14 +78,14 @@ impl RegisterMap {
     }
 }
 
-/// So many that every window has its addresses.
+/// Number of address bits such that every window has its addresses.
 fn address_bits(description: &Description) -> u32 {
     (description.windows * WINDOW_WORDS)
         .next_power_of_two()
         .trailing_zeros()
 }
 
-/// The ports of every bank, before those of its registers.
+/// The ports of every bank, which come before those of its registers.
 fn bus(address_bits: u32) -> Vec<Port> {
     use Direction::{Input, Output};
     [
@@ -156,7 +156,7 @@ fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
     Ok(ports)
 }
 
-/// Adds ports. An input may feed several registers; then it stands where it was named first.
+/// Adds ports. An input may feed several registers; it is then listed where it was named first.
 fn add(ports: &mut Vec<Port>, register: &Register, more: impl IntoIterator<Item = Port>) -> Result<(), MapError> {
     for port in more {
         match ports.iter().find(|other| other.name == port.name) {

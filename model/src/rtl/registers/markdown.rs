@@ -22,7 +22,7 @@ pub fn markdown(map: &RegisterMap) -> String {
     }
     text.push_str("\n| register | bits | field | format | unit | reset | meaning |\n|---|---|---|---|---|---|---|\n");
     for register in map.registers() {
-        // The same fields once more.
+        // A shadow has the same fields, which are listed once.
         if matches!(
             register.access,
             Access::Shadow { .. } | Access::InterruptEnable | Access::InterruptTest
@@ -69,7 +69,7 @@ pub fn markdown(map: &RegisterMap) -> String {
     text
 }
 
-/// The word, or the words.
+/// The offset of the word, or of the words.
 fn place(register: &Register) -> String {
     match register.words() {
         1 => format!("{:#04x}", register.offset),
@@ -88,7 +88,7 @@ fn access(register: &Register) -> String {
     }
 }
 
-/// Of registers that have a value of their own.
+/// The reset value, of registers that have a value of their own.
 fn reset(register: &Register) -> String {
     match register.access {
         Access::Live | Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => {
@@ -130,7 +130,7 @@ fn format(field: &Field) -> String {
 fn meaning(field: &Field) -> String {
     let own = match field.source {
         FlagSource::Input => "",
-        FlagSource::PartialWrite => "; set by a write of a part of a whole word",
+        FlagSource::PartialWrite => "; set by a write of only part of a word",
         FlagSource::GuardRefused => "; set by a refused write of a guarded register",
         FlagSource::CommitRejected => "; set by a commit or staged write while a commit waits",
     };

@@ -1,4 +1,4 @@
-//! Register banks: one description of a component's registers, and what is made from it.
+//! Register banks: one description of a component's registers, from which bank, model and documents are made.
 //!
 //! ```text
 //! Description ─► RegisterMap ─┬─► RegisterBank          this crate: the bank, clock by clock
@@ -6,7 +6,7 @@
 //!                             └─► Verilog               posicast_hdl::registers
 //! ```
 //!
-//! The datasheet is `docs/registers.md`; [`RegisterBank`] is the reference that the hardware is compared with.
+//! The datasheet is `docs/registers.md`; the hardware is compared with the reference model [`RegisterBank`].
 //!
 //! ```
 //! use posicast_model::rtl::ClockedBlock;

@@ -17,7 +17,7 @@ pub const TICK_BITS: u32 = 24;
 pub const ACCELERATION_BITS: u32 = 40;
 /// Flag in word 3: the entry is a point.
 pub const POINT: u32 = 1 << 31;
-/// Flag in word 3: `notify` when the entry has ended.
+/// Flag in word 3: `notify` is high for a clock when the entry has ended.
 pub const NOTIFY: u32 = 1 << 30;
 /// Flag in word 3: the entry is a cubic; never together with [`POINT`].
 pub const CUBIC: u32 = 1 << 29;
@@ -26,7 +26,7 @@ pub const MORE: u32 = 1 << 28;
 /// Bits of word 3 that must be 0.
 pub const RESERVED: u32 = !(POINT | NOTIFY | CUBIC | MORE | ((1 << TICK_BITS) - 1));
 
-/// What an entry commands for its ticks.
+/// Motion that an entry commands during its ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EntryMotion {
     /// A constant jerk, Q8.32 counts per tick³, 40 bits.
@@ -37,14 +37,14 @@ pub enum EntryMotion {
     Cubic(Cubic),
 }
 
-/// A state of the command, as its words.
+/// A state of the command, in its words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Point {
-    /// Q24.8 counts.
+    /// Position in Q24.8 counts.
     pub position: i32,
-    /// Q16.16 counts per tick.
+    /// Velocity in Q16.16 counts per tick.
     pub velocity: i32,
-    /// Q8.24 counts per tick².
+    /// Acceleration in Q8.24 counts per tick².
     pub acceleration: i32,
 }
 
@@ -63,11 +63,11 @@ pub struct Cubic {
 /// An entry of the command FIFO.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// For so many ticks, 1 to 2^24 − 1.
+    /// Duration in ticks, 1 to 2^24 − 1.
     pub ticks: u32,
-    /// The motion of the segment.
+    /// Motion of the segment or point.
     pub motion: EntryMotion,
-    /// Tell the host when it has ended.
+    /// Whether the host is told when the entry has ended.
     pub notify: bool,
 }
 
@@ -130,7 +130,7 @@ impl Entry {
     }
 }
 
-/// Does word 1 of a segment hold more than the upper 8 bits of a 40-bit jerk?
+/// Whether word 1 of a segment holds more than the upper 8 bits of a 40-bit jerk.
 pub(super) fn too_wide(word: u32) -> bool {
     let upper = (word as i32) >> 7;
     upper != 0 && upper != -1

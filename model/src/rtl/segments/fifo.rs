@@ -1,4 +1,4 @@
-//! The memory of the command FIFO and what may be written into it.
+//! The memory of the command FIFO, and the rules for writing to it.
 
 use super::entry::{CUBIC, ENTRY_WORDS, Entry, MORE, POINT, RESERVED, TICK_BITS, too_wide};
 
@@ -6,7 +6,7 @@ use super::entry::{CUBIC, ENTRY_WORDS, Entry, MORE, POINT, RESERVED, TICK_BITS, 
 pub const ENTRIES_MAX: u8 = 64;
 const SLOTS: usize = ENTRIES_MAX as usize;
 
-/// What became of a word.
+/// Result of writing a word.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Written {
     pub(super) refused: bool,
@@ -24,7 +24,7 @@ pub(super) struct Pointers {
     spoilt: bool,
     /// Words 0 to 2 of the entry were written.
     written: [bool; ENTRY_WORDS - 1],
-    /// Word 1 is no sign extension of 8 bits.
+    /// Whether word 1 is not a sign extension of 8 bits.
     too_wide: bool,
 }
 
@@ -50,7 +50,7 @@ impl Fifo {
         self.pointers.level
     }
 
-    /// Forgets all entries; what the memory holds stays.
+    /// Drops all entries; the memory keeps its contents.
     pub(super) fn reset(&mut self) {
         self.pointers = Pointers::default();
     }
@@ -124,7 +124,7 @@ impl Fifo {
         }
     }
 
-    /// Takes the oldest entry out. One must be there.
+    /// Takes out the oldest entry, which must exist.
     pub(super) fn pop(&mut self) -> Entry {
         let pointers = &mut self.pointers;
         let slot = usize::from(pointers.head);

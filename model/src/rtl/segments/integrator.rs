@@ -1,13 +1,13 @@
 //! Exact integration of one tick: `a += j; v += a; p += v`; the first tick of a point or a cubic, and what comes where entries are missing.
 //!
-//! Integers in LSB of 2^−32 counts per tick³, tick², tick, and counts, so nothing is ever rounded: whoever adds the same
-//! numbers, in hardware, here or in C, gets the same position.
+//! All quantities are integers in LSB of 2^−32 counts per tick³, tick², tick, and counts, so nothing is ever rounded:
+//! adding the same numbers in hardware, here or in C gives the same position.
 
 use super::entry::{ACCELERATION_BITS, Cubic, EntryMotion, Point};
 
 /// Fraction bits of jerk, acceleration, velocity and position.
 pub const FRACTION_BITS: u32 = 32;
-/// Width of the velocity: Q16.32.
+/// Width of the velocity in bits: Q16.32.
 pub const VELOCITY_BITS: u32 = 48;
 
 /// Fraction bits of the rounded position: Q24.8 counts.
@@ -17,29 +17,30 @@ pub const VELOCITY_FRACTION: u32 = 16;
 /// Fraction bits of the rounded acceleration: Q8.24 counts per tick².
 pub const ACCELERATION_FRACTION: u32 = 24;
 
-/// Counts that a command that is not modulo reaches: beyond ±2^23 less a 32nd, a motion outwards is stopped.
+/// Range of a command that is not modulo, in counts: beyond ±2^23 less a 32nd of that, a motion outwards is stopped.
 pub const REACH_COUNTS: i32 = (1 << 23) - (1 << 18);
-/// Counts beyond which such a stop does not slow down but stands at once: no velocity goes from here past the end of the word.
+/// Position in counts beyond which such a stop does not slow down but is immediate: no velocity passes the end of the
+/// word from here.
 pub const STAND_COUNTS: i32 = (1 << 23) - (1 << 17);
 
-/// A sum that its word does not hold: the integrator stays as it was, and the move cannot go on.
+/// A sum does not fit its word: the integrator stays as it was, and the move cannot continue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("acceleration or velocity does not fit its word: 128 counts per tick² and 32768 counts per tick are the ends")]
 pub struct Overflow;
 
-/// Where a command is: position, velocity and acceleration in LSB of 2^−32.
+/// State of a command: position, velocity and acceleration in LSB of 2^−32.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Integrator {
-    /// Counts, Q32.32, modulo 2^64.
+    /// Position in counts, Q32.32, modulo 2^64.
     pub position: i64,
-    /// Counts per tick, Q16.32.
+    /// Velocity in counts per tick, Q16.32.
     pub velocity: i64,
-    /// Counts per tick², Q8.32.
+    /// Acceleration in counts per tick², Q8.32.
     pub acceleration: i64,
 }
 
 impl Integrator {
-    /// At rest at so many counts.
+    /// A command at rest at this position in counts.
     pub fn resting_at(counts: i32) -> Self {
         Self {
             position: i64::from(counts) << FRACTION_BITS,
@@ -86,7 +87,8 @@ impl Integrator {
     /// One tick with this jerk (Q8.32).
     ///
     /// # Errors
-    /// [`Overflow`]; an acceleration that fits is then kept with the velocity that does not change, as in hardware.
+    /// [`Overflow`] for an acceleration or velocity that does not fit. If only the velocity does not fit, the new
+    /// acceleration is kept and the velocity stays, as in hardware.
     pub fn jerk(&mut self, jerk: i64) -> Result<(), Overflow> {
         self.acceleration = fitting(self.acceleration + jerk, ACCELERATION_BITS)?;
         self.velocity = fitting(self.velocity + self.acceleration, VELOCITY_BITS)?;
@@ -94,8 +96,8 @@ impl Integrator {
         Ok(())
     }
 
-    /// One tick of a quick stop: the velocity goes towards 0 by at most `deceleration` (Q8.32, not negative); 0 stands for
-    /// a stop at once.
+    /// Integrates one tick of a quick stop: the velocity approaches 0 by at most `deceleration` (Q8.32, not
+    /// negative); 0 stands for an immediate stop.
     pub fn stop(&mut self, deceleration: i64) {
         if deceleration == 0 {
             (self.velocity, self.acceleration) = (0, 0);
@@ -106,21 +108,21 @@ impl Integrator {
         self.position = self.position.wrapping_add(self.velocity);
     }
 
-    /// Beyond ±`counts` (of the lower 24 bits of the position's counts), and not on the way back.
+    /// Whether the position is beyond ±`counts` (in the lower 24 bits of its counts) and not moving back.
     pub fn leaves(&self, counts: i32) -> bool {
-        // As outputs and hardware have it: modulo 2^24 counts.
+        // Outputs and hardware have the position modulo 2^24 counts.
         let position = self.position << 8 >> 8;
         let ends = -(i64::from(counts) << FRACTION_BITS)..i64::from(counts) << FRACTION_BITS;
         !ends.contains(&position) && (self.velocity < 0) == (position < 0)
     }
 
-    /// Neither velocity nor acceleration: only then a position holds.
+    /// Whether velocity and acceleration are both 0, without which the position does not stay.
     pub fn at_rest(&self) -> bool {
         self.velocity == 0 && self.acceleration == 0
     }
 
-    /// Position (Q24.8, modulo 2^32), velocity (Q16.16) and acceleration (Q8.24), each rounded once, half up; the two
-    /// largest of their words stay below the end instead of wrapping.
+    /// Position (Q24.8, modulo 2^32), velocity (Q16.16) and acceleration (Q8.24), each rounded once, half up.
+    /// Velocity and acceleration saturate at the upper end of their word instead of wrapping.
     pub fn rounded(&self) -> [i32; 3] {
         [
             self.position

@@ -1,6 +1,6 @@
 //! The command FIFO: segments of constant jerk, integrated exactly, tick by tick.
 //!
-//! The datasheet is `docs/segments.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/segments.md`; the hardware is compared with this reference model.
 //!
 //! | part | what it is |
 //! |---|---|
@@ -8,7 +8,7 @@
 //! | [`Integrator`] | `a += j; v += a; p += v`, the extrapolation where entries are missing, and the quick stop |
 //! | [`Segments`] | FIFO, states and integrator, cycle accurate at its ports |
 //!
-//! A tick takes [`TICK_CLOCKS`], always the same ones:
+//! A tick always takes [`TICK_CLOCKS`] clocks:
 //!
 //! ```text
 //! phase   0            1 … 43    44                       45 … 51
@@ -53,21 +53,21 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, SegmentsState
 use self::fifo::{Fifo, Pointers};
 use super::{FOREVER, Moore, OutputKind, clocked_block};
 
-/// Clocks from a tick until the next one is taken.
+/// Clocks from a tick until the next one is accepted.
 pub const TICK_CLOCKS: u32 = 52;
 /// Clocks from a tick to `valid`.
 pub const LATENCY_CLOCKS: u32 = 45;
 
-/// Phase in which a tick is waited for.
+/// Phase that waits for a tick.
 const IDLE: u8 = 0;
-/// Phase in which the integration begins; the hardware takes until the next one for its sums, a byte per clock.
+/// Phase in which the integration begins; the hardware computes its sums, a byte per clock, until the next phase.
 const INTEGRATE: u8 = 1;
 /// Phase that rounds and decides what comes next.
 const DECIDE: u8 = LATENCY_CLOCKS as u8 - 1;
-/// Phase that reads the last of the next entry.
+/// Phase that reads the last word of the next entry.
 const READ: u8 = TICK_CLOCKS as u8 - 1;
 
-/// Pulses that wait for the next tick.
+/// Requests that wait for the next tick.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Requests {
     flush: bool,
@@ -77,7 +77,7 @@ struct Requests {
 }
 
 impl Requests {
-    /// These, and those of a clock.
+    /// Adds the requests of a clock.
     fn with(self, inputs: &Inputs) -> Self {
         Self {
             flush: self.flush || inputs.flush,
@@ -88,13 +88,13 @@ impl Requests {
     }
 }
 
-/// Everything that is a register, but the FIFO.
+/// All registers except the FIFO.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Registers {
     phase: u8,
     requests: Requests,
     enabled: bool,
-    /// Of the clock of the tick; 0 beyond [`STAND_COUNTS`].
+    /// Deceleration as of the clock of the tick; 0 beyond [`STAND_COUNTS`].
     stop_deceleration: u32,
     at: Integrator,
     overflowed: bool,
@@ -106,14 +106,14 @@ struct Registers {
     shown: Outputs,
 }
 
-/// The command FIFO, cycle accurate at its ports.
+/// The cycle-accurate model of the command FIFO.
 pub struct Segments {
     fifo: Fifo,
     registers: Registers,
 }
 
 impl Segments {
-    /// A FIFO after reset. `seed` fills its memory: nothing may depend on what that holds.
+    /// A FIFO after reset. `seed` fills its memory, on whose initial contents nothing may depend.
     pub fn new(seed: u64) -> Self {
         Self {
             fifo: Fifo::new(seed),
@@ -121,7 +121,7 @@ impl Segments {
         }
     }
 
-    /// What the outputs show now, for this `low_water`.
+    /// The outputs in this clock, for this `low_water`.
     pub fn outputs(&self, low_water: u8) -> Outputs {
         let level = self.fifo.level();
         Outputs {
@@ -132,12 +132,12 @@ impl Segments {
         }
     }
 
-    /// The exact command behind the rounded outputs.
+    /// The exact command, of which the outputs are rounded.
     pub fn command(&self) -> Integrator {
         self.registers.at
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs(inputs.low_water);
@@ -145,7 +145,8 @@ impl Segments {
         outputs
     }
 
-    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    /// Simulates this many clocks with the same inputs. It ends early once a clock changes nothing, since no later
+    /// one would.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
         for _ in 0..clocks {
             let before: (Registers, Pointers) = (self.registers.clone(), self.fifo.pointers);
@@ -185,7 +186,7 @@ impl Segments {
         }
     }
 
-    /// Pulses end, flags are cleared and set, requests are kept.
+    /// Ends pulses, clears and sets flags, and stores requests.
     fn begin_clock(&mut self, inputs: &Inputs) {
         let Registers {
             phase, requests, shown, ..
@@ -200,7 +201,8 @@ impl Segments {
         *requests = requests.with(inputs);
     }
 
-    /// A tick begins with what was asked for since the last one. Preset goes before a quick stop, that before restart.
+    /// Begins a tick with the requests since the last one. A preset has priority over a quick stop, and that over a
+    /// restart.
     fn take_tick(&mut self, inputs: &Inputs) {
         let requests = std::mem::take(&mut self.registers.requests);
         let registers = &mut self.registers;
@@ -255,7 +257,7 @@ impl Segments {
         }
     }
 
-    /// The outputs of this tick, and what the next one does.
+    /// Sets the outputs of this tick, and decides what the next one does.
     fn decide(&mut self, state: SegmentsState, entry_waits: bool, inputs: &Inputs) {
         let Registers {
             phase,
@@ -318,7 +320,7 @@ impl Segments {
 
 clocked_block!(Segments, "the command FIFO");
 
-/// `low` depends on `low_water`, which may change with it.
+/// The output `low` depends on `low_water`, and may change in the same clock.
 impl Moore for Segments {
     fn show(&self, outputs: &mut [u64]) {
         for (output, value) in outputs.iter_mut().zip(self.outputs(0).to_raw()) {
@@ -340,7 +342,7 @@ impl Moore for Segments {
         }
     }
 
-    /// Only between two ticks.
+    /// The block is quiet only between two ticks.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;

@@ -1,4 +1,4 @@
-//! The three tap tables, how one is loaded, and when one becomes active: what the hardware's `tap_banks` does.
+//! The three tap tables: how one is loaded and becomes active, as in the hardware's `tap_banks`.
 
 use super::config::ShaperConfig;
 use super::memory::Arbitrary;
@@ -7,19 +7,19 @@ use super::tables::Tables;
 use super::wrap;
 use crate::taps::{COEFFICIENT_BITS, Tap};
 
-/// The banks that can be loaded.
+/// The loadable banks.
 const LOADABLE: [u8; 2] = [1, 2];
 
-/// A table of RAM, and how far it is loaded.
+/// A table in RAM, and how many of its taps are loaded.
 struct LoadableBank {
-    /// As many as the RAM holds; the first `loaded` were written, the rest is arbitrary.
+    /// The whole RAM: the first `loaded` taps were written, the rest is arbitrary.
     taps: Vec<Tap>,
     loaded: usize,
-    /// Sum of the coefficients loaded.
+    /// Sum of the loaded coefficients.
     sum: i64,
 }
 
-/// A swap that was taken: it waits, and then may hand over.
+/// An accepted swap, which waits and then may hand over.
 #[derive(Clone, Copy)]
 struct Change {
     bank: u8,
@@ -31,17 +31,17 @@ struct Change {
 
 #[derive(Clone, Copy)]
 enum State {
-    /// For a strobe that lets it take effect.
+    /// The swap waits for a strobe at which it takes effect.
     Waits,
-    /// From the table of `before`, of which the last sample lies `samples` back.
+    /// The handover from the table of bank `before`, whose last sample lies `samples` back.
     HandsOver { before: u8, samples: u32 },
 }
 
-/// A host's read of a tap, and what the last one found.
+/// A host's read of a tap, and the result of the last one.
 #[derive(Clone, Copy)]
 struct ReadBack {
     waits: bool,
-    /// What the tables show in this clock, if it is the host's: 0 where no tap is loaded.
+    /// The tap at the tables' output in this clock, if it is the host's: 0 where no tap is loaded.
     served: Option<Tap>,
     found: Tap,
 }
@@ -57,7 +57,7 @@ const NOTHING_READ: ReadBack = ReadBack {
     found: NO_TAP,
 };
 
-/// Bank 0 (the machine's table, ROM) and banks 1 and 2 (RAM); which is active, which comes next.
+/// Bank 0 (the machine's table, in ROM) and banks 1 and 2 (RAM), with the active bank and the one to become active.
 pub(super) struct Banks {
     rom: Vec<Tap>,
     loadable: [LoadableBank; 2],
@@ -96,7 +96,7 @@ impl Banks {
         }
     }
 
-    /// What shapes the last sample.
+    /// The tables that shape the last sample.
     pub(super) fn tables(&self) -> Tables<'_> {
         let handover = match self.change.map(|change| change.state) {
             Some(State::HandsOver { before, samples }) => Some((self.taps(before), samples)),
@@ -133,23 +133,23 @@ impl Banks {
         self.refused
     }
 
-    /// What a host's last read found.
+    /// The tap that a host read back last.
     pub(super) fn loaded_tap(&self) -> Tap {
         self.read_back.found
     }
 
-    /// Whether a host's read was not served yet.
+    /// Whether a host's read waits to be served.
     pub(super) fn read_waits(&self) -> bool {
         self.read_back.waits
     }
 
-    /// Whether a clock changes something of a host's read: one that comes with it, or one that waits.
+    /// Whether a clock changes something of a host's read, which may come in this clock or be waiting.
     pub(super) fn reads(&self, tap_read: bool, busy: bool) -> bool {
         let ReadBack { waits, served, .. } = self.read_back;
         tap_read && !waits || waits && (served.is_some() || !busy)
     }
 
-    /// Everything that has a reset; the RAM keeps what it holds.
+    /// Resets every register that has a reset; the RAM keeps its contents.
     pub(super) fn reset(&mut self) {
         for bank in &mut self.loadable {
             bank.loaded = 0;
@@ -161,10 +161,10 @@ impl Banks {
         self.read_back = NOTHING_READ;
     }
 
-    /// One clock. A write and a swap are judged by the state before the clock.
+    /// Simulates one clock. A write and a swap are judged by the state before the clock.
     ///
-    /// `still` are the samples since the position command changed, a start of this clock included, its strobe not. A pass
-    /// that is `busy` reads the tables: a host waits.
+    /// `still` is the number of samples since the position command changed, including a start of this clock but not
+    /// its strobe. While a pass is `busy` it reads the tables, and a host waits.
     pub(super) fn step(&mut self, inputs: &Inputs, still: u32, busy: bool) {
         self.read_tap(inputs, busy);
         let swap_bank = inputs.swap_bank & 3;
@@ -194,7 +194,8 @@ impl Banks {
         }
     }
 
-    /// A read takes the tables in the first clock in which no pass runs and no tap is written, and has its word in the next.
+    /// A read uses the tables in the first clock in which no pass runs and no tap is written, and has its word in the
+    /// next.
     fn read_tap(&mut self, inputs: &Inputs, busy: bool) {
         let ReadBack { waits, served, found } = self.read_back;
         let serves = waits && served.is_none() && !busy && !inputs.tap_write;
@@ -205,17 +206,17 @@ impl Banks {
         };
     }
 
-    /// The tap at that place; 0 where none is loaded.
+    /// The tap at this index of a bank; 0 where none is loaded.
     fn tap_at(&self, bank: u8, index: u16) -> Tap {
         let index = usize::from(index) & (self.loadable[0].taps.len() - 1);
         let taps = if bank == 3 { &[] } else { self.taps(bank) };
         taps.get(index).copied().unwrap_or(NO_TAP)
     }
 
-    /// What becomes of a change in a clock; nothing once it is over.
+    /// The change after a clock; `None` once it is over.
     fn advance(&mut self, change: Change, inputs: &Inputs, still: u32) -> Option<Change> {
         let hands_over = |before, samples| {
-            // After a start the history is constant, and shaped by either table the same.
+            // After a start the history is constant, and both tables shape it alike.
             (samples <= change.reach && !inputs.start).then_some(Change {
                 state: State::HandsOver { before, samples },
                 ..change
@@ -235,7 +236,8 @@ impl Banks {
         self.taps(bank).iter().map(|tap| tap.delay_samples).max().unwrap_or(0)
     }
 
-    /// Only a table that sums to one is ever made active: constant in, constant out.
+    /// Whether a swap to this bank is accepted. Only a table whose sum is one becomes active, so that a constant
+    /// command gives a constant output.
     fn takes_swap(&self, bank: u8) -> bool {
         let complete = match self.index_of(bank) {
             Some(loadable) => self.loadable[loadable].sum == self.unity,
@@ -269,7 +271,7 @@ impl Banks {
         true
     }
 
-    /// Where a bank lies in `loadable`.
+    /// Index of a bank in `loadable`.
     fn index_of(&self, bank: u8) -> Option<usize> {
         LOADABLE.iter().position(|&b| b == bank)
     }

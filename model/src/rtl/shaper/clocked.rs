@@ -1,4 +1,4 @@
-//! The shaper at its ports, clock by clock.
+//! The shaper, simulated clock by clock at its ports.
 
 use super::banks::Banks;
 use super::config::{CHANNELS_MAX, ShaperConfig};
@@ -7,14 +7,14 @@ use super::ports::{Inputs, Outputs, ports};
 use super::{finish, wrap};
 use crate::rtl::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
-/// The shaper, cycle accurate at its ports.
+/// The cycle-accurate model of the shaper.
 ///
-/// Between the ports it keeps only what they show: a pass is a count of the clocks that are left of it, and its result
-/// is computed in the last of them.
+/// It keeps only what the ports show: a pass is represented by the number of its remaining clocks, and its result is
+/// computed in the last of them.
 pub struct Shaper {
     config: ShaperConfig,
     ports: Vec<Port>,
-    /// One per channel.
+    /// Ring buffer of each channel.
     rings: Vec<Vec<i64>>,
     head: usize,
     /// Samples since the start, at most 2^A − 1.
@@ -25,7 +25,7 @@ pub struct Shaper {
     /// The position command of the last sample.
     newest: i64,
     banks: Banks,
-    /// Clocks until the pass has its result; 0 while none runs.
+    /// Clocks until the pass has its result; 0 while none is running.
     clocks_left: u32,
     y: [i64; CHANNELS_MAX],
     valid: bool,
@@ -34,7 +34,7 @@ pub struct Shaper {
 }
 
 impl Shaper {
-    /// A shaper after reset. `seed` gives the arbitrary contents of its memories, which no output ever shows.
+    /// A shaper after reset. `seed` determines the arbitrary contents of its memories, which no output ever shows.
     pub fn new(config: &ShaperConfig, seed: u64) -> Self {
         let mut contents = Arbitrary::new(seed);
         let banks = Banks::new(config, &mut contents);
@@ -59,12 +59,12 @@ impl Shaper {
         }
     }
 
-    /// What it was built from.
+    /// Its build parameters.
     pub fn config(&self) -> &ShaperConfig {
         &self.config
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         let [y, y_rates @ ..] = self.y;
         let loaded = self.banks.loaded_tap();
@@ -84,7 +84,7 @@ impl Shaper {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();
@@ -123,7 +123,7 @@ impl Shaper {
         }
     }
 
-    /// What the ports make of the command words; 0 for channels that there are not.
+    /// The command words of the ports; 0 for channels that do not exist.
     fn words(&self, inputs: &Inputs) -> [i64; CHANNELS_MAX] {
         let [velocity, acceleration] = inputs.x_rates;
         let mut words = [inputs.x, velocity, acceleration].map(|word| wrap(word, self.config.word_bits()));
@@ -160,7 +160,7 @@ impl Shaper {
         (1 << self.config.ring_address_bits()) - 1
     }
 
-    /// The rings take the sample and a pass begins, in place of one that runs.
+    /// Stores the sample in the ring buffers and begins a pass; a running pass is abandoned.
     fn take_sample(&mut self, words: [i64; CHANNELS_MAX]) {
         self.head = (self.head + 1) & self.full_age() as usize;
         for (ring, word) in self.rings.iter_mut().zip(words) {

@@ -1,61 +1,64 @@
-//! What is fixed when a shaper is built.
+//! Build parameters of a shaper.
 
 use crate::taps::{Tap, TapTable};
 use std::ops::RangeInclusive;
 
-/// Word widths that a machine's shaper may have.
+/// Widths of a command word in bits that a shaper may have.
 pub const WORD_BITS: RangeInclusive<u32> = 8..=32;
-/// Word widths that a shaper for motion may have: a product takes two multipliers, the second for the bits above the 17th.
+/// Widths of a command word that a motion shaper may have: a product takes two multipliers, the second for the bits
+/// above the 17th.
 pub const MOTION_WORD_BITS: RangeInclusive<u32> = 18..=32;
-/// Sizes of a machine's ring, as bits of address: 64 … 16384 samples. (Fewer would take the same memory blocks.)
+/// Sizes of the ring buffer as address bits: 64 … 16384 samples. (Fewer would take the same memory blocks.)
 pub const RING_ADDRESS_BITS: RangeInclusive<u32> = 6..=14;
-/// Sizes of a machine's table, as bits of index: 64, 128 and 256 taps. (Fewer would take the same memory blocks.)
+/// Sizes of the table as index bits: 64, 128 and 256 taps. (Fewer would take the same memory blocks.)
 pub const TAP_INDEX_BITS: RangeInclusive<u32> = 6..=8;
-/// Most channels of a shaper: position, velocity, acceleration.
+/// Largest number of channels: position, velocity, acceleration.
 pub const CHANNELS_MAX: usize = 3;
-/// Largest ring of more than one channel, as bits of address.
+/// Address bits of the largest ring buffer with more than one channel.
 const SHARED_RING_ADDRESS_BITS_MAX: u32 = 12;
-/// Clocks of a pass beyond one per tap: table (two), ring, multiplier (three), accumulator, rounding.
+/// Clocks of a pass in addition to one per tap: two for the table, one for the ring, three for the multiplier, one
+/// each for accumulator and rounding.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 8;
-/// Clocks of a pass for [`ShaperMotion`] beyond that: handover, choice of the channel's sample. Between two channels is one more.
+/// Further clocks of a pass of a motion shaper, for the handover and the choice of the channel's sample. There is one
+/// more between two channels.
 pub const MOTION_OVERHEAD_CLOCKS: u32 = 2;
 
-/// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`.
+/// Clocks from a strobe to its `valid`, which is also the smallest distance of two strobes without `overrun`.
 ///
-/// `products` are the taps of the table; for [`ShaperMotion`] see [`ShaperConfig::pass_clocks`].
+/// `products` is the number of taps of the table; for [`ShaperMotion`] see [`ShaperConfig::pass_clocks`].
 pub fn pass_clocks(products: u32) -> u32 {
     products.saturating_add(PASS_OVERHEAD_CLOCKS)
 }
 
-/// What a shaper for commands in motion has beyond the plain one: channels that share the table and the multiplier, a
-/// `swap_how` that can hand over while moving, and positions that wrap.
+/// Features of a motion shaper: channels that share table and multiplier, a `swap_how` that can hand over during
+/// motion, and positions that wrap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShaperMotion {
-    /// 1 to 3: position, velocity, acceleration.
+    /// Number of channels, 1 to 3: position, velocity, acceleration.
     pub channels: u32,
-    /// A rotary axis: the position is counted modulo 2^W and never saturates.
+    /// Whether the position wraps modulo 2^W, as on a rotary axis, and never saturates.
     pub modulo: bool,
 }
 
-/// What is fixed when a shaper is built: its sizes, and the table in its ROM (bank 0).
+/// Build parameters of a shaper: its sizes, and the table in its ROM (bank 0).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShaperConfig {
     word_bits: u32,
     ring_address_bits: u32,
     tap_index_bits: u32,
     table: TapTable,
-    /// Of the machine's table, and of those to load as far as they were announced.
+    /// Largest number of taps of the machine's table and of the tables announced for loading.
     largest_taps: u32,
     motion: Option<ShaperMotion>,
 }
 
-/// Why no shaper can be built.
+/// Why a shaper cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum ShaperConfigError {
-    /// A word width that is not in [`WORD_BITS`].
+    /// The word width is not in [`WORD_BITS`].
     #[error("command words of {0} bits: the shaper has 8 to 32")]
     WordBits(u32),
-    /// Sizes that no shaper can have.
+    /// The sizes are outside the range of shapers.
     #[error(
         "a shaper of {word_bits}-bit words, 2^{ring_address_bits} samples and 2^{tap_index_bits} taps: words have 4 to 32 bits, \
          rings 2^2 to 2^14 samples, tables 2^1 to 2^8 taps"
@@ -63,68 +66,69 @@ pub enum ShaperConfigError {
     Sizes {
         /// Width of a word in bits.
         word_bits: u32,
-        /// The ring holds 2 to the power of this samples.
+        /// Address bits: the ring buffer holds 2 to the power of this samples.
         ring_address_bits: u32,
-        /// A table holds 2 to the power of this taps.
+        /// Index bits: a table holds 2 to the power of this taps.
         tap_index_bits: u32,
     },
-    /// A delay that the largest ring does not reach.
+    /// A delay is longer than the largest ring buffer.
     #[error(
         "the longest delay is {found} samples, the largest ring reaches back {allowed}: \
          choose a lower sample rate or a shorter shaper"
     )]
     Delay {
-        /// Longest delay found, in samples.
+        /// Longest delay of the table, in samples.
         found: u32,
-        /// Longest delay possible, in samples.
+        /// Longest delay that is possible, in samples.
         allowed: u32,
     },
-    /// More taps than the largest table holds.
+    /// There are more taps than the largest table holds.
     #[error("{found} taps, the largest table holds {allowed}: choose a kind with fewer impulses or digitise `nearest`")]
     Taps {
-        /// Taps found.
+        /// Number of taps of the table.
         found: usize,
-        /// Taps possible.
+        /// Largest number of taps.
         allowed: u32,
     },
-    /// No such number of channels.
+    /// The number of channels is not 1 to 3.
     #[error("{0} channels: a shaper for motion has 1 (position), 2 (and velocity) or 3 (and acceleration)")]
     Channels(u32),
-    /// A word width that is not in [`MOTION_WORD_BITS`].
+    /// The word width is not in [`MOTION_WORD_BITS`].
     #[error("command words of {0} bits: a shaper for motion has 18 to 32")]
     MotionWordBits(u32),
-    /// A ring that only one channel can have.
+    /// The ring buffer is too large for more than one channel.
     #[error(
         "a delay of {found} samples with {channels} channels: more than one reach back {allowed}; \
          choose one channel, a lower sample rate or a shorter shaper"
     )]
     SharedDelay {
-        /// Longest delay that the ring was sized for.
+        /// Longest delay for which the ring buffer was sized, in samples.
         found: u32,
-        /// Channels.
+        /// Number of channels.
         channels: u32,
-        /// Longest delay possible with so many.
+        /// Longest delay, in samples, that is possible with this many channels.
         allowed: u32,
     },
 }
 
-/// A pass over the table takes longer than a sample lasts.
+/// A pass over the table takes longer than a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a pass over {taps} taps takes {needed} clocks, a sample lasts {available}: \
      choose a lower sample rate, a faster clock or fewer taps"
 )]
 pub struct PassError {
-    /// Taps of the table, times channels, and in a handover those of two tables.
+    /// Taps of the table times channels; in a handover, taps of both tables.
     pub taps: u32,
-    /// Clocks that a pass takes.
+    /// Clocks that the pass takes.
     pub needed: u32,
     /// Clocks from sample to sample.
     pub available: u64,
 }
 
 impl ShaperConfig {
-    /// The smallest shaper for `table`: the smallest ring that has the longest delay + 2 samples, the smallest table.
+    /// The smallest shaper for `table`: the smallest ring buffer that has the longest delay + 2 samples, and the
+    /// smallest table.
     ///
     /// # Errors
     /// [`ShaperConfigError`] for a width that is not in [`WORD_BITS`], a delay above 2^14 − 2 samples, or more than
@@ -145,12 +149,13 @@ impl ShaperConfig {
         })
     }
 
-    /// The shaper of just these sizes: words of `word_bits`, a ring of 2^`ring_address_bits` samples, tables of up to
-    /// 2^`tap_index_bits` taps. A proof that holds the memories needs smaller ones than [`ShaperConfig::new`] chooses.
+    /// The shaper with exactly these sizes: words of `word_bits`, a ring buffer of 2^`ring_address_bits` samples,
+    /// tables of up to 2^`tap_index_bits` taps. A proof that includes the memories needs smaller ones than
+    /// [`ShaperConfig::new`] chooses.
     ///
     /// # Errors
-    /// [`ShaperConfigError`] for words of other than 4 to 32 bits, a ring of other than 2^2 to 2^14 samples, a table of other
-    /// than 2^1 to 2^8 taps, and for a `table` that they do not hold.
+    /// [`ShaperConfigError`] for words of other than 4 to 32 bits, a ring buffer of other than 2^2 to 2^14 samples, a
+    /// table of other than 2^1 to 2^8 taps, and for a `table` that does not fit.
     pub fn of_sizes(
         word_bits: u32,
         ring_address_bits: u32,
@@ -179,11 +184,11 @@ impl ShaperConfig {
         Ok(config)
     }
 
-    /// The same shaper for commands in motion.
+    /// Makes it a motion shaper.
     ///
     /// # Errors
-    /// [`ShaperConfigError`] for other than 1 to 3 channels, a width that is not in [`MOTION_WORD_BITS`], and a ring above
-    /// 2^12 samples with more than one channel.
+    /// [`ShaperConfigError`] for other than 1 to 3 channels, a width that is not in [`MOTION_WORD_BITS`], and a ring
+    /// buffer above 2^12 samples with more than one channel.
     pub fn for_motion(mut self, motion: ShaperMotion) -> Result<Self, ShaperConfigError> {
         if !(1..=CHANNELS_MAX as u32).contains(&motion.channels) {
             return Err(ShaperConfigError::Channels(motion.channels));
@@ -196,10 +201,10 @@ impl ShaperConfig {
         Ok(self)
     }
 
-    /// The same shaper with room for tables that are loaded later: delays up to `delay_samples`, up to `taps` taps.
+    /// Makes room for tables that are loaded later: delays of up to `delay_samples`, up to `taps` taps.
     ///
     /// # Errors
-    /// [`ShaperConfigError`] where that is more than the largest sizes hold.
+    /// [`ShaperConfigError`] where that exceeds the largest sizes.
     pub fn with_room_for(mut self, delay_samples: u32, taps: usize) -> Result<Self, ShaperConfigError> {
         self.ring_address_bits = self.ring_address_bits.max(ring_for(delay_samples)?);
         self.tap_index_bits = self.tap_index_bits.max(index_for(taps)?);
@@ -220,43 +225,43 @@ impl ShaperConfig {
         }
     }
 
-    /// What it has for commands in motion; nothing in the plain shaper.
+    /// Its motion features; `None` for a plain shaper.
     pub fn motion(&self) -> Option<ShaperMotion> {
         self.motion
     }
 
-    /// Channels, 1 to 3.
+    /// Number of channels, 1 to 3.
     pub fn channels(&self) -> usize {
         self.motion.map_or(1, |motion| motion.channels as usize)
     }
 
-    /// Whether the arithmetic of `channel` is modulo 2^W: that of the position of a modulo axis.
+    /// Whether the arithmetic of `channel` is modulo 2^W, as for the position of a modulo axis.
     pub(crate) fn wraps(&self, channel: usize) -> bool {
         channel == 0 && self.motion.is_some_and(|motion| motion.modulo)
     }
 
-    /// Input and output ports.
+    /// Number of input and output ports.
     pub(crate) fn port_counts(&self) -> (usize, usize) {
         let how = usize::from(self.motion.is_some());
         (12 + how + self.channels(), 10 + self.channels())
     }
 
-    /// W: width of a command word in bits.
+    /// Width W of a command word in bits.
     pub fn word_bits(&self) -> u32 {
         self.word_bits
     }
 
-    /// A: the ring holds 2^A samples.
+    /// Address bits A: the ring buffer holds 2^A samples.
     pub fn ring_address_bits(&self) -> u32 {
         self.ring_address_bits
     }
 
-    /// T: a table holds up to 2^T taps.
+    /// Index bits T: a table holds up to 2^T taps.
     pub fn tap_index_bits(&self) -> u32 {
         self.tap_index_bits
     }
 
-    /// F: a coefficient `c` stands for `c / 2^F`, in every bank.
+    /// Fraction bits F: in every bank a coefficient `c` stands for `c / 2^F`.
     pub fn coefficient_fraction(&self) -> u32 {
         self.table.coefficient_fraction()
     }
@@ -266,12 +271,13 @@ impl ShaperConfig {
         &self.table
     }
 
-    /// Longest delay that a table may have, in samples: 2^A − 2. One more would read the word that a strobe writes.
+    /// Longest delay that a table may have, in samples: 2^A − 2. A delay of one more would read the word that a
+    /// strobe writes.
     pub fn longest_delay_samples(&self) -> u32 {
         (1 << self.ring_address_bits) - 2
     }
 
-    /// Most taps that a table may have: 2^T.
+    /// Largest number of taps that a table may have: 2^T.
     pub fn most_taps(&self) -> u32 {
         1 << self.tap_index_bits
     }
@@ -286,8 +292,9 @@ impl ShaperConfig {
         -self.word_min() - 1
     }
 
-    /// Products of the longest pass: over the machine's table; for motion over all channels of a handover between two
-    /// tables, each as long as the longest that is in the ROM or for which [`Self::with_room_for`] made room.
+    /// Number of products of the longest pass: over the machine's table; for a motion shaper over all channels of a
+    /// handover between two tables, each as long as the longest that is in the ROM or for which
+    /// [`Self::with_room_for`] made room.
     pub fn most_products(&self) -> u32 {
         match self.motion {
             None => self.table.taps().len() as u32,
@@ -295,15 +302,16 @@ impl ShaperConfig {
         }
     }
 
-    /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`, where a pass has so
-    /// many products: for motion [`MOTION_OVERHEAD_CLOCKS`] more than [`pass_clocks`], and one between two channels.
+    /// Clocks from a strobe to its `valid`, which is also the smallest distance of two strobes without `overrun`, for
+    /// a pass with this many products. A motion shaper takes [`MOTION_OVERHEAD_CLOCKS`] more than [`pass_clocks`],
+    /// and one between two channels.
     pub fn pass_clocks(&self, products: u32) -> u32 {
         let overhead = |motion: ShaperMotion| MOTION_OVERHEAD_CLOCKS + motion.channels - 1;
         let of_motion = self.motion.map_or(0, overhead);
         pass_clocks(products).saturating_add(of_motion)
     }
 
-    /// Whether the longest pass, that over [`Self::most_products`], ends before the next sample.
+    /// Checks that the longest pass, that with [`Self::most_products`], ends before the next sample.
     ///
     /// # Errors
     /// [`PassError`] with both clock counts.
@@ -320,7 +328,7 @@ impl ShaperConfig {
         Ok(())
     }
 
-    /// Whether the memories hold these taps.
+    /// Checks that the memories hold these taps.
     pub(crate) fn holds(&self, taps: &[Tap]) -> Result<(), ShaperConfigError> {
         let found = taps.iter().map(|t| t.delay_samples).max().unwrap_or(0);
         let allowed = self.longest_delay_samples();
@@ -336,7 +344,7 @@ impl ShaperConfig {
     }
 }
 
-/// Address bits of the smallest ring that reaches back `delay_samples`.
+/// Address bits of the smallest ring buffer with a delay of `delay_samples`.
 fn ring_for(delay_samples: u32) -> Result<u32, ShaperConfigError> {
     let reaches = |bits: &u32| (1u64 << bits) >= u64::from(delay_samples) + 2;
     RING_ADDRESS_BITS
@@ -361,7 +369,8 @@ fn index_for(taps: usize) -> Result<u32, ShaperConfigError> {
 mod tests {
     use super::*;
 
-    /// `taps` taps of coefficient 1, the rest on the last; delays 0, 1, … and the last at `longest`.
+    /// A table with `taps` taps: coefficient 1 except for the last, which has the rest; delays 0, 1, … and `longest`
+    /// for the last.
     fn table(taps: usize, longest: u32) -> TapTable {
         let mut list: Vec<Tap> = (0..taps as u32)
             .map(|delay_samples| Tap {

@@ -1,4 +1,4 @@
-//! Memory whose contents nobody knows: block RAM after power-up and after reset.
+//! Memory with unknown contents, such as block RAM after power-up and after reset.
 
 /// An endless sequence of arbitrary words, the same for the same seed (splitmix64, Steele, Lea, Flood 2014).
 pub(crate) struct Arbitrary(u64);

@@ -1,13 +1,13 @@
 //! The input shaper: `y[n] = saturate( (Σ c_i · x[n − d_i] + 2^(F−1)) >> F )`, one tap per clock through one multiplier.
 //!
-//! The datasheet is `docs/shaper.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/shaper.md`; the hardware is compared with this reference model.
 //!
 //! | type | what it is |
 //! |---|---|
-//! | [`ShaperConfig`] | what is fixed when a shaper is built: word width, sizes of its memories, the table in its ROM |
+//! | [`ShaperConfig`] | the build parameters of a shaper: word width, sizes of its memories, the table in its ROM |
 //! | [`Shaper`] | cycle accurate at the ports, one [`Shaper::step`] per clock, from typed [`Inputs`] to typed [`Outputs`] |
-//! | [`SampleShaper`] | the same samples without the clocks: one [`SampleShaper::push`] per sample |
-//! | [`ShaperMotion`] | what a shaper for commands in motion has more: channels that share a table, handover, modulo axes |
+//! | [`SampleShaper`] | the same results without the clocks: one [`SampleShaper::push`] per sample |
+//! | [`ShaperMotion`] | the additional features of a motion shaper: channels that share a table, handover, modulo axes |
 //! | [`MotionShaper`] | its samples without the clocks |
 //!
 //! ```text
@@ -19,9 +19,9 @@
 //! y        ------- as before -------< y[n] ------
 //! ```
 //!
-//! History before the first sample since a start is the start value, so a constant command gives a constant output.
-//! A running sum never overflows: 2^T products of W + 18 bits, and half, fit in W + 18 + T ≤ 58 bits; those of two
-//! tables in a handover in one bit more.
+//! The history before the first sample since a start is the start value, so a constant command gives a constant
+//! output. The running sum never overflows: 2^T products of W + 18 bits, and half, fit in W + 18 + T ≤ 58 bits; those
+//! of two tables in a handover need one bit more.
 //!
 //! ```
 //! use posicast_model::rtl::shaper::{Inputs, SampleShaper, Shaper, ShaperConfig, pass_clocks};
@@ -66,10 +66,10 @@ pub use sample::{LoadError, SampleShaper};
 
 use tables::Tables;
 
-/// The output of a channel, and whether it was clamped; `sample(d)` is the sample that lies `d` samples back.
+/// The output of a channel, and whether it was clamped; `sample(d)` is the sample `d` samples back.
 ///
-/// On a modulo axis the position goes through the table as differences to the newest sample, each wrapped to the word:
-/// the coefficients sum to one, so that `Σ c_i · x_i = Σ c_i · (x_i − x) + 2^F · x`.
+/// On a modulo axis the position passes the table as differences from the newest sample, each wrapped to the word:
+/// the coefficients sum to one, so `Σ c_i · x_i = Σ c_i · (x_i − x) + 2^F · x`.
 fn finish(config: &ShaperConfig, channel: usize, tables: &Tables<'_>, sample: impl Fn(u32) -> i64) -> (i64, bool) {
     let (fraction, word_bits) = (config.coefficient_fraction(), config.word_bits());
     if !config.wraps(channel) {
@@ -81,9 +81,10 @@ fn finish(config: &ShaperConfig, channel: usize, tables: &Tables<'_>, sample: im
     (wrap(rounded, word_bits), false)
 }
 
-/// Half is added, `fraction` bits are dropped (an arithmetic shift), the rest is clamped to `word_bits`.
+/// Rounds and clamps a sum: half is added, `fraction` bits are dropped (an arithmetic shift), and the rest is clamped
+/// to `word_bits`.
 ///
-/// `sum` is `Σ c_i · x_i`, at most 2^59 in size. The second value says whether it was clamped.
+/// `sum` is `Σ c_i · x_i`, of magnitude 2^59 at most. The second result says whether it was clamped.
 pub(crate) fn round_and_saturate(sum: i64, fraction: u32, word_bits: u32) -> (i64, bool) {
     let rounded = (sum + (1 << (fraction - 1))) >> fraction;
     let largest = (1i64 << (word_bits - 1)) - 1;
@@ -91,7 +92,7 @@ pub(crate) fn round_and_saturate(sum: i64, fraction: u32, word_bits: u32) -> (i6
     (clamped, clamped != rounded)
 }
 
-/// The low `bits` (1..=64) of `value` as a two's complement number: what a port of that width makes of it.
+/// The lowest `bits` (1..=64) of `value` as a two's complement number, as a port of that width shows it.
 pub fn wrap(value: i64, bits: u32) -> i64 {
     let unused = 64 - bits;
     (value << unused) >> unused

@@ -1,4 +1,4 @@
-//! The samples of a shaper for commands in motion, without the clocks.
+//! The motion shaper sample by sample, without the clocks.
 
 use super::config::{CHANNELS_MAX, ShaperConfig};
 use super::finish;
@@ -8,18 +8,18 @@ use super::tables::Tables;
 use super::wrap;
 use crate::taps::TapTable;
 
-/// A swap on its way.
+/// A swap in progress.
 #[derive(Debug, Clone)]
 struct Change {
     table: TapTable,
     how: u8,
 }
 
-/// The shaper sample by sample, with its channels, handover and modulo axis: what [`super::Shaper`] gives if its strobes
-/// come slowly enough.
+/// The motion shaper sample by sample, with its channels, handover and modulo axis. It gives the results of
+/// [`super::Shaper`] where strobes come slowly enough.
 ///
-/// Unlike it, this one fills its rings at a start instead of knowing their age, and never ends a handover: it keeps the old
-/// table for as long as one of its taps still reaches behind the change.
+/// Unlike that model, this one fills its ring buffers at a start instead of knowing their age, and never ends a
+/// handover: it keeps the old table for as long as one of its taps reaches behind the change.
 #[derive(Debug, Clone)]
 pub struct MotionShaper {
     config: ShaperConfig,
@@ -45,7 +45,8 @@ impl MotionShaper {
         }
     }
 
-    /// Begins anew: all samples before now count as `words` (wrapped to the word width). Gives what the outputs then are.
+    /// Restarts: all samples before now count as `words` (wrapped to the word width). Returns the outputs after
+    /// that.
     pub fn start(&mut self, words: [i64; CHANNELS_MAX]) -> [i64; CHANNELS_MAX] {
         let mut outputs = [0; CHANNELS_MAX];
         for ((ring, word), output) in self.rings.iter_mut().zip(words).zip(&mut outputs) {
@@ -56,7 +57,8 @@ impl MotionShaper {
         outputs
     }
 
-    /// One sample of every channel in, one out: position, velocity, acceleration; those that there are not are 0.
+    /// Takes one sample of every channel and returns the shaped one: position, velocity, acceleration; 0 for channels
+    /// that do not exist.
     pub fn push(&mut self, words: [i64; CHANNELS_MAX]) -> [i64; CHANNELS_MAX] {
         self.change_table();
         let mask = (1usize << self.config.ring_address_bits()) - 1;
@@ -77,11 +79,11 @@ impl MotionShaper {
         outputs
     }
 
-    /// Makes another table active, as `how` (one of [`swap_how`], others count as at once) says. One that was still on its
-    /// way is forgotten, a handover cut short: the hardware refuses that, see [`Self::changes`].
+    /// Makes another table active, as `how` says (one of [`swap_how`]; other values count as at once). A swap in
+    /// progress is dropped and a handover cut short, which the hardware would refuse; see [`Self::changes`].
     ///
     /// # Errors
-    /// [`LoadError`] where the shaper that was built cannot hold it; the table stays as it was.
+    /// [`LoadError`] where the shaper cannot hold the table; the active table then stays.
     pub fn swap(&mut self, table: &TapTable, how: u8) -> Result<(), LoadError> {
         loadable(&self.config, table)?;
         self.change = Some(Change {
@@ -91,7 +93,7 @@ impl MotionShaper {
         Ok(())
     }
 
-    /// Whether a swap waits or hands over: while it does, the hardware refuses the next.
+    /// Whether a swap waits or hands over; while it does, the hardware refuses the next.
     pub fn changes(&self) -> bool {
         self.change.is_some() || self.before.is_some()
     }
@@ -121,7 +123,7 @@ impl MotionShaper {
         self.before = (change.how == swap_how::HANDOVER && reach > 0).then_some((before, 1));
     }
 
-    /// Whether the last sample of the position and the `samples` before it are equal.
+    /// Whether the last sample of the position equals the `samples` before it.
     fn still_for(&self, samples: u32) -> bool {
         let ring = &self.rings[0];
         let mask = ring.len() - 1;

@@ -1,4 +1,4 @@
-//! The ports of a shaper for [motion](super::ShaperMotion): a word per channel, and `swap_how`.
+//! The ports of a [motion](super::ShaperMotion) shaper, which has a word per channel, and `swap_how`.
 
 use crate::rtl::ports::ports;
 
@@ -10,23 +10,23 @@ ports! {
         rst: Bit;
         /// For one clock: the next sample of the command.
         strobe: Bit;
-        /// For one clock: begin anew, all samples before now count as the command of now.
+        /// For one clock: restart; all samples before now count as the present command.
         start: Bit;
         /// Command words: position, velocity, acceleration.
         x[C]: Signed(W);
         /// Clears `saturated`, `overrun`, `refused`.
         clear_flags: Bit;
-        /// For one clock: one tap for a loadable bank.
+        /// For one clock: writes one tap to a loadable bank.
         tap_write: Bit;
-        /// The bank it is for, 1 or 2.
+        /// Bank of the tap: 1 or 2 for a write.
         tap_bank: Bits(2);
-        /// Its place in the table: 0 begins a table, then one after the other.
+        /// Index of the tap: 0 begins a table, then one after the other.
         tap_index: Bits(T);
-        /// Its coefficient.
+        /// Coefficient of the tap.
         tap_coefficient: Signed(18), "2^−F";
-        /// Its delay, 0 … 2^A − 2.
+        /// Delay of the tap, 0 … 2^A − 2.
         tap_delay: Bits(A), "samples";
-        /// For one clock: the tap at `tap_index` of `tap_bank`, of any bank, is to be read back.
+        /// For one clock: read back the tap at `tap_index` of `tap_bank`, which may be any bank.
         tap_read: Bit;
         /// For one clock: make `swap_bank` active.
         swap: Bit;
@@ -41,11 +41,11 @@ ports! {
         y[C]: Signed(W);
         /// For one clock: the shaped command is new.
         valid: Bit;
-        /// Sticky: some output was clamped.
+        /// Sticky: an output was clamped.
         saturated: Bit;
-        /// A pass over the table runs.
+        /// A pass over the table is running.
         busy: Bit;
-        /// Sticky: a strobe came while a pass ran.
+        /// Sticky: a strobe came while a pass was running.
         overrun: Bit;
         /// A swap waits, or hands over.
         swap_pending: Bit;
@@ -55,9 +55,9 @@ ports! {
         refused: Bit;
         /// Coefficient of the tap that was read back last; 0 where no tap is loaded.
         loaded_coefficient: Signed(18), "2^−F";
-        /// Its delay.
+        /// Delay of that tap.
         loaded_delay: Bits(A), "samples";
-        /// A read was not served yet.
+        /// A read waits to be served.
         tap_read_waits: Bit;
     }
 }

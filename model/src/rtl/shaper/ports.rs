@@ -1,17 +1,19 @@
-//! The shaper's ports: typed, and as the raw bit patterns of lock step.
+//! The shaper's ports, typed and as the raw bit patterns of lock step.
 
 use super::config::ShaperConfig;
 use super::{moving, plain, wrap};
 use crate::rtl::Port;
 use crate::taps::COEFFICIENT_BITS;
 
-/// `swap_how`: when a swap takes effect. 3 is refused.
+/// Values of `swap_how`, which says when a swap takes effect. 3 is refused.
 pub mod swap_how {
-    /// From the next sample on, for the whole history: a jump if the command moves.
+    /// The new table shapes the whole history from the next sample on: the output jumps if the command moves.
     pub const AT_ONCE: u8 = 0;
-    /// From the next sample on, each increment of the command through exactly one of the tables: no jump.
+    /// From the next sample on, each increment of the command passes exactly one of the tables: the output does not
+    /// jump.
     pub const HANDOVER: u8 = 1;
-    /// At the first sample before which the position command stood still for the longest delay of both tables: no jump.
+    /// The swap takes effect at the first sample before which the position command stood still for the longest delay
+    /// of both tables: the output does not jump.
     pub const WHEN_SETTLED: u8 = 2;
 }
 
@@ -22,7 +24,7 @@ pub struct Inputs {
     pub rst: bool,
     /// One clock: `x` is a new sample.
     pub strobe: bool,
-    /// One clock: begin anew, all samples before now count as `x`.
+    /// One clock: restart; all samples before now count as `x`.
     pub start: bool,
     /// Command word of channel 0, W bits: the position.
     pub x: i64,
@@ -30,17 +32,17 @@ pub struct Inputs {
     pub x_rates: [i64; 2],
     /// Clears `saturated`, `overrun`, `refused`.
     pub clear_flags: bool,
-    /// One clock: a tap for a loadable bank.
+    /// One clock: writes a tap to a loadable bank.
     pub tap_write: bool,
-    /// The bank it is for, 1 or 2.
+    /// Bank of the tap: 1 or 2 for a write.
     pub tap_bank: u8,
-    /// Its index, T bits: 0 begins a table, then one after the other.
+    /// Index of the tap, T bits: 0 begins a table, then one after the other.
     pub tap_index: u16,
-    /// Its coefficient, 18 bits.
+    /// Coefficient of the tap, 18 bits.
     pub tap_coefficient: i32,
-    /// Its delay in samples, A bits, not all ones.
+    /// Delay of the tap in samples, A bits, not all ones.
     pub tap_delay: u16,
-    /// One clock: the tap at `tap_index` of `tap_bank` is to be read back.
+    /// One clock: read back the tap at `tap_index` of `tap_bank`.
     pub tap_read: bool,
     /// One clock: make `swap_bank` active, at the next strobe or as `swap_how` says.
     pub swap: bool,
@@ -59,11 +61,11 @@ pub struct Outputs {
     pub y_rates: [i64; 2],
     /// One clock: the outputs of all channels are new.
     pub valid: bool,
-    /// Sticky: some output was clamped.
+    /// Sticky: an output was clamped.
     pub saturated: bool,
-    /// A pass runs.
+    /// A pass over the table is running.
     pub busy: bool,
-    /// Sticky: a strobe came while a pass ran.
+    /// Sticky: a strobe came while a pass was running.
     pub overrun: bool,
     /// A swap waits, or hands over.
     pub swap_pending: bool,
@@ -73,9 +75,9 @@ pub struct Outputs {
     pub refused: bool,
     /// Coefficient of the tap that was read back last; 0 where no tap is loaded.
     pub loaded_coefficient: i32,
-    /// Its delay in samples, A bits.
+    /// Delay of that tap in samples, A bits.
     pub loaded_delay: u16,
-    /// A read was not served yet.
+    /// A read waits to be served.
     pub tap_read_waits: bool,
 }
 
@@ -90,7 +92,7 @@ pub fn ports(config: &ShaperConfig) -> Vec<Port> {
 }
 
 impl Inputs {
-    /// From raw bit patterns, one per input port in port order.
+    /// Converts raw bit patterns, one per input port in port order.
     pub fn from_raw(raw: &[u64], config: &ShaperConfig) -> Self {
         let mut values = raw.iter().copied();
         let mut next = || values.next().unwrap_or_default();
@@ -119,7 +121,7 @@ impl Inputs {
         }
     }
 
-    /// As raw bit patterns, one per input port in port order, each cut to its port's width.
+    /// The raw bit patterns, one per input port in port order, each cut to its port's width.
     pub fn to_raw(&self, config: &ShaperConfig) -> Vec<u64> {
         let cut = |value: i64, bits: u32| value as u64 & ((1 << bits) - 1);
         let mut raw = vec![
@@ -147,7 +149,7 @@ impl Inputs {
 }
 
 impl Outputs {
-    /// From raw bit patterns, one per output port in port order.
+    /// Converts raw bit patterns, one per output port in port order.
     pub fn from_raw(raw: &[u64], config: &ShaperConfig) -> Self {
         let mut values = raw.iter().copied();
         let mut next = || values.next().unwrap_or_default();
@@ -174,7 +176,7 @@ impl Outputs {
         }
     }
 
-    /// Writes them as raw bit patterns, one per output port in port order, as far as `raw` goes.
+    /// Writes the raw bit patterns, one per output port in port order, as far as `raw` reaches.
     pub fn write_raw(&self, config: &ShaperConfig, raw: &mut [u64]) {
         let mask = (1 << config.word_bits()) - 1;
         let rates = self.y_rates.iter().take(config.channels() - 1);

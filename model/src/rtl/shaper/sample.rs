@@ -1,4 +1,4 @@
-//! The same samples without the clocks.
+//! The plain shaper sample by sample, without the clocks.
 
 use super::config::{ShaperConfig, ShaperConfigError};
 use super::{round_and_saturate, wrap};
@@ -7,22 +7,23 @@ use crate::taps::TapTable;
 /// Why a table cannot be loaded into a shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
-    /// A table of another `F`.
+    /// The table has another number of fraction bits.
     #[error("the table has {found} fraction bits, the shaper is built for {allowed}: digitise it with that many")]
     Fraction {
-        /// `F` of the table.
+        /// Fraction bits F of the table.
         found: u32,
-        /// `F` of the shaper.
+        /// Fraction bits F of the shaper.
         allowed: u32,
     },
-    /// A table that the shaper's memories do not hold.
+    /// The shaper's memories do not hold the table.
     #[error("the shaper that was built does not hold the table: {0}")]
     Size(ShaperConfigError),
 }
 
-/// The shaper sample by sample: what [`super::Shaper`] gives if its strobes come slowly enough.
+/// The plain shaper sample by sample. It gives the results of [`super::Shaper`] where strobes come slowly enough.
 ///
-/// For the plain shaper; [`super::MotionShaper`] has channels and the rest. Unlike the clocked model, this one fills its ring at a start instead of knowing its age, and so needs no test per tap.
+/// [`super::MotionShaper`] has channels and the other motion features. Unlike the clocked model, this one fills its
+/// ring buffer at a start instead of knowing its age, and so needs no test per tap.
 #[derive(Debug, Clone)]
 pub struct SampleShaper {
     config: ShaperConfig,
@@ -44,14 +45,16 @@ impl SampleShaper {
         }
     }
 
-    /// Begins anew: all samples before now count as `x` (wrapped to the word width), which is what the output then is.
+    /// Restarts: all samples before now count as `x` (wrapped to the word width), which is also the output after
+    /// that.
     pub fn start(&mut self, x: i64) -> i64 {
         let x = wrap(x, self.config.word_bits());
         self.ring.fill(x);
         x
     }
 
-    /// One sample in, one sample out. `x` is wrapped to the word width, as a port of that width would.
+    /// Takes one sample and returns the shaped one. `x` is wrapped to the word width, as a port of that width would
+    /// do.
     pub fn push(&mut self, x: i64) -> i64 {
         let mask = self.ring.len() - 1;
         self.head = (self.head + 1) & mask;
@@ -67,7 +70,7 @@ impl SampleShaper {
     /// Makes another table active from the next sample on; the history stays.
     ///
     /// # Errors
-    /// [`LoadError`] where the shaper that was built cannot hold it; the table stays as it was.
+    /// [`LoadError`] where the shaper cannot hold the table; the active table then stays.
     pub fn swap(&mut self, table: &TapTable) -> Result<(), LoadError> {
         loadable(&self.config, table)?;
         self.taps = offsets(table);
@@ -80,7 +83,7 @@ impl SampleShaper {
     }
 }
 
-/// Whether a shaper of `config` can load `table`.
+/// Checks that a shaper of `config` can load `table`.
 pub(super) fn loadable(config: &ShaperConfig, table: &TapTable) -> Result<(), LoadError> {
     let allowed = config.coefficient_fraction();
     let found = table.coefficient_fraction();

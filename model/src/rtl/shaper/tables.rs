@@ -1,42 +1,43 @@
-//! The table that shapes a sample; in a handover two, of which each increment of the command goes through one.
+//! The table that shapes a sample; in a handover two tables, one of which each increment of the command passes.
 //!
-//! A handover begins at a sample `n0`: the increments up to it are the old table's (`A`), later ones the new table's
-//! (`B`). With `m = n − n0`, and all increments of the history written out and collected again by sample:
+//! A handover begins at a sample `n0`: the increments up to it belong to the old table (`A`), later ones to the new
+//! table (`B`). With `m = n − n0`, and all increments of the history written out and collected again by sample:
 //!
 //! ```text
 //! position               Σ A_i · x[n − max(d_i, m)] + Σ B_i · x[n − min(d_i, m)] − 2^F · x[n0]
 //! velocity, acceleration Σ A_i · x[n − d_i] over d_i ≥ m  +  Σ B_i · x[n − d_i] over d_i < m
 //! ```
 //!
-//! Once `m` is above the longest delay of both, what is left is `Σ B_i · x[n − d_i]`: the handover ends. (For the position
-//! one sample earlier, but a velocity at that delay is still the old table's.) Weights that fade from
-//! one output to the other would do neither: the velocity would no longer be the position's derivative.
+//! Once `m` exceeds the longest delay of both, `Σ B_i · x[n − d_i]` remains and the handover ends. (For the position
+//! it could end one sample earlier, but a velocity at that delay still belongs to the old table.) Weights that fade
+//! from one output to the other would keep neither property: the velocity would no longer be the position's
+//! derivative.
 
 use crate::taps::Tap;
 
-/// What shapes a sample.
+/// The tables that shape a sample.
 pub(super) struct Tables<'a> {
     /// The active table.
     pub(super) active: &'a [Tap],
-    /// In a handover the table before, and `m`: samples since the last one that it shaped alone.
+    /// In a handover, the table before and `m`, the number of samples since the last one that it shaped alone.
     pub(super) handover: Option<(&'a [Tap], u32)>,
     /// 2^F.
     pub(super) unity: i64,
 }
 
 impl Tables<'_> {
-    /// Products of a pass over `channels`, one clock each.
+    /// Number of products of a pass over `channels`; each takes a clock.
     pub(super) fn products(&self, channels: usize) -> u32 {
         let active = self.active.len() * channels;
         let products = match self.handover {
             None => active,
-            // The position channel has one more, for −2^F · x[n0].
+            // The position channel has one product more, for −2^F · x[n0].
             Some((before, _)) => active + before.len() * channels + 1,
         };
         products as u32
     }
 
-    /// The exact weighted sum of a channel, in units of 2^−F; `sample(d)` is the sample that lies `d` samples back.
+    /// The exact weighted sum of a channel, in units of 2^−F; `sample(d)` is the sample `d` samples back.
     pub(super) fn sum(&self, channel: usize, sample: impl Fn(u32) -> i64) -> i64 {
         let product = |tap: &Tap, delay: u32| i64::from(tap.coefficient) * sample(delay);
         let Some((before, since)) = self.handover else {

@@ -1,47 +1,47 @@
-//! The arithmetic of a pass: what each step multiplies, adds up, cuts to its word and keeps.
+//! The arithmetic of the controller: what each step multiplies, adds, saturates and stores.
 //!
-//! A step is `accumulator := base + round(operand · mantissa · 2^−shift)`, then perhaps a word takes the accumulator,
-//! saturated. `multiply` and `settle` are the clocks of a step at which something happens.
+//! A step is `accumulator := base + round(operand · mantissa · 2^−shift)`; then a word may take the accumulator,
+//! saturated. `multiply` and `settle` are the clocks of a step in which something happens.
 
 use super::ports::{Law, Saturation, TickMotion};
 use super::settings::{Gain, LIMIT_MAX, SettingRow};
 
-/// Steps of a pass.
+/// Number of steps.
 pub(super) const STEPS: u8 = 17;
-/// The step that has a limit for its setting; the sum of the integral begins with it.
+/// The step whose setting is the limit; the sum of the integral begins with it.
 pub(super) const LIMIT_STEP: u8 = 14;
 /// The step that adds e to its integral.
 const INTEGRAL_STEP: u8 = 15;
-/// Clocks of a step that shifts by any distance: 31 bits, one a clock, and 8 more.
+/// Clocks of a step that may shift by any distance: 31 bits, one per clock, and 8 more.
 const STEP_CLOCKS: u8 = 39;
 /// Clocks of a step that does not shift.
 const SHORT_CLOCKS: u8 = 8;
-/// e is shifted from Q16.16 to its integral's Q24.8.
+/// Shift of e from Q16.16 to the integral's Q24.8.
 const ERROR_SHIFT: u8 = 8;
-/// Bits of the boundary layer's and the Coulomb term's fraction: Q1.25, so that ±1 is its range.
+/// Width of the fraction of the boundary layer and of the Coulomb term: Q1.25, whose range is ±1.
 const FRACTION_BITS: u32 = 26;
-/// Bits of e before it is shifted to Q16.16.
+/// Width of e before it is shifted to Q16.16.
 const ERROR_BITS: u32 = 24;
 const WORD_BITS: u32 = 32;
 const DUTY_BITS: u32 = 18;
 
-/// Everything that holds a number.
+/// All registers that hold a number.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Datapath {
     pub(super) law: Law,
-    /// e, Q16.8.
+    /// Position error e, Q16.8.
     error: i32,
     error_rate: i32,
     pub(super) sliding: i32,
-    /// Of the boundary layer, then of the Coulomb term; Q1.25.
+    /// Fraction of the boundary layer, then of the Coulomb term; Q1.25.
     fraction: i32,
-    /// Q8.24.
+    /// Sum of the feedback, Q8.24.
     feedback: i32,
-    /// ∫e, Q24.8.
+    /// Integral ∫e, Q24.8.
     integral: i32,
-    /// The integral was cleared while its next value was under way.
+    /// Whether the integral was cleared while its next value was being computed.
     cleared: bool,
-    /// The largest command, as read.
+    /// The command limit as read from the settings.
     limit: u32,
     pub(super) command: i32,
     pub(super) duty: i32,
@@ -50,18 +50,18 @@ pub(super) struct Datapath {
     pub(super) limited_ticks: u16,
     pub(super) saturated_high: u8,
     pub(super) saturated_low: u8,
-    /// What was cut in the last clock, high and low: flags of the next.
+    /// Values that saturated in the last clock, high and low; they become flags in the next.
     found: (u8, u8),
-    /// The integral's gain and the feedback's have opposite signs.
+    /// Whether the integral's gain and the feedback's have opposite signs.
     opposes: bool,
-    /// What the running step multiplies.
+    /// Operand of the present step.
     operand: i32,
-    /// Rounded product of the running step.
+    /// Rounded product of the present step.
     product: i64,
     accumulator: i64,
 }
 
-/// Row of the settings that a step reads. The first three and that of the integral's sum read none.
+/// Row of the settings that a step reads. The first three steps and that of the integral's sum read none.
 pub(super) fn address(step: u8, law: Law) -> u8 {
     let linear = law != Law::SlidingMode;
     let row = match step {
@@ -85,7 +85,7 @@ pub(super) fn address(step: u8, law: Law) -> u8 {
     row as u8
 }
 
-/// Clocks of a step: what is multiplied by one is not shifted, but e to its integral's format.
+/// Clocks of a step. A product with one is not shifted, except for e, which is shifted to its integral's format.
 pub(super) fn step_clocks(step: u8) -> u8 {
     match step {
         0..=2 | LIMIT_STEP => SHORT_CLOCKS,
@@ -94,29 +94,29 @@ pub(super) fn step_clocks(step: u8) -> u8 {
     }
 }
 
-/// Clocks of a pass.
+/// Clocks of a computation.
 pub(super) const fn pass_clocks() -> u32 {
     (4 * SHORT_CLOCKS + SHORT_CLOCKS + ERROR_SHIFT) as u32 + (STEPS - 5) as u32 * STEP_CLOCKS as u32
 }
 
-/// `value` in `bits`, and whether it was cut above or below.
+/// Saturates `value` to `bits`, and returns whether it was above or below the range.
 fn saturate(value: i64, bits: u32) -> (i32, bool, bool) {
     let half = 1 << (bits - 1);
     (value.clamp(-half, half - 1) as i32, value >= half, value < -half)
 }
 
 impl Datapath {
-    /// e of the last tick, Q16.16.
+    /// Position error e of the last tick, Q16.16.
     pub(super) fn error_q16_16(&self) -> i32 {
         self.error << 8
     }
 
-    /// Whether a clear of the integral changes anything.
+    /// Whether clearing the integral would change anything.
     pub(super) fn has_integral(&self) -> bool {
         self.integral != 0 || !self.cleared
     }
 
-    /// Wins over a sum in the same clock, and over one under way.
+    /// Clears the integral. It wins over a sum in the same clock, and over one being computed.
     pub(super) fn clear_integral(&mut self) {
         self.integral = 0;
         self.cleared = true;
@@ -124,7 +124,7 @@ impl Datapath {
         self.found.1 &= !Saturation::Integral.bit();
     }
 
-    /// The sum of the integral and e begins: a clear from now on drops it.
+    /// Begins the sum of the integral and e; a clear from now on discards it.
     pub(super) fn open_integral(&mut self) {
         self.cleared = false;
     }
@@ -133,14 +133,14 @@ impl Datapath {
         (self.saturated_high, self.saturated_low) = (0, 0);
     }
 
-    /// What was cut in the clock before becomes flags.
+    /// Turns the saturations of the clock before into flags.
     pub(super) fn raise_flags(&mut self) {
         let (high, low) = std::mem::take(&mut self.found);
         self.saturated_high |= high;
         self.saturated_low |= low;
     }
 
-    /// Flags are about to rise.
+    /// Whether flags are about to be set.
     pub(super) fn has_found(&self) -> bool {
         self.found != (0, 0)
     }
@@ -151,19 +151,19 @@ impl Datapath {
         value
     }
 
-    /// The clock of `start`: e.
+    /// Captures e in the clock of `start`.
     #[inline]
     pub(super) fn capture(&mut self, law: Law, modulo: bool, motion: &TickMotion) {
         self.law = law;
         let position = i64::from(motion.position) << 8;
         let difference = i64::from(motion.position_reference) - position;
-        // Positions count modulo 2^32 counts, references of a rotary axis modulo 2^24.
+        // Positions count modulo 2^32 counts, the references of a rotary axis modulo 2^24.
         let unused = if modulo { 32 } else { 24 };
         let nearest = (difference << unused) >> unused;
         self.error = self.flag(Saturation::Error, saturate(nearest, ERROR_BITS));
     }
 
-    /// What a step multiplies.
+    /// The operand of a step.
     fn operand(&self, step: u8, motion: &TickMotion) -> i32 {
         let sliding_mode = self.law == Law::SlidingMode;
         match step {
@@ -184,7 +184,7 @@ impl Datapath {
         }
     }
 
-    /// The clock in which a step takes what it multiplies, and reads its setting.
+    /// The clock in which a step takes its operand and reads its setting.
     #[inline]
     pub(super) fn multiply(&mut self, step: u8, motion: &TickMotion, setting: u32) {
         let operand = i64::from(self.operand(step, motion));
@@ -228,7 +228,7 @@ impl Datapath {
         }
     }
 
-    /// The sum so far, cut at the limit read.
+    /// Clamps the sum at the limit that was read.
     fn cut_command(&mut self) {
         let limit = i64::from(self.limit);
         (self.limited_high, self.limited_low) = (self.accumulator > limit, self.accumulator < -limit);
@@ -236,7 +236,8 @@ impl Datapath {
         self.command = self.flag(Saturation::Command, (cut, self.limited_high, self.limited_low));
     }
 
-    /// The integral of the next tick, frozen while it would push a cut command further; and how long it has been cut.
+    /// Computes the integral for the next tick, frozen while it would push a clamped command further, and counts the
+    /// ticks with a clamped command.
     fn integrate(&mut self) {
         let lowers = (self.error < 0) ^ self.opposes;
         let frozen = if lowers { self.limited_low } else { self.limited_high };

@@ -1,6 +1,6 @@
-//! The controller: reference and measurement to the drive's command, by sliding mode, PD or PID.
+//! The controller computes the drive's command from reference and measurement, by sliding mode, PD or PID.
 //!
-//! The datasheet is `docs/sliding_mode.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/sliding_mode.md`; the hardware is compared with this reference model.
 //!
 //! ```text
 //! e  = r − x                       s  = de + c·e                    f = sat(s/φ)
@@ -9,13 +9,14 @@
 //! command = limit( KA·a + KF·ddr + KR·dr + KV·v + KC·sat(dr/fade) )            duty = KD·command
 //! ```
 //!
-//! Everything is in counts and ticks T; unit conversions are in the gains ([`crate::control`]). One multiplier does it in
-//! [`CONTROL_CLOCKS`], whatever the numbers are; each of its steps reads its gain at `setting_address`.
+//! Everything is in counts and ticks T; unit conversions are in the gains ([`crate::control`]). One multiplier
+//! computes a command in [`CONTROL_CLOCKS`], whatever the numbers are; each of its steps reads its gain at
+//! `setting_address`.
 //!
 //! | type | |
 //! |---|---|
 //! | [`SlidingMode`] | cycle accurate at its ports, one [`SlidingMode::step`] per clock |
-//! | [`TickController`] | the fast path: one [`TickController::control`] per tick |
+//! | [`TickController`] | the results without the clocks: one [`TickController::control`] per tick |
 //! | [`Settings`], [`Gain`], [`SettingRow`] | gains and limit as the words that the hardware reads |
 //!
 //! ```
@@ -46,12 +47,12 @@ use super::{FOREVER, Moore, clocked_block};
 
 /// Clock of a step in which its operand and its setting are taken.
 const READ_PHASE: u8 = 1;
-/// From the clock in which a step's sum is taken, clocks to the next step's first.
+/// Clocks from the one in which a step's sum is taken to the next step's first.
 const CLOCKS_AFTER: u8 = 2;
 /// Clocks from `start` to `valid`, and the smallest distance of two starts without `overrun`.
 pub const CONTROL_CLOCKS: u32 = pass_clocks() + 1;
 
-/// Everything that is a register.
+/// All registers.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct State {
     datapath: Datapath,
@@ -97,7 +98,7 @@ impl State {
         self.datapath.raise_flags();
         self.valid = false;
         let clocks = step_clocks(self.step);
-        // The clock before the sum of the integral begins.
+        // This is the clock before the sum of the integral begins.
         let opens = self.step + 1 == LIMIT_STEP && self.phase == clocks - 1;
         if self.busy {
             self.overrun |= inputs.start;
@@ -125,7 +126,7 @@ impl State {
         }
     }
 
-    /// In a pass, the clocks from one that reads a setting to the one that keeps the result.
+    /// During a computation, the clocks after one that reads a setting, up to the one that stores the result.
     fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
         let data = &self.datapath;
         let flags = self.overrun || data.saturated_high | data.saturated_low != 0;
@@ -150,7 +151,7 @@ impl State {
     }
 }
 
-/// The controller, cycle accurate at its ports.
+/// The cycle-accurate model of the controller.
 #[derive(Default)]
 pub struct SlidingMode {
     state: State,
@@ -162,12 +163,12 @@ impl SlidingMode {
         Self::default()
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         self.state.outputs()
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.state.outputs();
@@ -198,14 +199,15 @@ impl Moore for SlidingMode {
     }
 }
 
-/// The fast path: a tick in one call, with what the outputs show at the end of its pass.
+/// The controller without clocks: a tick in one call, with the outputs at the end of its computation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TickController {
     datapath: Datapath,
 }
 
 impl TickController {
-    /// One tick. The settings are those in the memory during the pass, `motion` holds still meanwhile.
+    /// Computes one tick. The settings are those in the memory during the computation; `motion` does not change
+    /// meanwhile.
     pub fn control(&mut self, law: Law, modulo: bool, motion: &TickMotion, settings: &Settings) -> Outputs {
         self.datapath.capture(law, modulo, motion);
         self.datapath.raise_flags();
@@ -226,7 +228,7 @@ impl TickController {
         ended.outputs()
     }
 
-    /// Clears the integral, as at the start of motion.
+    /// Clears the integral, as at the start of a motion.
     pub fn clear_integral(&mut self) {
         self.datapath.clear_integral();
     }

@@ -2,20 +2,20 @@
 
 use crate::rtl::ports;
 
-/// Which law computes the command.
+/// Control law that computes the command.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Law {
-    /// `c·de + k·s + ε·sat(s/φ)`.
+    /// Sliding mode: `c·de + k·s + ε·sat(s/φ)`.
     #[default]
     SlidingMode = 0,
     /// Proportional and derivative.
     Pd = 1,
-    /// The same and the integral.
+    /// Proportional, integral and derivative.
     Pid = 2,
 }
 
 impl Law {
-    /// From the port's two bits; 3 means nothing, and acts as PD.
+    /// The law for the port's two bits; 3 acts as PD.
     pub fn from_bits(bits: u8) -> Self {
         match bits & 3 {
             0 => Self::SlidingMode,
@@ -25,29 +25,29 @@ impl Law {
     }
 }
 
-/// What a tick is about: what the shaper wants and the pulse counter sees.
+/// Reference and measurement of a tick, from the shaper and the pulse counter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TickMotion {
-    /// r: Q24.8 counts.
+    /// Reference position r in Q24.8 counts.
     pub position_reference: i32,
-    /// dr: Q16.16 counts/T.
+    /// Reference velocity dr in Q16.16 counts/T.
     pub velocity_reference: i32,
-    /// ddr: Q8.24 counts/T².
+    /// Reference acceleration ddr in Q8.24 counts/T².
     pub acceleration_reference: i32,
-    /// Measured, counts.
+    /// Measured position in counts.
     pub position: i32,
-    /// Measured, Q16.16 counts/T.
+    /// Measured velocity in Q16.16 counts/T.
     pub velocity: i32,
 }
 
-/// What can saturate: bits of `saturated_high` and `saturated_low`.
+/// Values that can saturate: bits of `saturated_high` and `saturated_low`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Saturation {
-    /// e.
+    /// Position error e.
     Error = 0,
-    /// de.
+    /// Rate of the error de.
     ErrorRate = 1,
-    /// s.
+    /// Sliding variable s.
     Sliding = 2,
     /// The sum of the feedback.
     Feedback = 3,
@@ -60,7 +60,7 @@ pub enum Saturation {
 }
 
 impl Saturation {
-    /// Its bit.
+    /// Bit of the value.
     pub const fn bit(self) -> u8 {
         1 << self as u8
     }
@@ -79,7 +79,7 @@ impl Inputs {
         }
     }
 
-    /// Another reference and measurement.
+    /// Sets reference and measurement.
     pub fn set_motion(&mut self, motion: TickMotion) {
         self.position_reference = motion.position_reference;
         self.velocity_reference = motion.velocity_reference;
@@ -89,7 +89,7 @@ impl Inputs {
     }
 }
 
-/// Reference and measurement; everything else is 0.
+/// Inputs with this reference and measurement; all others are 0.
 impl From<TickMotion> for Inputs {
     fn from(motion: TickMotion) -> Self {
         let mut inputs = Self::default();
@@ -105,25 +105,25 @@ ports! {
     inputs Inputs {
         /// Synchronous reset.
         rst: Bit as bool;
-        /// One clock: a tick. Ignored while a pass runs.
+        /// One clock: computes a tick. Ignored during a computation.
         start: Bit as bool;
-        /// 0 sliding mode, 1 PD, 2 PID, 3 as 1; taken at `start`.
+        /// Law: 0 sliding mode, 1 PD, 2 PID, 3 as 1; taken at `start`.
         law: Bits(2) as u8;
-        /// Tied: a rotary axis, whose references wrap.
+        /// Constant; high: a rotary axis, whose references wrap.
         modulo: Bit as bool;
-        /// Reference r of the position; taken at `start`.
+        /// Reference position r; taken at `start`.
         position_reference: Signed(32) as i32, "counts, Q24.8";
-        /// Reference dr of the velocity.
+        /// Reference velocity dr.
         velocity_reference: Signed(32) as i32, "counts per tick, Q16.16";
-        /// Reference ddr of the acceleration.
+        /// Reference acceleration ddr.
         acceleration_reference: Signed(32) as i32, "counts per tick², Q8.24";
-        /// Measured position x, live; taken at `start`.
+        /// Measured position x, changing at any time; taken at `start`.
         position: Signed(32) as i32, "counts";
         /// Measured velocity v.
         velocity: Signed(32) as i32, "counts per tick, Q16.16";
-        /// The word at the `setting_address` of the clock before.
+        /// Setting at the `setting_address` of the clock before.
         setting: Bits(32) as u32;
-        /// Clears Σe; wins over a sum under way, from the first clock of step 14 to the end of step 15.
+        /// Clears Σe; wins over a sum being computed, from the first clock of step 14 to the end of step 15.
         clear_integral: Bit as bool;
         /// Clears `saturated_high`, `saturated_low`, `overrun`.
         clear_flags: Bit as bool;
@@ -131,34 +131,35 @@ ports! {
 
     /// The output ports, all of them registers but `setting_address` and `ends`, which follow from registers.
     outputs Outputs {
-        /// Row of the settings: its word is expected in the next clock.
+        /// Row of the settings, whose word is expected in the next clock.
         setting_address: Bits(4) as u8;
-        /// e: new in the clock after `start`.
+        /// Position error e: new in the clock after `start`.
         error: Signed(32) as i32, "counts, Q16.16";
-        /// s, with every law.
+        /// Sliding variable s, with every law.
         sliding: Signed(32) as i32, "counts per tick, Q16.16";
         /// The command, within ±limit.
         command: Signed(32) as i32, "command units, Q20.12";
-        /// The command as clocks of the PWM period.
+        /// The command in clocks of the PWM period.
         duty: Signed(18) as i32, "clocks";
-        /// One clock: all outputs are of the last `start`.
+        /// One clock: all outputs belong to the last `start`.
         valid: Bit as bool;
-        /// A pass runs.
+        /// A computation is running.
         busy: Bit as bool;
-        /// The last command was cut at +limit.
+        /// The last command was clamped at +limit.
         limited_high: Bit as bool;
-        /// The last command was cut at −limit.
+        /// The last command was clamped at −limit.
         limited_low: Bit as bool;
-        /// For so many ticks in a row commands were cut; stops at 65,535. For a trip.
+        /// Number of consecutive ticks with a clamped command; stops at 65,535. For a trip.
         limited_ticks: Bits(16) as u16, "ticks";
-        /// Sticky: what was cut at its upper end: bit 0 e, 1 de, 2 s, 3 a, 4 Σe, 5 command, 6 duty. A clock after the
-        /// word that was cut, all by `valid`. Set wins over clear.
+        /// Sticky: values that were clamped at their upper end: bit 0 e, 1 de, 2 s, 3 a, 4 Σe, 5 command, 6 duty. A
+        /// flag is set one clock after its value, all of them by `valid`. Setting wins over clearing.
         saturated_high: Bits(7) as u8;
-        /// Sticky: what was cut at its lower end; bits as in `saturated_high`.
+        /// Sticky: values that were clamped at their lower end; bits as in `saturated_high`.
         saturated_low: Bits(7) as u8;
-        /// Sticky: a `start` came while `busy`, and was ignored. Set wins over clear.
+        /// Sticky: a `start` came while `busy` and was ignored. Setting wins over clearing.
         overrun: Bit as bool;
-        /// One clock: the last of a pass. `valid` is high in the next, in which another pass may start.
+        /// One clock: the last of a computation. `valid` is high in the next clock, in which another computation may
+        /// start.
         ends: Bit as bool;
     }
 }

@@ -1,30 +1,30 @@
 //! The settings that the controller reads while it computes: 16 words of 32 bits, one memory row per axis.
 
-/// Words of the settings.
+/// Number of words of the settings.
 pub const SETTINGS: usize = 16;
-/// Bits of a gain's mantissa.
+/// Width of a gain's mantissa in bits.
 pub const MANTISSA_BITS: u32 = 18;
 /// Largest mantissa; the smallest is `-MANTISSA_MAX - 1`.
 pub const MANTISSA_MAX: i32 = (1 << (MANTISSA_BITS - 1)) - 1;
 /// Largest right shift.
 pub const SHIFT_MAX: u32 = 31;
-/// Largest limit: Q19.12 in 31 bits.
+/// Largest command limit: Q19.12 in 31 bits.
 pub const LIMIT_MAX: u32 = (1 << 31) - 1;
 
-/// What stands at which address. All but `Limit` are gains.
+/// Settings by address. All but `Limit` are gains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SettingRow {
-    /// Sliding mode: c·T of `s = c·e + de`.
+    /// Sliding mode: c·T in `s = c·e + de`.
     Surface = 0,
     /// Sliding mode: slope 1/φ of the boundary layer.
     Boundary = 1,
-    /// Sliding mode: c·T on `de`.
+    /// Sliding mode: c·T, gain on `de`.
     Damping = 2,
-    /// Sliding mode: k·T on `s`.
+    /// Sliding mode: k·T, gain on `s`.
     Reaching = 3,
-    /// Sliding mode: ε·T² on the boundary layer's fraction.
+    /// Sliding mode: ε·T², gain on the boundary layer's fraction.
     Switching = 4,
-    /// Slope of the Coulomb term: 1 over the velocity at which it is whole.
+    /// Slope of the Coulomb term: 1 over the velocity at which it reaches its full value.
     Fade = 5,
     /// Command per feedback.
     Feedback = 6,
@@ -34,17 +34,17 @@ pub enum SettingRow {
     Velocity = 8,
     /// Command per measured velocity.
     Viscous = 9,
-    /// Command against Coulomb friction.
+    /// Command that compensates Coulomb friction.
     Coulomb = 10,
-    /// Largest command: not a gain but Q19.12, 31 bits.
+    /// Largest command: not a gain but Q19.12 in 31 bits.
     Limit = 11,
     /// Duty per command.
     Duty = 12,
-    /// PD and PID: on `de`.
+    /// PD and PID: gain on `de`.
     Derivative = 13,
-    /// PD and PID: on `e`.
+    /// PD and PID: gain on `e`.
     Proportional = 14,
-    /// PID: on the integral of `e`.
+    /// PID: gain on the integral of `e`.
     Integral = 15,
 }
 
@@ -69,9 +69,10 @@ impl SettingRow {
         Self::Integral,
     ];
 
-    /// Exponent `x` of the row: a gain of this row is worth `mantissa · 2^(x − shift)`, in counts, ticks and command units.
+    /// Exponent `x` of the row: a gain of this row stands for `mantissa · 2^(x − shift)`, in counts, ticks and
+    /// command units.
     ///
-    /// It is the difference of the fraction bits of what the row multiplies and of what that is added to. The limit's is 0.
+    /// It is the difference between the fraction bits of the operand and those of the sum. The limit's is 0.
     pub const fn exponent(self) -> i32 {
         match self {
             Self::Surface | Self::Limit => 0,
@@ -87,7 +88,7 @@ impl SettingRow {
 }
 
 impl SettingRow {
-    /// The smallest gain of the row that is not 0; of [`SettingRow::Limit`] an LSB of the command.
+    /// The smallest gain of the row that is not 0; for [`SettingRow::Limit`] an LSB of the command.
     pub fn smallest(self) -> f64 {
         match self {
             Self::Limit => f64::exp2(-12.0),
@@ -103,10 +104,10 @@ pub struct Gain {
     shift: u32,
 }
 
-/// Why a number is no gain of a row.
+/// Why a number cannot be a gain of a row.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GainError {
-    /// Beyond the largest mantissa without shift.
+    /// The gain exceeds the largest mantissa without shift.
     #[error("the gain {row:?} is {found:.3e}, and its largest in the hardware is {largest:.3e}")]
     Large {
         /// The gain.
@@ -116,7 +117,7 @@ pub enum GainError {
         /// Largest gain of the row.
         largest: f64,
     },
-    /// Infinite, or not a number.
+    /// The gain is infinite or not a number.
     #[error("the gain {row:?} is {found}, and must be a finite number")]
     NotFinite {
         /// The gain.
@@ -127,7 +128,7 @@ pub enum GainError {
 }
 
 impl GainError {
-    /// The row that it is about.
+    /// The row to which the error refers.
     pub fn row(&self) -> SettingRow {
         match *self {
             Self::Large { row, .. } | Self::NotFinite { row, .. } => row,
@@ -166,7 +167,7 @@ impl Gain {
         })
     }
 
-    /// Mantissa, 18 bits signed.
+    /// Mantissa, 18 bits, signed.
     pub fn mantissa(self) -> i32 {
         self.mantissa
     }
@@ -176,17 +177,17 @@ impl Gain {
         self.shift
     }
 
-    /// What it is worth in `row`.
+    /// The gain's value in `row`.
     pub fn value(self, row: SettingRow) -> f64 {
         f64::from(self.mantissa) * f64::exp2(f64::from(row.exponent() - self.shift as i32))
     }
 
-    /// As the word of the settings: the mantissa in bits 17 to 0, the shift in bits 22 to 18.
+    /// Packs the gain into a word of the settings: the mantissa in bits 17 to 0, the shift in bits 22 to 18.
     pub fn to_word(self) -> u32 {
         (self.mantissa as u32 & 0x3_ffff) | self.shift << MANTISSA_BITS
     }
 
-    /// From the word of the settings; bits 31 to 23 mean nothing.
+    /// Unpacks a gain from a word of the settings; bits 31 to 23 are ignored.
     pub fn from_word(word: u32) -> Self {
         Self {
             mantissa: ((word << 14) as i32) >> 14,
@@ -215,12 +216,12 @@ impl Settings {
         self.0[row as usize] = gain.to_word();
     }
 
-    /// The largest command, Q19.12.
+    /// The largest command in Q19.12.
     pub fn limit(&self) -> u32 {
         self.0[SettingRow::Limit as usize] & LIMIT_MAX
     }
 
-    /// Sets the largest command, Q19.12; what does not fit 31 bits becomes the largest that does.
+    /// Sets the largest command in Q19.12; a value beyond 31 bits becomes the largest that fits.
     pub fn set_limit(&mut self, limit: u32) {
         self.0[SettingRow::Limit as usize] = limit.min(LIMIT_MAX);
     }
@@ -257,7 +258,7 @@ mod tests {
                 "{value}: {gain:?}"
             );
         }
-        // Rounds up to a mantissa that no longer fits: one shift less.
+        // It rounds up to a mantissa that no longer fits, so the shift is one less.
         let gain = Gain::nearest(131_071.6, SettingRow::Surface);
         assert!(matches!(gain, Err(GainError::Large { .. })), "{gain:?}");
         assert_eq!(Gain::nearest(131_071.4, SettingRow::Surface).unwrap().shift(), 0);

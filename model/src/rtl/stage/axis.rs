@@ -1,4 +1,4 @@
-//! The blocks of an axis, joined: which port is on which net, and what is tied to the machine's constants.
+//! Joins the blocks of an axis: the net of each port, and the inputs that are tied to the machine's constants.
 
 use super::bring_up::TRACED;
 use super::config::StageAxis;
@@ -9,7 +9,7 @@ use crate::rtl::composition::{CompositionError, Part};
 use crate::rtl::error_table::EntryUnit;
 use crate::rtl::trace::SIGNALS;
 
-/// Pins of every axis that are inputs.
+/// Input pins of every axis.
 const INPUT_PINS: [&str; 9] = [
     "a",
     "b",
@@ -21,9 +21,9 @@ const INPUT_PINS: [&str; 9] = [
     "drive_fault_n",
     "fault_n",
 ];
-/// Those of a linear scale.
+/// Input pins of a linear scale.
 const SCALE_PINS: [&str; 2] = ["scale_a", "scale_b"];
-/// Pins of an axis that are outputs.
+/// Output pins of an axis.
 pub(super) const OUTPUT_PINS: &[&str] = &[
     "a_high",
     "a_low",
@@ -33,7 +33,7 @@ pub(super) const OUTPUT_PINS: &[&str] = &[
     "drive_enable",
     "brake_release",
 ];
-/// What all axes of a stage read.
+/// Nets of the stage that all axes read.
 pub(super) const SHARED: [&str; 8] = [
     "rst",
     "tick",
@@ -44,9 +44,9 @@ pub(super) const SHARED: [&str; 8] = [
     "emergency_stop_n",
     "pll_locked",
 ];
-/// From the stage to this axis.
+/// Nets from the stage to this axis.
 const FROM_STAGE: [&str; 4] = ["quotient_valid", "axis_start", "group_stop", "hold_feed"];
-/// From this axis to the stage.
+/// Nets from this axis to the stage.
 const TO_STAGE: [&str; 6] = [
     "steps",
     "elapsed",
@@ -55,10 +55,10 @@ const TO_STAGE: [&str; 6] = [
     "emergency_stop",
     "rests",
 ];
-/// The pulse counter's timeout, as of the stand-alone one: 5 million clocks.
+/// Timeout of the pulse counter, as in the stand-alone one: 5 million clocks.
 const VELOCITY_TIMEOUT: u64 = 76;
 
-/// The PWM trips if the controller is silent for so long.
+/// Number of ticks without a command of the controller after which the PWM trips.
 const WATCHDOG_TICKS: u32 = 2;
 
 type Nets = &'static [(&'static str, &'static str)];
@@ -157,7 +157,7 @@ const PWM: Nets = &[
     ("trigger", "pwm_trigger"),
 ];
 
-/// Part name of the scale's pulse counter.
+/// Name of the part that counts the scale's pulses.
 const SCALE_COUNTER: &str = "scale_counter";
 
 const SCALE: Nets = &[
@@ -198,14 +198,14 @@ const EXCITATION: Nets = &[
     ("y_1", "shaped_velocity"),
     ("y_2", "shaped_acceleration"),
     ("enable", "excitation_enable"),
-    // High in HOLD alone, with the brake open and nothing wrong.
+    // `can_start` is high in HOLD only, with the brake open and nothing wrong.
     ("allowed", "can_start"),
     ("kind", "excitation_kind"),
     ("amplitude", "excitation_amplitude"),
     ("period_ticks", "excitation_period"),
     ("sweep", "excitation_sweep"),
     ("duration_ticks", "excitation_duration"),
-    // The shaper's own stand still between its samples.
+    // The shaper's own rates do not change between its samples.
     ("velocity_reference", "delayed_velocity"),
     ("acceleration_reference", "delayed_acceleration"),
 ];
@@ -246,15 +246,16 @@ const AXIS: Nets = &[
     ("pwm_trip_n", "axis_pwm_trip_n"),
 ];
 
-/// Pins of this axis that are inputs.
+/// Input pins of this axis.
 pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
     let scale: &[&str] = if axis.scale.is_some() { &SCALE_PINS } else { &[] };
     [&INPUT_PINS, scale].concat()
 }
 
-/// Joins the blocks of an axis. The whole has the axis's name; its ports are the nets that registers, stage and pins need.
+/// Joins the blocks of an axis. The whole has the axis's name; its ports are the nets that registers, stage and pins
+/// need.
 ///
-/// `tick_clocks`: from tick to tick, for the PWM's watchdog.
+/// `tick_clocks` are the clocks from tick to tick, for the PWM's watchdog.
 pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, CompositionError> {
     let mut blocks = vec![
         ComponentPart::Segments,
@@ -396,7 +397,7 @@ fn on(part: Part, nets: Nets) -> Part {
     nets.iter().fold(part, |part, (port, net)| part.on(port, net))
 }
 
-/// What is the same for the counters of motor and scale.
+/// Connections that the counters of motor and scale have in common.
 fn counter(axis: &StageAxis, part: Part) -> Part {
     part.tied("a_n", 0)
         .tied("b_n", 0)
@@ -408,7 +409,7 @@ fn counter(axis: &StageAxis, part: Part) -> Part {
         .tied("timeout", VELOCITY_TIMEOUT)
 }
 
-/// The scale's counter only counts: its velocity is not divided for.
+/// Connections of the scale's counter, which only counts: its velocity is not divided.
 fn scale_counter(axis: &StageAxis, part: Part) -> Part {
     let part = counter(axis, on(part, SCALE));
     let zeros = [
@@ -457,7 +458,7 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
     }
 }
 
-/// What is not built is traced as 0.
+/// Connections of the trace memory. A signal of a block that is not built is recorded as 0.
 fn trace(axis: &StageAxis, part: Part) -> Part {
     let signals = TRACED.iter().enumerate();
     let part = signals.fold(part, |part, (place, (net, _))| {

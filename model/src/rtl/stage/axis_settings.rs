@@ -1,10 +1,11 @@
-//! What a host writes of an axis: what is wanted of it, tables and settings, limits, and how its encoder is read.
+//! Registers of an axis that a host writes: enable and commands, tables and settings, limits, and the decoding of its
+//! encoder.
 
 use super::config::StageAxis;
 use super::register::{command, register, with_the_drive_off};
 use crate::rtl::registers::{Access, Field, Register, maps};
 
-/// The registers, in words of the axis's window, and before them what its hardware was built with.
+/// The registers in words of the axis's window, preceded by the parameters of its build.
 pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
     [
         parameters(axis),
@@ -22,24 +23,29 @@ fn parameters(axis: &StageAxis) -> Vec<Register> {
         register(name, offset, Access::Constant, "parameter of the build", vec![field])
     };
     vec![
-        constant("pwm_period_clocks", 0x00, "full duty", axis.pwm_period_clocks),
+        constant(
+            "pwm_period_clocks",
+            0x00,
+            "clocks of the PWM's period, which is full duty",
+            axis.pwm_period_clocks,
+        ),
         constant(
             "ring_samples",
             0x01,
-            "delays of a table reach up to this less 2",
+            "size of the ring buffer: delays of a table reach up to this minus 2",
             1 << axis.shaper.ring_address_bits(),
         ),
         constant("most_taps", 0x02, "taps per bank", axis.shaper.most_taps()),
         constant(
             "machine_taps",
             0x03,
-            "taps of bank 0",
+            "number of taps of bank 0",
             axis.shaper.table().taps().len() as u32,
         ),
         constant(
             "coefficient_fraction",
             0x04,
-            "F of the coefficients",
+            "fraction bits F of the coefficients",
             axis.shaper.coefficient_fraction(),
         ),
     ]
@@ -51,14 +57,18 @@ fn commands() -> Vec<Register> {
             "control",
             0x08,
             Access::Configuration,
-            "what is wanted of the axis",
+            "enable and mode of the axis",
             vec![
-                Field::flag("enable", 0, "outputs on; low: off, through a quick stop and the brake"),
-                Field::flag("direct_enable", 1, "direct mode, in READY"),
+                Field::flag(
+                    "enable",
+                    0,
+                    "1: outputs on; 0: outputs off, after a quick stop and the brake",
+                ),
+                Field::flag("direct_enable", 1, "requests direct mode, in READY"),
                 Field::flag(
                     "self_test",
                     3,
-                    "direct mode tests the PWM: pins, drive and brake stay off",
+                    "direct mode is a self-test of the PWM: pins, drive and brake stay off",
                 ),
             ],
         ),
@@ -70,30 +80,30 @@ fn commands() -> Vec<Register> {
             "forgets the causes that are over, and the flags of all blocks",
             vec![],
         ),
-        register("flush", 0x0b, command("flush"), "drops the entries that wait", vec![]),
+        register("flush", 0x0b, command("flush"), "drops the waiting entries", vec![]),
         register(
             "kick",
             0x0c,
             command("kick"),
-            "of the host's watchdog",
+            "kicks the host's watchdog",
             vec![Field::new("kick_word", 0, 32, "0x4b49434b, `KICK`")],
         ),
         register(
             "homed",
             0x0f,
             command("write_homed"),
-            "the host says whether the axis is homed: until then there are no soft limits, if the machine file says so",
+            "sets whether the axis is homed; the machine file may let the soft limits act only then",
             vec![Field::flag(
                 "homed_value",
                 0,
-                "the origin is known, and the soft limits are for it",
+                "the origin, to which the soft limits refer, is known",
             )],
         ),
         register(
             "direct",
             0x0d,
             command("direct_kick"),
-            "direct mode: a duty, held for some time only",
+            "duty of direct mode, which expires after some time",
             vec![
                 Field::new("direct_duty", 0, 17, "limited by the machine file")
                     .signed()
@@ -134,19 +144,19 @@ fn tables(axis: &StageAxis) -> Vec<Register> {
     let laws = [
         (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
         (1, "pd", "proportional and derivative"),
-        (2, "pid", "the same and the integral"),
+        (2, "pid", "proportional, integral and derivative"),
     ];
     let banks = [
-        (0, "machine", "the machine's, a ROM"),
-        (1, "loaded_1", "what was loaded into bank 1"),
-        (2, "loaded_2", "what was loaded into bank 2"),
+        (0, "machine", "settings of the machine, in a ROM"),
+        (1, "loaded_1", "settings loaded into bank 1"),
+        (2, "loaded_2", "settings loaded into bank 2"),
     ];
     vec![
         register(
             "tap_address",
             0x14,
             Access::Configuration,
-            "which tap `TAP` is",
+            "address of the tap to write or read",
             maps::tap_address(&axis.shaper),
         ),
         register(
@@ -167,16 +177,16 @@ fn tables(axis: &StageAxis) -> Vec<Register> {
             "tap_read",
             0x27,
             command("tap_read"),
-            "reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is low",
+            "reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low",
             vec![],
         ),
         register(
             "setting_address",
             0x17,
             Access::Configuration,
-            "which setting `SETTING` is",
+            "address of the setting to write or read",
             vec![
-                Field::new("setting_row", 0, 4, "its place: see docs/sliding_mode.md"),
+                Field::new("setting_row", 0, 4, "row of the setting: see docs/sliding_mode.md"),
                 Field::new("setting_bank", 8, 2, "bank 1 or 2"),
             ],
         ),
@@ -191,16 +201,16 @@ fn tables(axis: &StageAxis) -> Vec<Register> {
             "setting_read",
             0x26,
             command("setting_read"),
-            "reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low",
+            "reads back the word at `SETTING_ADDRESS`, which must stay until `setting_read_waits` is low",
             vec![],
         ),
         register(
             "law",
             0x19,
             Access::Staged,
-            "what computes the command",
+            "control law and settings in use",
             vec![
-                Field::choice("law", 0, 2, "the law", &laws).with_reset(axis.law as u32),
+                Field::choice("law", 0, 2, "control law", &laws).with_reset(axis.law as u32),
                 Field::choice("law_bank", 8, 2, "settings in use; bank 3 is all 0", &banks),
             ],
         ),
@@ -210,7 +220,7 @@ fn tables(axis: &StageAxis) -> Vec<Register> {
 fn supervision(axis: &StageAxis) -> Vec<Register> {
     let watched = &axis.supervision;
     let limit = |name: &str, value: i32| {
-        Field::new(name, 0, 32, "of the shaped position; both 0: none")
+        Field::new(name, 0, 32, "limit of the shaped position; both 0: no soft limits")
             .fixed(8)
             .with_unit("counts")
             .with_reset(value as u32)
@@ -227,16 +237,16 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
             "soft_limit_minus",
             0x1b,
             Access::Configuration,
-            "the other end",
+            "the other end of the travel",
             vec![limit("soft_limit_minus", watched.soft_limit_minus)],
         ),
         register(
             "following_error_limit",
             0x1c,
             Access::Configuration,
-            "largest error",
+            "largest following error",
             vec![
-                Field::new("following_error_limit", 0, 32, "Q16.16; 0: not watched")
+                Field::new("following_error_limit", 0, 32, "Q16.16; 0 disables the check")
                     .with_unit("counts / 65536")
                     .with_reset(watched.following_error_limit),
             ],
@@ -245,22 +255,33 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
             "watchdog",
             0x1d,
             Access::Configuration,
-            "of the host, and what follows from a cause",
+            "the host's watchdog, and the reaction to each cause",
             vec![
-                Field::new("watchdog_ticks", 0, 16, "without a kick; 0: no watchdog")
-                    .with_unit("ticks")
-                    .with_reset(watched.watchdog_ticks.into()),
-                Field::new("off_causes", 16, 16, "per cause: 1 outputs off, 0 quick stop")
-                    .with_reset(watched.off_causes.into()),
+                Field::new(
+                    "watchdog_ticks",
+                    0,
+                    16,
+                    "ticks allowed without a kick; 0 disables the watchdog",
+                )
+                .with_unit("ticks")
+                .with_reset(watched.watchdog_ticks.into()),
+                Field::new(
+                    "off_causes",
+                    16,
+                    16,
+                    "one bit per cause: 1 switches the outputs off, 0 leads to a quick \
+                    stop",
+                )
+                .with_reset(watched.off_causes.into()),
             ],
         ),
         register(
             "stop_deceleration",
             0x1e,
             Access::Configuration,
-            "of a quick stop",
+            "deceleration of a quick stop",
             vec![
-                Field::new("stop_deceleration", 0, 31, "Q7.24; 0: at once")
+                Field::new("stop_deceleration", 0, 31, "Q7.24; 0: the command stops at once")
                     .with_unit("counts/tick^2 / 2^24")
                     .with_reset(watched.stop_deceleration),
             ],
@@ -269,9 +290,9 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
             "settle",
             0x1f,
             Access::Configuration,
-            "how long a stop rings: the longest delay of the tables in use",
+            "time in which a stop settles: the longest delay of the tables in use",
             vec![
-                Field::new("settle_ticks", 0, 16, "after the command stands")
+                Field::new("settle_ticks", 0, 16, "ticks after the command's standstill")
                     .with_unit("ticks")
                     .with_reset(watched.settle_ticks.into()),
             ],
@@ -285,7 +306,7 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
             "encoder",
             0x24,
             with_the_drive_off(),
-            "the sign of the loop's feedback",
+            "sign of the loop's feedback",
             vec![
                 Field::flag("encoder_invert", 0, "reverses the encoder's direction")
                     .with_reset(axis.encoder_invert.into()),
@@ -295,22 +316,22 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
             "pwm_trigger",
             0x25,
             Access::Configuration,
-            "when the pin `pwm_trigger` is high for a clock, as for an ADC",
-            vec![Field::new("trigger_phase", 0, 16, "after the valley").with_unit("clocks")],
+            "phase at which the pin `pwm_trigger` is high for a clock, for an ADC for example",
+            vec![Field::new("trigger_phase", 0, 16, "clocks after the valley").with_unit("clocks")],
         ),
         register(
             "index",
             0x20,
             Access::Configuration,
-            "what an index does, and how the velocity is measured",
+            "effect of an index, and measurement of the velocity",
             vec![
                 Field::flag("index_always", 0, "latches every index"),
-                Field::flag("index_presets", 1, "a latched index also presets"),
+                Field::flag("index_presets", 1, "a latched index also presets the position"),
                 Field::new(
                     "index_gate",
                     4,
                     4,
-                    "bit 0: only while A is as bit 1; bit 2: only while B is as bit 3",
+                    "bit 0: an index counts only while A equals bit 1; bit 2: only while B equals bit 3",
                 ),
                 Field::new(
                     "smoothing",
@@ -318,7 +339,7 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
                     2,
                     "k of the velocity's one-pole filter with coefficient 2^-k",
                 ),
-                Field::flag("velocity_m", 12, "velocity by counts per tick alone"),
+                Field::flag("velocity_m", 12, "velocity is the counts per tick alone"),
             ],
         ),
         register(
@@ -332,7 +353,7 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
             "preset",
             0x22,
             command("preset"),
-            "the user's position becomes this; the loop's count never jumps",
+            "sets the user's position; the loop's count does not jump",
             vec![
                 Field::new("preset_value", 0, 32, "position")
                     .signed()

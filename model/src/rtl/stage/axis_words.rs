@@ -1,4 +1,4 @@
-//! What a host reads of an axis: its state, what went wrong, and what moves.
+//! Registers of an axis that a host reads: its state, the causes of a fault, and positions and velocities.
 
 use super::config::{StageAxis, StageScale};
 use super::register::{register, with_the_drive_off};
@@ -10,7 +10,7 @@ pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
     [states(), read_back(axis), motion()].concat()
 }
 
-/// Of the linear scale, where there is one: how it is read, its count, and how far the motor is from it.
+/// Registers of the linear scale of an axis: its direction, its count, and its deviation from the motor.
 pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
     let live = |name: &str, offset, meaning: &str| {
         let field = Field::new(name, 0, 32, meaning).signed().with_unit("counts");
@@ -21,14 +21,14 @@ pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
             "scale_control",
             0x23,
             with_the_drive_off(),
-            "how the scale is read",
+            "direction of the scale",
             vec![Field::flag("scale_invert", 0, "reverses the scale's direction").with_reset(scale.invert.into())],
         ),
         live("scale_count", 0x3b, "steps of the scale since reset"),
         live(
             "deviation",
             0x3c,
-            "motor against scale since HOLD, in counts of the loop",
+            "deviation of the motor from the scale since HOLD, in counts of the loop",
         ),
     ]
 }
@@ -43,16 +43,16 @@ fn states() -> Vec<Register> {
             "status",
             0x28,
             Access::Live,
-            "what the axis is doing",
+            "state of the axis",
             vec![
                 Field::choice("state", 0, 3, "state of the supervisor", &states),
                 Field::flag("can_start", 3, "a start would lead to RUN"),
                 Field::new("segments_state", 4, 2, "0 hold, 1 move, 2 stop, 3 stopped"),
                 Field::flag("direct_active", 6, "direct mode drives the outputs"),
                 Field::flag("pwm_running", 7, "the PWM's outputs are on"),
-                Field::flag("level_emergency_stop_n", 8, "filtered line: low is a stop"),
-                Field::flag("level_limit_plus_n", 9, "filtered line: low is on the switch"),
-                Field::flag("level_limit_minus_n", 10, "filtered line: low is on the switch"),
+                Field::flag("level_emergency_stop_n", 8, "filtered line: low is an emergency stop"),
+                Field::flag("level_limit_plus_n", 9, "filtered line: low while on the switch"),
+                Field::flag("level_limit_minus_n", 10, "filtered line: low while on the switch"),
                 Field::flag("level_drive_ready", 11, "filtered line"),
                 Field::flag("level_home", 12, "filtered line"),
                 Field::flag("level_a", 13, "filtered A"),
@@ -67,40 +67,56 @@ fn states() -> Vec<Register> {
                     5,
                     "0 fault latch, 1 supervisor, 2 drive, 3 PLL, 4 PWM's watchdog",
                 ),
-                Field::flag("homed", 25, "by `HOMED`; not since a lost encoder, or an error of it"),
-                Field::flag("setting_read_waits", 26, "`SETTING_READ` was not served yet"),
-                Field::flag("tap_read_waits", 27, "`TAP_READ` was not served yet"),
+                Field::flag(
+                    "homed",
+                    25,
+                    "homed by `HOMED`; cleared when the encoder is lost or has an error",
+                ),
+                Field::flag("setting_read_waits", 26, "a read by `SETTING_READ` waits"),
+                Field::flag("tap_read_waits", 27, "a read by `TAP_READ` waits"),
             ],
         ),
         register(
             "causes",
             0x29,
             Access::Live,
-            "what went wrong, until `CLEAR_FAULTS`: see docs/axis.md",
-            vec![Field::new("causes", 0, 17, "bit per cause")],
+            "causes of a fault, until `CLEAR_FAULTS`: see docs/axis.md",
+            vec![Field::new("causes", 0, 17, "one bit per cause")],
         ),
         register(
             "flags",
             0x2a,
             Access::Live,
-            "what the blocks have flagged, until `CLEAR_FAULTS`",
+            "flags of the blocks, until `CLEAR_FAULTS`",
             vec![
-                Field::flag("segments_underrun", 0, "no entry was there while moving"),
-                Field::flag("segments_overflow", 1, "a sum did not fit"),
-                Field::flag("segments_tick_missed", 2, "a tick came while one was played"),
-                Field::flag("segment_refused", 3, "a word was written to a full FIFO, or in a stop"),
+                Field::flag("segments_underrun", 0, "there was no entry while moving"),
+                Field::flag(
+                    "segments_overflow",
+                    1,
+                    "an acceleration or velocity did not fit its word",
+                ),
+                Field::flag(
+                    "segments_tick_missed",
+                    2,
+                    "a tick came while another was being processed",
+                ),
+                Field::flag(
+                    "segment_refused",
+                    3,
+                    "a word was written to a full FIFO, or in a quick stop",
+                ),
                 Field::flag("segment_malformed", 4, "an entry was dropped"),
                 Field::flag("shaper_saturated", 5, "an output was clamped"),
-                Field::flag("shaper_overrun", 6, "a sample came while a pass ran"),
+                Field::flag("shaper_overrun", 6, "a sample came while another was being shaped"),
                 Field::flag("table_refused", 7, "a tap or a swap was refused"),
                 Field::flag("encoder_illegal", 8, "A and B changed together"),
                 Field::flag("encoder_disagreement", 9, "the lines of a pair were equal"),
-                Field::flag("velocity_missed", 10, "a tick had no velocity"),
-                Field::flag("controller_overrun", 11, "a start came while a pass ran"),
-                Field::flag("limited_high", 12, "the last command was cut at +limit"),
-                Field::flag("limited_low", 13, "the last command was cut at -limit"),
+                Field::flag("velocity_missed", 10, "a tick had no new velocity"),
+                Field::flag("controller_overrun", 11, "a start came during a computation"),
+                Field::flag("limited_high", 12, "the last command was clamped at +limit"),
+                Field::flag("limited_low", 13, "the last command was clamped at -limit"),
                 Field::flag("pwm_saturated", 14, "a duty was limited"),
-                Field::flag("pwm_unaligned", 15, "the PWM was not in step with the tick"),
+                Field::flag("pwm_unaligned", 15, "the PWM was not in phase with the tick"),
                 Field::new("illegal_count", 16, 8, "illegal transitions; stops at 255"),
                 Field::flag("segments_out_of_range", 24, "the command came near the end of its word"),
             ],
@@ -109,41 +125,46 @@ fn states() -> Vec<Register> {
             "events",
             0x2b,
             Access::Sticky,
-            "what has happened since the flag was cleared",
+            "events since the flag was cleared",
             vec![
-                Field::flag("refused", 0, "a start led to nothing"),
+                Field::flag("refused", 0, "a start was refused"),
                 Field::flag(
                     "setting_refused",
                     1,
-                    "a setting for a bank in use, or for none that can be loaded",
+                    "a setting was refused: its bank is in use or cannot be loaded",
                 ),
-                Field::flag("direct_expired", 2, "direct mode was not held"),
+                Field::flag("direct_expired", 2, "direct mode ended because its time ran out"),
             ],
         ),
         register(
             "saturations",
             0x2c,
             Access::Live,
-            "where the controller was cut, until `CLEAR_FAULTS`",
+            "values of the controller that were clamped, until `CLEAR_FAULTS`",
             vec![
                 Field::new(
                     "controller_saturated_high",
                     0,
                     7,
-                    "e, de, s, feedback, integral, command, duty",
+                    "clamped at the upper end, from bit 0: e, de, s, feedback, integral, command, duty",
                 ),
-                Field::new("controller_saturated_low", 8, 7, "the same, at the lower end"),
-                Field::new("limited_ticks", 16, 16, "ticks in a row that commands were cut").with_unit("ticks"),
+                Field::new(
+                    "controller_saturated_low",
+                    8,
+                    7,
+                    "clamped at the lower end, in the same order",
+                ),
+                Field::new("limited_ticks", 16, 16, "consecutive ticks with a clamped command").with_unit("ticks"),
             ],
         ),
         register(
             "fifo",
             0x2d,
             Access::Live,
-            "how much of the motion is left",
+            "level of the command FIFO",
             vec![
-                Field::new("fifo_level", 0, 7, "entries that wait"),
-                Field::flag("fifo_low", 8, "at most `low_water`"),
+                Field::new("fifo_level", 0, 7, "waiting entries"),
+                Field::flag("fifo_low", 8, "at most `low_water` entries wait"),
                 Field::flag("segments_empty", 9, "none"),
                 Field::flag("feed_held", 10, "a feed hold keeps the command where it rests"),
                 Field::new(
@@ -159,16 +180,16 @@ fn states() -> Vec<Register> {
             "self_test",
             0x2e,
             Access::Live,
-            "gates of the PWM in the last whole period of a self-test",
+            "on times of the PWM's gates in the last whole period of a self-test",
             vec![
                 Field::new(
                     "self_test_high",
                     0,
                     16,
-                    "on time of `a_high`, behind no pin; stops at 65535",
+                    "on time of `a_high`, with its pin masked; stops at 65535",
                 )
                 .with_unit("clocks"),
-                Field::new("self_test_low", 16, 16, "the same of `a_low`").with_unit("clocks"),
+                Field::new("self_test_low", 16, 16, "on time of `a_low`, likewise").with_unit("clocks"),
             ],
         ),
     ]
@@ -180,20 +201,20 @@ fn read_back(axis: &StageAxis) -> Vec<Register> {
             "setting_loaded",
             0x3e,
             Access::Live,
-            "what `SETTING_READ` found: 0 where nothing was written since the reset",
+            "word read back by `SETTING_READ`; 0 where nothing was written since the reset",
             vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
         ),
         register(
             "tap_loaded",
             0x3f,
             Access::Live,
-            "what `TAP_READ` found: 0 where no tap is loaded",
+            "tap read back by `TAP_READ`; 0 where no tap is loaded",
             maps::tap_loaded(&axis.shaper),
         ),
     ]
 }
 
-/// What moves: live words, and shadows of position and velocity.
+/// Live registers of positions and velocities, and shadows of position and velocity.
 fn motion() -> Vec<Register> {
     let word = |name: &str, meaning: &str, fraction, unit: &str| {
         let field = Field::new(name, 0, 32, meaning);
@@ -213,17 +234,17 @@ fn motion() -> Vec<Register> {
         live(
             "position",
             0x30,
-            word("user_position", "count less origin", 0, "counts"),
+            word("user_position", "count minus origin", 0, "counts"),
         ),
         live(
             "count",
             0x31,
-            word("count", "steps since reset: the loop's position", 0, "counts"),
+            word("count", "steps since reset, which is the loop's position", 0, "counts"),
         ),
         live(
             "velocity",
             0x32,
-            word("velocity", "at the last tick", 16, "counts/tick"),
+            word("velocity", "velocity at the last tick", 16, "counts/tick"),
         ),
         live(
             "origin",
@@ -238,24 +259,44 @@ fn motion() -> Vec<Register> {
         live(
             "command_position",
             0x35,
-            word("command_position", "before the shaper, of the count", 8, "counts"),
+            word(
+                "command_position",
+                "position before the shaper, relative to the count",
+                8,
+                "counts",
+            ),
         ),
         live(
             "shaped_position",
             0x36,
-            word("shaped_position", "after the shaper, of the count", 8, "counts"),
+            word(
+                "shaped_position",
+                "position after the shaper, relative to the count",
+                8,
+                "counts",
+            ),
         ),
         live(
             "shaped_velocity",
             0x37,
-            word("shaped_velocity", "after the shaper", 16, "counts/tick"),
+            word("shaped_velocity", "velocity after the shaper", 16, "counts/tick"),
         ),
-        live("error", 0x38, word("error", "e of the last tick", 16, "counts")),
-        live("command", 0x39, word("command", "to the drive", 12, "command units")),
+        live(
+            "error",
+            0x38,
+            word("error", "position error e of the last tick", 16, "counts"),
+        ),
+        live(
+            "command",
+            0x39,
+            word("command", "command to the drive", 12, "command units"),
+        ),
         live(
             "duty",
             0x3a,
-            Field::new("duty", 0, 17, "to the PWM").signed().with_unit("clocks"),
+            Field::new("duty", 0, 17, "duty to the PWM")
+                .signed()
+                .with_unit("clocks"),
         ),
         shadow("position", 0x40, "position at the snapshot"),
         shadow("velocity", 0x41, "velocity at the snapshot"),

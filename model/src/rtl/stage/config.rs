@@ -1,4 +1,4 @@
-//! What a stage is built from.
+//! Configuration of a stage.
 
 use crate::control::Supervision;
 use crate::rtl::component::ComponentError;
@@ -28,29 +28,29 @@ pub struct StageConfig {
 /// One axis of a stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StageAxis {
-    /// Its name: all its ports and registers begin with it.
+    /// Name of the axis, with which all its ports and registers begin.
     pub name: String,
-    /// Its shaper, of three channels.
+    /// Its shaper, which has three channels.
     pub shaper: ShaperConfig,
     /// The controller's settings after reset.
     pub settings: Settings,
     /// The controller's law after reset.
     pub law: Law,
-    /// A rotary axis: positions wrap.
+    /// Whether it is a rotary axis, whose positions wrap.
     pub modulo: bool,
-    /// What is fixed in its PWM.
+    /// Build parameters of its PWM.
     pub pwm: PwmConfig,
     /// The PWM's mode.
     pub pwm_mode: BridgeMode,
     /// The PWM's period in clocks: 2 to 65,536, and a divisor of the tick.
     pub pwm_period_clocks: u32,
-    /// Pulses of up to so many clocks on an encoder's line are ignored, 0 to 63.
+    /// Pulses of up to this many clocks on an encoder's line are ignored, 0 to 63.
     pub encoder_filter_clocks: u32,
-    /// The encoder's direction is reversed, after reset.
+    /// Whether the encoder's direction is reversed after reset.
     pub encoder_invert: bool,
-    /// What its supervisor watches.
+    /// Words of its supervisor.
     pub supervision: Supervision,
-    /// Its linear scale.
+    /// Its linear scale, if it has one.
     pub scale: Option<StageScale>,
     /// Its error table.
     pub error_table: Option<StageErrorTable>,
@@ -61,11 +61,11 @@ pub struct StageAxis {
 /// The linear scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StageScale {
-    /// Between its counts and the motor's.
+    /// Ratio between its counts and the motor's.
     pub ratio: ScaleRatio,
-    /// The loop runs on the scale; else it is watched.
+    /// Whether the loop runs on the scale; else the scale is only compared.
     pub closes_loop: bool,
-    /// Its direction is reversed, after reset.
+    /// Whether its direction is reversed after reset.
     pub invert: bool,
 }
 
@@ -81,26 +81,26 @@ pub struct StageErrorTable {
 /// Why there is no such stage.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StageError {
-    /// No axis, or too many.
+    /// The number of axes is 0 or too large.
     #[error("a stage has 1 to {MOST_AXES} axes, not {0}")]
     Axes(usize),
-    /// An axis whose shaper does not shape velocity and acceleration.
+    /// An axis's shaper does not shape velocity and acceleration.
     #[error(
         "the shaper of axis {axis} has {channels} channels of {word_bits} bits: a stage shapes position, velocity and \
          acceleration in words of 32 bits; use command_bits = 32, and delays of at most 4094 samples"
     )]
     Channels {
-        /// The axis.
+        /// Index of the axis.
         axis: String,
-        /// Channels.
+        /// Number of channels.
         channels: usize,
-        /// Width of a word.
+        /// Width of a word in bits.
         word_bits: u32,
     },
-    /// What is done in a tick takes longer than one.
+    /// The computations of a tick take longer than a tick.
     #[error("a tick of {available} clocks is too short: {schedule}; choose a lower sample rate or a faster clock")]
     Schedule {
-        /// What is done, with its clocks.
+        /// The computations with their clocks.
         schedule: StageSchedule,
         /// Clocks of a tick.
         available: u32,
@@ -110,29 +110,29 @@ pub enum StageError {
         "the PWM of axis {axis} has {period} clocks per period, which do not divide a tick of {tick}; change one of them"
     )]
     Period {
-        /// The axis.
+        /// Index of the axis.
         axis: String,
-        /// Clocks of its period.
+        /// Clocks of the PWM's period.
         period: u32,
         /// Clocks of a tick.
         tick: u32,
     },
-    /// An error of the schedule's block.
+    /// The schedule block cannot be built.
     #[error(transparent)]
     ScheduleBlock(#[from] ScheduleConfigError),
-    /// An error of the register map: an axis whose name clashes with others.
+    /// The register map has an error: the name of an axis clashes with others.
     #[error("the registers of the stage clash, rename an axis: {0}")]
     Map(#[from] MapError),
-    /// An error of the wiring.
+    /// The wiring has an error.
     #[error("the ports of the stage clash, rename an axis: {0}")]
     Composition(#[from] CompositionError),
-    /// An error of the component.
+    /// The component has an error.
     #[error("the stage's component: {0}")]
     Component(#[from] ComponentError),
 }
 
 impl StageConfig {
-    /// What is done in a tick.
+    /// The timing within a tick.
     pub fn timing(&self) -> StageSchedule {
         let passes: Vec<(&ShaperConfig, u32)> = (self.axes.iter())
             .map(|axis| {

@@ -1,4 +1,5 @@
-//! One to four axes behind one Avalon-MM agent: from motion segments to the pins and back, without software.
+//! The stage: one to four axes behind one Avalon-MM agent, from motion segments to the pins and back, without
+//! software.
 //!
 //! ```text
 //!            registers ── window 0: the stage; window 1 …: an axis each
@@ -11,12 +12,12 @@
 //!                              setting_banks                           with [axis.trace]: trace, excitation, encoder_generator
 //! ```
 //!
-//! A stage is a [`Component`]: blocks joined by names, from which come the model here and the Verilog in
-//! `posicast_hdl::component`. What the machine file fixes is tied to constants; what a host may want to change while the
-//! machine runs are registers, with the machine's values after reset.
+//! A stage is a [`Component`]: blocks joined by names, from which the model here and the Verilog in
+//! `posicast_hdl::component` are made. Inputs that the machine file fixes are tied to constants; what a host may want
+//! to change while the machine runs is in registers, with the machine's values after reset.
 //!
-//! Nothing but wiring is in this folder: `axis` joins the blocks of an axis, `registers` says what a host sees.
-//! The datasheet is `docs/stage.md`.
+//! This folder contains only wiring: `axis` joins the blocks of an axis, `registers` defines what a host sees. The
+//! datasheet is `docs/stage.md`.
 
 mod axis;
 mod axis_settings;
@@ -44,7 +45,7 @@ impl Component {
     /// The stage.
     ///
     /// # Errors
-    /// [`StageError`] for no axis or more than four, ticks that are too short, and names that clash.
+    /// [`StageError`] for no axis or more than four, for ticks that are too short, and for names that clash.
     pub fn stage(config: &StageConfig) -> Result<Self, StageError> {
         config.check()?;
         let map = RegisterMap::new(registers::stage(config))?;
@@ -71,7 +72,7 @@ impl Component {
     }
 }
 
-/// Shared pins, then those of each axis.
+/// The shared pins, then those of each axis.
 fn pins(config: &StageConfig, shared: &[&str], of_axis: fn(&StageAxis) -> Vec<&'static str>) -> Vec<String> {
     let mut pins: Vec<String> = shared.iter().map(|pin| (*pin).to_owned()).collect();
     for axis in &config.axes {

@@ -1,8 +1,8 @@
-//! A register of an axis, as the parts of its window write it.
+//! Makes the registers of an axis for the parts of its window.
 
 use crate::rtl::registers::{Access, Field, Register};
 
-/// What the loop's feedback is: written only while the axis's drive is off.
+/// Access of registers that change the loop's feedback: written only while the axis's drive is off.
 pub(super) fn with_the_drive_off() -> Access {
     Access::Guarded {
         while_low: "drive_enable".to_owned(),

@@ -1,4 +1,4 @@
-//! What a host sees of a stage: a window of its own, and one per axis, all alike.
+//! The register map of a stage: a window of its own, and one per axis, all alike.
 
 use super::config::{StageAxis, StageConfig};
 use super::register::command;
@@ -7,7 +7,7 @@ use crate::rtl::group::MOST_AXES;
 use crate::rtl::registers::maps;
 use crate::rtl::registers::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
 
-/// What an axis can interrupt for: name, meaning. Bit `7 · axis + place` of the interrupt registers.
+/// Interrupts of an axis: name and meaning. Their bit in the interrupt registers is `7 · axis + index`.
 pub const AXIS_INTERRUPTS: [(&str, &str); 7] = [
     ("notify", "an entry with this flag has ended"),
     ("move_done", "a move has ended at rest, or a quick stop is over"),
@@ -18,7 +18,7 @@ pub const AXIS_INTERRUPTS: [(&str, &str); 7] = [
     ("index_seen", "an index was latched"),
 ];
 
-/// The bit of an axis's interrupt in the interrupt registers; none where there is no interrupt of that name.
+/// Bit of an axis's interrupt in the interrupt registers; `None` where there is no interrupt with this name.
 pub fn axis_interrupt_bit(axis: usize, name: &str) -> Option<u32> {
     let place = AXIS_INTERRUPTS.iter().position(|(interrupt, _)| *interrupt == name)?;
     Some((axis * AXIS_INTERRUPTS.len() + place) as u32)
@@ -26,22 +26,23 @@ pub fn axis_interrupt_bit(axis: usize, name: &str) -> Option<u32> {
 
 /// All registers of the stage.
 pub(super) fn stage(config: &StageConfig) -> Description {
-    let about = "Stage: axes from motion segments to the pins; window 0 is the stage's, then one window per axis.";
+    let about = "Stage: axes, from motion segments to the pins; window 0 is the stage's, then there is one window per \
+        axis.";
     let parameter = |name: &str, bits, meaning: &str, value| Field::new(name, 0, bits, meaning).with_reset(value);
     let parameters = vec![
         parameter("axes", 3, "windows after this one", config.axes.len() as u32),
-        parameter("tick_clocks", 17, "from tick to tick", config.tick.tick_clocks()).with_unit("clocks"),
+        parameter("tick_clocks", 17, "clocks from tick to tick", config.tick.tick_clocks()).with_unit("clocks"),
         parameter(
             "control_clocks",
             17,
-            "from the tick to the start of the controllers",
+            "clocks from the tick to the start of the controllers",
             config.timing().control_clocks(),
         )
         .with_unit("clocks"),
         parameter(
             "duty_clocks",
             17,
-            "from the tick to the new duty, which the PWM takes at its next boundary",
+            "clocks from the tick to the new duty, which the PWM takes at its next boundary",
             config.timing().duty_clocks(),
         )
         .with_unit("clocks"),
@@ -61,25 +62,31 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             Access::Commit {
                 tick: "tick".to_owned(),
             },
-            "the staged registers of all axes, together, at the next tick",
+            "applies the staged registers of all axes together at the next tick",
             vec![Field::flag("commit_waits", 0, "a commit waits")],
         )
         .with(
             "start",
             0x0a,
             command("start"),
-            "all these axes start in one tick, or none",
+            "starts all these axes in one tick, or none",
             vec![Field::new("start_axes", 0, MOST_AXES as u32, "bit k: axis k")],
         )
         .with(
             "flags",
             0x0b,
             Access::Sticky,
-            "what has happened since the flag was cleared",
+            "events since the flag was cleared",
             vec![
                 maps::partial_write(0),
-                Field::flag("commit_rejected", 1, "a write was ignored").set_by(FlagSource::CommitRejected),
-                Field::flag("start_refused", 2, "an axis could not start, so none did"),
+                Field::flag(
+                    "commit_rejected",
+                    1,
+                    "a write was ignored because a commit \
+                    waits",
+                )
+                .set_by(FlagSource::CommitRejected),
+                Field::flag("start_refused", 2, "an axis could not start, so none was started"),
                 Field::flag("guard_refused", 3, "a write was ignored: the drive of its axis was on")
                     .set_by(FlagSource::GuardRefused),
             ],
@@ -89,7 +96,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             "feed_hold",
             0x0f,
             Access::Configuration,
-            "these axes stand once all of them rest in one tick, and keep what waits",
+            "feed hold: these axes stand once all of them rest in one tick, and keep their waiting entries",
             feed_holds(config),
         )
         .with_shadowed(
@@ -114,7 +121,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
     description
 }
 
-/// The register under the axis's name and in its window.
+/// The register with the axis's name as prefix, in the axis's window.
 fn of_axis(mut register: Register, axis: &str, base: u32) -> Register {
     let named = |name: &mut String| *name = format!("{axis}_{name}");
     named(&mut register.name);
@@ -150,11 +157,15 @@ fn interrupts(config: &StageConfig) -> Vec<Field> {
         }
     }
     fields.push(Field::flag("tick", 28, "a tick has passed"));
-    fields.push(Field::flag("start_refused", 29, "an axis could not start, so none did"));
+    fields.push(Field::flag(
+        "start_refused",
+        29,
+        "an axis could not start, so none was started",
+    ));
     fields
 }
 
-/// Names of the hardware that these registers drive, and of that which they read; interrupts read more.
+/// Names of the ports that these registers drive, and of those that they read; interrupts read more.
 pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
     let (mut driven, mut read) = (Vec::new(), Vec::new());
     for register in registers {
@@ -175,7 +186,7 @@ pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
     (driven, read)
 }
 
-/// The registers of an axis, in words of its window, without the axis's name before theirs.
+/// The registers of an axis, in words of its window, without the axis's name as prefix.
 pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     let mut registers = axis_settings::registers(axis);
     registers.extend(axis_words::registers(axis));

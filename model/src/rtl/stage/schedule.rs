@@ -1,4 +1,4 @@
-//! What a stage does within a tick, and in which clocks.
+//! The timing of a stage's computations within a tick.
 
 use std::fmt;
 
@@ -8,15 +8,16 @@ use crate::rtl::segments;
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::sliding_mode::CONTROL_CLOCKS;
 
-/// Clocks from the tick to the divider's first operands, and a clock for the last velocity.
+/// Clocks from the tick to the divider's first operands, plus a clock for the last velocity.
 const CAPTURE_CLOCKS: u32 = 4;
-/// Clocks from the tick to the shaper's sample, and two to its end: the segments', the strobe, and the test signal's.
+/// Clocks from the tick to the shaper's sample and from its result on: the latency of the segments, the strobe, and
+/// the test signal.
 const GENERATE_CLOCKS: u32 = segments::LATENCY_CLOCKS + 3;
 /// Clocks from the controller's `valid` to the duty at the PWM.
 const OUTPUT_CLOCKS: u32 = 2;
 
-/// The passes of a tick, in clocks after it. Shapers and divider work side by side; all controllers start together when the
-/// slower of them is over at its longest, always in the same clock.
+/// The computations of a tick, in clocks after it. Shapers and divider work in parallel; all controllers start
+/// together when the longest time of the slower one is over, always in the same clock.
 ///
 /// ```text
 /// tick ─┬─► capture ─► divide, one axis after the other ─► scale ─┬─► control ─► duty at the PWM, for its next boundary
@@ -25,7 +26,7 @@ const OUTPUT_CLOCKS: u32 = 2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StageSchedule {
     divide: u32,
-    /// The last velocity in counts of the scale.
+    /// Clocks to convert the last velocity to counts of the scale.
     scale: u32,
     /// With the error table's pass behind the shaper's.
     shape: u32,

@@ -1,12 +1,12 @@
-//! What is fixed when a trace memory is built.
+//! Build parameters of a trace memory.
 
-/// Words that a trace memory is built for.
+/// Sizes for which a trace memory can be built, in words.
 pub const SAMPLES: [u32; 4] = [256, 512, 1024, 2048];
-/// Signals that can be chosen from.
+/// Number of signals from which to choose.
 pub const SIGNALS: usize = 16;
-/// Signals in a row, at most.
+/// Largest number of signals in a row.
 pub const ROW_SIGNALS: usize = 4;
-/// Signals in a row, by what the port `signals` says: 0 one, 1 two, 2 and 3 four.
+/// Number of signals in a row for a value of the port `signals`: 0 one, 1 two, 2 and 3 four.
 pub const fn row_signals(code: u8) -> usize {
     match code & 3 {
         0 => 1,
@@ -15,28 +15,28 @@ pub const fn row_signals(code: u8) -> usize {
     }
 }
 
-/// Clocks from a strobe of which a row is taken until the next strobe may come, by what the port `signals` says: the
-/// strobe, the trigger's signal, its comparison, and a clock per signal.
+/// Smallest number of clocks from a strobe that gives a row to the next strobe, for a value of the port `signals`:
+/// one each for the strobe, the trigger's signal and its comparison, and one per signal.
 pub const fn row_clocks(code: u8) -> u32 {
     row_signals(code) as u32 + 3
 }
 
-/// What is fixed when a trace memory is built: its size.
+/// Build parameter of a trace memory: its size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TraceConfig {
     samples: u32,
 }
 
-/// Why no trace memory can be built.
+/// Why a trace memory cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum TraceConfigError {
-    /// A size that is not in [`SAMPLES`].
+    /// The size is not in [`SAMPLES`].
     #[error("a trace of {0} samples: the memory is built for 256, 512, 1024 or 2048; choose the next larger one")]
     Samples(u64),
 }
 
 impl TraceConfig {
-    /// A memory of so many words of 32 bits.
+    /// A memory of this many words of 32 bits.
     ///
     /// # Errors
     /// [`TraceConfigError`] for a size that is not in [`SAMPLES`].
@@ -47,17 +47,17 @@ impl TraceConfig {
         }
     }
 
-    /// Words of the memory.
+    /// Size of the memory in words.
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// A: the memory has 2^A words, 8 to 11.
+    /// Address bits A, 8 to 11: the memory has 2^A words.
     pub fn address_bits(&self) -> u32 {
         self.samples.ilog2()
     }
 
-    /// Rows that a trace has, by what the port `signals` says.
+    /// Number of rows of a trace for a value of the port `signals`.
     pub fn rows(&self, code: u8) -> usize {
         self.samples as usize / row_signals(code)
     }

@@ -1,17 +1,18 @@
-//! The trace memory: what up to four signals of an axis did, tick by tick, around a trigger.
+//! The trace memory records up to four signals of an axis, tick by tick, around a trigger.
 //!
-//! The datasheet is `docs/trace.md`; this is the reference that the hardware is compared with.
+//! The datasheet is `docs/trace.md`; the hardware is compared with this reference model.
 //!
 //! ```text
 //! arm ─► filling: pre_trigger rows ─► waiting: the newest pre_trigger rows ─► taking: the trigger's row and the rest ─► idle
 //!                                                                     trigger ┘
 //! ```
 //!
-//! - A row is the selected signals of one strobe. Of the strobes, the first and then every (`decimation` + 1)th gives one.
+//! - A row holds the selected signals at one strobe. The first strobe gives a row, and then every (`decimation` +
+//!   1)th.
 //! - The memory has `samples` words, so a trace has `samples`, `samples / 2` or `samples / 4` rows of 1, 2 or 4 signals.
-//! - The words of a trace stand in order of time, row by row; they can be read when it is over.
+//! - The words of a trace are in order of time, row by row; they can be read when it is over.
 //!
-//! A row takes [`row_clocks`]:
+//! A row takes [`row_clocks`] clocks:
 //!
 //! ```text
 //! clock     0    1         2         3    …  2 + signals  3 + signals
@@ -58,13 +59,13 @@ use std::collections::VecDeque;
 
 use super::{FOREVER, Moore, clocked_block};
 
-/// What a row's clock does.
+/// Phase of a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Phase {
     /// Waits for a strobe.
     #[default]
     Ready,
-    /// Takes the signal that the trigger looks at.
+    /// Takes the signal that the trigger compares.
     TakeTrigger,
     /// Compares it, and takes the row's first signal.
     Compare,
@@ -72,24 +73,24 @@ enum Phase {
     Store(u8),
 }
 
-/// Everything that is a register, but the words.
+/// All registers except the words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Registers {
     active: bool,
     triggered: bool,
     halting: bool,
     phase: Phase,
-    /// As the port `signals` was at `arm`.
+    /// Value of the port `signals` at `arm`.
     signals: u8,
-    /// Rows before the trigger.
+    /// Number of rows before the trigger.
     pre_trigger: u16,
-    /// Strobes to leave out.
+    /// Number of strobes still to skip.
     skip: u16,
-    /// Which signal the next clock takes.
+    /// Signal that the next clock takes.
     select: u8,
-    /// What was taken of the signals in the clock before.
+    /// Value of the signal that was taken in the clock before.
     taken: i32,
-    /// Whether the trigger's signal was at or above the level in the row before, if there was one.
+    /// Whether the trigger's signal was at or above the level in the row before; `None` without such a row.
     was_above: Option<bool>,
     event: bool,
     data: u32,
@@ -97,17 +98,17 @@ struct Registers {
     done: bool,
 }
 
-/// The trace memory, cycle accurate at its ports.
+/// The cycle-accurate model of the trace memory.
 ///
-/// The words are kept in order of time: that the hardware's memory is a ring, and holds anything where nothing was written,
-/// does not show.
+/// The words are kept in order of time. The hardware's memory is a ring with arbitrary words where nothing was
+/// written, but this does not show at the ports.
 #[derive(Debug, Clone)]
 pub struct Trace {
     config: TraceConfig,
     registers: Registers,
-    /// Words of whole rows, the oldest first.
+    /// Words of complete rows, the oldest first.
     words: VecDeque<u32>,
-    /// Words of the row that is being taken.
+    /// Words of the row that is being recorded.
     row: [u32; ROW_SIGNALS],
 }
 
@@ -122,12 +123,12 @@ impl Trace {
         }
     }
 
-    /// What it was built from.
+    /// Its build parameters.
     pub fn config(&self) -> &TraceConfig {
         &self.config
     }
 
-    /// What the outputs show now.
+    /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         let registers = &self.registers;
         let state = match (registers.active, registers.triggered) {
@@ -146,7 +147,7 @@ impl Trace {
         }
     }
 
-    /// One clock: what the outputs show before the rising edge, then the edge.
+    /// Simulates one clock: returns the outputs before the rising edge, then clocks.
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();
@@ -154,7 +155,8 @@ impl Trace {
         outputs
     }
 
-    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    /// Simulates this many clocks with the same inputs. It ends early once a clock changes nothing, since no later
+    /// one would.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
         for _ in 0..clocks {
             let before = self.registers;
@@ -169,12 +171,12 @@ impl Trace {
         (self.words.len() / row_signals(self.registers.signals)) as u16
     }
 
-    /// The rows before the trigger are there, and it has not come.
+    /// Whether the rows before the trigger are complete and the trigger has not come.
     fn waits(&self) -> bool {
         !self.registers.triggered && self.rows() == self.registers.pre_trigger
     }
 
-    /// The word that the memory gives.
+    /// The word at an address.
     fn read(&self, address: u16) -> u32 {
         let word = self.words.get(usize::from(address & 0x7ff));
         word.copied().filter(|_| !self.registers.active).unwrap_or(0)
@@ -260,7 +262,7 @@ impl Trace {
         }
     }
 
-    /// Has the trigger come with this row?
+    /// Compares the trigger's signal for this row.
     fn compare(&mut self, inputs: &Inputs, event: bool) {
         let waits = self.waits();
         let registers = &mut self.registers;
@@ -275,7 +277,7 @@ impl Trace {
         registers.triggered |= waits && comes;
     }
 
-    /// The row is whole; while waiting, the oldest one goes.
+    /// Adds a complete row; while waiting for the trigger the oldest one is dropped.
     fn add_row(&mut self) {
         let waits = self.waits();
         let signals = row_signals(self.registers.signals);
@@ -311,7 +313,7 @@ impl Moore for Trace {
         }
     }
 
-    /// What is read in the clocks of a row only.
+    /// Inputs that are read only in the clocks of a row.
     fn ignores(&self, input: &str) -> bool {
         let settings = ["signals", "decimation", "trigger_mode", "trigger_level", "pre_trigger"];
         input.starts_with("signal_") || input.starts_with("select_") || settings.contains(&input)

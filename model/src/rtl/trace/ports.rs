@@ -4,29 +4,29 @@ use super::config::ROW_SIGNALS;
 use crate::rtl::ports;
 use crate::rtl::ports::choices;
 
-/// What the block is doing.
+/// State of the trace memory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum TraceState {
-    /// Nothing: never armed, complete or halted. The only state in which words can be read; 0.
+    /// 0: never armed, complete or halted. Words can be read in this state only.
     #[default]
     Idle,
-    /// Taking the rows before the trigger; 1.
+    /// 1: records the rows before the trigger.
     Filling,
-    /// Keeping the newest of these rows until the trigger comes; 2.
+    /// 2: keeps the newest of these rows until the trigger comes.
     Waiting,
-    /// The trigger has come, the rest is being taken; 3.
+    /// 3: the trigger has come, and the remaining rows are recorded.
     Taking,
 }
 
 choices!(TraceState: Idle, Filling, Waiting, Taking);
 
 impl Inputs {
-    /// Which signals a row has, in its order.
+    /// The signals of a row, in order.
     pub fn selects(&self) -> [u8; ROW_SIGNALS] {
         [self.select_0, self.select_1, self.select_2, self.select_3]
     }
 
-    /// With other signals in a row.
+    /// The inputs with other signals in a row.
     pub fn with_selects(self, [select_0, select_1, select_2, select_3]: [u8; ROW_SIGNALS]) -> Self {
         Self {
             select_0,
@@ -45,51 +45,52 @@ ports! {
     inputs Inputs {
         /// Synchronous reset.
         rst: Bit as bool;
-        /// One clock per tick: the signals are those of this tick, and hold still for the 16 clocks from here.
+        /// One clock per tick: the signals are those of this tick, and stay stable for 16 clocks from here.
         strobe: Bit as bool;
-        /// What can be traced; tie those that are not used.
+        /// Signals that can be recorded; tie unused ones to a constant.
         signal[16]: Signed(32) as i32;
-        /// Which signal a row has first.
+        /// First signal of a row.
         select_0: Bits(4) as u8;
-        /// Which signal a row has second.
+        /// Second signal of a row.
         select_1: Bits(4) as u8;
-        /// Which signal a row has third.
+        /// Third signal of a row.
         select_2: Bits(4) as u8;
-        /// Which signal a row has fourth.
+        /// Fourth signal of a row.
         select_3: Bits(4) as u8;
         /// Signals in a row: 0 one, 1 two, 2 and 3 four; taken at `arm`.
         signals: Bits(2) as u8;
         /// With n here, the first strobe gives a row, then every (n + 1)th.
         decimation: Bits(16) as u16, "ticks";
-        /// Which signal the trigger looks at.
+        /// Signal that the trigger compares.
         trigger_select: Bits(4) as u8;
         /// 0 at once, 1 rising through `trigger_level`, 2 falling through it, 3 `trigger_event`.
         trigger_mode: Bits(2) as u8;
-        /// In the unit of the signal that the trigger looks at.
+        /// Level of the trigger, in the unit of its signal.
         trigger_level: Signed(32) as i32;
-        /// One clock or longer; kept for the next row.
+        /// External trigger, one clock or longer; remembered until the next row.
         trigger_event: Bit as bool;
-        /// Rows before the trigger; more than the rows of a trace − 1 is that many; taken at `arm`.
+        /// Number of rows before the trigger, at most the rows of a trace − 1; taken at `arm`.
         pre_trigger: Bits(11) as u16, "rows";
-        /// One clock: forget everything and begin.
+        /// One clock: discards everything and begins.
         arm: Bit as bool;
-        /// One clock: end with the row that is being taken.
+        /// One clock: ends with the row that is being recorded.
         halt: Bit as bool;
-        /// Word of the trace in order of time: 0 is the oldest.
+        /// Index of the word to read, in order of time: 0 is the oldest.
         read_address: Bits(11) as u16;
     }
 
     /// The output ports, functions of registers only.
     outputs Outputs {
-        /// The word at the `read_address` of the clock before; 0 where the trace has none, or was being taken.
+        /// The word at the `read_address` of the clock before; 0 where the trace has none, or was still being
+        /// recorded.
         data: Bits(32) as u32;
-        /// 0 idle, 1 filling, 2 waiting, 3 taking.
+        /// State: 0 idle, 1 filling, 2 waiting, 3 taking.
         state: Bits(2) as TraceState;
-        /// Rows that are there, 0 to 2048.
+        /// Number of rows recorded.
         rows: Bits(12) as u16, "rows";
-        /// The row of the trigger: `pre_trigger` as it was taken. It has come when `rows` is larger.
+        /// Row of the trigger, the `pre_trigger` that was taken. The trigger has come when `rows` is larger.
         trigger_row: Bits(11) as u16;
-        /// Sticky until `arm`: a strobe came while a row was being taken, and was left out.
+        /// Sticky until `arm`: a strobe came while a row was being recorded, and was left out.
         missed: Bit as bool;
         /// One clock: the trace is complete.
         done: Bit as bool;

@@ -59,14 +59,15 @@ pub(in crate::blocks) fn macros() -> Vec<(String, String)> {
     macros
 }
 
-/// Whether a state may follow another.
+/// An expression for whether one state may follow another.
 fn allowed() -> String {
     let row = |row: &Transition| format!("((from) == 3'd{} & (to) == 3'd{})", row.from as u8, row.to as u8);
     let rows: Vec<String> = TRANSITIONS.iter().map(row).collect();
     format!("({})", rows.join(" | "))
 }
 
-/// The state that follows: of the rows the first whose conditions hold. Conditions are wires, `if_tick` that of `Tick`.
+/// An expression for the next state: that of the first row whose conditions hold. Conditions are wires, such as
+/// `if_tick` for `Tick`.
 fn next() -> String {
     let rows = TRANSITIONS.iter().map(|row| {
         let named = |condition: Condition| format!("if_{}", condition.name());

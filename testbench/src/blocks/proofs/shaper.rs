@@ -1,4 +1,4 @@
-//! The tasks of the shapers: plain, small, for motion.
+//! Proofs of the shapers: the plain one, a small one, and the motion shaper.
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::shaper;
@@ -37,7 +37,7 @@ fn plain() -> Result<Task, Error> {
     })
 }
 
-/// The plain shaper's kernel so small that memories and multiplier are in the proof.
+/// The plain shaper's kernel at sizes so small that the proof can include memories and multiplier.
 fn small() -> Result<Task, Error> {
     const DELAY_BITS: u32 = 2;
     let config = ShaperConfig::of_sizes(6, DELAY_BITS, 2, table(4, &[(0, 9), (1, -3), (2, 10)])?).map_err(refused)?;
@@ -60,7 +60,7 @@ fn small() -> Result<Task, Error> {
     })
 }
 
-/// The control of the shaper for motion. It is the same whether the position wraps.
+/// The control of the motion shaper, which is the same whether or not the position wraps.
 fn motion() -> Result<Task, Error> {
     let config = motion_config(true)?;
     let block = (shaper::emit(&config, "")?, ports(&config));
@@ -69,7 +69,7 @@ fn motion() -> Result<Task, Error> {
     Ok(of_motion("shaper_motion", size, &config, block, text))
 }
 
-/// Its arithmetic, a part of it on its own.
+/// The arithmetic of the motion shaper, which is a part of it, by itself.
 fn channel_sums(modulo: bool) -> Result<Task, Error> {
     let config = motion_config(modulo)?;
     let block = part(shaper::emit(&config, "")?, "channel_sums")?;
@@ -78,7 +78,7 @@ fn channel_sums(modulo: bool) -> Result<Task, Error> {
     Ok(of_motion("channel_sums", size, &config, block, text))
 }
 
-/// All channels, the smallest words and memories.
+/// A motion shaper with all channels, and the smallest words and memories.
 fn motion_config(modulo: bool) -> Result<ShaperConfig, Error> {
     let table = table(16, &[(0, 20_000), (3, 30_000), (7, 15_536)])?;
     let motion = ShaperMotion { channels: 3, modulo };

@@ -1,4 +1,4 @@
-//! The proof of supervisor, drive command and PWM as a stage wires them.
+//! Proofs of supervisor, drive command and PWM as a stage wires them.
 
 use posicast_hdl::component;
 use posicast_hdl::emit::Module;
@@ -51,8 +51,8 @@ fn task(axis: &StageAxis, modules: &[Module]) -> Result<Task, Error> {
         .properties(&filter, include_str!("../../../formal/stage_axis.sv")))
 }
 
-/// Nothing is left in it but its ports: its outputs are anything, in every clock. Without a wire Yosys would take it for a
-/// module from elsewhere.
+/// Removes everything but the ports of a module: its outputs are free in every clock. Without a wire Yosys would take
+/// it for an external module.
 pub(super) fn empty(module: &mut Module) {
     if let Some((ports, _)) = module.text.split_once("\n);\n") {
         module.text = format!("{ports}\n);\n    wire left_out = clk;\nendmodule\n\n`default_nettype wire\n");

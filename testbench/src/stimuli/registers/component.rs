@@ -1,4 +1,4 @@
-//! Traffic for components: what a driver would do, among everything else.
+//! Bus traffic for components: what a driver would do, mixed with everything else.
 
 use std::collections::VecDeque;
 
@@ -12,16 +12,17 @@ use super::super::table::Table;
 use super::{ADDRESS, BUS_INPUTS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
 use crate::stimuli::{PulseCounterRandom, Stimuli};
 
-/// Clocks at the start of a run in which a PWM is left in peace.
+/// Number of clocks at the start of a run in which a PWM runs undisturbed.
 const CALM_CLOCKS: u64 = 5_000;
 
-/// Traffic for a component: as [`RegistersRandom`], with pins and transactions such that its block has something to do.
+/// Bus traffic for a component: like [`RegistersRandom`], with pins and transactions that exercise the component's
+/// block.
 #[derive(Debug, Clone)]
 pub struct ComponentRandom {
     registers: RegistersRandom,
     map: RegisterMap,
     core: Core,
-    /// Writes to come: word and data.
+    /// Queued writes: word and data.
     writes: VecDeque<(u32, u32)>,
     clock: u64,
 }
@@ -31,7 +32,7 @@ enum Core {
     Shaper(Box<ShaperConfig>, Table),
     PulseCounter(Box<PulseCounterRandom>, Vec<u64>),
     SlidingMode,
-    /// Where `sync` is among the inputs, and `fault_n`, with the PLL's and the filtered faults behind it.
+    /// Indices of `sync` and of `fault_n` among the inputs; the PLL's fault and the filtered faults follow `fault_n`.
     Pwm {
         sync: usize,
         fault_n: usize,
@@ -40,7 +41,7 @@ enum Core {
 }
 
 impl ComponentRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs.
     pub fn new(component: &Component, seed: u64) -> Self {
         let core = component.blocks().find_map(|block| match block {
             ComponentPart::Shaper(config) => Some(Core::Shaper(config.clone(), Table::with_capacity(256))),
@@ -74,7 +75,7 @@ impl ComponentRandom {
             .extend(self.map.register(register).map(|register| (register.offset, data)));
     }
 
-    /// What a driver would do: now and then a whole sequence.
+    /// Queues what a driver would do, now and then a whole sequence.
     fn plan(&mut self) {
         if !self.writes.is_empty() || !self.registers.one_in(400) {
             return;
@@ -100,7 +101,7 @@ impl ComponentRandom {
                     self.write("tap", tap);
                 }
                 self.write("swap", bank | (random >> 16 & 3) << 4);
-                // Back, of any bank, in a pass and between two.
+                // Taps are read back, from any bank, during a pass and between two.
                 for read in 0..random >> 24 & 7 {
                     self.write("tap_address", random >> (read + 20) & 0x307);
                     self.write("tap_read", 0);
@@ -125,12 +126,12 @@ impl ComponentRandom {
             Core::SlidingMode => {
                 let bank = (random & 1) + 1;
                 for row in 0..16 {
-                    // Mantissas and shifts; the limit is a number of the same kind.
+                    // A setting is a mantissa and a shift; the limit is a number of the same kind.
                     let setting = self.registers.word() as u32;
                     self.write("setting_address", row | bank << 8);
                     self.write("setting", setting);
                 }
-                // Back, of any bank, in a pass and between two.
+                // Settings are read back, from any bank, during a pass and between two.
                 for read in 0..random >> 16 & 7 {
                     self.write("setting_address", random >> (read + 20) & 0x30f);
                     self.write("setting_read", 0);
@@ -142,7 +143,8 @@ impl ComponentRandom {
                 self.write("start", 0);
             }
             Core::Pwm { .. } => {
-                // Off, a short period, times near the floors, on. At first with duties that come to the pins for certain.
+                // The driver switches off, sets a short period and times near the floors, and switches on; at first
+                // with duties that certainly reach the pins.
                 let calm = self.clock < CALM_CLOCKS;
                 let unless_calm = |value: u32, calm_value: u32| if calm { calm_value } else { value };
                 self.write("control", 0);
@@ -160,7 +162,7 @@ impl ComponentRandom {
                     self.write("duty", unless_calm(duty as u32, full as u32));
                     self.write("feed", 0);
                     self.writes.extend([(0x40, 0); 20]);
-                    // Refused while it runs.
+                    // The bank refuses this while the PWM runs.
                     self.write("times", 0x1f | 0x1f << 16);
                 }
             }
@@ -175,22 +177,24 @@ impl Stimuli for ComponentRandom {
         self.plan();
         if let Core::PulseCounter(encoder, row) = &mut self.core {
             encoder.fill(&[], row);
-            // The lines are the same in both, behind `rst` and behind the bus.
+            // Both rows have the same lines, the one after `rst` and the other after the bus.
             inputs[BUS_INPUTS..BUS_INPUTS + 6].copy_from_slice(&row[1..7]);
         }
         if let Core::Pwm { sync, fault_n } = self.core
             && self.clock < CALM_CLOCKS
         {
-            // Nobody but the driver writes, no line fails, and no `sync` finds the carrier at another phase: it runs.
+            // Only the driver writes, no line fails, and no `sync` finds the carrier at another phase, so the carrier
+            // runs.
             (inputs[WRITE], inputs[sync]) = (0, 0);
             for (input, healthy) in inputs[fault_n..].iter_mut().zip([1, 1, 3]) {
                 *input = healthy;
             }
             inputs[0] = (self.clock < 2).into();
         } else if let Core::Pwm { sync, fault_n } = self.core {
-            // Rare, since one that finds the carrier at another phase keeps it from starting until the next one.
+            // A `sync` is rare, since one that finds the carrier at another phase delays its start until the next
+            // one.
             inputs[sync] &= u64::from(self.registers.one_in(500));
-            // Healthy, as a rule.
+            // The lines are mostly healthy.
             for (input, healthy) in inputs[fault_n..].iter_mut().zip([1, 1, 3]) {
                 if !self.registers.one_in(1000) {
                     *input = healthy;

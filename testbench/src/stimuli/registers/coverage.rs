@@ -5,7 +5,7 @@ use posicast_model::rtl::registers::{Access, FlagSource, RegisterMap};
 
 use super::{ADDRESS, BUS_INPUTS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 
-/// What a run of a bank reached, by name.
+/// Counts of what a run of a bank reached, by name.
 #[derive(Debug, Clone)]
 pub struct RegistersCoverage {
     map: RegisterMap,
@@ -16,7 +16,7 @@ pub struct RegistersCoverage {
 }
 
 impl RegistersCoverage {
-    /// Nothing yet.
+    /// Creates counters at zero.
     pub fn new(map: &RegisterMap) -> Self {
         Self {
             map: map.clone(),
@@ -73,7 +73,7 @@ impl RegistersCoverage {
         }
     }
 
-    /// Adds a clock: its inputs, in the order of the bank's ports.
+    /// Adds a clock, given its inputs in the order of the bank's ports.
     pub fn observe(&mut self, inputs: &[u64]) {
         let changed = self.inputs_before.get(BUS_INPUTS..) != inputs.get(BUS_INPUTS..);
         self.inputs_before = inputs.to_vec();
@@ -159,14 +159,14 @@ impl RegistersCoverage {
         }
     }
 
-    /// What was never reached.
+    /// Returns the names of the events that never occurred.
     pub fn missing(&self) -> Vec<String> {
         let never = self.counts().into_iter().filter(|(_, count)| *count == 0);
         never.map(|(name, _)| name).collect()
     }
 
-    /// What happened how often. A flag that the bank sets by itself cannot be set in the clock of its own clearing: that is
-    /// left out.
+    /// Returns each event's name and count. The event of a flag that cannot be set in the clock in which it is
+    /// cleared, because the bank itself sets it, is left out.
     pub fn counts(&self) -> Vec<(String, u64)> {
         let own = |name: &str| {
             let registers = self.map.registers().iter().filter(|r| r.access.is_sticky());

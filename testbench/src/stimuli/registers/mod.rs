@@ -1,7 +1,9 @@
-//! Inputs for register banks and components, seeded: Avalon traffic, legal and not, among inputs that change at any pace.
+//! Seeded random inputs for register banks and components: valid and invalid Avalon traffic, among inputs that change
+//! at any pace.
 //!
-//! Traffic comes in phases: dense, sparse, and reads alone, so that what a register sets is also left alone for a while.
-//! Addresses are mostly those of registers; words are random, single bits, small or full; bytes are mostly all enabled.
+//! Traffic comes in phases: dense, sparse, and reads only, so that what a register sets is also left unchanged for a
+//! while. Addresses are mostly those of registers; words are random, single bits, small or full; the bytes are mostly
+//! all enabled.
 
 mod component;
 mod coverage;
@@ -24,7 +26,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::Stimuli;
 use super::table::pick;
 
-/// Places of the bus among the input ports, behind `rst`.
+/// Indices of the bus signals among the input ports, after `rst`.
 const ADDRESS: usize = 1;
 const READ: usize = 2;
 const WRITE: usize = 3;
@@ -32,7 +34,7 @@ const BYTE_ENABLE: usize = 4;
 const WRITE_DATA: usize = 5;
 const BUS_INPUTS: usize = 6;
 
-/// An input that is not of the bus, and how often it changes: once in so many clocks.
+/// An input that does not belong to the bus, and its pace: it changes once in this many clocks.
 #[derive(Debug, Clone)]
 struct Pin {
     at: usize,
@@ -41,25 +43,26 @@ struct Pin {
     value: u64,
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct RegistersRandom {
     rng: Xoshiro256PlusPlus,
     offsets: Vec<u64>,
-    /// Ones in the bits of an address.
+    /// Mask of the bits of an address.
     address_ones: u64,
     /// Words at and below the minima of guarded registers, with their offsets.
     floors: Vec<(u64, u64)>,
     pins: Vec<Pin>,
     clock: u64,
-    /// Clocks from access to access, and whether there are writes.
+    /// Number of clocks from access to access, and whether there are writes.
     phase: (u32, bool),
-    /// Where a read goes that follows a write.
+    /// Offset of the last write, which a read that follows uses.
     last: u64,
 }
 
 impl RegistersRandom {
-    /// For a block with these ports, the bus first, and these registers. Equal seeds give equal inputs.
+    /// Creates the generator for a block with these ports, the bus first, and these registers. Equal seeds give equal
+    /// inputs.
     pub fn new(map: &RegisterMap, ports: &[Port], seed: u64) -> Self {
         let inputs = ports.iter().filter(|port| port.direction == Direction::Input);
         let pin = |(at, port): (usize, &Port)| Pin {
@@ -80,7 +83,7 @@ impl RegistersRandom {
         }
     }
 
-    /// Leaves the registers at these offsets to somebody else.
+    /// Excludes the registers at these offsets, which another generator uses.
     fn without(mut self, offsets: &[u64]) -> Self {
         self.offsets.retain(|offset| !offsets.contains(offset));
         self
@@ -117,7 +120,7 @@ impl RegistersRandom {
         if self.one_in(pace) {
             let write = writes && self.one_in(2);
             inputs[WRITE] = write.into();
-            // Both at once is illegal, and must do no harm.
+            // Both at once are invalid and must do no harm.
             inputs[READ] = (!write || self.one_in(20)).into();
             self.last = inputs[ADDRESS];
         }
@@ -142,7 +145,7 @@ impl RegistersRandom {
             if self.one_in(pace) {
                 let (random, pin) = (self.rng.next_u64(), &mut self.pins[at]);
                 pin.value = match random & 7 {
-                    // Counters and lines that turn over.
+                    // These are counters and lines that toggle.
                     0..=3 => pin.value.wrapping_add(1),
                     _ => random >> 3,
                 } & (u64::MAX >> (64 - pin.width));
@@ -152,7 +155,7 @@ impl RegistersRandom {
     }
 }
 
-/// Of every word that does something.
+/// Returns the offset of every word that has a function.
 fn offsets(map: &RegisterMap) -> Vec<u64> {
     let words = |register: &Register| register.offset..register.offset + register.words();
     map.registers().iter().flat_map(words).map(u64::from).collect()

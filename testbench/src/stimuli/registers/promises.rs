@@ -1,4 +1,5 @@
-//! What every read must show, whatever traffic there is: said from the description alone, not from the bank's model.
+//! The value that every read must return, whatever the traffic is. It is derived from the register map alone, not
+//! from the bank's model.
 //!
 //! ```text
 //! unmapped, command, commands' words, snapshot, interrupt test      0
@@ -13,23 +14,23 @@ use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 
 use super::{ADDRESS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 
-/// What a read must show.
+/// What a read must return.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Expected {
     Word(u32),
-    /// Anything in the fields of the register, each at least its minimum.
+    /// Any value in the fields of the register, each at least its minimum.
     Fields(usize),
 }
 
-/// Watches the reads of a component, clock by clock.
+/// Checks the reads of a component, clock by clock.
 #[derive(Debug, Clone)]
 pub struct ReadPromises {
     map: RegisterMap,
-    /// Words that follow writes, by the register's place in the map.
+    /// Words of registers that return what was written, by the register's index in the map.
     kept: Vec<u32>,
-    /// Of the clock before: its read, if there was one, or that readdata stays.
+    /// Expected result of the previous clock's read; `None` if there was none, so that readdata must not change.
     pending: Option<Expected>,
-    /// What readdata showed.
+    /// Last value of readdata.
     shown: Option<u32>,
     clock: u64,
     reads: u64,
@@ -37,7 +38,7 @@ pub struct ReadPromises {
 }
 
 impl ReadPromises {
-    /// Of a component with this map, before its first reset.
+    /// Creates a checker for a component with this map, before its first reset.
     pub fn new(map: &RegisterMap) -> Self {
         Self {
             kept: map.registers().iter().map(Register::reset).collect(),
@@ -50,7 +51,7 @@ impl ReadPromises {
         }
     }
 
-    /// A clock: its inputs, and `avs_readdata` in it.
+    /// Adds a clock, given its inputs and its `avs_readdata`.
     pub fn observe(&mut self, inputs: &[u64], read_data: u64) {
         let data = read_data as u32;
         let wrong = match (self.pending, self.shown) {
@@ -74,17 +75,17 @@ impl ReadPromises {
         }
         if inputs[0] & 1 == 1 {
             self.kept = self.map.registers().iter().map(Register::reset).collect();
-            // What readdata is after a reset is not promised.
+            // The value of readdata after a reset is not specified.
             (self.pending, self.shown) = (None, None);
         }
     }
 
-    /// The first read that was not as promised, in words.
+    /// Returns a description of the first wrong read.
     pub fn violation(&self) -> Option<&str> {
         self.violation.as_deref()
     }
 
-    /// Reads that were watched.
+    /// Returns the number of checked reads.
     pub fn reads(&self) -> u64 {
         self.reads
     }
@@ -116,7 +117,7 @@ impl ReadPromises {
         }
     }
 
-    /// What is wrong with the word of this register.
+    /// Returns what is wrong with the word of this register.
     fn fields_of(&self, at: usize, data: u32) -> Option<String> {
         let register = &self.map.registers()[at];
         let fields = self.map.fields(register);

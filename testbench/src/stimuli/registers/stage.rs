@@ -1,5 +1,5 @@
-//! Inputs for a whole stage, seeded: a driver that switches on, loads, starts and stops, among random traffic on all
-//! windows; lines that are healthy most of the time; encoders that move.
+//! Seeded random inputs for a whole stage: a driver that switches on, loads, starts and stops, among random traffic
+//! on all windows; lines that are mostly healthy; encoders that move.
 
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
@@ -12,9 +12,10 @@ use super::stage_driver::{Driver, Moves, Pins, SCENES};
 use super::{ADDRESS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
 use crate::stimuli::Stimuli;
 
-/// Clocks between changes of what holds for a while: with writes anywhere, and without.
+/// Number of clocks between changes of the mood: with random writes to any register, and without.
 const MOOD_CLOCKS: [u64; 2] = [6_000, 40_000];
-/// Lines of an axis that are high while all is well, and how rarely each is low: those are seldom that stop all.
+/// Lines of an axis that are high in normal operation, and how rarely each is low. Lines that stop everything are low
+/// more rarely.
 const LINES: [(&str, u32); 6] = [
     ("limit_plus_n", 1),
     ("limit_minus_n", 1),
@@ -23,68 +24,68 @@ const LINES: [(&str, u32); 6] = [
     ("fault_n", 8),
     ("home", 1),
 ];
-/// The same, of the stage.
+/// The shared lines of the stage, as in [`LINES`].
 const SHARED_LINES: [(&str, u32); 2] = [("emergency_stop_n", 4), ("pll_locked", 8)];
-/// Clocks of the gates' mean that make a step of an encoder that follows them.
+/// Number of clocks of the gates' mean that make one step of an encoder that follows them.
 const STEP_CLOCKS: i32 = 48;
-/// Fewest clocks between two steps, so that the encoder's filter lets them through.
+/// Least number of clocks between two steps, so that the encoder's filter passes them.
 const EDGE_CLOCKS: u32 = 12;
 
-/// What holds for a while.
+/// Settings that hold for a while.
 #[derive(Debug, Clone, Copy)]
 struct Mood {
-    /// Writes anywhere.
+    /// Whether random writes go to any register.
     wild: bool,
-    /// A scene is played; nothing else happens.
+    /// Whether a scene is played; nothing else happens then.
     scene: bool,
-    /// One fault in so many clocks.
+    /// One fault comes in this many clocks.
     fault_pace: u32,
-    /// One request of the driver in so many clocks.
+    /// The driver makes one request in this many clocks.
     request_pace: u32,
-    /// One reset in so many clocks.
+    /// One reset comes in this many clocks.
     reset_pace: u32,
 }
 
-/// An axis as its pins see it.
+/// The pins of an axis.
 #[derive(Debug, Clone)]
 struct AxisPins {
-    /// Places of A, B and Z, and of a linear scale's, if there is one: it moves as the motor does.
+    /// Indices of A, B and Z of the encoder, and of the linear scale if there is one: it moves as the motor does.
     encoders: [Vec<usize>; 2],
-    /// Places of the limit switches, + and −.
+    /// Indices of the limit switches, + and −.
     switches: [usize; 2],
-    /// Places of A's and B's high gate, of the drive's enable and of the brake's release, among the outputs.
+    /// Indices of A's and B's high gate, of the drive's enable and of the brake's release among the outputs.
     shown: [usize; 4],
     moves: Moves,
     count: i32,
-    /// What has come together for the next step.
+    /// Sum of the gates' mean since the last step.
     mean: i32,
     since_step: u32,
     invert: bool,
-    /// Both lines change at once, next.
+    /// Whether both lines change at once in the next step.
     slips: bool,
 }
 
-/// A line, and how long it will be low.
+/// A line and the time for which it is low.
 #[derive(Debug, Clone, Copy)]
 struct Line {
-    /// None: shared by all.
+    /// Index of the axis; `None` for a line shared by all.
     axis: Option<usize>,
     name: &'static str,
     at: usize,
-    /// How much rarer than others it is low.
+    /// Factor by which it is low more rarely than other lines.
     pace: u32,
     low: u32,
 }
 
-/// Reads settings or taps back, of any bank at any time, in clocks in which nobody else is on the bus.
+/// Reads back settings or taps, from any bank at any time, in clocks in which the bus is otherwise idle.
 ///
-/// It draws from a generator of its own: what a run reaches does not change with it.
+/// It uses a generator of its own, so that it does not change what else a run reaches.
 #[derive(Debug, Clone)]
 struct ReadBack {
     rng: Xoshiro256PlusPlus,
-    /// Per axis: offsets of address, command and word.
+    /// Per axis, the offsets of address, command and word.
     words: Vec<[u64; 3]>,
-    /// Bits of the address that are drawn: bank, and rows that are written.
+    /// Mask of the random address bits: bank and written rows.
     places: u64,
 }
 
@@ -112,7 +113,7 @@ impl ReadBack {
         }
     }
 
-    /// The registers that nobody else uses.
+    /// Returns the registers that only this generator uses.
     fn own(&self) -> Vec<u64> {
         self.words.iter().flat_map(|[_, own @ ..]| *own).collect()
     }
@@ -121,7 +122,7 @@ impl ReadBack {
         let axis = self.rng.random_range(0..self.words.len());
         let [pace, kind, data] = [50, 3, 1 << 10].map(|end| self.rng.random_range(0..end));
         let in_use = inputs[READ] != 0 || inputs[WRITE] != 0 || driver.writes(axis);
-        // Wild traffic writes settings and taps, and what is not its own, to the address that it finds.
+        // Random traffic writes settings and taps at the current address, which is not changed then.
         let moves_another = wild && kind == 0;
         if pace != 0 || in_use || moves_another {
             return;
@@ -134,10 +135,10 @@ impl ReadBack {
     }
 }
 
-/// A mixture of everything, without end.
+/// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct StageRandom {
-    /// Of settings, of taps.
+    /// Generators that read back the settings and the taps.
     read_back: [ReadBack; 2],
     registers: RegistersRandom,
     driver: Driver,
@@ -145,10 +146,10 @@ pub struct StageRandom {
     clock: u64,
     mood: Mood,
     mood_ends: u64,
-    /// Moods, and scenes, so far.
+    /// Number of moods and scenes so far.
     moods: u32,
     scenes: usize,
-    /// The words that show what is inside.
+    /// Offsets of the status words.
     status: Vec<u64>,
     axes: Vec<AxisPins>,
     lines: Vec<Line>,
@@ -159,7 +160,7 @@ fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
     names.position(|port| port.name == name)
 }
 
-/// The words that a stage shows of itself: states, flags, causes and values.
+/// Returns the offsets of the words that show a stage's states, flags, causes and values.
 fn status(map: &RegisterMap) -> Vec<u64> {
     let shown = |register: &&Register| matches!(register.access, Access::Live | Access::Sticky | Access::Shadow { .. });
     map.registers()
@@ -170,7 +171,7 @@ fn status(map: &RegisterMap) -> Vec<u64> {
 }
 
 impl StageRandom {
-    /// Equal seeds give equal inputs for equal outputs.
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
     pub fn new(component: &Component, axes: &[String], seed: u64) -> Self {
         let ports = component.composition().ports();
         let input = |name: &str| place(ports, Direction::Input, name);
@@ -240,7 +241,7 @@ impl StageRandom {
         *pick(&mut self.registers.rng, choices)
     }
 
-    /// A scene in turn with a while of random traffic, after the first scenes: those come at once.
+    /// Alternates scenes with periods of random traffic, after the first scenes, which come at once.
     fn new_mood(&mut self) {
         self.moods += 1;
         // Each axis leads each scene once before random traffic begins.
@@ -276,7 +277,7 @@ impl StageRandom {
         self.scenes += 1;
     }
 
-    /// What scenes want at the pins of an axis.
+    /// Applies what the scenes require at the pins of an axis.
     fn pins(&mut self, seen: &[u64]) {
         for at in 0..self.axes.len() {
             let axis = &self.axes[at];
@@ -295,7 +296,7 @@ impl StageRandom {
         }
     }
 
-    /// The encoders, a step at a time.
+    /// Moves the encoders, one step at a time.
     fn encoders(&mut self, seen: &[u64], inputs: &mut [u64]) {
         for at in 0..self.axes.len() {
             let step = match self.axes[at].moves {
@@ -314,7 +315,7 @@ impl StageRandom {
                     if axis.invert { -step } else { step }
                 }
             };
-            // Both lines at once.
+            // Rarely both lines change at once.
             let slips = !self.mood.scene && self.one_in(300_000);
             let axis = &mut self.axes[at];
             let slips = std::mem::take(&mut axis.slips) || slips;
@@ -351,7 +352,7 @@ impl StageRandom {
         }
     }
 
-    /// The driver's next access, if there is one.
+    /// Makes the driver's next access, if there is one.
     fn drive(&mut self, seen: &[u64], inputs: &mut [u64]) {
         for (at, axis) in self.axes.iter().enumerate() {
             let on = seen.get(axis.shown[2]).is_some_and(|value| value & 1 != 0);
@@ -365,7 +366,7 @@ impl StageRandom {
             inputs[BYTE_ENABLE] = 0xf;
             (inputs[WRITE], inputs[READ]) = (1, 0);
         } else if self.mood.scene && !self.one_in(4) {
-            // What a scene does is seen in the words of status.
+            // The status words show the effect of a scene.
             let status = std::mem::take(&mut self.status);
             inputs[ADDRESS] = self.pick(&status);
             self.status = status;

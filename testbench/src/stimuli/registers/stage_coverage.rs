@@ -1,7 +1,7 @@
-//! What a run of a stage reached, by what is inside of it.
+//! What a run of a stage reached, measured at its internal nets.
 //!
-//! Pins show little of a stage, and a host sees it only when it reads. So a second model gets the same inputs, and its nets
-//! are looked at in every clock.
+//! The pins show little of a stage, and a host sees only what it reads. Therefore a second model gets the same
+//! inputs, and its nets are observed in every clock.
 
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::axis::{Cause, SupervisorState, TRANSITIONS};
@@ -12,12 +12,12 @@ use posicast_model::rtl::stage::AXIS_INTERRUPTS;
 
 /// Words of an axis's window whose flags are counted: states and flags of motion and supervision.
 const COUNTED_WORDS: std::ops::Range<u32> = 0x28..0x2e;
-/// What a stage cannot show, and why.
+/// Nets that never become active in a stage, and the reason.
 ///
-/// | net | why |
+/// | net | reason |
 /// |---|---|
-/// | `segments_tick_missed`, `shaper_overrun`, `controller_overrun`, `velocity_missed` | the schedule fits its tick: a test insists on it |
-/// | `encoder_disagreement` | single lines: nothing to disagree with |
+/// | `segments_tick_missed`, `shaper_overrun`, `controller_overrun`, `velocity_missed` | the schedule fits its tick, which a test checks |
+/// | `encoder_disagreement` | the lines are single-ended: no pair can disagree |
 /// | `pwm_unaligned` | the PWM's period divides the tick |
 const NEVER: [&str; 6] = [
     "segments_tick_missed",
@@ -27,33 +27,34 @@ const NEVER: [&str; 6] = [
     "encoder_disagreement",
     "pwm_unaligned",
 ];
-/// Causes that a stage cannot have: a pass that is not over in time, and a deviation from a scale, where there is none.
+/// Causes that cannot occur in a stage: a pass that is not over in time, and a deviation from a scale where there is
+/// none.
 const NEVER_CAUSES: [Cause; 2] = [Cause::Schedule, Cause::Deviation];
 
-/// What a bin counts.
+/// What a counter counts.
 #[derive(Debug, Clone, Copy)]
 enum Counts {
-    /// Clocks in which these bits of a net are so.
+    /// Clocks in which the bits of a net under this mask have this value.
     Level(u64, u64),
     /// Changes of a net.
     Changes,
-    /// Changes of a net from a value to another.
+    /// Changes of a net from one value to another.
     From(u64, u64),
-    /// Bits of a net that become one.
+    /// Rising edges of the bits of a net under this mask.
     Rises(u64),
 }
 
 #[derive(Debug, Clone)]
 struct Bin {
     name: String,
-    /// Its net in the model, if there is one of that name.
+    /// The net in the model, if there is one of that name.
     net: Option<usize>,
     counts: Counts,
     count: u64,
     before: u64,
 }
 
-/// What a run reached, by name.
+/// Counts of what a run reached, by name.
 pub struct StageCoverage {
     twin: Composed,
     bins: Vec<Bin>,
@@ -61,7 +62,7 @@ pub struct StageCoverage {
 }
 
 impl StageCoverage {
-    /// Nothing yet.
+    /// Creates counters at zero.
     pub fn new(component: &Component, axes: &[String]) -> Self {
         let twin = component.model(0);
         let outputs = component.composition().ports().iter();
@@ -145,7 +146,7 @@ impl StageCoverage {
         }
     }
 
-    /// One clock's inputs.
+    /// Adds a clock, given its inputs.
     pub fn observe(&mut self, inputs: &[u64]) {
         if self.twin.step(inputs, &mut self.outputs).is_err() {
             return;
@@ -165,7 +166,7 @@ impl StageCoverage {
         }
     }
 
-    /// How often, by name.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> Vec<(String, u64)> {
         self.bins.iter().map(|bin| (bin.name.clone(), bin.count)).collect()
     }

@@ -1,5 +1,5 @@
-//! What a driver does with a stage, seeded: it settles an axis, switches it on, loads and starts moves, changes tables,
-//! settings and limits, kicks watchdogs, and now and then does what it should not.
+//! A driver of a stage with seeded random plans: it configures an axis, switches it on, loads and starts moves,
+//! changes tables, settings and limits, kicks watchdogs, and now and then does what a driver should not do.
 
 use std::collections::VecDeque;
 
@@ -19,56 +19,56 @@ pub(super) use self::scenes::SCENES;
 /// How an encoder moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Moves {
-    /// Not at all.
+    /// It does not move.
     Still,
-    /// With the mean of the gates.
+    /// It follows the mean of the gates.
     Follows,
-    /// To and fro, at random.
+    /// It moves back and forth at random.
     Walks,
 }
 
-/// What happens at an axis's pins.
+/// An event at an axis's pins.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Pins {
-    /// A line, of the axis or shared, goes low for so many clocks.
+    /// A line, of the axis or shared, goes low for this many clocks.
     Low(&'static str, u32),
-    /// The encoder moves so from now on.
+    /// The encoder moves in this way from now on.
     Encoder(Moves),
     /// Both lines of the encoder change at once.
     Slip,
 }
 
-/// What a driver does next.
+/// The next action of a driver.
 #[derive(Debug, Clone, Copy)]
 enum Do {
     Write(u32, u32),
     Wait(u32),
-    /// Onto the limit switches: bit 0 +, bit 1 −; 0 is off them.
+    /// Moves the axis onto limit switches: bit 0 is +, bit 1 is −; 0 moves it off them.
     Switch(u32),
-    /// Until the brake is open, and so many clocks at most.
+    /// Waits until the brake is released, for at most this many clocks.
     Released(u32),
-    /// As [`Pins`].
+    /// Like the same event of [`Pins`].
     Low(&'static str, u32),
     Encoder(Moves),
     Slip,
 }
 
-/// An axis as its driver sees it.
+/// State of an axis as its driver sees it.
 #[derive(Debug, Clone)]
 struct Plan {
     name: String,
     script: VecDeque<Do>,
-    /// About where it is, in counts.
+    /// Approximate position in counts.
     here: i32,
-    /// On which limit switches it is.
+    /// Limit switches that the axis is on: bit 0 is +, bit 1 is −.
     switches: u32,
-    /// The brake is open.
+    /// Whether the brake is released.
     released: bool,
-    /// What is to happen at its pins.
+    /// Pending events at its pins.
     pins: Vec<Pins>,
 }
 
-/// A driver of all axes of a stage, each with plans of its own, on one bus.
+/// A driver of all axes of a stage, each with its own plans, on one bus.
 #[derive(Debug, Clone)]
 pub(super) struct Driver {
     rng: Xoshiro256PlusPlus,
@@ -76,12 +76,12 @@ pub(super) struct Driver {
     tick_clocks: u32,
     axes: Vec<Plan>,
     table: Table,
-    /// How often all scenes have been played.
+    /// Number of times that all scenes have been played.
     round: u32,
 }
 
 impl Driver {
-    /// Of the axes of these names. Equal seeds give equal plans.
+    /// Creates a driver of the axes of these names. Equal seeds give equal plans.
     pub(super) fn new(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
         let plan = |name: &String| Plan {
             name: name.clone(),
@@ -101,7 +101,7 @@ impl Driver {
         }
     }
 
-    /// Forgets all plans, and settles all axes.
+    /// Discards all plans and configures all axes again.
     pub(super) fn begin_anew(&mut self) {
         for axis in 0..self.axes.len() {
             self.axes[axis].script.clear();
@@ -110,7 +110,8 @@ impl Driver {
         }
     }
 
-    /// Plans, where an axis has nothing to do: one in so many clocks. `on`: its drive is enabled.
+    /// Makes a plan for an axis that has nothing to do, once in `pace` clocks. `on` tells whether its drive is
+    /// enabled.
     pub(super) fn plan(&mut self, axis: usize, on: bool, pace: u32) {
         if !self.axes[axis].script.is_empty() || !self.one_in(pace) {
             return;
@@ -118,7 +119,7 @@ impl Driver {
         self.think_of(axis, on);
     }
 
-    /// A clock: waits pass. The register and the word that are to be written in it, if any are.
+    /// Advances by a clock. Returns the register and the word to write in it, if any.
     pub(super) fn clock(&mut self) -> Option<(u32, u32)> {
         for axis in &mut self.axes {
             match axis.script.front_mut() {
@@ -162,19 +163,20 @@ impl Driver {
         }
     }
 
-    /// What an axis shows: about where it is in counts, and whether its brake is open. What is to happen at its pins.
+    /// Takes the approximate position of an axis in counts and whether its brake is released. Returns the events for
+    /// its pins.
     pub(super) fn sees(&mut self, axis: usize, here: i32, released: bool) -> Vec<Pins> {
         let plan = &mut self.axes[axis];
         (plan.here, plan.released) = (here, released);
         std::mem::take(&mut plan.pins)
     }
 
-    /// An axis is amid a sequence of writes.
+    /// Returns whether an axis is in a sequence of writes.
     pub(super) fn writes(&self, axis: usize) -> bool {
         matches!(self.axes[axis].script.front(), Some(Do::Write(..)))
     }
 
-    /// On which limit switches an axis is: bit 0 +, bit 1 −.
+    /// Returns the limit switches that an axis is on: bit 0 is +, bit 1 is −.
     pub(super) fn switches(&self, axis: usize) -> u32 {
         self.axes[axis].switches
     }
@@ -210,7 +212,7 @@ impl Driver {
         self.wait(axis, ticks * self.tick_clocks);
     }
 
-    /// What a driver writes before anything else, so that the axis can do something.
+    /// Writes what a driver writes first, so that the axis can work.
     fn settle(&mut self, axis: usize) {
         let random = self.rng.next_u32();
         self.tell(axis, "settle", random & 3);
@@ -223,12 +225,12 @@ impl Driver {
         self.tell(axis, "swap", 0);
         self.tell(axis, "law", random >> 4 & 1);
         self.tell(axis, "control", 0);
-        // Writes anywhere have left axes in it.
+        // Random writes may have left axes in a feed hold.
         self.write(axis, "feed_hold", 0);
         self.write(axis, "commit", 0);
     }
 
-    /// What a driver does with an axis that is off, or on.
+    /// Plans what a driver does with an axis that is off, or on.
     fn think_of(&mut self, axis: usize, on: bool) {
         let choice = self.below(20);
         match choice {
@@ -247,13 +249,13 @@ impl Driver {
         }
     }
 
-    /// Drops what waits. That takes effect at a tick: entries that come before it go too.
+    /// Discards the queued entries. This takes effect at a tick: entries that come before the tick are discarded too.
     fn flush(&mut self, axis: usize) {
         self.tell(axis, "flush", 0);
         self.ticks(axis, 1);
     }
 
-    /// A move that a command breaks off.
+    /// Plans a move that a command interrupts.
     fn interrupted(&mut self, axis: usize) {
         self.flush(axis);
         self.there_and_back(axis, 4);
@@ -270,7 +272,7 @@ impl Driver {
         self.ticks(axis, 4);
     }
 
-    /// A feed hold over a few ticks, and on.
+    /// Plans a feed hold for a few ticks, then a continuation.
     fn held(&mut self, axis: usize) {
         self.write(axis, "feed_hold", 1 << axis);
         let ticks = self.below(6);
@@ -279,7 +281,7 @@ impl Driver {
         self.write(axis, "feed_hold", 0);
     }
 
-    /// From end to end of the numbers, through a table with the largest coefficients.
+    /// Plans a motion from end to end of the number range, through a table with the largest coefficients.
     fn swings(&mut self, axis: usize) {
         let one = 1 << self.fraction(axis);
         self.tell(axis, "swap", 0);
@@ -288,10 +290,10 @@ impl Driver {
         self.tell(axis, "swap", 1);
         self.flush(axis);
         if self.one_in(2) {
-            // More than the sums hold.
+            // This is more than the sums hold.
             self.entry(axis, 3, EntryMotion::Jerk((1 << 38) - 1), false);
         }
-        // At rest there, or on the way out of the position's word.
+        // The axis stays at rest there, or leaves the range of the position's word.
         let leaves = i32::from(self.one_in(2));
         for position in [i32::MAX, i32::MIN, i32::MAX, 0] {
             let motion = EntryMotion::Point(Point {
@@ -306,7 +308,7 @@ impl Driver {
         self.tell(axis, "swap", 0);
     }
 
-    /// Moves to and fro while it is on a switch.
+    /// Moves back and forth while the axis is on a switch.
     fn onto_a_switch(&mut self, axis: usize) {
         self.flush(axis);
         self.there_and_back(axis, 2);
@@ -324,7 +326,7 @@ impl Driver {
         }
         let invert = self.below(4) & 1;
         self.tell(axis, "control", 0);
-        // Off only; refused while the drive is on.
+        // This works only while the drive is off; otherwise it is refused.
         self.tell(axis, "encoder", invert);
         self.tell(axis, "scale_control", invert);
         self.tell(axis, "clear_faults", 0);
@@ -368,7 +370,7 @@ impl Driver {
         self.axes[axis].script.extend(writes);
     }
 
-    /// There and back: jerk j, −2·j, j ends at rest.
+    /// Moves there and back: the jerks j, −2·j, j end at rest.
     fn there_and_back(&mut self, axis: usize, ticks: u32) {
         let any = self.rng.random_range(-(1i64 << 39)..1 << 39);
         let jerk = any >> self.rng.random_range(6..26);
@@ -378,7 +380,7 @@ impl Driver {
         }
     }
 
-    /// Moves that end at rest, and some that do not.
+    /// Plans moves that end at rest, and some that do not.
     fn motion(&mut self, axis: usize) {
         if self.one_in(2) {
             self.flush(axis);
@@ -389,12 +391,12 @@ impl Driver {
         }
         match self.below(24) {
             0..=2 => self.point(axis),
-            // Does not end at rest.
+            // This entry does not end at rest.
             3..=6 => self.entry(axis, 2, EntryMotion::Jerk(1 << 28), true),
             9..=11 => self.batch(axis),
             // An entry of no ticks is none.
             7 => self.entry(axis, 0, EntryMotion::Jerk(1), true),
-            // More than the FIFO holds.
+            // These are more entries than the FIFO holds.
             8 => (0..70).for_each(|_| self.entry(axis, 1, EntryMotion::Jerk(0), false)),
             _ => {}
         }
@@ -437,7 +439,8 @@ impl Driver {
         self.entry(axis, ticks, motion, true);
     }
 
-    /// One axis, some, or a mask with strangers; mostly after the group stop of another axis is forgotten.
+    /// Starts one axis, some axes, or a mask with invalid axes; mostly after the group stop of another axis has been
+    /// cleared.
     fn start(&mut self, axis: usize) {
         if !self.one_in(4) {
             self.tell(axis, "clear_faults", 0);
@@ -501,7 +504,7 @@ impl Driver {
         }
     }
 
-    /// A table into bank 1 or 2, and a swap of any kind.
+    /// Loads a table into bank 1 or 2, then swaps in any of the ways.
     fn taps(&mut self, axis: usize) {
         let (fraction, count) = (self.fraction(axis), self.below(4) as usize + 1);
         self.table.draw(&mut self.rng, count, fraction, 4);

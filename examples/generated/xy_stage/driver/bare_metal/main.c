@@ -6,17 +6,17 @@
 #include "machine_xy_stage.h"
 #include "posicast_driver.h"
 
-/* Where the system puts the stage: as in sopc/. */
+/* Address of the stage in the system, as in sopc/. */
 #ifndef STAGE_BASE
 #define STAGE_BASE 0x00020000u
 #endif
 
-/* Q24.8 counts. */
+/* Distance of a move in Q24.8 counts. */
 #define DISTANCE (100 * 256)
-/* After so many ticks a step is given up. */
+/* Number of ticks after which a step times out. */
 #define PATIENCE_TICKS 20000u
 
-/* What came of it, and what each axis says against it: for a debugger. */
+/* The result, and the causes of each axis, for a debugger. */
 volatile posicast_result first_moves_result = POSICAST_TIMEOUT;
 volatile uint32_t first_moves_causes[2];
 

@@ -1,4 +1,4 @@
-/* What the machine file says of xy_stage. Written by posicast. */
+/* Data of xy_stage from its machine file. Written by posicast. */
 #ifndef MACHINE_XY_STAGE_H
 #define MACHINE_XY_STAGE_H
 

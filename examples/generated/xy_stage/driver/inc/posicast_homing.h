@@ -1,10 +1,10 @@
 /*
- * Homing: an axis looks for its home switch, then for the index of its encoder, and calls the place there a position.
+ * Homing: an axis searches for its home switch, then for the index of its encoder, and gives that place a known position.
  *
  *   HOLD ─► off the switch, if it is on it ─► towards the switch ─► towards the index ─► HOLD, POSITION known
  *
- * Commands and soft limits stay in counts since reset, as COUNT has them: what is meant as a position is commanded as
- * position + posicast_origin, and posicast_limit_travel shifts the soft limits. The searches end as a quick stop does: behind the switch there must be room for it.
+ * Commands and soft limits stay in counts since reset, like COUNT: a position is commanded as position + posicast_origin, and
+ * posicast_limit_travel shifts the soft limits. The searches end with a quick stop, for which there must be room after the switch.
  */
 #ifndef POSICAST_HOMING_H
 #define POSICAST_HOMING_H
@@ -14,36 +14,36 @@
 #include "posicast_driver.h"
 
 typedef struct {
-    /* Of the searches. How slow they are says how exactly the switch is found: within what the axis moves in two looks at it. */
+    /* Limits of the searches. The switch is found within the distance that the axis moves between two reads of it. */
     posicast_limits limits;
-    /* How far the switch may be away, Q24.8 counts; the sign says in which direction it is. 0: there is no switch. */
+    /* Largest distance of the switch in Q24.8 counts; the sign gives its direction. 0 means that there is no switch. */
     int32_t switch_within;
-    /* How far the index may be away from where the axis then stands, with its sign. 0: the place of the switch counts. */
+    /* Largest distance of the index from where the axis then stands, with its sign. 0 means that the switch is the reference. */
     int32_t index_within;
-    /* The position at the index, or else at the switch; without both, where the axis stands. Counts. */
+    /* Position in counts of the index or, without it, of the switch; without both, of the place where the axis stands. */
     int32_t position;
 } posicast_homing;
 
 /*
- * Homes an axis in HOLD, and comes to rest. `ticks` are for each of its moves, of which there are up to three.
- * POSICAST_NO_REFERENCE where the way is over before switch or index came: the axis rests, its position is worth nothing.
- * POSICAST_WRONG_STATE, POSICAST_FAULT, POSICAST_TIMEOUT as of moves; after the last the axis is stopping.
+ * Homes an axis in HOLD, and ends at rest. `ticks` limits each of its moves, of which there are up to three. Returns
+ * POSICAST_NO_REFERENCE if switch or index was not found within its distance: the axis rests, and its position is not valid.
+ * POSICAST_WRONG_STATE, POSICAST_FAULT and POSICAST_TIMEOUT are as for moves; after POSICAST_TIMEOUT the axis is stopping.
  */
 posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks);
 
-/* COUNT at which POSITION is 0. */
+/* Returns the COUNT at which POSITION is 0. */
 int32_t posicast_origin(const posicast_stage *stage, uint32_t axis);
 
 /*
- * The axis is homed, and its position, Q24.8 counts, lies between these soft limits from the next tick on: writes both as counts
- * since reset, then HOMED. With soft_limits_after_homing in the machine file there are none before. An axis that is beyond them has a
- * fault, as has one that moves there. POSICAST_BAD_ARGUMENT where the limits do not fit their words, or low is not below high.
+ * Limits the position (Q24.8 counts) of a homed axis to these soft limits from the next tick on: writes both as counts since
+ * reset, then HOMED. With soft_limits_after_homing in the machine file there are none before. An axis that is beyond them, or
+ * moves there, has a fault. Returns POSICAST_BAD_ARGUMENT if the limits do not fit their words, or if low is not below high.
  */
 posicast_result posicast_limit_travel(const posicast_stage *stage, uint32_t axis, int32_t low, int32_t high);
 
 /*
- * Has the axis been homed, and not lost its position since? A lost encoder or an error of it ends that, as a reset does, and
- * HOMED is not set before posicast_switch_on has forgotten that cause.
+ * Returns whether the axis has been homed and has not lost its position since. A lost encoder or an encoder error ends that, as a
+ * reset does, and HOMED cannot be set before posicast_switch_on has cleared that cause.
  */
 int posicast_is_homed(const posicast_stage *stage, uint32_t axis);
 

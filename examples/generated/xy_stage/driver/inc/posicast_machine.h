@@ -1,4 +1,4 @@
-/* What the machine file says of the axes: filled in by machine_NAME.c. */
+/* Data of the axes from the machine file; machine_NAME.c fills them in. */
 #ifndef POSICAST_MACHINE_H
 #define POSICAST_MACHINE_H
 
@@ -7,20 +7,20 @@
 #include "posicast_plan.h"
 #include "posicast_stage_regs.h"
 
-/* coefficient * x[n - delay_samples] */
+/* A tap: it contributes coefficient * x[n - delay_samples]. */
 typedef struct {
     uint16_t delay_samples;
     int32_t coefficient;
 } posicast_tap;
 
-/* Taps in order of delay; the coefficients sum to 2^coefficient_fraction. */
+/* A tap table: taps in order of delay, whose coefficients sum to 2^coefficient_fraction. */
 typedef struct {
     const posicast_tap *taps;
     uint32_t count;
     uint32_t coefficient_fraction;
 } posicast_table;
 
-/* A controller: POSICAST_AXIS_LAW_LAW_..., and its words by POSICAST_SETTING_... */
+/* Settings of a controller: its law POSICAST_AXIS_LAW_LAW_..., and its words, indexed by POSICAST_SETTING_... */
 typedef struct {
     uint32_t law;
     uint32_t word[POSICAST_SETTINGS];
@@ -29,12 +29,12 @@ typedef struct {
 /* An axis. */
 typedef struct {
     const char *name;
-    /* Of the loop, per unit of the axis in the machine file. */
+    /* Counts of the loop per unit of the axis in the machine file. */
     double counts_per_unit;
     posicast_limits limits;
-    /* The table that is in bank 0. */
+    /* The table in bank 0. */
     posicast_table table;
-    /* What computes the command, with the settings that are in bank 0. */
+    /* The controller's law, with the settings in bank 0. */
     posicast_settings settings;
 } posicast_axis_machine;
 

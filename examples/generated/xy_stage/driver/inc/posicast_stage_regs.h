@@ -57,14 +57,14 @@
 
 /* ---- Window 0: the stage ---- */
 
-/* MAGIC, constant: what stands here */
+/* MAGIC, constant: identifies the component */
 #define POSICAST_STAGE_MAGIC_REG 0x00u
 #define IORD_POSICAST_STAGE_MAGIC(base) IORD(base, POSICAST_STAGE_MAGIC_REG)
 #define POSICAST_STAGE_MAGIC_RESET 0x45475453u
 #define POSICAST_STAGE_MAGIC_MAGIC_OFST 0u
 #define POSICAST_STAGE_MAGIC_MAGIC_MSK 0xffffffffu
 
-/* VERSION, constant: of this register map */
+/* VERSION, constant: version of this register map */
 #define POSICAST_STAGE_VERSION_REG 0x01u
 #define IORD_POSICAST_STAGE_VERSION(base) IORD(base, POSICAST_STAGE_VERSION_REG)
 #define POSICAST_STAGE_VERSION_RESET 0x20002u
@@ -105,20 +105,20 @@
 #define POSICAST_STAGE_SNAPSHOT_REG 0x08u
 #define IOWR_POSICAST_STAGE_SNAPSHOT(base, data) IOWR(base, POSICAST_STAGE_SNAPSHOT_REG, data)
 
-/* COMMIT, commit: the staged registers of all axes, together, at the next tick */
+/* COMMIT, commit: applies the staged registers of all axes together at the next tick */
 #define POSICAST_STAGE_COMMIT_REG 0x09u
 #define IORD_POSICAST_STAGE_COMMIT(base) IORD(base, POSICAST_STAGE_COMMIT_REG)
 #define IOWR_POSICAST_STAGE_COMMIT(base, data) IOWR(base, POSICAST_STAGE_COMMIT_REG, data)
 #define POSICAST_STAGE_COMMIT_COMMIT_WAITS_OFST 0u
 #define POSICAST_STAGE_COMMIT_COMMIT_WAITS_MSK 0x1u
 
-/* START, command: all these axes start in one tick, or none */
+/* START, command: starts all these axes in one tick, or none */
 #define POSICAST_STAGE_START_REG 0x0au
 #define IOWR_POSICAST_STAGE_START(base, data) IOWR(base, POSICAST_STAGE_START_REG, data)
 #define POSICAST_STAGE_START_START_AXES_OFST 0u
 #define POSICAST_STAGE_START_START_AXES_MSK 0xfu
 
-/* FLAGS, sticky: what has happened since the flag was cleared */
+/* FLAGS, sticky: events since the flag was cleared */
 #define POSICAST_STAGE_FLAGS_REG 0x0bu
 #define IORD_POSICAST_STAGE_FLAGS(base) IORD(base, POSICAST_STAGE_FLAGS_REG)
 #define IOWR_POSICAST_STAGE_FLAGS(base, data) IOWR(base, POSICAST_STAGE_FLAGS_REG, data)
@@ -131,7 +131,7 @@
 #define POSICAST_STAGE_FLAGS_GUARD_REFUSED_OFST 3u
 #define POSICAST_STAGE_FLAGS_GUARD_REFUSED_MSK 0x8u
 
-/* INTERRUPT_STATE, interrupt state: what has happened; write one to clear */
+/* INTERRUPT_STATE, interrupt state: events since they were cleared; write one to clear */
 #define POSICAST_STAGE_INTERRUPT_STATE_REG 0x0cu
 #define IORD_POSICAST_STAGE_INTERRUPT_STATE(base) IORD(base, POSICAST_STAGE_INTERRUPT_STATE_REG)
 #define IOWR_POSICAST_STAGE_INTERRUPT_STATE(base, data) IOWR(base, POSICAST_STAGE_INTERRUPT_STATE_REG, data)
@@ -168,7 +168,7 @@
 #define POSICAST_STAGE_INTERRUPT_STATE_START_REFUSED_OFST 29u
 #define POSICAST_STAGE_INTERRUPT_STATE_START_REFUSED_MSK 0x20000000u
 
-/* INTERRUPT_ENABLE, interrupt enable: what of it raises `irq` */
+/* INTERRUPT_ENABLE, interrupt enable: events that raise `irq` */
 #define POSICAST_STAGE_INTERRUPT_ENABLE_REG 0x0du
 #define IORD_POSICAST_STAGE_INTERRUPT_ENABLE(base) IORD(base, POSICAST_STAGE_INTERRUPT_ENABLE_REG)
 #define IOWR_POSICAST_STAGE_INTERRUPT_ENABLE(base, data) IOWR(base, POSICAST_STAGE_INTERRUPT_ENABLE_REG, data)
@@ -205,7 +205,7 @@
 #define POSICAST_STAGE_INTERRUPT_ENABLE_START_REFUSED_OFST 29u
 #define POSICAST_STAGE_INTERRUPT_ENABLE_START_REFUSED_MSK 0x20000000u
 
-/* INTERRUPT_TEST, interrupt test: sets the flags that are written as one */
+/* INTERRUPT_TEST, interrupt test: sets the flags whose bits are written as one */
 #define POSICAST_STAGE_INTERRUPT_TEST_REG 0x0eu
 #define IOWR_POSICAST_STAGE_INTERRUPT_TEST(base, data) IOWR(base, POSICAST_STAGE_INTERRUPT_TEST_REG, data)
 #define POSICAST_STAGE_INTERRUPT_TEST_X_NOTIFY_OFST 0u
@@ -241,7 +241,7 @@
 #define POSICAST_STAGE_INTERRUPT_TEST_START_REFUSED_OFST 29u
 #define POSICAST_STAGE_INTERRUPT_TEST_START_REFUSED_MSK 0x20000000u
 
-/* FEED_HOLD, configuration: these axes stand once all of them rest in one tick, and keep what waits */
+/* FEED_HOLD, configuration: feed hold: these axes stand once all of them rest in one tick, and keep their waiting entries */
 #define POSICAST_STAGE_FEED_HOLD_REG 0x0fu
 #define IORD_POSICAST_STAGE_FEED_HOLD(base) IORD(base, POSICAST_STAGE_FEED_HOLD_REG)
 #define IOWR_POSICAST_STAGE_FEED_HOLD(base, data) IOWR(base, POSICAST_STAGE_FEED_HOLD_REG, data)
@@ -306,7 +306,7 @@
 #define POSICAST_AXIS_COEFFICIENT_FRACTION_COEFFICIENT_FRACTION_OFST 0u
 #define POSICAST_AXIS_COEFFICIENT_FRACTION_COEFFICIENT_FRACTION_MSK 0xffffffffu
 
-/* CONTROL, configuration: what is wanted of the axis */
+/* CONTROL, configuration: enable and mode of the axis */
 #define POSICAST_AXIS_CONTROL_REG 0x08u
 #define IORD_POSICAST_AXIS_CONTROL(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_CONTROL_REG))
 #define IOWR_POSICAST_AXIS_CONTROL(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_CONTROL_REG), data)
@@ -325,17 +325,17 @@
 #define POSICAST_AXIS_CLEAR_FAULTS_REG 0x0au
 #define IOWR_POSICAST_AXIS_CLEAR_FAULTS(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_CLEAR_FAULTS_REG), data)
 
-/* FLUSH, command: drops the entries that wait */
+/* FLUSH, command: drops the waiting entries */
 #define POSICAST_AXIS_FLUSH_REG 0x0bu
 #define IOWR_POSICAST_AXIS_FLUSH(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_FLUSH_REG), data)
 
-/* KICK, command: of the host's watchdog */
+/* KICK, command: kicks the host's watchdog */
 #define POSICAST_AXIS_KICK_REG 0x0cu
 #define IOWR_POSICAST_AXIS_KICK(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_KICK_REG), data)
 #define POSICAST_AXIS_KICK_KICK_WORD_OFST 0u
 #define POSICAST_AXIS_KICK_KICK_WORD_MSK 0xffffffffu
 
-/* DIRECT, command: direct mode: a duty, held for some time only */
+/* DIRECT, command: duty of direct mode, which expires after some time */
 #define POSICAST_AXIS_DIRECT_REG 0x0du
 #define IOWR_POSICAST_AXIS_DIRECT(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_DIRECT_REG), data)
 #define POSICAST_AXIS_DIRECT_DIRECT_DUTY_OFST 0u
@@ -350,7 +350,7 @@
 #define POSICAST_AXIS_FIFO_CONTROL_EXTRAPOLATION_OFST 8u
 #define POSICAST_AXIS_FIFO_CONTROL_EXTRAPOLATION_MSK 0xff00u
 
-/* HOMED, command: the host says whether the axis is homed: until then there are no soft limits, if the machine file says so */
+/* HOMED, command: sets whether the axis is homed; the machine file may let the soft limits act only then */
 #define POSICAST_AXIS_HOMED_REG 0x0fu
 #define IOWR_POSICAST_AXIS_HOMED(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_HOMED_REG), data)
 #define POSICAST_AXIS_HOMED_HOMED_VALUE_OFST 0u
@@ -362,7 +362,7 @@
 #define POSICAST_AXIS_SEGMENT_SEGMENT_DATA_OFST 0u
 #define POSICAST_AXIS_SEGMENT_SEGMENT_DATA_MSK 0xffffffffu
 
-/* TAP_ADDRESS, configuration: which tap `TAP` is */
+/* TAP_ADDRESS, configuration: address of the tap to write or read */
 #define POSICAST_AXIS_TAP_ADDRESS_REG 0x14u
 #define IORD_POSICAST_AXIS_TAP_ADDRESS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_TAP_ADDRESS_REG))
 #define IOWR_POSICAST_AXIS_TAP_ADDRESS(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_TAP_ADDRESS_REG), data)
@@ -390,7 +390,7 @@
 #define POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER 1u
 #define POSICAST_AXIS_SWAP_SWAP_HOW_WHEN_SETTLED 2u
 
-/* SETTING_ADDRESS, configuration: which setting `SETTING` is */
+/* SETTING_ADDRESS, configuration: address of the setting to write or read */
 #define POSICAST_AXIS_SETTING_ADDRESS_REG 0x17u
 #define IORD_POSICAST_AXIS_SETTING_ADDRESS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SETTING_ADDRESS_REG))
 #define IOWR_POSICAST_AXIS_SETTING_ADDRESS(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SETTING_ADDRESS_REG), data)
@@ -405,7 +405,7 @@
 #define POSICAST_AXIS_SETTING_SETTING_WORD_OFST 0u
 #define POSICAST_AXIS_SETTING_SETTING_WORD_MSK 0xffffffffu
 
-/* LAW, staged: what computes the command */
+/* LAW, staged: control law and settings in use */
 #define POSICAST_AXIS_LAW_REG 0x19u
 #define IORD_POSICAST_AXIS_LAW(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_LAW_REG))
 #define IOWR_POSICAST_AXIS_LAW(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_LAW_REG), data)
@@ -427,21 +427,21 @@
 #define POSICAST_AXIS_SOFT_LIMIT_PLUS_SOFT_LIMIT_PLUS_OFST 0u
 #define POSICAST_AXIS_SOFT_LIMIT_PLUS_SOFT_LIMIT_PLUS_MSK 0xffffffffu
 
-/* SOFT_LIMIT_MINUS, configuration: the other end */
+/* SOFT_LIMIT_MINUS, configuration: the other end of the travel */
 #define POSICAST_AXIS_SOFT_LIMIT_MINUS_REG 0x1bu
 #define IORD_POSICAST_AXIS_SOFT_LIMIT_MINUS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SOFT_LIMIT_MINUS_REG))
 #define IOWR_POSICAST_AXIS_SOFT_LIMIT_MINUS(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SOFT_LIMIT_MINUS_REG), data)
 #define POSICAST_AXIS_SOFT_LIMIT_MINUS_SOFT_LIMIT_MINUS_OFST 0u
 #define POSICAST_AXIS_SOFT_LIMIT_MINUS_SOFT_LIMIT_MINUS_MSK 0xffffffffu
 
-/* FOLLOWING_ERROR_LIMIT, configuration: largest error */
+/* FOLLOWING_ERROR_LIMIT, configuration: largest following error */
 #define POSICAST_AXIS_FOLLOWING_ERROR_LIMIT_REG 0x1cu
 #define IORD_POSICAST_AXIS_FOLLOWING_ERROR_LIMIT(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_FOLLOWING_ERROR_LIMIT_REG))
 #define IOWR_POSICAST_AXIS_FOLLOWING_ERROR_LIMIT(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_FOLLOWING_ERROR_LIMIT_REG), data)
 #define POSICAST_AXIS_FOLLOWING_ERROR_LIMIT_FOLLOWING_ERROR_LIMIT_OFST 0u
 #define POSICAST_AXIS_FOLLOWING_ERROR_LIMIT_FOLLOWING_ERROR_LIMIT_MSK 0xffffffffu
 
-/* WATCHDOG, configuration: of the host, and what follows from a cause */
+/* WATCHDOG, configuration: the host's watchdog, and the reaction to each cause */
 #define POSICAST_AXIS_WATCHDOG_REG 0x1du
 #define IORD_POSICAST_AXIS_WATCHDOG(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_WATCHDOG_REG))
 #define IOWR_POSICAST_AXIS_WATCHDOG(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_WATCHDOG_REG), data)
@@ -450,21 +450,21 @@
 #define POSICAST_AXIS_WATCHDOG_OFF_CAUSES_OFST 16u
 #define POSICAST_AXIS_WATCHDOG_OFF_CAUSES_MSK 0xffff0000u
 
-/* STOP_DECELERATION, configuration: of a quick stop */
+/* STOP_DECELERATION, configuration: deceleration of a quick stop */
 #define POSICAST_AXIS_STOP_DECELERATION_REG 0x1eu
 #define IORD_POSICAST_AXIS_STOP_DECELERATION(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_STOP_DECELERATION_REG))
 #define IOWR_POSICAST_AXIS_STOP_DECELERATION(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_STOP_DECELERATION_REG), data)
 #define POSICAST_AXIS_STOP_DECELERATION_STOP_DECELERATION_OFST 0u
 #define POSICAST_AXIS_STOP_DECELERATION_STOP_DECELERATION_MSK 0x7fffffffu
 
-/* SETTLE, configuration: how long a stop rings: the longest delay of the tables in use */
+/* SETTLE, configuration: time in which a stop settles: the longest delay of the tables in use */
 #define POSICAST_AXIS_SETTLE_REG 0x1fu
 #define IORD_POSICAST_AXIS_SETTLE(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SETTLE_REG))
 #define IOWR_POSICAST_AXIS_SETTLE(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SETTLE_REG), data)
 #define POSICAST_AXIS_SETTLE_SETTLE_TICKS_OFST 0u
 #define POSICAST_AXIS_SETTLE_SETTLE_TICKS_MSK 0xffffu
 
-/* INDEX, configuration: what an index does, and how the velocity is measured */
+/* INDEX, configuration: effect of an index, and measurement of the velocity */
 #define POSICAST_AXIS_INDEX_REG 0x20u
 #define IORD_POSICAST_AXIS_INDEX(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_INDEX_REG))
 #define IOWR_POSICAST_AXIS_INDEX(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_INDEX_REG), data)
@@ -483,35 +483,35 @@
 #define POSICAST_AXIS_INDEX_ARM_REG 0x21u
 #define IOWR_POSICAST_AXIS_INDEX_ARM(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_INDEX_ARM_REG), data)
 
-/* PRESET, command: the user's position becomes this; the loop's count never jumps */
+/* PRESET, command: sets the user's position; the loop's count does not jump */
 #define POSICAST_AXIS_PRESET_REG 0x22u
 #define IOWR_POSICAST_AXIS_PRESET(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_PRESET_REG), data)
 #define POSICAST_AXIS_PRESET_PRESET_VALUE_OFST 0u
 #define POSICAST_AXIS_PRESET_PRESET_VALUE_MSK 0xffffffffu
 
-/* ENCODER, guarded: the sign of the loop's feedback */
+/* ENCODER, guarded: sign of the loop's feedback */
 #define POSICAST_AXIS_ENCODER_REG 0x24u
 #define IORD_POSICAST_AXIS_ENCODER(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_ENCODER_REG))
 #define IOWR_POSICAST_AXIS_ENCODER(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_ENCODER_REG), data)
 #define POSICAST_AXIS_ENCODER_ENCODER_INVERT_OFST 0u
 #define POSICAST_AXIS_ENCODER_ENCODER_INVERT_MSK 0x1u
 
-/* PWM_TRIGGER, configuration: when the pin `pwm_trigger` is high for a clock, as for an ADC */
+/* PWM_TRIGGER, configuration: phase at which the pin `pwm_trigger` is high for a clock, for an ADC for example */
 #define POSICAST_AXIS_PWM_TRIGGER_REG 0x25u
 #define IORD_POSICAST_AXIS_PWM_TRIGGER(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_PWM_TRIGGER_REG))
 #define IOWR_POSICAST_AXIS_PWM_TRIGGER(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_PWM_TRIGGER_REG), data)
 #define POSICAST_AXIS_PWM_TRIGGER_TRIGGER_PHASE_OFST 0u
 #define POSICAST_AXIS_PWM_TRIGGER_TRIGGER_PHASE_MSK 0xffffu
 
-/* SETTING_READ, command: reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low */
+/* SETTING_READ, command: reads back the word at `SETTING_ADDRESS`, which must stay until `setting_read_waits` is low */
 #define POSICAST_AXIS_SETTING_READ_REG 0x26u
 #define IOWR_POSICAST_AXIS_SETTING_READ(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SETTING_READ_REG), data)
 
-/* TAP_READ, command: reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is low */
+/* TAP_READ, command: reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low */
 #define POSICAST_AXIS_TAP_READ_REG 0x27u
 #define IOWR_POSICAST_AXIS_TAP_READ(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_TAP_READ_REG), data)
 
-/* STATUS, live: what the axis is doing */
+/* STATUS, live: state of the axis */
 #define POSICAST_AXIS_STATUS_REG 0x28u
 #define IORD_POSICAST_AXIS_STATUS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_STATUS_REG))
 #define POSICAST_AXIS_STATUS_STATE_OFST 0u
@@ -561,13 +561,13 @@
 #define POSICAST_AXIS_STATUS_TAP_READ_WAITS_OFST 27u
 #define POSICAST_AXIS_STATUS_TAP_READ_WAITS_MSK 0x8000000u
 
-/* CAUSES, live: what went wrong, until `CLEAR_FAULTS`: see docs/axis.md */
+/* CAUSES, live: causes of a fault, until `CLEAR_FAULTS`: see docs/axis.md */
 #define POSICAST_AXIS_CAUSES_REG 0x29u
 #define IORD_POSICAST_AXIS_CAUSES(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_CAUSES_REG))
 #define POSICAST_AXIS_CAUSES_CAUSES_OFST 0u
 #define POSICAST_AXIS_CAUSES_CAUSES_MSK 0x1ffffu
 
-/* FLAGS, live: what the blocks have flagged, until `CLEAR_FAULTS` */
+/* FLAGS, live: flags of the blocks, until `CLEAR_FAULTS` */
 #define POSICAST_AXIS_FLAGS_REG 0x2au
 #define IORD_POSICAST_AXIS_FLAGS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_FLAGS_REG))
 #define POSICAST_AXIS_FLAGS_SEGMENTS_UNDERRUN_OFST 0u
@@ -607,7 +607,7 @@
 #define POSICAST_AXIS_FLAGS_SEGMENTS_OUT_OF_RANGE_OFST 24u
 #define POSICAST_AXIS_FLAGS_SEGMENTS_OUT_OF_RANGE_MSK 0x1000000u
 
-/* EVENTS, sticky: what has happened since the flag was cleared */
+/* EVENTS, sticky: events since the flag was cleared */
 #define POSICAST_AXIS_EVENTS_REG 0x2bu
 #define IORD_POSICAST_AXIS_EVENTS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_EVENTS_REG))
 #define IOWR_POSICAST_AXIS_EVENTS(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_EVENTS_REG), data)
@@ -618,7 +618,7 @@
 #define POSICAST_AXIS_EVENTS_DIRECT_EXPIRED_OFST 2u
 #define POSICAST_AXIS_EVENTS_DIRECT_EXPIRED_MSK 0x4u
 
-/* SATURATIONS, live: where the controller was cut, until `CLEAR_FAULTS` */
+/* SATURATIONS, live: values of the controller that were clamped, until `CLEAR_FAULTS` */
 #define POSICAST_AXIS_SATURATIONS_REG 0x2cu
 #define IORD_POSICAST_AXIS_SATURATIONS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SATURATIONS_REG))
 #define POSICAST_AXIS_SATURATIONS_CONTROLLER_SATURATED_HIGH_OFST 0u
@@ -628,7 +628,7 @@
 #define POSICAST_AXIS_SATURATIONS_LIMITED_TICKS_OFST 16u
 #define POSICAST_AXIS_SATURATIONS_LIMITED_TICKS_MSK 0xffff0000u
 
-/* FIFO, live: how much of the motion is left */
+/* FIFO, live: level of the command FIFO */
 #define POSICAST_AXIS_FIFO_REG 0x2du
 #define IORD_POSICAST_AXIS_FIFO(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_FIFO_REG))
 #define POSICAST_AXIS_FIFO_FIFO_LEVEL_OFST 0u
@@ -642,7 +642,7 @@
 #define POSICAST_AXIS_FIFO_LATE_TICKS_OFST 16u
 #define POSICAST_AXIS_FIFO_LATE_TICKS_MSK 0xff0000u
 
-/* SELF_TEST, live: gates of the PWM in the last whole period of a self-test */
+/* SELF_TEST, live: on times of the PWM's gates in the last whole period of a self-test */
 #define POSICAST_AXIS_SELF_TEST_REG 0x2eu
 #define IORD_POSICAST_AXIS_SELF_TEST(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SELF_TEST_REG))
 #define POSICAST_AXIS_SELF_TEST_SELF_TEST_HIGH_OFST 0u
@@ -650,19 +650,19 @@
 #define POSICAST_AXIS_SELF_TEST_SELF_TEST_LOW_OFST 16u
 #define POSICAST_AXIS_SELF_TEST_SELF_TEST_LOW_MSK 0xffff0000u
 
-/* POSITION, live: count less origin */
+/* POSITION, live: count minus origin */
 #define POSICAST_AXIS_POSITION_REG 0x30u
 #define IORD_POSICAST_AXIS_POSITION(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_POSITION_REG))
 #define POSICAST_AXIS_POSITION_USER_POSITION_OFST 0u
 #define POSICAST_AXIS_POSITION_USER_POSITION_MSK 0xffffffffu
 
-/* COUNT, live: steps since reset: the loop's position */
+/* COUNT, live: steps since reset, which is the loop's position */
 #define POSICAST_AXIS_COUNT_REG 0x31u
 #define IORD_POSICAST_AXIS_COUNT(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_COUNT_REG))
 #define POSICAST_AXIS_COUNT_COUNT_OFST 0u
 #define POSICAST_AXIS_COUNT_COUNT_MSK 0xffffffffu
 
-/* VELOCITY, live: at the last tick */
+/* VELOCITY, live: velocity at the last tick */
 #define POSICAST_AXIS_VELOCITY_REG 0x32u
 #define IORD_POSICAST_AXIS_VELOCITY(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_VELOCITY_REG))
 #define POSICAST_AXIS_VELOCITY_VELOCITY_OFST 0u
@@ -680,49 +680,49 @@
 #define POSICAST_AXIS_INDEX_COUNT_INDEX_COUNT_OFST 0u
 #define POSICAST_AXIS_INDEX_COUNT_INDEX_COUNT_MSK 0xffffffffu
 
-/* COMMAND_POSITION, live: before the shaper, of the count */
+/* COMMAND_POSITION, live: position before the shaper, relative to the count */
 #define POSICAST_AXIS_COMMAND_POSITION_REG 0x35u
 #define IORD_POSICAST_AXIS_COMMAND_POSITION(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_COMMAND_POSITION_REG))
 #define POSICAST_AXIS_COMMAND_POSITION_COMMAND_POSITION_OFST 0u
 #define POSICAST_AXIS_COMMAND_POSITION_COMMAND_POSITION_MSK 0xffffffffu
 
-/* SHAPED_POSITION, live: after the shaper, of the count */
+/* SHAPED_POSITION, live: position after the shaper, relative to the count */
 #define POSICAST_AXIS_SHAPED_POSITION_REG 0x36u
 #define IORD_POSICAST_AXIS_SHAPED_POSITION(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SHAPED_POSITION_REG))
 #define POSICAST_AXIS_SHAPED_POSITION_SHAPED_POSITION_OFST 0u
 #define POSICAST_AXIS_SHAPED_POSITION_SHAPED_POSITION_MSK 0xffffffffu
 
-/* SHAPED_VELOCITY, live: after the shaper */
+/* SHAPED_VELOCITY, live: velocity after the shaper */
 #define POSICAST_AXIS_SHAPED_VELOCITY_REG 0x37u
 #define IORD_POSICAST_AXIS_SHAPED_VELOCITY(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SHAPED_VELOCITY_REG))
 #define POSICAST_AXIS_SHAPED_VELOCITY_SHAPED_VELOCITY_OFST 0u
 #define POSICAST_AXIS_SHAPED_VELOCITY_SHAPED_VELOCITY_MSK 0xffffffffu
 
-/* ERROR, live: e of the last tick */
+/* ERROR, live: position error e of the last tick */
 #define POSICAST_AXIS_ERROR_REG 0x38u
 #define IORD_POSICAST_AXIS_ERROR(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_ERROR_REG))
 #define POSICAST_AXIS_ERROR_ERROR_OFST 0u
 #define POSICAST_AXIS_ERROR_ERROR_MSK 0xffffffffu
 
-/* COMMAND, live: to the drive */
+/* COMMAND, live: command to the drive */
 #define POSICAST_AXIS_COMMAND_REG 0x39u
 #define IORD_POSICAST_AXIS_COMMAND(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_COMMAND_REG))
 #define POSICAST_AXIS_COMMAND_COMMAND_OFST 0u
 #define POSICAST_AXIS_COMMAND_COMMAND_MSK 0xffffffffu
 
-/* DUTY, live: to the PWM */
+/* DUTY, live: duty to the PWM */
 #define POSICAST_AXIS_DUTY_REG 0x3au
 #define IORD_POSICAST_AXIS_DUTY(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_DUTY_REG))
 #define POSICAST_AXIS_DUTY_DUTY_OFST 0u
 #define POSICAST_AXIS_DUTY_DUTY_MSK 0x1ffffu
 
-/* SETTING_LOADED, live: what `SETTING_READ` found: 0 where nothing was written since the reset */
+/* SETTING_LOADED, live: word read back by `SETTING_READ`; 0 where nothing was written since the reset */
 #define POSICAST_AXIS_SETTING_LOADED_REG 0x3eu
 #define IORD_POSICAST_AXIS_SETTING_LOADED(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_SETTING_LOADED_REG))
 #define POSICAST_AXIS_SETTING_LOADED_SETTING_LOADED_OFST 0u
 #define POSICAST_AXIS_SETTING_LOADED_SETTING_LOADED_MSK 0xffffffffu
 
-/* TAP_LOADED, live: what `TAP_READ` found: 0 where no tap is loaded */
+/* TAP_LOADED, live: tap read back by `TAP_READ`; 0 where no tap is loaded */
 #define POSICAST_AXIS_TAP_LOADED_REG 0x3fu
 #define IORD_POSICAST_AXIS_TAP_LOADED(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_TAP_LOADED_REG))
 #define POSICAST_AXIS_TAP_LOADED_LOADED_COEFFICIENT_OFST 0u

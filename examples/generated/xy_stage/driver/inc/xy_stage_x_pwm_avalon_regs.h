@@ -1,5 +1,5 @@
 /*
- * PWM: duty, by register or pins, to the gates of a bridge, with dead time and fault path.
+ * PWM: turns a duty, from register or pins, into the gates of a bridge, with dead time and fault path.
  * Written by posicast from the description of the registers.
  */
 #ifndef XY_STAGE_X_PWM_AVALON_REGS_H
@@ -9,14 +9,14 @@
 
 #include "posicast_io.h"
 
-/* MAGIC, constant: what stands here */
+/* MAGIC, constant: identifies the component */
 #define XY_STAGE_X_PWM_AVALON_MAGIC_REG 0x00u
 #define IORD_XY_STAGE_X_PWM_AVALON_MAGIC(base) IORD(base, XY_STAGE_X_PWM_AVALON_MAGIC_REG)
 #define XY_STAGE_X_PWM_AVALON_MAGIC_RESET 0x314d5750u
 #define XY_STAGE_X_PWM_AVALON_MAGIC_MAGIC_OFST 0u
 #define XY_STAGE_X_PWM_AVALON_MAGIC_MAGIC_MSK 0xffffffffu
 
-/* VERSION, constant: of this register map */
+/* VERSION, constant: version of this register map */
 #define XY_STAGE_X_PWM_AVALON_VERSION_REG 0x01u
 #define IORD_XY_STAGE_X_PWM_AVALON_VERSION(base) IORD(base, XY_STAGE_X_PWM_AVALON_VERSION_REG)
 #define XY_STAGE_X_PWM_AVALON_VERSION_RESET 0x10000u
@@ -39,7 +39,7 @@
 #define XY_STAGE_X_PWM_AVALON_MINIMUM_PULSE_FLOOR_MINIMUM_PULSE_FLOOR_OFST 0u
 #define XY_STAGE_X_PWM_AVALON_MINIMUM_PULSE_FLOOR_MINIMUM_PULSE_FLOOR_MSK 0x3ffu
 
-/* CONTROL, configuration: what it does */
+/* CONTROL, configuration: enable and mode */
 #define XY_STAGE_X_PWM_AVALON_CONTROL_REG 0x10u
 #define IORD_XY_STAGE_X_PWM_AVALON_CONTROL(base) IORD(base, XY_STAGE_X_PWM_AVALON_CONTROL_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_CONTROL(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_CONTROL_REG, data)
@@ -68,7 +68,7 @@
 #define XY_STAGE_X_PWM_AVALON_STATUS_TRIP_CAUSES_OFST 8u
 #define XY_STAGE_X_PWM_AVALON_STATUS_TRIP_CAUSES_MSK 0x1f00u
 
-/* FLAGS, sticky: what has happened since the flag was cleared */
+/* FLAGS, sticky: events since the flag was cleared */
 #define XY_STAGE_X_PWM_AVALON_FLAGS_REG 0x12u
 #define IORD_XY_STAGE_X_PWM_AVALON_FLAGS(base) IORD(base, XY_STAGE_X_PWM_AVALON_FLAGS_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_FLAGS(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_FLAGS_REG, data)
@@ -85,7 +85,7 @@
 #define XY_STAGE_X_PWM_AVALON_FLAGS_GUARD_REFUSED_OFST 5u
 #define XY_STAGE_X_PWM_AVALON_FLAGS_GUARD_REFUSED_MSK 0x20u
 
-/* INTERRUPT_STATE, interrupt state: what has happened; write one to clear */
+/* INTERRUPT_STATE, interrupt state: events since they were cleared; write one to clear */
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE_REG 0x14u
 #define IORD_XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE(base) IORD(base, XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE_REG, data)
@@ -100,7 +100,7 @@
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE_TRIGGER_OFST 4u
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_STATE_TRIGGER_MSK 0x10u
 
-/* INTERRUPT_ENABLE, interrupt enable: what of it raises `irq` */
+/* INTERRUPT_ENABLE, interrupt enable: events that raise `irq` */
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE_REG 0x15u
 #define IORD_XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE(base) IORD(base, XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE_REG, data)
@@ -115,7 +115,7 @@
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE_TRIGGER_OFST 4u
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_ENABLE_TRIGGER_MSK 0x10u
 
-/* INTERRUPT_TEST, interrupt test: sets the flags that are written as one */
+/* INTERRUPT_TEST, interrupt test: sets the flags whose bits are written as one */
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_TEST_REG 0x16u
 #define IOWR_XY_STAGE_X_PWM_AVALON_INTERRUPT_TEST(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_INTERRUPT_TEST_REG, data)
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_TEST_TRIPPED_OFST 0u
@@ -129,14 +129,14 @@
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_TEST_TRIGGER_OFST 4u
 #define XY_STAGE_X_PWM_AVALON_INTERRUPT_TEST_TRIGGER_MSK 0x10u
 
-/* PERIOD, guarded: clocks per period */
+/* PERIOD, guarded: period of the PWM */
 #define XY_STAGE_X_PWM_AVALON_PERIOD_REG 0x18u
 #define IORD_XY_STAGE_X_PWM_AVALON_PERIOD(base) IORD(base, XY_STAGE_X_PWM_AVALON_PERIOD_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_PERIOD(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_PERIOD_REG, data)
 #define XY_STAGE_X_PWM_AVALON_PERIOD_PERIOD_OFST 0u
 #define XY_STAGE_X_PWM_AVALON_PERIOD_PERIOD_MSK 0xffffu
 
-/* TIMES, guarded: what the driver and the bridge need */
+/* TIMES, guarded: times that driver and bridge need */
 #define XY_STAGE_X_PWM_AVALON_TIMES_REG 0x19u
 #define IORD_XY_STAGE_X_PWM_AVALON_TIMES(base) IORD(base, XY_STAGE_X_PWM_AVALON_TIMES_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_TIMES(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_TIMES_REG, data)
@@ -152,14 +152,14 @@
 #define XY_STAGE_X_PWM_AVALON_DUTY_HOST_X_0_OFST 0u
 #define XY_STAGE_X_PWM_AVALON_DUTY_HOST_X_0_MSK 0x1ffffu
 
-/* MAX_DUTY, configuration: largest duty of either sign */
+/* MAX_DUTY, configuration: largest magnitude of the duty */
 #define XY_STAGE_X_PWM_AVALON_MAX_DUTY_REG 0x1bu
 #define IORD_XY_STAGE_X_PWM_AVALON_MAX_DUTY(base) IORD(base, XY_STAGE_X_PWM_AVALON_MAX_DUTY_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_MAX_DUTY(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_MAX_DUTY_REG, data)
 #define XY_STAGE_X_PWM_AVALON_MAX_DUTY_MAX_DUTY_OFST 0u
 #define XY_STAGE_X_PWM_AVALON_MAX_DUTY_MAX_DUTY_MSK 0xffffu
 
-/* PHASE, configuration: places in the period, from the valley */
+/* PHASE, configuration: positions in the period, from the valley */
 #define XY_STAGE_X_PWM_AVALON_PHASE_REG 0x1cu
 #define IORD_XY_STAGE_X_PWM_AVALON_PHASE(base) IORD(base, XY_STAGE_X_PWM_AVALON_PHASE_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_PHASE(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_PHASE_REG, data)
@@ -168,7 +168,7 @@
 #define XY_STAGE_X_PWM_AVALON_PHASE_TRIGGER_PHASE_OFST 16u
 #define XY_STAGE_X_PWM_AVALON_PHASE_TRIGGER_PHASE_MSK 0xffff0000u
 
-/* SUPERVISION, configuration: how long what may last */
+/* SUPERVISION, configuration: time limits of watchdog and fault filter */
 #define XY_STAGE_X_PWM_AVALON_SUPERVISION_REG 0x1du
 #define IORD_XY_STAGE_X_PWM_AVALON_SUPERVISION(base) IORD(base, XY_STAGE_X_PWM_AVALON_SUPERVISION_REG)
 #define IOWR_XY_STAGE_X_PWM_AVALON_SUPERVISION(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_SUPERVISION_REG, data)
@@ -177,7 +177,7 @@
 #define XY_STAGE_X_PWM_AVALON_SUPERVISION_FILTER_CLOCKS_OFST 8u
 #define XY_STAGE_X_PWM_AVALON_SUPERVISION_FILTER_CLOCKS_MSK 0xff00u
 
-/* FEED, command: the controller lives */
+/* FEED, command: feeds the watchdog: the controller is alive */
 #define XY_STAGE_X_PWM_AVALON_FEED_REG 0x1eu
 #define IOWR_XY_STAGE_X_PWM_AVALON_FEED(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_FEED_REG, data)
 
@@ -185,7 +185,7 @@
 #define XY_STAGE_X_PWM_AVALON_CLEAR_TRIP_REG 0x1fu
 #define IOWR_XY_STAGE_X_PWM_AVALON_CLEAR_TRIP(base, data) IOWR(base, XY_STAGE_X_PWM_AVALON_CLEAR_TRIP_REG, data)
 
-/* TIMES_USED, live: what is in use */
+/* TIMES_USED, live: times in use */
 #define XY_STAGE_X_PWM_AVALON_TIMES_USED_REG 0x20u
 #define IORD_XY_STAGE_X_PWM_AVALON_TIMES_USED(base) IORD(base, XY_STAGE_X_PWM_AVALON_TIMES_USED_REG)
 #define XY_STAGE_X_PWM_AVALON_TIMES_USED_DEAD_TIME_USED_OFST 0u

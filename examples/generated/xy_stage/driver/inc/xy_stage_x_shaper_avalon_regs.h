@@ -1,5 +1,5 @@
 /*
- * Input shaper: samples by register or pins, tables loaded through registers.
+ * Input shaper: samples come from registers or pins, tables are loaded through registers.
  * Written by posicast from the description of the registers.
  */
 #ifndef XY_STAGE_X_SHAPER_AVALON_REGS_H
@@ -9,14 +9,14 @@
 
 #include "posicast_io.h"
 
-/* MAGIC, constant: what stands here */
+/* MAGIC, constant: identifies the component */
 #define XY_STAGE_X_SHAPER_AVALON_MAGIC_REG 0x00u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_MAGIC(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_MAGIC_REG)
 #define XY_STAGE_X_SHAPER_AVALON_MAGIC_RESET 0x52504853u
 #define XY_STAGE_X_SHAPER_AVALON_MAGIC_MAGIC_OFST 0u
 #define XY_STAGE_X_SHAPER_AVALON_MAGIC_MAGIC_MSK 0xffffffffu
 
-/* VERSION, constant: of this register map */
+/* VERSION, constant: version of this register map */
 #define XY_STAGE_X_SHAPER_AVALON_VERSION_REG 0x01u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_VERSION(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_VERSION_REG)
 #define XY_STAGE_X_SHAPER_AVALON_VERSION_RESET 0x10001u
@@ -74,7 +74,7 @@
 #define XY_STAGE_X_SHAPER_AVALON_MODULO_MODULO_OFST 0u
 #define XY_STAGE_X_SHAPER_AVALON_MODULO_MODULO_MSK 0xffffffffu
 
-/* CONTROL, configuration: where samples come from */
+/* CONTROL, configuration: source of the samples */
 #define XY_STAGE_X_SHAPER_AVALON_CONTROL_REG 0x10u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_CONTROL(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_CONTROL_REG)
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_CONTROL(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_CONTROL_REG, data)
@@ -93,7 +93,7 @@
 #define XY_STAGE_X_SHAPER_AVALON_STATUS_TAP_READ_WAITS_OFST 4u
 #define XY_STAGE_X_SHAPER_AVALON_STATUS_TAP_READ_WAITS_MSK 0x10u
 
-/* FLAGS, sticky: what has happened since the flag was cleared */
+/* FLAGS, sticky: events since the flag was cleared */
 #define XY_STAGE_X_SHAPER_AVALON_FLAGS_REG 0x12u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_FLAGS(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_FLAGS_REG)
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_FLAGS(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_FLAGS_REG, data)
@@ -106,7 +106,7 @@
 #define XY_STAGE_X_SHAPER_AVALON_FLAGS_PARTIAL_WRITE_OFST 3u
 #define XY_STAGE_X_SHAPER_AVALON_FLAGS_PARTIAL_WRITE_MSK 0x8u
 
-/* INTERRUPT_STATE, interrupt state: what has happened; write one to clear */
+/* INTERRUPT_STATE, interrupt state: events since they were cleared; write one to clear */
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE_REG 0x14u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE_REG)
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE_REG, data)
@@ -119,7 +119,7 @@
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE_REFUSED_OFST 3u
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_STATE_REFUSED_MSK 0x8u
 
-/* INTERRUPT_ENABLE, interrupt enable: what of it raises `irq` */
+/* INTERRUPT_ENABLE, interrupt enable: events that raise `irq` */
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE_REG 0x15u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE_REG)
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE_REG, data)
@@ -132,7 +132,7 @@
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE_REFUSED_OFST 3u
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_ENABLE_REFUSED_MSK 0x8u
 
-/* INTERRUPT_TEST, interrupt test: sets the flags that are written as one */
+/* INTERRUPT_TEST, interrupt test: sets the flags whose bits are written as one */
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_TEST_REG 0x16u
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_INTERRUPT_TEST(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_INTERRUPT_TEST_REG, data)
 #define XY_STAGE_X_SHAPER_AVALON_INTERRUPT_TEST_VALID_OFST 0u
@@ -191,7 +191,7 @@
 #define XY_STAGE_X_SHAPER_AVALON_Y_2_Y_2_OFST 0u
 #define XY_STAGE_X_SHAPER_AVALON_Y_2_Y_2_MSK 0xffffffffu
 
-/* TAP_ADDRESS, configuration: which tap `TAP` is */
+/* TAP_ADDRESS, configuration: address of the tap to write or read */
 #define XY_STAGE_X_SHAPER_AVALON_TAP_ADDRESS_REG 0x28u
 #define IORD_XY_STAGE_X_SHAPER_AVALON_TAP_ADDRESS(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_TAP_ADDRESS_REG)
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_TAP_ADDRESS(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_TAP_ADDRESS_REG, data)
@@ -219,11 +219,11 @@
 #define XY_STAGE_X_SHAPER_AVALON_SWAP_SWAP_HOW_HANDOVER 1u
 #define XY_STAGE_X_SHAPER_AVALON_SWAP_SWAP_HOW_WHEN_SETTLED 2u
 
-/* TAP_READ, command: reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is low */
+/* TAP_READ, command: reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low */
 #define XY_STAGE_X_SHAPER_AVALON_TAP_READ_REG 0x2bu
 #define IOWR_XY_STAGE_X_SHAPER_AVALON_TAP_READ(base, data) IOWR(base, XY_STAGE_X_SHAPER_AVALON_TAP_READ_REG, data)
 
-/* TAP_LOADED, live: what `TAP_READ` found: 0 where no tap is loaded */
+/* TAP_LOADED, live: tap read back by `TAP_READ`; 0 where no tap is loaded */
 #define XY_STAGE_X_SHAPER_AVALON_TAP_LOADED_REG 0x2cu
 #define IORD_XY_STAGE_X_SHAPER_AVALON_TAP_LOADED(base) IORD(base, XY_STAGE_X_SHAPER_AVALON_TAP_LOADED_REG)
 #define XY_STAGE_X_SHAPER_AVALON_TAP_LOADED_LOADED_COEFFICIENT_OFST 0u

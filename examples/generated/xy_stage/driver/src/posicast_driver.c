@@ -5,9 +5,9 @@
 
 #include "posicast_wait.h"
 
-/* Ticks until a start has led to RUN, or to nothing. */
+/* Number of ticks until a start has led to RUN or been refused. */
 #define START_TICKS 4u
-/* Ticks until the PWM has run for a whole period with a new duty. */
+/* Number of ticks until the PWM has run for a whole period with a new duty. */
 #define SELF_TEST_TICKS 4u
 
 static void clear_faults(const posicast_stage *stage, uint32_t axis)
@@ -31,7 +31,7 @@ static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, po
     return POSICAST_OK;
 }
 
-/* Until an axis that was switched on can start. What stays with one that holds is the group stop of another: it is forgotten. */
+/* Waits until an axis that was switched on can start. An axis in HOLD may still have the group stop of another: it is cleared. */
 static posicast_result wait_holding(const posicast_stage *stage, uint32_t axis, posicast_patience *left)
 {
     for (;;) {
@@ -109,7 +109,7 @@ posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, u
         if (state != POSICAST_AXIS_STATUS_STATE_HOLD)
             off |= 1u << axis;
     }
-    /* READY wants to have seen it low: an axis whose fault is cleared does not go on by itself. */
+    /* READY must see it low first, so that an axis whose fault is cleared does not switch on by itself. */
     for (axis = 0; axis < stage->axes; axis++) {
         if (has(off, axis))
             set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
@@ -221,11 +221,11 @@ posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
         return result;
     if ((uint32_t)IORD_POSICAST_STAGE_FLAGS(stage->base) & POSICAST_STAGE_FLAGS_START_REFUSED_MSK)
         return POSICAST_REFUSED;
-    /* The start itself comes with the next tick; there an axis may still refuse. */
+    /* The start itself comes with the next tick, in which an axis may still refuse it. */
     for (axis = 0; axis < stage->axes; axis++) {
         while (has(axes, axis) && FIELD(posicast_status(stage, axis), POSICAST_AXIS_STATUS_CAN_START)) {
             result = posicast_pass_time(stage, &left);
-            /* A move that was over so soon can start again. */
+            /* A very short move is already over and can start again. */
             if (result == POSICAST_TIMEOUT)
                 break;
             if (result != POSICAST_OK)
@@ -238,7 +238,10 @@ posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
     return POSICAST_OK;
 }
 
-/* Until the commands stand, with nothing left or, `held`, with what a feed hold keeps; then for the shaped commands. */
+/*
+ * Waits until the commands stand still, with no entries left or, if `held`, with those that a feed hold keeps; then until the
+ * shaped commands stand still.
+ */
 static posicast_result wait_standing(const posicast_stage *stage, uint32_t axes, int held, uint32_t ticks)
 {
     posicast_patience left = posicast_patience_for(stage, ticks);
@@ -348,13 +351,13 @@ posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, i
     if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY)
         return POSICAST_WRONG_STATE;
     set_control(stage, axis, 0, test);
-    /* A duty holds for some time only. */
+    /* A duty expires after some time. */
     for (tick = 0; tick < SELF_TEST_TICKS && result == POSICAST_OK; tick++) {
         IOWR_POSICAST_AXIS_DIRECT(stage->base, axis, AS_FIELD(duty, POSICAST_AXIS_DIRECT_DIRECT_DUTY));
         result = posicast_wait_ticks(stage, 1);
     }
     clocks = (uint32_t)IORD_POSICAST_AXIS_SELF_TEST(stage->base, axis);
-    /* Direct mode first: without the other flag alone the duty would go to the pins. */
+    /* Direct mode must end first: if only the other flag were cleared, the duty would reach the pins. */
     set_control(stage, axis, POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
     set_control(stage, axis, POSICAST_AXIS_CONTROL_SELF_TEST_MSK, 0);
     counted->a_high = FIELD(clocks, POSICAST_AXIS_SELF_TEST_SELF_TEST_HIGH);
@@ -372,7 +375,7 @@ uint32_t posicast_take_interrupts(const posicast_stage *stage)
     const uint32_t enabled = (uint32_t)IORD_POSICAST_STAGE_INTERRUPT_ENABLE(stage->base);
     const uint32_t happened = (uint32_t)IORD_POSICAST_STAGE_INTERRUPT_STATE(stage->base) & enabled;
 
-    /* Only what was seen: what comes in between stays, and raises the line again. */
+    /* Only the interrupts that were read are cleared: later ones stay, and raise the line again. */
     IOWR_POSICAST_STAGE_INTERRUPT_STATE(stage->base, happened);
     return happened;
 }

@@ -8,7 +8,7 @@ static int32_t position_of(const posicast_stage *stage, uint32_t axis)
     return (int32_t)IORD_POSICAST_AXIS_POSITION(stage->base, axis);
 }
 
-/* Until STATUS shows what is looked for, or the move is over: POSICAST_NO_REFERENCE. */
+/* Waits until STATUS has the wanted bits; returns POSICAST_NO_REFERENCE if the move ends before. */
 static posicast_result watch(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted, uint32_t ticks)
 {
     posicast_patience left = posicast_patience_for(stage, ticks);
@@ -29,7 +29,7 @@ static posicast_result watch(const posicast_stage *stage, uint32_t axis, uint32_
     }
 }
 
-/* Moves over a distance until STATUS shows what is looked for, and comes to rest. `found_at` is the position there. */
+/* Moves over a distance until STATUS has the wanted bits, and comes to rest. `found_at` is the position at that time. */
 static posicast_result seek(const posicast_stage *stage, uint32_t axis, const posicast_limits *limits, int32_t distance,
                             uint32_t mask, uint32_t wanted, uint32_t ticks, int32_t *found_at)
 {
@@ -52,7 +52,7 @@ static posicast_result seek(const posicast_stage *stage, uint32_t axis, const po
     return result == POSICAST_OK ? found : result;
 }
 
-/* The edge of the switch, from the side that it is not pressed on. */
+/* Searches for the edge of the switch, from the side on which it is not pressed. */
 static posicast_result seek_switch(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks,
                                    int32_t *found_at)
 {
@@ -70,7 +70,7 @@ static posicast_result seek_switch(const posicast_stage *stage, uint32_t axis, c
     return seek(stage, axis, &homing->limits, homing->switch_within, home, home, ticks, found_at);
 }
 
-/* The index, which sets the position by itself: exact, however fast the axis passes it. */
+/* Searches for the index, at which the hardware sets the position: exactly, however fast the axis passes it. */
 static posicast_result seek_index(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks)
 {
     const uint32_t setup = (uint32_t)IORD_POSICAST_AXIS_INDEX(stage->base, axis);
@@ -85,7 +85,7 @@ static posicast_result seek_index(const posicast_stage *stage, uint32_t axis, co
     if (result == POSICAST_OK)
         result = seek(stage, axis, &homing->limits, homing->index_within, POSICAST_AXIS_STATUS_INDEX_ARMED_MSK, 0, ticks,
                       &found_at);
-    /* One that comes later must not move the origin again. */
+    /* A later index must not move the origin again. */
     IOWR_POSICAST_AXIS_INDEX(stage->base, axis, setup);
     return result;
 }
@@ -106,7 +106,7 @@ posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const 
         return result;
     if (homing->index_within != 0)
         return seek_index(stage, axis, homing, ticks);
-    /* What the axis has moved since; positions come round at 2^32, as the hardware's do. */
+    /* The distance that the axis has moved since; positions wrap at 2^32, as in the hardware. */
     IOWR_POSICAST_AXIS_PRESET(stage->base, axis,
                               (uint32_t)homing->position + (uint32_t)position_of(stage, axis) - (uint32_t)found_at);
     return posicast_wait_flags(stage);
@@ -127,7 +127,7 @@ posicast_result posicast_limit_travel(const posicast_stage *stage, uint32_t axis
     plus = high + (int64_t)posicast_origin(stage, axis) * 256;
     if (minus < INT32_MIN || plus > INT32_MAX)
         return POSICAST_BAD_ARGUMENT;
-    /* Not homed while one limit is the old one. */
+    /* The axis must not be homed while one limit is still the old one. */
     IOWR_POSICAST_AXIS_HOMED(stage->base, axis, 0);
     IOWR_POSICAST_AXIS_SOFT_LIMIT_MINUS(stage->base, axis, (uint32_t)(int32_t)minus);
     IOWR_POSICAST_AXIS_SOFT_LIMIT_PLUS(stage->base, axis, (uint32_t)(int32_t)plus);

@@ -1,29 +1,29 @@
-/* The planner of posicast_plan.h. It plans without signs; the sign of the way goes onto every jerk at the end. */
+/* The planner of posicast_plan.h. It plans without signs; in the end every jerk gets the sign of the distance. */
 #include "posicast_plan.h"
 
-/* Changes of the jerk of one move, and of a move with all that is laid over it. */
+/* Number of changes of the jerk in one move, and in a move with all superposed moves. */
 #define MOVE_CHANGES 8u
 #define CORRECTIONS_MAX 3u
 #define CHANGES_MAX (MOVE_CHANGES * (1u + CORRECTIONS_MAX))
 
-/* Half an LSB of a command word. */
+/* Half an LSB of a command word, in LSB of 2^-32. */
 #define HALF_A_WORD ((uint64_t)1 << (POSICAST_FRACTION_BITS - POSICAST_POSITION_FRACTION - 1))
 
-/* Ticks of the stretches: of jerk, of constant acceleration, of constant velocity. */
+/* Numbers of ticks with jerk, with constant acceleration and with constant velocity. */
 typedef struct {
     uint64_t jerk;
     uint64_t constant;
     uint64_t cruise;
 } stretches;
 
-/* At these ticks, in order, the jerk changes by so much. */
+/* Ticks, in order, at which the jerk changes, and the changes. */
 typedef struct {
     uint64_t tick[CHANGES_MAX];
     int64_t change[CHANGES_MAX];
     uint32_t count;
 } jerk_changes;
 
-/* Stays at the largest number instead of wrapping, so that it grows with both. */
+/* Multiplies; the result saturates instead of wrapping, so that it grows with both factors. */
 static uint64_t product(uint64_t a, uint64_t b)
 {
     return a != 0 && b > UINT64_MAX / a ? UINT64_MAX : a * b;
@@ -34,7 +34,7 @@ static uint64_t least(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-/* Largest n with n * n <= square. */
+/* Returns the largest n with n * n <= square. */
 static uint64_t root(uint64_t square)
 {
     uint64_t low = 0, beyond = (uint64_t)1 << 32;
@@ -50,7 +50,7 @@ static uint64_t root(uint64_t square)
     return low;
 }
 
-/* What an LSB of jerk covers, in LSB. */
+/* Returns the distance that one LSB of jerk covers, in LSB. */
 static uint64_t reach(uint64_t jerk, uint64_t constant, uint64_t cruise)
 {
     const uint64_t ramp = jerk + constant;
@@ -58,7 +58,7 @@ static uint64_t reach(uint64_t jerk, uint64_t constant, uint64_t cruise)
     return product(product(jerk, ramp), ramp + jerk + cruise);
 }
 
-/* The shortest stretches that reach so far with `jerk`, within the limits. */
+/* Returns the shortest durations that cover the distance with `jerk`, within the limits. */
 static stretches fastest(uint64_t needed, uint64_t jerk, const posicast_limits *limits)
 {
     const uint64_t by_acceleration = (uint64_t)limits->acceleration / jerk;
@@ -114,7 +114,7 @@ static void add_change(jerk_changes *all, uint64_t tick, int64_t change)
     all->count++;
 }
 
-/* Lays a move with this jerk over the others. */
+/* Superposes a move with this jerk on the others. */
 static void add_move(jerk_changes *all, const stretches *of, int64_t jerk)
 {
     static const int times[MOVE_CHANGES] = {1, -1, -1, 1, -1, 1, 1, -1};
@@ -129,7 +129,7 @@ static void add_move(jerk_changes *all, const stretches *of, int64_t jerk)
     }
 }
 
-/* Moves of the same duration with as long stretches of jerk as an LSB of it allows, until next to nothing is missing. */
+/* Adds moves of the same duration, each with the longest jerk that one LSB of it allows, until almost no distance is left. */
 static void add_corrections(jerk_changes *all, uint64_t duration, uint64_t missing, int sign)
 {
     uint32_t correction;
@@ -194,7 +194,7 @@ posicast_result posicast_plan_move(int32_t start, int32_t end, const posicast_li
     if (way == 0)
         return POSICAST_OK;
     distance = (uint64_t)(way * sign) << (POSICAST_FRACTION_BITS - POSICAST_POSITION_FRACTION);
-    /* A tick of jerk is one of acceleration and velocity too. */
+    /* A tick with jerk also has acceleration and velocity. */
     jerk = least((uint64_t)limits->jerk, least((uint64_t)limits->acceleration, (uint64_t)limits->velocity));
     jerk = least(jerk, ((uint64_t)1 << (POSICAST_ACCELERATION_BITS - 1)) - 1);
     of = fastest((distance + jerk - 1) / jerk, jerk, limits);

@@ -1,4 +1,4 @@
-/* Waiting with an end, and looks at an axis: what the parts of the driver share. */
+/* Functions that the parts of the driver share: waiting with a limit, and reading the status of an axis. */
 #ifndef POSICAST_WAIT_H
 #define POSICAST_WAIT_H
 
@@ -7,7 +7,7 @@
 #define FIELD(word, name) (((uint32_t)(word) & name##_MSK) >> name##_OFST)
 #define AS_FIELD(value, name) (((uint32_t)(value) << name##_OFST) & name##_MSK)
 
-/* What is waited for ends. */
+/* The limit of a wait. */
 typedef struct {
     uint32_t from_tick;
     uint32_t ticks;
@@ -15,23 +15,26 @@ typedef struct {
     uint32_t still;
 } posicast_patience;
 
-/* From now on, for so many ticks. */
+/* Returns a limit of this many ticks from now on. */
 posicast_patience posicast_patience_for(const posicast_stage *stage, uint32_t ticks);
 
-/* Lets a little time pass: POSICAST_OK, or why waiting has no more sense. */
+/* Lets a little time pass. Returns POSICAST_OK, or the reason why waiting must end. */
 posicast_result posicast_pass_time(const posicast_stage *stage, posicast_patience *left);
 
-/* Until bits of STATUS are these. */
+/* Waits until the bits of STATUS under `mask` have the values `wanted`. */
 posicast_result posicast_wait_status(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted,
                                      posicast_patience *left);
 
-/* Until flags that a write has caused can be read. */
+/* Waits until flags that a write has caused can be read. */
 posicast_result posicast_wait_flags(const posicast_stage *stage);
 
-/* FLAGS of an axis. */
+/* Returns the FLAGS of an axis. */
 uint32_t posicast_flags(const posicast_stage *stage, uint32_t axis);
 
-/* Whether writes since `before` was read have set one of these flags, which stay until faults are cleared. */
+/*
+ * Returns POSICAST_REFUSED if writes since `before` was read have set one of the flags `refusals`, which stay until faults are
+ * cleared.
+ */
 posicast_result posicast_refused_since(const posicast_stage *stage, uint32_t axis, uint32_t refusals, uint32_t before);
 
 /* The words of an entry; `more`: it is taken with those that follow, or not at all. A segment needs no word 2. */

@@ -1,4 +1,4 @@
-//! A register as the interpreter wants it: places of inputs instead of names.
+//! A register prepared for the interpreter: indices of inputs instead of names.
 
 use crate::rtl::Direction;
 use crate::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
@@ -21,32 +21,32 @@ impl Wire {
     }
 }
 
-/// A flag that the bank sets by itself.
+/// A flag that the bank sets itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OwnFlag {
     pub(super) source: FlagSource,
     pub(super) bit: u32,
 }
 
-/// A register as the interpreter wants it.
+/// A register prepared for the interpreter.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
     pub(super) access: Access,
-    /// Bits that a write reaches.
+    /// Mask of the bits that a write reaches.
     pub(super) mask: u32,
     pub(super) reset: u32,
-    /// Inputs that are live, or set flags.
+    /// Inputs that are live, or that set flags.
     pub(super) wires: Vec<Wire>,
     pub(super) own_flags: Vec<OwnFlag>,
-    /// Mask and smallest value, in place, of fields that have one.
+    /// Mask and smallest value, in place, of the fields that have a minimum.
     pub(super) minima: Vec<(u32, u32)>,
-    /// Input that guards it, or applies a commit.
+    /// Index of the input that guards the register, or that applies a commit.
     pub(super) gate: usize,
-    /// Of a shadow: the live register. Of an interrupt test: the state.
+    /// For a shadow the live register; for an interrupt test the state.
     pub(super) refers_to: usize,
 }
 
-/// The plan of the register in that place of the map.
+/// Prepares the register with this index in the map.
 pub(super) fn plan(map: &RegisterMap, at: usize) -> Plan {
     let register = &map.registers()[at];
     let inputs: Vec<&str> = {

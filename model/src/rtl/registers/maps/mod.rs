@@ -13,7 +13,7 @@ pub use sliding_mode::sliding_mode;
 
 use super::{Field, FlagSource};
 
-/// The flag that every map with commands has.
+/// The flag of every map that has commands.
 pub(crate) fn partial_write(low: u32) -> Field {
-    Field::flag("partial_write", low, "a write was ignored").set_by(FlagSource::PartialWrite)
+    Field::flag("partial_write", low, "a write of only part of a word was ignored").set_by(FlagSource::PartialWrite)
 }

@@ -3,32 +3,32 @@
 use super::super::{Access, Description, Field};
 use crate::rtl::divider::DividerConfig;
 
-/// `timeout` after reset: 5 million clocks.
+/// Reset value of `timeout`: 5 million clocks.
 const TIMEOUT: u32 = 76;
 
-/// The map of a pulse counter with the ticks of `divider`, whose filter is `filter_clocks` (6 bits) long after reset,
-/// and whose direction is reversed with `invert`.
+/// The map of a pulse counter with the ticks of `divider`. After reset its filter is `filter_clocks` (6 bits) long,
+/// and its direction is reversed with `invert`.
 pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) -> Description {
     use Access::{Configuration, Live, Snapshot, Sticky};
     let parameters = vec![
-        Field::new("tick_clocks", 0, 17, "from tick to tick")
+        Field::new("tick_clocks", 0, 17, "clocks from tick to tick")
             .with_reset(divider.tick_clocks())
             .with_unit("clocks"),
     ];
     let command = |strobe: &str| Access::Command {
         strobe: strobe.to_owned(),
     };
-    let about = "Pulse counter: encoder or scale signals to position, index and velocity.";
+    let about = "Pulse counter: turns encoder or scale signals into position, index and velocity.";
     Description::new("pulse_counter", about, *b"PCNT", (2, 0), parameters)
         .with("snapshot", 0x08, Snapshot, "freezes the words `SNAPSHOT_...`", vec![])
         .with(
             "lines",
             0x10,
             Configuration,
-            "how A, B and Z are read",
+            "how A, B and Z are decoded",
             lines(filter_clocks, invert),
         )
-        .with("index", 0x11, Configuration, "what an index does", index())
+        .with("index", 0x11, Configuration, "effect of an index", index())
         .with(
             "velocity_filter",
             0x12,
@@ -40,8 +40,8 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
             "preset_value",
             0x13,
             Configuration,
-            "what a preset makes of the position",
-            vec![counts("preset_value", "position after a preset")],
+            "position after a preset",
+            vec![counts("preset_value", "the position")],
         )
         .with_interrupts(
             0x14,
@@ -50,7 +50,7 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
                 Field::flag("index_seen", 1, "an index was latched"),
                 Field::flag("illegal", 2, "A and B changed together"),
                 Field::flag("disagreement", 3, "the lines of a pair were equal"),
-                Field::flag("velocity_missed", 4, "a tick had no velocity"),
+                Field::flag("velocity_missed", 4, "a tick had no new velocity"),
             ],
         )
         .with(
@@ -78,7 +78,7 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
             "flags",
             0x1b,
             Sticky,
-            "what has happened since the flag was cleared",
+            "events since the flag was cleared",
             vec![
                 super::partial_write(0),
                 Field::flag("saturated", 1, "the velocity was clamped"),
@@ -90,16 +90,16 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
             "position",
             0x20,
             0x30,
-            "where it is",
-            vec![counts("position", "count less origin")],
+            "position",
+            vec![counts("position", "count minus origin")],
         )
         .with_shadowed(
             "velocity",
             0x21,
             0x31,
-            "how fast it is",
+            "velocity",
             vec![
-                Field::new("velocity", 0, 32, "at the last tick")
+                Field::new("velocity", 0, 32, "velocity at the last tick")
                     .fixed(16)
                     .with_unit("counts/tick"),
             ],
@@ -122,22 +122,22 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
             "count",
             0x24,
             0x34,
-            "steps since reset",
-            vec![counts("count", "modulo 2^32, never jumps")],
+            "counter of steps since reset",
+            vec![counts("count", "modulo 2^32; a preset does not change it")],
         )
         .with_shadowed(
             "index_count",
             0x25,
             0x35,
             "count at the index",
-            vec![counts("index_count", "of the last latch")],
+            vec![counts("index_count", "count at the last latched index")],
         )
         .with(
             "origin",
             0x26,
             Live,
-            "count at which the position is 0",
-            vec![counts("origin", "moved by presets")],
+            "origin of the position",
+            vec![counts("origin", "count at which the position is 0; presets move it")],
         )
 }
 
@@ -154,25 +154,25 @@ fn lines(filter_clocks: u32, invert: bool) -> Vec<Field> {
         (4, "up_down", "rising A up, rising B down"),
     ];
     vec![
-        Field::new("filter_clocks", 0, 6, "pulses of up to so many clocks are ignored")
+        Field::new("filter_clocks", 0, 6, "pulses of up to this many clocks are ignored")
             .with_reset(filter_clocks)
             .with_unit("clocks"),
-        Field::choice("mode", 8, 3, "what counts", &modes),
+        Field::choice("mode", 8, 3, "edges that count", &modes),
         Field::flag("swap", 16, "exchanges A and B"),
         Field::flag("invert", 17, "reverses the direction").with_reset(invert.into()),
-        Field::flag("differential", 18, "the lines are pairs"),
+        Field::flag("differential", 18, "the lines are differential pairs"),
     ]
 }
 
 fn index() -> Vec<Field> {
     vec![
         Field::flag("index_always", 0, "latches every index"),
-        Field::flag("index_presets", 1, "a latched index also presets"),
+        Field::flag("index_presets", 1, "a latched index also presets the position"),
         Field::new(
             "index_gate",
             4,
             4,
-            "bit 0: only while A is as bit 1; bit 2: only while B is as bit 3",
+            "bit 0: an index counts only while A equals bit 1; bit 2: only while B equals bit 3",
         ),
     ]
 }
@@ -180,12 +180,12 @@ fn index() -> Vec<Field> {
 fn velocity_filter() -> Vec<Field> {
     vec![
         Field::new("smoothing", 0, 2, "k of the one-pole filter with coefficient 2^-k"),
-        Field::flag("velocity_m", 4, "by counts per tick alone"),
+        Field::flag("velocity_m", 4, "velocity is the counts per tick alone"),
         Field::new(
             "timeout",
             8,
             8,
-            "without an edge for so long, the velocity is 0; at most 253",
+            "time without an edge after which the velocity is 0; at most 253",
         )
         .with_reset(TIMEOUT)
         .with_unit("65536 clocks"),
@@ -197,8 +197,8 @@ fn status() -> Vec<Field> {
         Field::flag("index_armed", 1, "the next index will be latched"),
         Field::flag("illegal", 2, "A and B changed together"),
         Field::flag("disagreement", 3, "the lines of a pair were equal"),
-        Field::flag("velocity_missed", 4, "a tick had no velocity"),
-        Field::flag("velocity_pending", 5, "a division runs"),
+        Field::flag("velocity_missed", 4, "a tick had no new velocity"),
+        Field::flag("velocity_pending", 5, "a division is running"),
         Field::flag("level_a", 8, "filtered A"),
         Field::flag("level_b", 9, "filtered B"),
         Field::flag("level_z", 10, "filtered Z"),

@@ -18,9 +18,9 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
         clocks("dead_time_floor", 0, TIME_BITS, "shortest dead time").with_reset(floors[0]),
         clocks("minimum_pulse_floor", 0, TIME_BITS, "shortest minimum pulse").with_reset(floors[1]),
     ];
-    let about = "PWM: duty, by register or pins, to the gates of a bridge, with dead time and fault path.";
+    let about = "PWM: turns a duty, from register or pins, into the gates of a bridge, with dead time and fault path.";
     Description::new("pwm", about, *b"PWM1", (1, 0), parameters)
-        .with("control", 0x10, Configuration, "what it does", control(mode))
+        .with("control", 0x10, Configuration, "enable and mode", control(mode))
         .with(
             "status",
             0x11,
@@ -28,13 +28,13 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             "state of the outputs",
             vec![
                 Field::flag("running", 0, "the outputs are on"),
-                Field::flag("tripped", 1, "a cause keeps them off"),
-                Field::flag("negative", 2, "the direction in use"),
+                Field::flag("tripped", 1, "a cause keeps the outputs off"),
+                Field::flag("negative", 2, "the direction in use is negative"),
                 Field::new(
                     "trip_causes",
                     8,
                     5,
-                    "fault latch, filtered fault 0 and 1, PLL, watchdog; from the lowest bit",
+                    "from the lowest bit: fault latch, filtered fault 0 and 1, PLL, watchdog",
                 ),
             ],
         )
@@ -42,7 +42,7 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             "flags",
             0x12,
             Sticky,
-            "what has happened since the flag was cleared",
+            "events since the flag was cleared",
             vec![
                 Field::flag("saturated", 0, "a duty was limited"),
                 Field::flag(
@@ -53,11 +53,17 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
                 Field::flag(
                     "below_floor",
                     2,
-                    "a dead time or minimum pulse was below its floor, or the period is exactly twice their sum",
+                    "a dead time or minimum pulse was below its lower limit, or the period is exactly twice their sum",
                 ),
                 Field::flag("unaligned", 3, "`sync` came at another phase while running"),
                 super::partial_write(4),
-                Field::flag("guard_refused", 5, "a write was ignored").set_by(FlagSource::GuardRefused),
+                Field::flag(
+                    "guard_refused",
+                    5,
+                    "a write to a guarded register was \
+                    ignored",
+                )
+                .set_by(FlagSource::GuardRefused),
             ],
         )
         .with_interrupts(
@@ -74,16 +80,19 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             "period",
             0x18,
             guarded(),
-            "clocks per period",
-            vec![clocks("period", 0, 16, "from 64; 0 stands for 65536").with_reset(period_clocks & 0xffff)],
+            "period of the PWM",
+            vec![
+                clocks("period", 0, 16, "clocks per period, from 64; 0 stands for 65536")
+                    .with_reset(period_clocks & 0xffff),
+            ],
         )
         .with(
             "times",
             0x19,
             guarded(),
-            "what the driver and the bridge need",
+            "times that driver and bridge need",
             vec![
-                clocks("dead_time", 0, TIME_BITS, "from one side off to the other on")
+                clocks("dead_time", 0, TIME_BITS, "time from one side off to the other on")
                     .with_reset(floors[0])
                     .at_least(floors[0]),
                 clocks("minimum_pulse", 16, TIME_BITS, "shortest pulse")
@@ -102,30 +111,53 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             "max_duty",
             0x1b,
             Configuration,
-            "largest duty of either sign",
-            vec![clocks("max_duty", 0, 16, "high time").with_reset(period_clocks.min(0xffff))],
+            "largest magnitude of the duty",
+            vec![clocks("max_duty", 0, 16, "high time in clocks").with_reset(period_clocks.min(0xffff))],
         )
         .with(
             "phase",
             0x1c,
             Configuration,
-            "places in the period, from the valley",
+            "positions in the period, from the valley",
             vec![
-                clocks("phase", 0, 16, "where the carrier is when `sync` comes; below `period`"),
-                clocks("trigger_phase", 16, 16, "where `trigger` comes"),
+                clocks(
+                    "phase",
+                    0,
+                    16,
+                    "position of the carrier when `sync` comes; below `period`",
+                ),
+                clocks("trigger_phase", 16, 16, "position at which `trigger` comes"),
             ],
         )
         .with(
             "supervision",
             0x1d,
             Configuration,
-            "how long what may last",
+            "time limits of watchdog and fault filter",
             vec![
-                Field::new("watchdog_periods", 0, 8, "valleys without a feed; 0 is no watchdog").with_unit("periods"),
-                clocks("filter_clocks", 8, 8, "filtered faults without effect"),
+                Field::new(
+                    "watchdog_periods",
+                    0,
+                    8,
+                    "valleys allowed without a feed; 0 disables the \
+                    watchdog",
+                )
+                .with_unit("periods"),
+                clocks(
+                    "filter_clocks",
+                    8,
+                    8,
+                    "clocks that a filtered fault may last without effect",
+                ),
             ],
         )
-        .with("feed", 0x1e, command("host_strobe"), "the controller lives", vec![])
+        .with(
+            "feed",
+            0x1e,
+            command("host_strobe"),
+            "feeds the watchdog: the controller is alive",
+            vec![],
+        )
         .with(
             "clear_trip",
             0x1f,
@@ -137,7 +169,7 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             "times_used",
             0x20,
             Live,
-            "what is in use",
+            "times in use",
             vec![
                 clocks("dead_time_used", 0, TIME_BITS, "dead time"),
                 clocks("minimum_pulse_used", 16, TIME_BITS, "minimum pulse"),
@@ -153,9 +185,17 @@ fn control(mode: BridgeMode) -> Vec<Field> {
         (3, "locked", "full bridge, locked antiphase: 0 is 50 %"),
     ];
     vec![
-        Field::flag("enable", 0, "outputs on, from the next start of a period; off at once"),
-        Field::flag("from_pins", 1, "`duty` and `feed` are the pins, not the registers"),
+        Field::flag(
+            "enable",
+            0,
+            "1: outputs on from the next start of a period; 0: off at once",
+        ),
+        Field::flag(
+            "from_pins",
+            1,
+            "`duty` and `feed` come from the pins, not the registers",
+        ),
         Field::flag("update_at_peak", 2, "duty and mode are taken at the peak too"),
-        Field::choice("mode", 8, 2, "what the four pins do", &modes).with_reset(mode as u32),
+        Field::choice("mode", 8, 2, "use of the four pins", &modes).with_reset(mode as u32),
     ]
 }

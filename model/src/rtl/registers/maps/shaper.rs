@@ -4,23 +4,23 @@ use super::super::{Access, Description, Field};
 use crate::rtl::shaper::ShaperConfig;
 use crate::taps::COEFFICIENT_BITS;
 
-/// The map of a shaper. Words are `x` and `y`, or `x_0`, `y_0` and so on if it is built for motion.
+/// The map of a shaper. Words are called `x` and `y`, or for a motion shaper `x_0`, `y_0` and so on.
 pub fn shaper(config: &ShaperConfig) -> Description {
     use Access::{Configuration, Live, Sticky};
     let command = |strobe: &str| Access::Command {
         strobe: strobe.to_owned(),
     };
-    let about = "Input shaper: samples by register or pins, tables loaded through registers.";
+    let about = "Input shaper: samples come from registers or pins, tables are loaded through registers.";
     let mut description = Description::new("shaper", about, *b"SHPR", (1, 1), parameters(config))
         .with(
             "control",
             0x10,
             Configuration,
-            "where samples come from",
+            "source of the samples",
             vec![Field::flag(
                 "from_pins",
                 0,
-                "`strobe`, `start` and `x` are the pins, not the registers",
+                "`strobe`, `start` and `x` come from the pins, not the registers",
             )],
         )
         .with(
@@ -29,20 +29,20 @@ pub fn shaper(config: &ShaperConfig) -> Description {
             Live,
             "state of the shaper",
             vec![
-                Field::flag("busy", 0, "a pass runs"),
+                Field::flag("busy", 0, "a sample is being shaped"),
                 Field::flag("swap_pending", 1, "a swap waits, or hands over"),
                 Field::new("bank", 2, 2, "the active bank"),
-                Field::flag("tap_read_waits", 4, "`TAP_READ` was not served yet"),
+                Field::flag("tap_read_waits", 4, "a read by `TAP_READ` waits"),
             ],
         )
         .with(
             "flags",
             0x12,
             Sticky,
-            "what has happened since the flag was cleared",
+            "events since the flag was cleared",
             vec![
                 Field::flag("saturated", 0, "an output was clamped"),
-                Field::flag("overrun", 1, "a sample came while a pass ran"),
+                Field::flag("overrun", 1, "a sample came while another was being shaped"),
                 Field::flag("refused", 2, "a tap or a swap was refused"),
                 super::partial_write(3),
             ],
@@ -52,7 +52,7 @@ pub fn shaper(config: &ShaperConfig) -> Description {
             vec![
                 Field::flag("valid", 0, "a sample was shaped"),
                 Field::flag("saturated", 1, "an output was clamped"),
-                Field::flag("overrun", 2, "a sample came while a pass ran"),
+                Field::flag("overrun", 2, "a sample came while another was being shaped"),
                 Field::flag("refused", 3, "a tap or a swap was refused"),
             ],
         );
@@ -80,7 +80,7 @@ pub fn shaper(config: &ShaperConfig) -> Description {
             "tap_address",
             0x28,
             Configuration,
-            "which tap `TAP` is",
+            "address of the tap to write or read",
             tap_address(config),
         )
         .with("tap", 0x29, command("tap_write"), "writes a tap", tap(config))
@@ -89,19 +89,19 @@ pub fn shaper(config: &ShaperConfig) -> Description {
             "tap_read",
             0x2b,
             command("tap_read"),
-            "reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is low",
+            "reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low",
             vec![],
         )
         .with(
             "tap_loaded",
             0x2c,
             Live,
-            "what `TAP_READ` found: 0 where no tap is loaded",
+            "tap read back by `TAP_READ`; 0 where no tap is loaded",
             tap_loaded(config),
         )
 }
 
-/// `x` and `y` of the plain shaper, else with the channel.
+/// Name of a word: `x` and `y` for the plain shaper, else with the channel's number.
 pub(crate) fn word_name(config: &ShaperConfig, name: &str, channel: usize) -> String {
     match config.motion() {
         None => name.to_owned(),
@@ -117,7 +117,7 @@ fn parameters(config: &ShaperConfig) -> Vec<Field> {
         parameter("channels", "words per sample", config.channels() as u32),
         parameter(
             "ring_samples",
-            "delays reach up to this less 2",
+            "size of the ring buffer: delays reach up to this minus 2",
             1 << config.ring_address_bits(),
         )
         .with_unit("samples"),
@@ -125,7 +125,7 @@ fn parameters(config: &ShaperConfig) -> Vec<Field> {
         parameter("machine_taps", "taps of bank 0", config.table().taps().len() as u32),
         parameter(
             "coefficient_fraction",
-            "F of the coefficients",
+            "fraction bits F of the coefficients",
             config.coefficient_fraction(),
         )
         .with_unit("bits"),
@@ -133,20 +133,20 @@ fn parameters(config: &ShaperConfig) -> Vec<Field> {
     ]
 }
 
-/// Fields of the register of that name.
+/// Fields of the register `tap_address`.
 pub(crate) fn tap_address(config: &ShaperConfig) -> Vec<Field> {
     vec![
         Field::new(
             "tap_index",
             0,
             config.tap_index_bits(),
-            "place in the table, from 0, in order",
+            "index in the table: taps are written from 0 on, in order",
         ),
         Field::new("tap_bank", 8, 2, "bank 1 or 2"),
     ]
 }
 
-/// Fields of the register of that name.
+/// Fields of the register `tap`.
 pub(crate) fn tap(config: &ShaperConfig) -> Vec<Field> {
     vec![
         Field::new("tap_coefficient", 0, COEFFICIENT_BITS, "coefficient").fixed(config.coefficient_fraction()),
@@ -154,13 +154,13 @@ pub(crate) fn tap(config: &ShaperConfig) -> Vec<Field> {
             "tap_delay",
             COEFFICIENT_BITS,
             config.ring_address_bits(),
-            "delay, not all ones",
+            "delay; all ones is not allowed",
         )
         .with_unit("samples"),
     ]
 }
 
-/// Fields of the register of that name: those of [`tap`].
+/// Fields of the register `tap_loaded`, as those of [`tap`].
 pub(crate) fn tap_loaded(config: &ShaperConfig) -> Vec<Field> {
     vec![
         Field::new("loaded_coefficient", 0, COEFFICIENT_BITS, "coefficient").fixed(config.coefficient_fraction()),
@@ -168,16 +168,16 @@ pub(crate) fn tap_loaded(config: &ShaperConfig) -> Vec<Field> {
     ]
 }
 
-/// Fields of the register of that name.
+/// Fields of the register `swap`.
 pub(crate) fn swap(config: &ShaperConfig) -> Vec<Field> {
     let ways = [
         (0, "at_once", "from the next sample on"),
-        (1, "handover", "each increment through one table"),
+        (1, "handover", "each increment passes one table"),
         (2, "when_settled", "once the command stands still"),
     ];
     let how = config
         .motion()
-        .map(|_| Field::choice("swap_how", 4, 2, "when it takes effect", &ways));
+        .map(|_| Field::choice("swap_how", 4, 2, "when the swap takes effect", &ways));
     let bank = Field::new("swap_bank", 0, 2, "bank 0, 1 or 2");
     [bank].into_iter().chain(how).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::super::{Access, Description, Field, FlagSource};
 
-/// The map of a controller with its settings in banks. `law` and `modulo` are after reset what the machine wants.
+/// The map of a controller with its settings in banks. `law` and `modulo` are the reset values for the machine.
 pub fn sliding_mode(law: u32, modulo: bool) -> Description {
     use Access::{Configuration, Live, Snapshot, Staged, Sticky};
     let command = |strobe: &str| Access::Command {
@@ -14,12 +14,12 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
     let laws = [
         (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
         (1, "pd", "proportional and derivative"),
-        (2, "pid", "the same and the integral"),
+        (2, "pid", "proportional, integral and derivative"),
     ];
     let banks = [
-        (0, "machine", "the machine's, a ROM"),
-        (1, "loaded_1", "what was loaded into bank 1"),
-        (2, "loaded_2", "what was loaded into bank 2"),
+        (0, "machine", "settings of the machine, in a ROM"),
+        (1, "loaded_1", "settings loaded into bank 1"),
+        (2, "loaded_2", "settings loaded into bank 2"),
     ];
     let reference = |index: usize, meaning: &str, fraction: u32, unit: &str| {
         Field::new(&format!("host_x_{index}"), 0, 32, meaning)
@@ -27,34 +27,34 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             .with_unit(unit)
     };
     let (position, velocity) = ("position", "velocity");
-    let about = "Controller: sliding mode, PD or PID; reference and measurement by register or pins.";
+    let about = "Controller: sliding mode, PD or PID; reference and measurement come from registers or pins.";
     Description::new("sliding_mode", about, *b"SMC1", (1, 1), vec![])
         .with("snapshot", 0x08, Snapshot, "freezes the words `SNAPSHOT_...`", vec![])
         .with(
             "commit",
             0x09,
             commit,
-            "law and bank of settings, together, between two passes",
+            "applies law and bank of settings together, between two computations",
             vec![Field::flag("commit_waits", 0, "a commit waits")],
         )
         .with(
             "control",
             0x10,
             Configuration,
-            "where the motion comes from",
+            "source of reference and measurement",
             vec![Field::flag(
                 "from_pins",
                 0,
-                "`start` and the motion are the pins, not the registers",
+                "`start`, reference and measurement come from the pins, not the registers",
             )],
         )
         .with(
             "law",
             0x11,
             Staged,
-            "what computes the command",
+            "control law and settings in use",
             vec![
-                Field::choice("law", 0, 2, "the law", &laws).with_reset(law & 3),
+                Field::choice("law", 0, 2, "control law", &laws).with_reset(law & 3),
                 Field::flag("modulo", 4, "a rotary axis: references wrap").with_reset(modulo.into()),
                 Field::choice("bank", 8, 2, "settings in use; bank 3 is all 0", &banks),
             ],
@@ -64,14 +64,20 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "flags",
             0x13,
             Sticky,
-            "what has happened since the flag was cleared",
+            "events since the flag was cleared",
             vec![
                 super::partial_write(0),
-                Field::flag("commit_rejected", 1, "a write was ignored").set_by(FlagSource::CommitRejected),
+                Field::flag(
+                    "commit_rejected",
+                    1,
+                    "a write was ignored because a commit \
+                    waits",
+                )
+                .set_by(FlagSource::CommitRejected),
                 Field::flag(
                     "setting_refused",
                     2,
-                    "a setting for a bank in use, or for none that can be loaded",
+                    "a setting was refused: its bank is in use or cannot be loaded",
                 ),
             ],
         )
@@ -79,9 +85,9 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             0x14,
             vec![
                 Field::flag("valid", 0, "a command was computed"),
-                Field::flag("overrun", 1, "a start came while a pass ran"),
-                Field::flag("limited_high", 2, "the command was cut at +limit"),
-                Field::flag("limited_low", 3, "the command was cut at -limit"),
+                Field::flag("overrun", 1, "a start came during a computation"),
+                Field::flag("limited_high", 2, "the command was clamped at +limit"),
+                Field::flag("limited_low", 3, "the command was clamped at -limit"),
             ],
         )
         .with(
@@ -124,7 +130,7 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "clear_integral",
             0x1e,
             command("clear_integral"),
-            "at the start of motion",
+            "clears the integral, for the start of a motion",
             vec![],
         )
         .with(
@@ -138,9 +144,9 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "setting_address",
             0x28,
             Configuration,
-            "which setting `SETTING` is",
+            "address of the setting to write or read",
             vec![
-                Field::new("setting_row", 0, 4, "its place: see docs/sliding_mode.md"),
+                Field::new("setting_row", 0, 4, "row of the setting: see docs/sliding_mode.md"),
                 Field::new("setting_bank", 8, 2, "bank 1 or 2"),
             ],
         )
@@ -155,66 +161,72 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "setting_read",
             0x2a,
             command("setting_read"),
-            "reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low",
+            "reads back the word at `SETTING_ADDRESS`, which must stay until `setting_read_waits` is low",
             vec![],
         )
         .with(
             "setting_loaded",
             0x2b,
             Live,
-            "what `SETTING_READ` found: 0 where nothing was written since the reset",
+            "word read back by `SETTING_READ`; 0 where nothing was written since the reset",
             vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
         )
         .with_shadowed(
             "error",
             0x20,
             0x30,
-            "e of the last tick",
+            "position error e of the last tick",
             vec![shown("error", 32, 16, "counts")],
         )
         .with_shadowed(
             "sliding",
             0x21,
             0x31,
-            "s of the last tick",
+            "sliding variable s of the last tick",
             vec![shown("sliding", 32, 16, "counts/tick")],
         )
         .with_shadowed(
             "command",
             0x22,
             0x32,
-            "to the drive",
+            "command to the drive",
             vec![shown("command", 32, 12, "command units")],
         )
         .with(
             "limited_ticks",
             0x24,
             Live,
-            "how long the command has been cut",
-            vec![Field::new("limited_ticks", 0, 16, "in a row; stops at 65535").with_unit("ticks")],
+            "how long the command has been clamped",
+            vec![Field::new("limited_ticks", 0, 16, "consecutive ticks; stops at 65535").with_unit("ticks")],
         )
-        .with_shadowed("duty", 0x23, 0x33, "to the PWM", vec![shown("duty", 18, 0, "clocks")])
+        .with_shadowed(
+            "duty",
+            0x23,
+            0x33,
+            "duty to the PWM",
+            vec![shown("duty", 18, 0, "clocks")],
+        )
 }
 
 fn shown(name: &str, width: u32, fraction: u32, unit: &str) -> Field {
-    Field::new(name, 0, width, "of the last pass")
+    Field::new(name, 0, width, "value of the last computation")
         .fixed(fraction)
         .with_unit(unit)
 }
 
 fn status() -> Vec<Field> {
     vec![
-        Field::flag("busy", 0, "a pass runs"),
-        Field::flag("overrun", 1, "a start came while a pass ran"),
-        Field::flag("limited_high", 2, "the last command was cut at +limit"),
-        Field::flag("limited_low", 3, "the last command was cut at -limit"),
-        Field::flag("setting_read_waits", 4, "`SETTING_READ` was not served yet"),
+        Field::flag("busy", 0, "a command is being computed"),
+        Field::flag("overrun", 1, "a start came during a computation"),
+        Field::flag("limited_high", 2, "the last command was clamped at +limit"),
+        Field::flag("limited_low", 3, "the last command was clamped at -limit"),
+        Field::flag("setting_read_waits", 4, "a read by `SETTING_READ` waits"),
         Field::new(
             "saturated_high",
             8,
             7,
-            "cut at the upper end: e, de, s, feedback, integral, command, duty",
+            "clamped at the upper end, from bit 0: e, de, s, feedback, integral, command, duty",
         ),
-        Field::new("saturated_low", 16, 7, "cut at the lower end, in the same order"),
+        Field::new("saturated_low", 16, 7, "clamped at the lower end, in the same order"),
     ]
 }

@@ -1,4 +1,4 @@
-/* What compilers call even where there is no library. */
+/* Functions that compilers call even without a library. */
 #include <stddef.h>
 
 void *memcpy(void *to, const void *from, size_t bytes);

@@ -1,4 +1,4 @@
-/* The first instructions: a stack, cleared variables, main, and an end that a debugger finds. */
+/* The first instructions: they set the stack, clear the variables, call main, and end at a label that a debugger finds. */
     .section .text.start
     .globl _start
 _start:

@@ -1,12 +1,12 @@
 /*
- * How the driver reaches the registers: 32-bit words, by their number.
+ * Access to the registers: 32-bit words, by their number.
  *
  *   built with                    IORD and IOWR are
  *   POSICAST_HAL                  those of the HAL's io.h (Nios II, Nios V)
- *   POSICAST_ACCESS_FUNCTIONS     posicast_read and posicast_write, which the program brings along
+ *   POSICAST_ACCESS_FUNCTIONS     posicast_read and posicast_write, which the program defines
  *   neither                       volatile accesses at base + 4 * word
  *
- * Memory must not be cached there, and an access must be one of 32 bits: the hardware ignores parts of commands.
+ * These addresses must not be cached, and every access must have 32 bits: the hardware ignores parts of commands.
  */
 #ifndef POSICAST_IO_H
 #define POSICAST_IO_H

@@ -1,6 +1,6 @@
 /*
- * Gains and limits of the controllers, while the machine runs: into a bank that is not in use, then law and bank together
- * between two ticks. machine_NAME.h has the machine's; copy them, change rows, load.
+ * Changes of the controllers' gains and limits while the machine runs: they are loaded into a bank that is not active, then law
+ * and bank change together between two ticks. machine_NAME.h has the machine's settings; copy them, change rows, load them.
  */
 #ifndef POSICAST_SETTINGS_H
 #define POSICAST_SETTINGS_H
@@ -8,28 +8,29 @@
 #include "posicast_driver.h"
 
 /*
- * Multiplies a gain, the word of any row but POSICAST_SETTING_LIMIT, by numerator / denominator; to the nearest word.
- * POSICAST_BAD_ARGUMENT, and nothing changed, where the denominator is 0 or the gain gets too large for a word.
+ * Multiplies a gain, which is the word of any row except POSICAST_SETTING_LIMIT, by numerator / denominator, rounded to the
+ * nearest word. Returns POSICAST_BAD_ARGUMENT and changes nothing if the denominator is 0 or the gain becomes too large.
  */
 posicast_result posicast_scale_gain(uint32_t *word, uint16_t numerator, uint16_t denominator);
 
 /*
- * Loads settings into bank 1 or 2 of an axis, where it is not in use, and uses them with their law. POSICAST_WRONG_STATE while the
- * bank is in use; POSICAST_TIMEOUT; POSICAST_REFUSED.
+ * Loads settings into bank 1 or 2 of an axis, which must not be active, and activates them with their law. Returns
+ * POSICAST_WRONG_STATE while the bank is active, POSICAST_TIMEOUT or POSICAST_REFUSED.
  */
 posicast_result posicast_load_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank,
                                        const posicast_settings *settings, uint32_t ticks);
 
 /*
- * Back to the machine's own settings, bank 0, or to some that were loaded, with this law (POSICAST_AXIS_LAW_LAW_...), from a tick
- * on. The integral is kept. POSICAST_TIMEOUT where no tick comes.
+ * Activates the machine's own settings in bank 0, or some that were loaded before, with this law (POSICAST_AXIS_LAW_LAW_...),
+ * from a tick on. The integral is kept. Returns POSICAST_TIMEOUT if no tick comes.
  */
 posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank, uint32_t law,
                                       uint32_t ticks);
 
 /*
- * Reads back what stands in bank 0 (the machine's), 1 or 2 of an axis, in use or not: a row that was not written since reset is 0.
- * `settings->law` is the law that was written last, whatever the bank. The machine runs on. POSICAST_TIMEOUT where `ticks` are over.
+ * Reads back the settings in bank 0 (the machine's own), 1 or 2 of an axis, active or not: a row that was not written since reset
+ * is 0. `settings->law` is the law that was written last, whatever the bank. The machine keeps running. Returns POSICAST_TIMEOUT
+ * after `ticks`.
  */
 posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank,
                                        posicast_settings *settings, uint32_t ticks);

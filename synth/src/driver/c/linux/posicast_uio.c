@@ -13,7 +13,7 @@
 
 #define PAUSE_NS 100000L
 
-/* The driver polls while it waits: others may run. */
+/* Lets other programs run while the driver polls. */
 static void sleep_a_little(void *context)
 {
     const struct timespec pause = {0, PAUSE_NS};
@@ -28,7 +28,7 @@ int posicast_uio_open(posicast_uio *device, const char *path)
     device->file = open(path, O_RDWR | O_CLOEXEC);
     if (device->file < 0)
         return -1;
-    /* The first mapping of the device, a whole number of pages. */
+    /* The first mapping of the device has a whole number of pages. */
     device->memory = mmap(NULL, POSICAST_STAGE_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED, device->file, 0);
     if (device->memory == MAP_FAILED) {
         posicast_uio_close(device);

@@ -1,7 +1,7 @@
 /*
  * A stage under Linux, from user space, through the kernel's generic UIO driver (uio_pdrv_genirq):
  *
- *   the device tree says where it is: NAME.dtso
+ *   the device tree contains its address: NAME.dtso
  *   modprobe uio_pdrv_genirq of_id=posicast,stage-1.0   (its `compatible`)
  *   posicast_uio_open(&device, "/dev/uio0")
  */
@@ -18,14 +18,17 @@ typedef struct {
     void *memory;
 } posicast_uio;
 
-/* Maps the registers and finds the stage. 0, or -1 with errno: ENODEV where there is no stage that this driver knows. */
+/*
+ * Maps the registers and finds the stage. Returns 0, or -1 with errno; ENODEV means that there is no stage that this driver
+ * knows.
+ */
 int posicast_uio_open(posicast_uio *device, const char *path);
 
 void posicast_uio_close(posicast_uio *device);
 
 /*
- * Waits for enabled interrupts for at most so many milliseconds, -1: for ever, and takes them. 0, or -1 with errno: ETIMEDOUT
- * where there were none.
+ * Waits for enabled interrupts for at most this many milliseconds (-1 means for ever), and clears them. Returns 0, or -1 with
+ * errno; ETIMEDOUT means that there were none.
  */
 int posicast_uio_wait(posicast_uio *device, int milliseconds, uint32_t *interrupts);
 

@@ -20,7 +20,7 @@ static uint32_t events(const posicast_stage *stage, uint32_t axis)
     return (uint32_t)IORD_POSICAST_AXIS_BRING_UP_EVENTS(stage->base, axis);
 }
 
-/* Signals in a row, as they are set. */
+/* Returns the configured number of signals in a row. */
 static uint32_t signals_of(const posicast_stage *stage, uint32_t axis)
 {
     const uint32_t setup = (uint32_t)IORD_POSICAST_AXIS_TRACE_SETUP(stage->base, axis);
@@ -73,7 +73,7 @@ posicast_result posicast_trace_arm(const posicast_stage *stage, uint32_t axis, c
             AS_FIELD(mode_of(trace->signals), POSICAST_AXIS_TRACE_SETUP_TRACE_SIGNALS);
     for (place = 0; place < trace->signals; place++)
         setup |= trace->select[place] << POSICAST_AXIS_TRACE_SETUP_TRACE_SELECT_1_OFST * place;
-    /* What runs would take the new settings for its own. */
+    /* A running signal would use the new settings. */
     IOWR_POSICAST_AXIS_TRACE_HALT(stage->base, axis, 0);
     IOWR_POSICAST_AXIS_TRACE_SETUP(stage->base, axis, setup);
     IOWR_POSICAST_AXIS_TRACE_RATE(stage->base, axis,
@@ -104,7 +104,7 @@ posicast_result posicast_trace_halt(const posicast_stage *stage, uint32_t axis)
     if (!has_bring_up(stage, axis))
         return POSICAST_BAD_ARGUMENT;
     IOWR_POSICAST_AXIS_TRACE_HALT(stage->base, axis, 0);
-    /* The row that is being taken is finished first. */
+    /* The current row is completed first. */
     return posicast_wait_flags(stage);
 }
 
@@ -135,7 +135,7 @@ posicast_result posicast_trace_read(const posicast_stage *stage, uint32_t axis, 
     for (place = 0; place < signals && result == POSICAST_OK; place++) {
         IOWR_POSICAST_AXIS_TRACE_ADDRESS(
             stage->base, axis, AS_FIELD(row * signals + place, POSICAST_AXIS_TRACE_ADDRESS_TRACE_ADDRESS));
-        /* The memory takes some clocks, as flags do. */
+        /* The memory needs some clocks, like the flags. */
         result = posicast_wait_flags(stage);
         words[place] = (int32_t)IORD_POSICAST_AXIS_TRACE_DATA(stage->base, axis);
     }

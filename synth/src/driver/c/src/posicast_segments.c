@@ -10,7 +10,7 @@ static int64_t shifted_down(int64_t value, unsigned bits)
     return value >= 0 ? value >> bits : ~(~value >> bits);
 }
 
-/* Sums wrap in the hardware; in C only those of unsigned numbers do. */
+/* Adds with wrapping, as the hardware does; in C only sums of unsigned numbers wrap. */
 static int64_t wrapping_sum(int64_t a, int64_t b)
 {
     return (int64_t)((uint64_t)a + (uint64_t)b);
@@ -28,7 +28,7 @@ static int fits(int64_t value, unsigned bits)
     return value >= -half && value < half;
 }
 
-/* To a word with fewer fraction bits, half up; the largest stays below the end of the word. */
+/* Rounds half up to a word with fewer fraction bits; the largest result stays below the end of the word. */
 static int32_t half_up(int64_t value, unsigned bits)
 {
     const int64_t rounded = shifted_down(value + ((int64_t)1 << (bits - 1)), bits);
@@ -41,7 +41,7 @@ static int64_t extended(int32_t word, unsigned fraction)
     return (int64_t)word * ((int64_t)1 << (POSICAST_FRACTION_BITS - fraction));
 }
 
-/* The jerk of a segment: 40 bits, two's complement. */
+/* Returns the jerk of a segment: 40 bits, two's complement. */
 static int64_t jerk_of(const posicast_entry *entry)
 {
     const int64_t upper = (int64_t)((entry->words[1] & 0xffu) ^ 0x80u) - 0x80;

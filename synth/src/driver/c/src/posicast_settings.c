@@ -15,7 +15,7 @@ posicast_result posicast_scale_gain(uint32_t *word, uint16_t numerator, uint16_t
 
     if (denominator == 0)
         return POSICAST_BAD_ARGUMENT;
-    /* The largest shift whose mantissa fits is the finest; one that does not fit is less than twice one that does. */
+    /* The largest shift whose mantissa fits is the finest; a mantissa that does not fit is less than twice one that does. */
     for (next = 0; next <= POSICAST_GAIN_SHIFT_MAX; next++) {
         const uint64_t above = next > shift ? size << (next - shift) : size;
         const uint64_t below = next < shift ? (uint64_t)denominator << (shift - next) : denominator;
@@ -33,7 +33,7 @@ posicast_result posicast_scale_gain(uint32_t *word, uint16_t numerator, uint16_t
     return POSICAST_OK;
 }
 
-/* Until no commit waits. */
+/* Waits until no commit is pending. */
 static posicast_result wait_for_commit(const posicast_stage *stage, posicast_patience *left)
 {
     posicast_result result = POSICAST_OK;
@@ -77,7 +77,7 @@ posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis
 
     if (!is_axis(stage, axis) || bank > 2 || law > POSICAST_AXIS_LAW_LAW_PID)
         return POSICAST_BAD_ARGUMENT;
-    /* Writes are refused while a commit waits, another axis's, too. */
+    /* Writes are refused while a commit is pending, also one of another axis. */
     result = wait_for_commit(stage, &left);
     if (result != POSICAST_OK)
         return result;
@@ -102,7 +102,7 @@ posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axi
                                            AS_FIELD(row, POSICAST_AXIS_SETTING_ADDRESS_SETTING_ROW) |
                                                AS_FIELD(bank, POSICAST_AXIS_SETTING_ADDRESS_SETTING_BANK));
         IOWR_POSICAST_AXIS_SETTING_READ(stage->base, axis, 0u);
-        /* The flag that the read waits rises a few clocks after the write. */
+        /* The flag of a pending read rises a few clocks after the write. */
         result = posicast_wait_flags(stage);
         if (result == POSICAST_OK)
             result = posicast_wait_status(stage, axis, POSICAST_AXIS_STATUS_SETTING_READ_WAITS_MSK, 0, &left);

@@ -1,8 +1,8 @@
-/* Tap tables: the functions of posicast_driver.h that load and choose them. */
+/* The functions of posicast_driver.h that load and activate tap tables. */
 #include "posicast_driver.h"
 #include "posicast_wait.h"
 
-/* Is it one that the hardware of the axis holds? */
+/* Returns whether the table fits the hardware of the axis. */
 static int table_fits(const posicast_stage *stage, uint32_t axis, const posicast_table *table)
 {
     const uint32_t ring = (uint32_t)IORD_POSICAST_AXIS_RING_SAMPLES(stage->base, axis);
@@ -94,7 +94,7 @@ posicast_result posicast_read_table(const posicast_stage *stage, uint32_t axis, 
                                        AS_FIELD(tap, POSICAST_AXIS_TAP_ADDRESS_TAP_INDEX) |
                                            AS_FIELD(bank, POSICAST_AXIS_TAP_ADDRESS_TAP_BANK));
         IOWR_POSICAST_AXIS_TAP_READ(stage->base, axis, 0u);
-        /* The flag that the read waits rises a few clocks after the write. */
+        /* The flag of a pending read rises a few clocks after the write. */
         result = posicast_wait_flags(stage);
         if (result == POSICAST_OK)
             result = posicast_wait_status(stage, axis, POSICAST_AXIS_STATUS_TAP_READ_WAITS_MSK, 0, &left);

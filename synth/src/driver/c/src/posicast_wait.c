@@ -3,9 +3,9 @@
 
 #include <stddef.h>
 
-/* Looks at the time stamp in a row that find it unchanged: an access takes clocks, so it always changes. */
+/* Number of consecutive reads after which an unchanged time stamp means that the time stands still: each read takes clocks. */
 #define STILL_LOOKS 8u
-/* Clocks from a write until every flag that follows from it shows. */
+/* Number of clocks from a write until every flag that follows from it is visible. */
 #define FLAG_CLOCKS 16u
 
 static uint32_t time_stamp(const posicast_stage *stage)

@@ -1,8 +1,8 @@
-//! Scenes: what a driver, the pins and the machine do together so that each cause, stop and handover of a stage is reached.
+//! Scenes: what driver, pins and machine do together so that each cause, stop and handover of a stage is reached.
 //!
-//! Random plans reach most of it, at some time. A scene reaches one thing at once: it brings all axes up, lets the *leader*
-//! come into one fault while the others move or hold, and clears up. Each scene is played with each axis as the leader, in
-//! rounds that alternate between causes that stop the axis and causes that switch it off.
+//! Random plans reach most of it after some time. A scene reaches one thing directly: it enables all axes, brings the
+//! *leader* into one fault while the others move or hold, and cleans up. Each scene is played with each axis as the
+//! leader, in rounds that alternate between causes that stop the axis and causes that switch it off.
 
 use posicast_model::rtl::axis::KICK;
 use posicast_model::rtl::segments::{EntryMotion, Point};
@@ -10,7 +10,7 @@ use rand::Rng;
 
 use super::{Do, Driver, Moves};
 
-/// All of them, those first that drive most wires between the blocks in fewest ticks.
+/// All scenes. Those that drive the most wires between the blocks in the fewest ticks come first.
 pub(in super::super) const SCENES: [fn(&mut Driver, usize); 22] = [
     Driver::follows_badly,
     Driver::slips,
@@ -36,11 +36,11 @@ pub(in super::super) const SCENES: [fn(&mut Driver, usize); 22] = [
     Driver::by_hand,
 ];
 
-/// Largest jerk of an entry: 40 bits.
+/// Largest jerk of an entry, which has 40 bits.
 const JERK_MAX: i64 = (1 << 39) - 1;
-/// A jerk that takes an axis to some 100 counts per tick within three ticks.
+/// A jerk that accelerates an axis to some 100 counts per tick within three ticks.
 const FAST: i64 = 1 << 36;
-/// One that keeps it at a few counts per tick.
+/// A jerk that keeps an axis at a few counts per tick.
 const SLOW: i64 = 1 << 31;
 
 impl Driver {
@@ -63,7 +63,7 @@ impl Driver {
         self.tell(leader, "clear_faults", 0);
     }
 
-    /// Whether all scripts are over.
+    /// Returns whether all scripts are over.
     pub(in super::super) fn is_idle(&self) -> bool {
         self.axes.iter().all(|axis| axis.script.is_empty())
     }
@@ -72,17 +72,17 @@ impl Driver {
         self.axes[axis].script.push_back(what);
     }
 
-    /// Causes that switch off: all or none, in turn, never the same for neighbours.
+    /// Returns the causes that switch off: all or none, alternating, and never the same for neighbours.
     fn off_causes(&self, axis: usize) -> u32 {
         0xffff * u32::from(self.is_odd(axis))
     }
 
-    /// Every other axis, and the others in the next round.
+    /// Returns true for every other axis, and for the remaining ones in the next round.
     fn is_odd(&self, axis: usize) -> bool {
         (self.round + axis as u32) % 2 == 1
     }
 
-    /// From any state to HOLD, with nothing watched.
+    /// Brings an axis from any state to HOLD, with nothing supervised.
     fn bring_up(&mut self, axis: usize) {
         let random = self.below(1 << 31);
         self.act(axis, Do::Encoder(Moves::Follows));
@@ -94,7 +94,7 @@ impl Driver {
         self.tell(axis, "swap", 0);
         self.tell(axis, "law", random >> 4 & 1);
         self.write(axis, "commit", 0);
-        // Random traffic may have left axes in it.
+        // Random traffic may have left axes in a feed hold.
         self.write(axis, "feed_hold", 0);
         self.tell(axis, "flush", 0);
         self.ticks(axis, 1);
@@ -105,7 +105,7 @@ impl Driver {
         self.ticks(axis, 1);
     }
 
-    /// Speeds up for three ticks and goes on for some; backwards where `back`.
+    /// Accelerates for three ticks and continues for some; backwards if `back`.
     fn goes(&mut self, axis: usize, jerk: i64, back: bool) {
         let some = self.rng_jerk(jerk);
         let jerk = if back { -some } else { some };
@@ -115,12 +115,12 @@ impl Driver {
         self.entry(axis, 40, EntryMotion::Jerk(0), false);
     }
 
-    /// Of this size, with noise in the bits below.
+    /// Returns a jerk of this size, with noise in the bits below.
     fn rng_jerk(&mut self, size: i64) -> i64 {
         size | i64::from(self.below(1 << 31)) & (size - 1)
     }
 
-    /// The others are on the way too, to and fro; one in three stays.
+    /// Moves the other axes back and forth as well; one in three stays at rest.
     fn company(&mut self, leader: usize) {
         for axis in (0..self.axes.len()).filter(|axis| *axis != leader) {
             if !self.one_in(3) {
@@ -134,12 +134,12 @@ impl Driver {
         self.write(axis, "start", 1 << axis);
     }
 
-    /// A line is low for so many clocks.
+    /// Sets a line low for this many clocks.
     fn low(&mut self, axis: usize, line: &'static str, clocks: u32) {
         self.act(axis, Do::Low(line, clocks));
     }
 
-    /// A line that bounces beside the tick, and stays low.
+    /// Makes a line bounce beside the tick, then stay low.
     fn bounces(&mut self, axis: usize, line: &'static str) {
         for _ in 0..6 {
             self.low(axis, line, 1);
@@ -150,7 +150,7 @@ impl Driver {
         self.ticks(axis, 4);
     }
 
-    /// On the wrong switch, which does nothing, then on the one that it moves to; then the other way.
+    /// Enters the wrong switch, which has no effect, then the one in the direction of motion; then the other way.
     fn limit_switches(&mut self, axis: usize) {
         self.company(axis);
         let back = self.is_odd(axis);
@@ -168,7 +168,7 @@ impl Driver {
         self.bounces(axis, lines[usize::from(!back)]);
     }
 
-    /// Over one of them, the other far away; the other way round in the next round.
+    /// Crosses one soft limit while the other is far away; in the next round the roles are swapped.
     fn soft_limits(&mut self, axis: usize) {
         let back = self.is_odd(axis);
         let here = self.axes[axis].here << 8;
@@ -183,7 +183,7 @@ impl Driver {
         self.ticks(axis, 8);
     }
 
-    /// A limit of the error, and an encoder that does not come along.
+    /// Sets a limit of the following error, with an encoder that does not follow.
     fn follows_badly(&mut self, axis: usize) {
         self.company(axis);
         let limit = self.below(20 << 16) + 1;
@@ -195,7 +195,8 @@ impl Driver {
         self.ticks(axis, 7);
     }
 
-    /// Stands still under a command, with nothing that watches the error: the encoder's watch is left, or the command's.
+    /// Stands still under a command without a limit of the following error, so that only the supervision of the
+    /// encoder or of the command can stop the axis.
     fn loses_the_encoder(&mut self, axis: usize) {
         self.act(axis, Do::Encoder(Moves::Still));
         let back = self.one_in(2);
@@ -211,7 +212,7 @@ impl Driver {
         self.ticks(axis, 3);
     }
 
-    /// A stop from some speed, by a deceleration with its upper bits set.
+    /// Stops from some speed, by a deceleration with its upper bits set.
     fn stops_from_speed(&mut self, axis: usize) {
         let deceleration = 1 << 28 | self.below(1 << 29);
         self.tell(axis, "stop_deceleration", deceleration);
@@ -234,7 +235,7 @@ impl Driver {
         self.ticks(axis, 3);
     }
 
-    /// Entries that end while the axis moves.
+    /// Plays entries that end while the axis moves.
     fn runs_dry(&mut self, axis: usize) {
         self.company(axis);
         let jerk = self.rng_jerk(SLOW << 1);
@@ -245,7 +246,7 @@ impl Driver {
         self.ticks(axis, 8);
     }
 
-    /// 64 entries and more while it holds, and the same while one plays.
+    /// Queues 64 entries and more in HOLD, and the same while one plays.
     fn fills_the_fifo(&mut self, axis: usize) {
         for _ in 0..65 {
             self.entry(axis, 3, EntryMotion::Jerk(0), false);
@@ -279,7 +280,7 @@ impl Driver {
         self.tell(axis, "watchdog", self.off_causes(axis) << 16);
     }
 
-    /// On the way, and a line goes low.
+    /// Sets a line low during a move.
     fn on_the_way(&mut self, axis: usize, line: &'static str) {
         self.company(axis);
         self.there_and_back(axis, 3);
@@ -292,7 +293,7 @@ impl Driver {
 
     fn drive_not_ready(&mut self, axis: usize) {
         self.on_the_way(axis, "drive_ready");
-        // Enabled while the drive is not ready, it waits in READY, where an emergency stop finds it.
+        // Enabled while the drive is not ready, the axis waits in READY, where an emergency stop finds it.
         self.tell(axis, "control", 0);
         self.ticks(axis, 1);
         self.tell(axis, "clear_faults", 0);
@@ -317,7 +318,7 @@ impl Driver {
         self.on_the_way(axis, "pll_locked");
     }
 
-    /// Sums that leave the integrator's words, upwards and downwards.
+    /// Plays sums that overflow the integrator's words, upwards and downwards.
     fn overflows(&mut self, axis: usize) {
         for jerk in [JERK_MAX, -JERK_MAX] {
             self.entry(axis, 4, EntryMotion::Jerk(jerk), false);
@@ -327,7 +328,7 @@ impl Driver {
         }
     }
 
-    /// Held while it plays a rest, with a move to come, which then goes on.
+    /// Holds the feed while a rest plays with a move queued, which then continues.
     fn holds_the_feed(&mut self, axis: usize) {
         self.company(axis);
         self.entry(axis, 3, EntryMotion::Jerk(0), false);
@@ -340,7 +341,7 @@ impl Driver {
         self.ticks(axis, 6);
     }
 
-    /// A start that is accepted, and leads to nothing: the axis is disabled before the tick.
+    /// Makes a start that is accepted and has no effect: the axis is disabled before the tick.
     fn is_disabled_before_it_starts(&mut self, axis: usize) {
         self.there_and_back(axis, 1);
         self.set_off(axis);
@@ -350,7 +351,7 @@ impl Driver {
 
     fn leaves_the_range(&mut self, axis: usize) {
         self.company(axis);
-        // At the end of the range, and not at rest.
+        // The axis is at the end of the range, and not at rest.
         let position = if self.is_odd(axis) { i32::MIN } else { i32::MAX };
         let motion = EntryMotion::Point(Point {
             position,
@@ -364,7 +365,7 @@ impl Driver {
         self.swings(axis);
     }
 
-    /// Two short tables in turn, at once, handed over and when settled, in the middle of a move.
+    /// Swaps two short tables in turn during a move: at once, by a handover and when settled.
     fn tables_in_flight(&mut self, axis: usize) {
         let (one, count) = (self.fraction(axis), self.below(3) as usize + 2);
         for bank in [1, 2] {
@@ -384,7 +385,7 @@ impl Driver {
         self.ticks(axis, 6);
     }
 
-    /// Other gains, and each law with them, in the middle of a move.
+    /// Changes the gains, and each law with them, during a move.
     fn settings_and_laws(&mut self, axis: usize) {
         let back = self.one_in(2);
         self.goes(axis, SLOW << 1, back);
@@ -394,7 +395,7 @@ impl Driver {
         }
     }
 
-    /// A duty by hand within its time and beyond it, and the self-test of the pins.
+    /// Sets a manual duty within its time and beyond it, and runs the self-test of the pins.
     fn by_hand(&mut self, axis: usize) {
         self.direct(axis);
         self.ticks(axis, 1);

@@ -1,4 +1,4 @@
-// posicast_shaper_registers_a8cbfbab
+// posicast_shaper_registers_269aa9e6
 // Registers of shaper: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -7,15 +7,15 @@
 // parameter             value  meaning
 // word_bits             32     width of a command word
 // channels              3      words per sample
-// ring_samples          128    delays reach up to this less 2
+// ring_samples          128    size of the ring buffer: delays reach up to this minus 2
 // most_taps             64     taps per bank
 // machine_taps          5      taps of bank 0
-// coefficient_fraction  16     F of the coefficients
+// coefficient_fraction  16     fraction bits F of the coefficients
 // modulo                0      1: the position wraps
 
 `default_nettype none
 
-module posicast_shaper_registers_a8cbfbab (
+module posicast_shaper_registers_269aa9e6 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -112,14 +112,14 @@ module posicast_shaper_registers_a8cbfbab (
         && (write_interrupt_test || write_strobe || write_start || write_tap || write_swap
         || write_tap_read);
 
-    // CONTROL: configuration; where samples come from
+    // CONTROL: configuration; source of the samples
     always @(posedge clk) if (rst) begin
         from_pins <= 1'd0;
     end else begin
         if (write_control && avs_byteenable[0]) from_pins <= avs_writedata[0];
     end
 
-    // FLAGS: sticky; what has happened since the flag was cleared
+    // FLAGS: sticky; events since the flag was cleared
     reg flag_saturated;
     reg flag_overrun;
     reg flag_refused;
@@ -136,7 +136,7 @@ module posicast_shaper_registers_a8cbfbab (
         flag_partial_write <= bus_partial || (flag_partial_write && !(write_flags && written[3]));
     end
 
-    // INTERRUPT_STATE: interrupt state; what has happened; write one to clear
+    // INTERRUPT_STATE: interrupt state; events since they were cleared; write one to clear
     reg irq_state_valid;
     reg irq_state_saturated;
     reg irq_state_overrun;
@@ -157,7 +157,7 @@ module posicast_shaper_registers_a8cbfbab (
             || (irq_state_refused && !(write_interrupt_state && written[3]));
     end
 
-    // INTERRUPT_ENABLE: interrupt enable; what of it raises `irq`
+    // INTERRUPT_ENABLE: interrupt enable; events that raise `irq`
     reg irq_enable_valid;
     reg irq_enable_saturated;
     reg irq_enable_overrun;
@@ -212,7 +212,7 @@ module posicast_shaper_registers_a8cbfbab (
     // START: command; begins anew from the sample
     always @(posedge clk) host_start <= !rst && write_start && whole;
 
-    // TAP_ADDRESS: configuration; which tap `TAP` is
+    // TAP_ADDRESS: configuration; address of the tap to write or read
     always @(posedge clk) if (rst) begin
         tap_index <= 6'd0;
         tap_bank <= 2'd0;
@@ -247,8 +247,8 @@ module posicast_shaper_registers_a8cbfbab (
         end
     end
 
-    // TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is
-    // low
+    // TAP_READ: command; reads back the tap at `TAP_ADDRESS`, which must stay until
+    // `tap_read_waits` is low
     always @(posedge clk) tap_read <= !rst && write_tap_read && whole;
 
     always @(posedge clk) if (rst) begin

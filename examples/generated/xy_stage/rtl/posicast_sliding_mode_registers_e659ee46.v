@@ -1,4 +1,4 @@
-// posicast_sliding_mode_registers_b9ede3db
+// posicast_sliding_mode_registers_e659ee46
 // Registers of sliding_mode: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -6,7 +6,7 @@
 
 `default_nettype none
 
-module posicast_sliding_mode_registers_b9ede3db (
+module posicast_sliding_mode_registers_e659ee46 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -120,21 +120,21 @@ module posicast_sliding_mode_registers_b9ede3db (
         || write_clear_integral || write_clear_flags || write_setting || write_setting_read);
     wire bus_rejected = waits && ((write_commit && whole) || write_law);
 
-    // COMMIT: commit; law and bank of settings, together, between two passes
+    // COMMIT: commit; applies law and bank of settings together, between two computations
     always @(posedge clk) if (rst) begin
         waits <= 1'd0;
     end else begin
         waits <= !applies && (waits || (write_commit && whole));
     end
 
-    // CONTROL: configuration; where the motion comes from
+    // CONTROL: configuration; source of reference and measurement
     always @(posedge clk) if (rst) begin
         from_pins <= 1'd0;
     end else begin
         if (write_control && avs_byteenable[0]) from_pins <= avs_writedata[0];
     end
 
-    // LAW: staged; what computes the command
+    // LAW: staged; control law and settings in use
     reg [1:0] staged_law;
     reg staged_modulo;
     reg [1:0] staged_bank;
@@ -158,7 +158,7 @@ module posicast_sliding_mode_registers_b9ede3db (
         end
     end
 
-    // FLAGS: sticky; what has happened since the flag was cleared
+    // FLAGS: sticky; events since the flag was cleared
     reg flag_partial_write;
     reg flag_commit_rejected;
     reg flag_setting_refused;
@@ -174,7 +174,7 @@ module posicast_sliding_mode_registers_b9ede3db (
             || (flag_setting_refused && !(write_flags && written[2]));
     end
 
-    // INTERRUPT_STATE: interrupt state; what has happened; write one to clear
+    // INTERRUPT_STATE: interrupt state; events since they were cleared; write one to clear
     reg irq_state_valid;
     reg irq_state_overrun;
     reg irq_state_limited_high;
@@ -196,7 +196,7 @@ module posicast_sliding_mode_registers_b9ede3db (
             || (irq_state_limited_low && !(write_interrupt_state && written[3]));
     end
 
-    // INTERRUPT_ENABLE: interrupt enable; what of it raises `irq`
+    // INTERRUPT_ENABLE: interrupt enable; events that raise `irq`
     reg irq_enable_valid;
     reg irq_enable_overrun;
     reg irq_enable_limited_high;
@@ -271,13 +271,13 @@ module posicast_sliding_mode_registers_b9ede3db (
     // START: command; computes a command
     always @(posedge clk) host_strobe <= !rst && write_start && whole;
 
-    // CLEAR_INTEGRAL: command; at the start of motion
+    // CLEAR_INTEGRAL: command; clears the integral, for the start of a motion
     always @(posedge clk) clear_integral <= !rst && write_clear_integral && whole;
 
     // CLEAR_FLAGS: command; clears the flags in `STATUS`
     always @(posedge clk) clear_flags <= !rst && write_clear_flags && whole;
 
-    // SETTING_ADDRESS: configuration; which setting `SETTING` is
+    // SETTING_ADDRESS: configuration; address of the setting to write or read
     always @(posedge clk) if (rst) begin
         setting_row <= 4'd0;
         setting_bank <= 2'd0;
@@ -297,7 +297,7 @@ module posicast_sliding_mode_registers_b9ede3db (
         end
     end
 
-    // SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
+    // SETTING_READ: command; reads back the word at `SETTING_ADDRESS`, which must stay until
     // `setting_read_waits` is low
     always @(posedge clk) setting_read <= !rst && write_setting_read && whole;
 

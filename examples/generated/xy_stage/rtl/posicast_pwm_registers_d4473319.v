@@ -1,4 +1,4 @@
-// posicast_pwm_registers_a6796a44
+// posicast_pwm_registers_d4473319
 // Registers of pwm: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -10,7 +10,7 @@
 
 `default_nettype none
 
-module posicast_pwm_registers_a6796a44 (
+module posicast_pwm_registers_d4473319 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -100,7 +100,7 @@ module posicast_pwm_registers_a6796a44 (
     wire bus_partial = !whole && (write_interrupt_test || write_feed || write_clear_trip);
     wire bus_refused = (write_period && !allow_period) || (write_times && !allow_times);
 
-    // CONTROL: configuration; what it does
+    // CONTROL: configuration; enable and mode
     always @(posedge clk) if (rst) begin
         enable <= 1'd0;
         from_pins <= 1'd0;
@@ -115,7 +115,7 @@ module posicast_pwm_registers_a6796a44 (
         if (write_control && avs_byteenable[1]) mode <= avs_writedata[9:8];
     end
 
-    // FLAGS: sticky; what has happened since the flag was cleared
+    // FLAGS: sticky; events since the flag was cleared
     reg flag_saturated;
     reg flag_refused;
     reg flag_below_floor;
@@ -138,7 +138,7 @@ module posicast_pwm_registers_a6796a44 (
         flag_guard_refused <= bus_refused || (flag_guard_refused && !(write_flags && written[5]));
     end
 
-    // INTERRUPT_STATE: interrupt state; what has happened; write one to clear
+    // INTERRUPT_STATE: interrupt state; events since they were cleared; write one to clear
     reg irq_state_tripped;
     reg irq_state_saturated;
     reg irq_state_unaligned;
@@ -163,7 +163,7 @@ module posicast_pwm_registers_a6796a44 (
             || (irq_state_trigger && !(write_interrupt_state && written[4]));
     end
 
-    // INTERRUPT_ENABLE: interrupt enable; what of it raises `irq`
+    // INTERRUPT_ENABLE: interrupt enable; events that raise `irq`
     reg irq_enable_tripped;
     reg irq_enable_saturated;
     reg irq_enable_unaligned;
@@ -185,14 +185,14 @@ module posicast_pwm_registers_a6796a44 (
         end
     end
 
-    // PERIOD: guarded; clocks per period
+    // PERIOD: guarded; period of the PWM
     always @(posedge clk) if (rst) begin
         period <= 16'd2500;
     end else if (write_period && allow_period) begin
         period <= next_period;
     end
 
-    // TIMES: guarded; what the driver and the bridge need
+    // TIMES: guarded; times that driver and bridge need
     always @(posedge clk) if (rst) begin
         dead_time <= 10'd25;
         minimum_pulse <= 10'd50;
@@ -210,7 +210,7 @@ module posicast_pwm_registers_a6796a44 (
         if (write_duty && avs_byteenable[2]) host_x_0[16] <= avs_writedata[16];
     end
 
-    // MAX_DUTY: configuration; largest duty of either sign
+    // MAX_DUTY: configuration; largest magnitude of the duty
     always @(posedge clk) if (rst) begin
         max_duty <= 16'd2500;
     end else begin
@@ -218,7 +218,7 @@ module posicast_pwm_registers_a6796a44 (
         if (write_max_duty && avs_byteenable[1]) max_duty[15:8] <= avs_writedata[15:8];
     end
 
-    // PHASE: configuration; places in the period, from the valley
+    // PHASE: configuration; positions in the period, from the valley
     always @(posedge clk) if (rst) begin
         phase <= 16'd0;
         trigger_phase <= 16'd0;
@@ -229,7 +229,7 @@ module posicast_pwm_registers_a6796a44 (
         if (write_phase && avs_byteenable[3]) trigger_phase[15:8] <= avs_writedata[31:24];
     end
 
-    // SUPERVISION: configuration; how long what may last
+    // SUPERVISION: configuration; time limits of watchdog and fault filter
     always @(posedge clk) if (rst) begin
         watchdog_periods <= 8'd0;
         filter_clocks <= 8'd0;
@@ -238,7 +238,7 @@ module posicast_pwm_registers_a6796a44 (
         if (write_supervision && avs_byteenable[1]) filter_clocks <= avs_writedata[15:8];
     end
 
-    // FEED: command; the controller lives
+    // FEED: command; feeds the watchdog: the controller is alive
     always @(posedge clk) host_strobe <= !rst && write_feed && whole;
 
     // CLEAR_TRIP: command; forgets the causes that are over
