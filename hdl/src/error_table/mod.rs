@@ -7,11 +7,11 @@ mod entry_banks;
 mod kernel;
 mod lookup;
 
-use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter, port_notes};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::ErrorTable;
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::error_table::{ErrorTableConfig, ports};
+use posicast_model::rtl::error_table::{ErrorTableConfig, PORTS, ports};
 
 /// The error table in RustHDL's own simulator.
 ///
@@ -64,6 +64,7 @@ pub fn emit(config: &ErrorTableConfig, prefix: &str) -> Result<Vec<Module>, Emit
                     "from valid to compensated_valid",
                 ),
             ],
+            ports: port_notes(PORTS),
         },
     };
     emit::emit(&ErrorTable::new(config), &options)
