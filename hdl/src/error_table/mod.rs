@@ -7,11 +7,11 @@ mod entry_banks;
 mod kernel;
 mod lookup;
 
-use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter, port_notes};
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::ErrorTable;
-use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::error_table::{ErrorTableConfig, PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The error table in RustHDL's own simulator.
 ///
