@@ -41,7 +41,7 @@ fn lockstep_everything_at_random() {
             on,
             on,
             on,
-            clock / 10_000 & 1,
+            (clock / 10_000) & 1,
             u64::from(write),
             u64::from(!random.once_in(9)),
             index,

@@ -93,6 +93,8 @@ const ERROR_TABLE: Hints = &[
     ("error_read", RARE),
     ("error_index", &[0, 1, 2]),
     ("error_entry", &[5, 10]),
+    // Tied.
+    ("coarse", &[0]),
 ];
 
 const SEGMENTS: Hints = &[

@@ -38,7 +38,7 @@ impl<'a> ErrorTableReport<'a> {
             .axis
             .error_table
             .as_ref()
-            .map_or(&[][..], |section| &section.points);
+            .map_or(&[][..], |section| section.points.as_slice());
         let largest = points
             .iter()
             .fold(0.0, |largest: f64, (_, error)| largest.max(error.abs()));
@@ -61,11 +61,11 @@ impl<'a> ErrorTableReport<'a> {
         let of = self.json();
         let show = |counts: f64| self.axis.unit.show(counts / self.axis.loop_counts_per_unit(), 3);
         format!(
-            "\n  error table, at the {}: {} of up to {} in {}, {} apart; at most {} off the file\n",
+            "\n  error table, at the {}: {} of up to {} in {} entries, {} apart; at most {} off the file\n",
             of.apply,
             counted(of.points as u64, "point"),
             show(of.largest_error_counts),
-            counted(of.entries as u64, "entry"),
+            of.entries,
             show(f64::from(of.spacing_counts)),
             show(of.departure_counts),
         )

@@ -1,17 +1,28 @@
 //! The one adder: the average of what it has and what comes, in every clock, and that rounded half up by the bit dropped last.
+//!
+//! What comes is chosen here, not beside the address of the memories: an event simulator would else go round between the two for ever.
 
 use crate::prelude::*;
 
 kernel! {
     pub(super) struct Average;
 
-    inputs { rst: Bit, addend: Signed<18>, load: Bit, clear: Bit }
-    outputs { rounded: Signed<18> }
-    registers { average: Signed<18>, dropped: Bit }
-    wires {
-        wide_average: Signed<19>, wide_addend: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>, half: Signed<18>,
+    inputs {
+        rst: Bit,
+        entry: Signed<18>,
+        takes_entry: Bit,
+        whole: Signed<18>,
+        takes_whole: Bit,
+        load: Bit,
+        clear: Bit,
     }
-    constants { none: Signed<18> = from_i64(0), one: Signed<18> = from_i64(1) }
+    outputs { rounded: Signed<18> }
+    registers { average: Signed<18>, dropped: Bits<1> }
+    wires {
+        addend: Signed<18>, wide_average: Signed<19>, wide_addend: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>,
+        half: Signed<18>,
+    }
+    constants { none: Signed<18> = from_i64(0) }
 }
 
 impl Logic for Average {
@@ -19,12 +30,19 @@ impl Logic for Average {
     fn update(&mut self) {
         comment!("@module error_average");
 
+        self.addend.next = self.none.val();
+        if self.takes_entry.val() {
+            self.addend.next = self.entry.val();
+        }
+        if self.takes_whole.val() {
+            self.addend.next = self.whole.val();
+        }
         self.wide_average.next = signed_bit_cast::<19, 18>(self.average.q.val());
         self.wide_addend.next = signed_bit_cast::<19, 18>(self.addend.val());
         self.sum.next = self.wide_average.val() + self.wide_addend.val();
         self.sum_bits.next = unsigned_cast(self.sum.val());
         self.average.d.next = signed_cast(self.sum_bits.val().get_bits::<18>(1));
-        self.dropped.d.next = self.sum_bits.val().get_bit(0);
+        self.dropped.d.next = self.sum_bits.val().get_bits::<1>(0);
         if self.load.val() {
             self.average.d.next = self.addend.val();
         }
@@ -32,10 +50,7 @@ impl Logic for Average {
             self.average.d.next = self.none.val();
         }
 
-        self.half.next = self.none.val();
-        if self.dropped.q.val() {
-            self.half.next = self.one.val();
-        }
+        self.half.next = signed_cast(bit_cast::<18, 1>(self.dropped.q.val()));
         self.rounded.next = self.average.q.val() + self.half.val();
     }
 }

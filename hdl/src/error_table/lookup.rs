@@ -32,7 +32,7 @@ kernel! {
     }
     wires {
         last_step: Bit, reads_first: Bit, leaving: Bit, entering_high: Bits<32>, entering_low: Bits<8>,
-        upper: Bit, fades: Bit, in_range: Bit, addend: Signed<18>, full: Bit,
+        upper: Bit, fades: Bit, in_range: Bit, full: Bit,
     }
     constants {
         first_step: Bits<7> = from_u64(0),
@@ -49,7 +49,6 @@ kernel! {
         full_weight: Bits<11> = from_u64(FULL_WEIGHT.into()),
         no_index: Bits<8> = from_u64(0),
         one_index: Bits<8> = from_u64(1),
-        none: Signed<18> = from_i64(0),
     }
 }
 
@@ -125,16 +124,12 @@ impl Logic for Lookup {
 
         comment!("The average: of neighbours, then of 0 and the error");
         self.fades.next = self.step.q.val() > self.found_step.val();
-        self.addend.next = self.none.val();
-        if self.weight.val().any() & !self.fades.val() {
-            self.addend.next = self.entry.val();
-        }
-        if self.fades.val() & self.leaving.val() {
-            self.addend.next = self.whole.q.val();
-        }
         self.average.clk.next = self.clk.val();
         self.average.rst.next = self.rst.val();
-        self.average.addend.next = self.addend.val();
+        self.average.entry.next = self.entry.val();
+        self.average.takes_entry.next = self.weight.val().any() & !self.fades.val();
+        self.average.whole.next = self.whole.q.val();
+        self.average.takes_whole.next = self.fades.val() & self.leaving.val();
         self.average.load.next = self.step.q.val() == self.load_step.val();
         self.average.clear.next = self.step.q.val() == self.found_step.val();
         if self.step.q.val() == self.found_step.val() {

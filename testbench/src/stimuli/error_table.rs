@@ -38,6 +38,7 @@ pub struct ErrorTableRandom {
     rng: Xoshiro256PlusPlus,
     config: ErrorTableConfig,
     clock: u64,
+    lives: u32,
     life: Life,
     inputs: Inputs,
     /// Next entry to be loaded, and the one before.
@@ -52,6 +53,7 @@ impl ErrorTableRandom {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
             config: config.clone(),
             clock: 0,
+            lives: 0,
             life: Life::default(),
             inputs: Inputs::default(),
             next: 0,
@@ -86,6 +88,15 @@ impl ErrorTableRandom {
             error_select: rng.random_range(0..2) == 0,
             ..Inputs::default()
         };
+        // At first bank 1 is loaded, then used, so that a short run sees both.
+        self.lives += 1;
+        if self.lives <= 2 {
+            self.life.clocks = 12 * (u32::from(self.config.last()) + 1) + 4 * latency;
+            self.life.off_pace = 1 << 30;
+            self.life.pace = latency;
+            self.life.write_pace = if self.lives == 1 { 3 } else { 1 << 30 };
+            self.inputs.error_select = self.lives == 2;
+        }
     }
 
     /// A position near the table, in 256ths of a count.
@@ -109,7 +120,8 @@ impl ErrorTableRandom {
     fn writes(&mut self) {
         let rng = &mut self.rng;
         let most = self.config.format().most_step();
-        let index = match rng.random_range(0..30) {
+        // A table is complete now and then, however long it is.
+        let index = match rng.random_range(0..3 * (u32::from(self.config.last()) + 1)) {
             0 => rng.next_u32() as u8,
             1 => 0,
             _ => self.next as u8,
@@ -140,7 +152,7 @@ impl Stimuli for ErrorTableRandom {
             self.new_life();
         }
         self.life.clocks -= 1;
-        self.inputs.rst = self.clock < 2 || ends && self.rng.random_range(0..3) == 0;
+        self.inputs.rst = self.clock < 2 || ends && self.lives > 2 && self.rng.random_range(0..3) == 0;
         let life = self.life;
         let once_in = |rng: &mut Xoshiro256PlusPlus, pace: u32| rng.random_range(0..pace) == 0;
         self.inputs.valid = self.clock.is_multiple_of(life.pace.into()) || once_in(&mut self.rng, 50 * life.pace);
