@@ -18,7 +18,7 @@ use posicast_model::rtl::stage::{StageAxis, StageConfig, StageErrorTable, StageS
 use posicast_model::rtl::trace::TraceConfig;
 
 use super::shaper::{MOTION, tap_table};
-use super::{BenchSizes, Block, ComponentBlock, MachineShapers, benches};
+use super::{BenchSizes, Block, ComponentBlock, ErrorTableBlock, MachineShapers, benches};
 use crate::Error;
 use crate::formal::refused;
 
