@@ -86,7 +86,7 @@ fn cli_run_takes_an_optimal_shaper_to_rtl_and_measures_the_corners() {
     let (_scratch, file) = scratch(&text);
     let mut run = posicast();
     run.arg("run").arg(&file).arg("-o").arg(folder.path().join("out"));
-    run.args(["--json", "--simulator", "icarus", "--cycles", "30000"]);
+    run.args(["--json", "--simulator", "icarus", "--cycles", "60000"]);
     let document = json(&run.assert().success().get_output().stdout);
     assert_eq!(
         (&document["result"], &document["verify"]["result"]),
