@@ -12,14 +12,14 @@ rtl/xy_stage_y_machine_taps.v
 rtl/xy_stage_y_tap_banks.v
 rtl/xy_stage_y_shaper.v
 rtl/xy_stage.v
-rtl/posicast_shaper_registers_269aa9e6.v
+rtl/posicast_shaper_registers_a836fdf4.v
 rtl/posicast_sample_select_32x3.v
 rtl/posicast_handover_32x128_f16.v
 rtl/posicast_history_32x128x3.v
 rtl/posicast_channel_sums_32x57x3_f16.v
 rtl/xy_stage_x_motion_shaper_32x3.v
 rtl/xy_stage_x_shaper_avalon.v
-rtl/posicast_pulse_counter_registers_37b05b8c.v
+rtl/posicast_pulse_counter_registers_b6c14a58.v
 rtl/posicast_time_base_5000.v
 rtl/posicast_synchroniser.v
 rtl/posicast_glitch_filter.v
@@ -29,7 +29,7 @@ rtl/posicast_velocity.v
 rtl/posicast_pulse_counter.v
 rtl/posicast_divider_5000.v
 rtl/xy_stage_x_pulse_counter_avalon.v
-rtl/posicast_pwm_registers_d4473319.v
+rtl/posicast_pwm_registers_afef7fa5.v
 rtl/posicast_sample_select_17x1.v
 rtl/posicast_pwm_carrier.v
 rtl/posicast_pwm_timing_25x50.v
@@ -41,7 +41,7 @@ rtl/posicast_pwm_leg.v
 rtl/posicast_pwm_gates_0000.v
 rtl/posicast_pwm_25x50_0000.v
 rtl/xy_stage_x_pwm_avalon.v
-rtl/posicast_sliding_mode_registers_e659ee46.v
+rtl/posicast_sliding_mode_registers_1e2606d4.v
 rtl/posicast_sample_select_32x5.v
 rtl/posicast_machine_settings_94eabf14.v
 rtl/posicast_ram_32x32.v
@@ -61,7 +61,7 @@ rtl/xy_stage_y_shaper_avalon.v
 rtl/xy_stage_y_pulse_counter_avalon.v
 rtl/xy_stage_y_pwm_avalon.v
 rtl/xy_stage_y_sliding_mode_avalon.v
-rtl/posicast_stage_registers_07d7cdfd.v
+rtl/posicast_stage_registers_0b6795ae.v
 rtl/posicast_schedule_210.v
 rtl/posicast_divider_share_2.v
 rtl/posicast_group_2.v

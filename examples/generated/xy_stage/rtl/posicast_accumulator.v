@@ -59,7 +59,7 @@ module posicast_accumulator (
     assign base = $unsigned(sum_q);
     assign total = (({1'd0, base} << 1) | HALF) + $unsigned(product);
 
-    // Cut: what lies above the sign must be as the sign
+    // Saturated unless all bits above equal the sign
     assign sum_negative = sum_q[51];
     assign upper = base[51:31];
     assign middle = base[31:25];
@@ -123,7 +123,7 @@ module posicast_accumulator (
         negative_q = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, total[0]};
 endmodule
 

@@ -67,7 +67,7 @@ module posicast_axis_causes (
     assign flags = by_encoder_error | by_segments_failed | by_late;
     assign now = kept | lines | flags | watched;
 
-    // What follows: at once of these lines;
+    // These lines act at once;
     assign off = ({1'd0, off_causes} | ALWAYS_OFF) & HARMFUL_CAUSES;
     assign harmless = causes_q & ~HARMFUL_CAUSES;
     assign switches_off = emergency | tripped | out_of_range;
@@ -75,10 +75,10 @@ module posicast_axis_causes (
     assign cutting = by_drive_lost & off;
     assign cut = switches_off | (|cutting) | had_cut_q;
 
-    // an axis that stops the group never asks here;
+    // the axis that stops the group is not affected;
     assign any_cause = fault | (|harmless) | group_stop;
 
-    // of all others when they stand, a clock later
+    // all others act a clock later, once set
     assign harmful = now & HARMFUL_CAUSES;
     assign cutting_now = now & off;
     assign had_fault = had_fault_q;

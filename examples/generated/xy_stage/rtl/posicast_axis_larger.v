@@ -31,7 +31,7 @@ module posicast_axis_larger (
     reg        larger_q;
     reg        larger_q_next;
 
-    // A bit that is larger, one that is not smaller
+    // Bits that are larger, and bits not smaller
     assign above = one & ~other;
     assign neither = one | ~other;
     assign above_0 = above[0] | (neither[0] & larger_q);
@@ -49,7 +49,7 @@ module posicast_axis_larger (
             one = ~number;
         end
 
-        // A sign counts the other way
+        // The sign bit has the opposite weight
         higher = above[7];
         not_lower = neither[7];
         if (signs) begin

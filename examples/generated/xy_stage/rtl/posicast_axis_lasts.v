@@ -35,7 +35,7 @@ module posicast_axis_lasts (
         .part (limit_nibbles_part)
     );
 
-    // A bit that is less, one that is not more
+    // Bits that are smaller, and bits not larger
     assign under = ~ticks & limit_nibbles_part;
     assign not_over = ~ticks | limit_nibbles_part;
     assign under_0 = under[0] | (not_over[0] & fewer);

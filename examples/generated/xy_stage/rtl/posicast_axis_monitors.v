@@ -143,7 +143,7 @@ module posicast_axis_monitors (
         .past_minus         (soft_limits_past_minus)
     );
 
-    // Sizes and times
+    // Magnitudes and times
     posicast_axis_size_limit u_error_limit (
         .clk         (clk),
         .rst         (rst),
@@ -156,7 +156,7 @@ module posicast_axis_monitors (
         .exceeds     (error_limit_exceeds)
     );
 
-    // A scale computes the next one from the tick on
+    // A scale computes its next value from the tick on
     posicast_axis_at_tick u_deviation_at_tick (
         .clk    (clk),
         .rst    (rst),
@@ -235,12 +235,12 @@ module posicast_axis_monitors (
     assign last_byte = compares & !takes;
     assign over = looks & again;
 
-    // What the tick shows
+    // Levels at the tick
     assign command_bits = $unsigned(command);
     assign command_velocity_bits = $unsigned(command_velocity);
     assign reference_velocity_bits = $unsigned(reference_velocity);
 
-    // A switch bounces when left: newly needs a way
+    // Leaving a switch bounces: new with motion only
     assign limit_plus = on_plus & (forward | (!was_on_plus & shaped_forward));
     assign limit_minus = on_minus & (backward | (!was_on_minus & shaped_backward));
     assign soft_plus = soft_limits_past_plus & (forward | !was_past_plus);
@@ -251,7 +251,7 @@ module posicast_axis_monitors (
     assign stands = was_on & not_its_way & (watches_direction | !moves)
         & (drive_backward == still_backward) & commands_exceeds;
 
-    // A kick waits until the count has gone round
+    // A kick waits until the count has rotated
     assign is_kicked = kicked | kick_waits;
     assign shown = by_limit_plus | by_limit_minus | by_soft_plus | by_soft_minus | by_error_trip
         | by_deviation_trip | by_saturation_trip | by_lost_trip | by_watchdog_trip;
@@ -300,13 +300,13 @@ module posicast_axis_monitors (
             was_past_minus_next = soft_limits_past_minus;
         end
 
-        // Against the command is as not at all, if watched
+        // Motion against the command may count as none
         not_its_way = not_forward;
         if (drive_backward) begin
             not_its_way = not_backward;
         end
 
-        // The way back is measured from where it turned
+        // The way back counts from the point of reversal
         if (over & (!stands | moves)) begin
             still_since_next = captured;
             still_backward_next = drive_backward;
@@ -409,7 +409,7 @@ module posicast_axis_monitors (
         drive_backward <= drive_backward_next;
         still_since <= still_since_next;
         still_backward <= still_backward_next;
-        // Moved since it last stood still, a clock each
+        // Has moved since it last stood still
         motion <= captured - still_since;
         not_forward <= motion_bits[31] | !(|motion_above);
         not_backward <= !motion_bits[31] | (&motion_above);
@@ -444,7 +444,7 @@ module posicast_axis_monitors (
         found = 17'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, command_bits[30:0], motion_bits[1:0]};
 endmodule
 

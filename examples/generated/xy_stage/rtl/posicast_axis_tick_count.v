@@ -51,7 +51,7 @@ module posicast_axis_tick_count (
             carry_next = 1'd1;
         end
 
-        // A carry out of the highest: more than any limit
+        // A carry out of the top: more than any limit
         endless_next = endless | ((|carry) & !compares);
         if (clears) begin
             count_next = 16'd0;

@@ -36,7 +36,7 @@ module posicast_axis_timer (
 
     assign loads = load_release | load_settle | load_apply;
 
-    // Less one has a carry unless there is none left
+    // Minus one has a carry unless the count is 0
     assign addend = released | settled | applied | less_one;
     assign sum = {1'd0, left} + {1'd0, addend};
     assign at_zero = !sum[16];

@@ -122,7 +122,7 @@ module posicast_channel_sums_32x57x3_f16 (
     assign position = $unsigned(newest);
     assign position_scaled = {25'd0, position} << 16;
 
-    // Shift by F bits; what does not fit
+    // Shift by F bits; detect what does not fit
     assign wraps = MODULO & (channel == FIRST_CHANNEL);
     assign accumulator_bits = $unsigned(accumulator);
     assign sign_bits = accumulator_bits & SIGN_MASK;
@@ -131,7 +131,7 @@ module posicast_channel_sums_32x57x3_f16 (
     assign above = beyond & !accumulator[56];
     assign result = accumulator_bits[47:16];
 
-    // Each channel's result, until the last is there
+    // Results of the channels, until the last is ready
     assign cut_off = start | begin_pass;
     assign shows = boundary & (channel == LAST_CHANNEL) & !cut_off;
 
@@ -169,7 +169,7 @@ module posicast_channel_sums_32x57x3_f16 (
             sample_q_next = 32'sd0;
         end
 
-        // A position that wraps: the way to the newest
+        // A wrapping position: difference from the newest
         operand = sample_q;
         if (MODULO & (sample_channel == FIRST_CHANNEL)) begin
             operand = sample_q - newest;
@@ -241,7 +241,7 @@ module posicast_channel_sums_32x57x3_f16 (
             y_q_2_next = 32'sh80000000;
         end
 
-        // A start or a new pass cuts off what runs
+        // A start or a new pass abandons a running one
         if (cut_off) begin
             channel_next = NO_CHANNEL;
             busy_q_next = begin_pass;
@@ -272,7 +272,7 @@ module posicast_channel_sums_32x57x3_f16 (
         // Multiply and accumulate, exactly
         coefficient_read <= coefficient;
         coefficient_q <= coefficient_read;
-        // The channel's sample; 0 if there was none
+        // Sample of the channel; 0 if there was none
         blank_read <= blank;
         sample_q <= sample_q_next;
         accumulator <= accumulator_next;

@@ -29,18 +29,13 @@ module posicast_command_fifo (
 );
     localparam [5:0]  ALL_BUT_ONE = 6'd63;
     localparam [6:0]  ONE_LESS = 7'd127;
-    localparam [6:0]  NO_LEVEL = 7'd0;
-    localparam [6:0]  ONE_LEVEL = 7'd1;
-    localparam [5:0]  ONE_SLOT = 6'd1;
     localparam [1:0]  FIRST_WORD = 2'd0;
     localparam [1:0]  SECOND_WORD = 2'd1;
     localparam [1:0]  THIRD_WORD = 2'd2;
     localparam [1:0]  LAST_WORD = 2'd3;
-    localparam [2:0]  NOTHING = 3'd0;
     localparam [2:0]  FIRST = 3'd1;
     localparam [2:0]  SECOND = 3'd2;
     localparam [2:0]  THIRD = 3'd4;
-    localparam [24:0] NO_UPPER = 25'd0;
     localparam [24:0] ALL_UPPER = 25'd33554431;
 
     wire        full;
@@ -79,7 +74,7 @@ module posicast_command_fifo (
     reg         too_wide;
     reg         too_wide_next;
 
-    // The entry that plays, a word at a time
+    // The entry being played, a word at a time
     posicast_ram_256x32 u_memory (
         .clk           (clk),
         .write_enable  (takes),
@@ -95,7 +90,7 @@ module posicast_command_fifo (
     assign full = held[6] | (plays & (behind == ALL_BUT_ONE));
     assign refuses = closed | full;
     assign takes = write & !refuses;
-    assign slot = (head + behind) + ONE_SLOT;
+    assign slot = (head + behind) + 6'd1;
 
     // The last word commits a whole entry
     assign ticks = data[23:0];
@@ -112,9 +107,9 @@ module posicast_command_fifo (
     assign refused = write & refuses;
     assign malformed = commits & !well_formed;
 
-    // Which words are there, and a jerk too wide
+    // Words written so far, and a jerk too wide
     assign upper = data[31:7];
-    assign narrow = (upper == NO_UPPER) | (upper == ALL_UPPER);
+    assign narrow = (upper == 25'd0) | (upper == ALL_UPPER);
 
     // A batch waits for its last entry; one that is
     // dropped takes the others with it
@@ -141,26 +136,26 @@ module posicast_command_fifo (
             end
         end
         if (ends) begin
-            written_next = NOTHING;
+            written_next = 3'd0;
             too_wide_next = 1'd0;
         end
         spoils = spoilt;
         if (ends) begin
-            staged_next = NO_LEVEL;
+            staged_next = 7'd0;
             spoils = !entered & more;
         end
         if (stages) begin
-            staged_next = staged + ONE_LEVEL;
+            staged_next = staged + 7'd1;
         end
         spoilt_next = spoils;
 
         // Some in, one out
-        level_step = NO_LEVEL;
+        level_step = 7'd0;
         if (released) begin
-            level_step = staged + ONE_LEVEL;
+            level_step = staged + 7'd1;
         end
         if (pop) begin
-            head_next = head + ONE_SLOT;
+            head_next = head + 6'd1;
             level_step = ONE_LESS;
             if (released) begin
                 level_step = staged;
@@ -168,13 +163,13 @@ module posicast_command_fifo (
         end
         level_q_next = level_q + level_step;
         if (flush) begin
-            level_q_next = NO_LEVEL;
-            staged_next = NO_LEVEL;
+            level_q_next = 7'd0;
+            staged_next = 7'd0;
             spoilt_next = spoils | stages | ((|staged) & !ends);
             if (anew) begin
                 spoilt_next = 1'd0;
             end
-            written_next = NOTHING;
+            written_next = 3'd0;
             too_wide_next = 1'd0;
         end
     end

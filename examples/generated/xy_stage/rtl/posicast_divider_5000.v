@@ -2,7 +2,7 @@
 // Velocity: quotient = steps * tick_clocks * 2^16 / elapsed, toward zero, in Q16.16
 // elapsed = 0 stands for one tick. One division at a time, always as long.
 //
-// Shift and add, shift and subtract, shift and negate: one bit per clock in one register.
+// Multiplies, divides and negates with one bit per clock in one register.
 //
 // phase  27 ~  44   product = { partial sum (17), what is left of steps (18) } moves down: T is added where the lowest bit
 //                   of |steps| is set
@@ -27,15 +27,16 @@
 module posicast_divider_5000 (
     input  wire               clk,
     input  wire               rst,          // Synchronous reset, active high
-    input  wire               start,        // For one clock: divide `steps` by `elapsed`
-    input  wire signed [17:0] steps,        // Counts
-    input  wire [23:0]        elapsed,      // Clocks that they took; 0 stands for one tick
+    input  wire               start,        // One clock: starts the division of `steps` by
+                                            // `elapsed`
+    input  wire signed [17:0] steps,        // Dividend: the counts
+    input  wire [23:0]        elapsed,      // Divisor: the clocks in which the counts came
     input  wire               clear_flags,  // Clears `overrun`
     output wire signed [31:0] quotient,     // Counts per tick, Q16.16 [counts per tick, Q16.16]
-    output wire               done,         // For one clock: `quotient` is new
-    output wire               busy,         // A division runs
-    output wire               saturated,    // `quotient` was clamped; holds with it
-    output wire               overrun       // Sticky: a `start` came while `busy`, and was ignored
+    output wire               done,         // One clock: `quotient` is new
+    output wire               busy,         // A division is running
+    output wire               saturated,    // `quotient` was clamped; changes with it
+    output wire               overrun       // Sticky: a `start` came while `busy` and was ignored
 );
     localparam [6:0]  FIRST_PHASE = 7'd27;
     localparam [6:0]  DIVIDE_PHASE = 7'd45;
@@ -113,7 +114,7 @@ module posicast_divider_5000 (
         end
         turns_over_next = downward & (turns_over | product[0]);
 
-        // Multiply: add T, or not, and shift down
+        // Multiply: add T or 0, and shift down
         addend = 18'd0;
         entering = 1'd0;
         if (magnitude_bit) begin
@@ -130,14 +131,14 @@ module posicast_divider_5000 (
             next_bit = product[34];
         end
 
-        // Beyond 31 bits: all ones
+        // All ones if the quotient exceeds 31 bits
         kept_bit = 1'd0;
         if (fits & (subtracts | too_large)) begin
             kept_bit = 1'd1;
         end
 
         // One phase per clock; between divisions,
-        // what is in the registers does not matter
+        // the contents of the registers do not matter
         if (downward) begin
             product_next = ({34'd0, entering} << 34) | ({17'd0, partial} << 17)
                 | {18'd0, product[17:1]};
@@ -153,7 +154,7 @@ module posicast_divider_5000 (
             next_phase = phase + 7'd1;
         end
 
-        // Too large; while it multiplies, 0 is too small
+        // Clamped; 0 is too small while multiplying
         if (subtracts & !fits) begin
             too_large_next = 1'd1;
         end
@@ -201,7 +202,7 @@ module posicast_divider_5000 (
         last_pass <= 1'd0;
         fits <= 1'd0;
     end else begin
-        // Which part a phase is of, told a clock ahead
+        // Part of the next phase, decoded a clock ahead
         phase <= next_phase;
         product <= product_next;
         remainder <= remainder_next;
@@ -237,7 +238,7 @@ module posicast_divider_5000 (
         fits = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, difference[24]};
 endmodule
 

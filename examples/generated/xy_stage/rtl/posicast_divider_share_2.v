@@ -1,6 +1,6 @@
 // posicast_divider_share_2
-// One divider for all pulse counters of a stage: their divisions one after the other, in a fixed
-// order.
+// Shares one divider among all pulse counters of a stage: their divisions run one after the other,
+// in a fixed order.
 //
 // The reference is `posicast_model::rtl::divider_share`.
 //
@@ -15,20 +15,20 @@
 module posicast_divider_share_2 (
     input  wire               clk,
     input  wire               rst,               // Synchronous reset
-    input  wire               divide,            // One clock: divide for all channels, one after
-                                                 // the other
-    input  wire signed [17:0] steps_of_0,        // Of the channel's pulse counter: the dividend
+    input  wire               divide,            // One clock: starts the divisions of all channels,
+                                                 // one after the other
+    input  wire signed [17:0] steps_of_0,        // Dividend: `steps` of the channel's pulse counter
                                                  // [counts]
     input  wire signed [17:0] steps_of_1,
-    input  wire [23:0]        elapsed_of_0,      // Of the channel's pulse counter: the divisor
-                                                 // [clocks]
+    input  wire [23:0]        elapsed_of_0,      // Divisor: `elapsed` of the channel's pulse
+                                                 // counter [clocks]
     input  wire [23:0]        elapsed_of_1,
-    input  wire               done,              // Of the divider: its `done`
-    output wire               start,             // To the divider, one clock: its `start`
-    output wire signed [17:0] steps,             // To the divider: its `steps` [counts]
-    output wire [23:0]        elapsed,           // To the divider: its `elapsed` [clocks]
-    output wire               quotient_valid_0,  // One clock: the quotient of the divider is the
-                                                 // channel's
+    input  wire               done,              // `done` of the divider
+    output wire               start,             // One clock: to `start` of the divider
+    output wire signed [17:0] steps,             // To `steps` of the divider [counts]
+    output wire [23:0]        elapsed,           // To `elapsed` of the divider [clocks]
+    output wire               quotient_valid_0,  // One clock: the quotient of the divider belongs
+                                                 // to this channel
     output wire               quotient_valid_1
 );
     localparam [3:0] FIRST_CHANNEL = 4'd0;
@@ -48,7 +48,7 @@ module posicast_divider_share_2 (
     reg                valid_q_0;
     reg                valid_q_1;
 
-    // A tick's first division, or the next one
+    // Starts a tick's first division, or the next one
     assign is_idle = turn == IDLE;
     assign start = start_q;
     assign steps = steps_q;
@@ -91,7 +91,7 @@ module posicast_divider_share_2 (
         valid_q_1 <= 1'd0;
     end else begin
         turn <= turn_next;
-        // Its operands
+        // Operands of the channel
         start_q <= begins;
         steps_q <= steps_q_next;
         elapsed_q <= elapsed_q_next;

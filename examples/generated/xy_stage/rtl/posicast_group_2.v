@@ -14,26 +14,26 @@
 module posicast_group_2 (
     input  wire       clk,
     input  wire       rst,                   // Synchronous reset
-    input  wire       start,                 // One clock: the axes in `start_axes` are to start
-    input  wire [3:0] start_axes,            // One bit per axis
-    input  wire       can_start_0,           // Of the axis: its `can_start`
+    input  wire       start,                 // One clock: the axes in `start_axes` shall start
+    input  wire [3:0] start_axes,            // Axes to start, one bit per axis
+    input  wire       can_start_0,           // `can_start` of the axis
     input  wire       can_start_1,
-    input  wire       wants_group_stop_0,    // Of the axis: its `wants_group_stop`
+    input  wire       wants_group_stop_0,    // `wants_group_stop` of the axis
     input  wire       wants_group_stop_1,
-    input  wire       emergency_stop_0,      // Of the axis: its `emergency_stop`
+    input  wire       emergency_stop_0,      // `emergency_stop` of the axis
     input  wire       emergency_stop_1,
-    input  wire       feed_hold_0,           // The axis is to hold its feed
+    input  wire       feed_hold_0,           // The axis shall hold its feed
     input  wire       feed_hold_1,
-    input  wire       rests_0,               // Of the axis's segments: their `rests`
+    input  wire       rests_0,               // `rests` of the axis's segments
     input  wire       rests_1,
-    output wire       axis_start_0,          // One clock, to the axis: its `start`
+    output wire       axis_start_0,          // One clock: to `start` of the axis
     output wire       axis_start_1,
-    output wire       group_stop_0,          // To the axis: another one wants all to stop
+    output wire       group_stop_0,          // To the axis: another axis wants all axes to stop
     output wire       group_stop_1,
-    output wire       hold_feed_0,           // To the axis's segments: their `feed_hold`
+    output wire       hold_feed_0,           // To `feed_hold` of the axis's segments
     output wire       hold_feed_1,
     output wire       group_emergency_stop,  // To all axes: one of them has its emergency stop
-    output wire       start_refused          // One clock: a start that none followed
+    output wire       start_refused          // One clock: a start was refused
 );
     localparam [3:0] AXIS_0 = 4'd1;
     localparam [3:0] AXIS_1 = 4'd2;
@@ -63,7 +63,7 @@ module posicast_group_2 (
     assign start_refused = refused_q;
 
     always @(*) begin
-        // All start, or none
+        // All requested axes start, or none
         blocked = (start_axes == 4'd0) | ((start_axes & STRANGERS) != 4'd0);
         if (((start_axes & AXIS_0) != 4'd0) & !can_start_0) begin
             blocked = 1'd1;
@@ -72,7 +72,7 @@ module posicast_group_2 (
             blocked = 1'd1;
         end
 
-        // One that stops stops the others
+        // An axis that stops also stops the others
         emergency_q_next = 1'd0;
         stop_q_0_next = 1'd0;
         if (wants_group_stop_0 & (AXIS_0 != AXIS_0)) begin
@@ -95,7 +95,7 @@ module posicast_group_2 (
             emergency_q_next = 1'd1;
         end
 
-        // All that are to hold rest, or none holds
+        // Feed hold: once all its axes rest
         moving = 1'd0;
         if (feed_hold_0 & !rests_0) begin
             moving = 1'd1;

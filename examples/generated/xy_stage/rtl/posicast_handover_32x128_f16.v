@@ -107,7 +107,7 @@ module posicast_handover_32x128_f16 (
             still_next = FOR_EVER;
         end
 
-        // Whether a swap takes effect at a strobe
+        // A swap may take effect at a strobe
         if (accepted) begin
             how_next = swap_how;
         end
@@ -158,7 +158,7 @@ module posicast_handover_32x128_f16 (
         newest_q <= newest_q_next;
         active_q <= active_q_next;
         since_q <= since_q_next;
-        // What it makes of a tap
+        // Tap during the handover
         old_read <= old;
         old_tap <= old_read;
         correction_read <= correcting;

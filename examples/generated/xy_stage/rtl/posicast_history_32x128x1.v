@@ -56,11 +56,11 @@ module posicast_history_32x128x1 (
         .read_data     (ring_0_read_data)
     );
 
-    // A strobe adds x; a start too, and forgets
+    // A strobe adds x; a start also clears
     assign writes = strobe | start;
     assign next_head = head + 7'd1;
 
-    // The sample that lies delay samples back
+    // The sample delay samples back
     assign before_start = delay > age;
     assign blank = before_start & !started;
     assign ring_0_write_data = $unsigned(x_0);

@@ -1,6 +1,6 @@
 // posicast_integral
-// integral of e, Q24.8: the word that holds the sum of it and e, at `settle`; frozen while e would
-// push a command further that is cut already.
+// The integral integral of e, Q24.8: at `settle` it takes the sum of itself and e; it is frozen
+// while e would push a clamped command further.
 //
 // `open` is the clock before the sum begins. A clear after it, before the sum is taken, wins: that
 // tick's e is not added.
@@ -40,7 +40,7 @@ module posicast_integral (
         integral_q_next = integral_q;
         cleared_next = cleared;
 
-        // A clear wins over a sum under way
+        // A clear wins over a sum being computed
         if (clear_integral) begin
             cleared_next = 1'd1;
         end

@@ -39,16 +39,9 @@ module posicast_integrator (
     output wire               reads_flags,
     output wire               ends
 );
-    localparam [7:0]  NIL = 8'd0;
     localparam [4:0]  FULL_REACH = 5'd31;
-    localparam [4:0]  NO_REACH = 5'd0;
     localparam [9:0]  CARRY_IN = 10'd1;
     localparam [32:0] HALF = 33'd1;
-    localparam [32:0] NO_HALF = 33'd0;
-    localparam [55:0] NO_POSITION = 56'd0;
-    localparam [47:0] NO_VELOCITY = 48'd0;
-    localparam [39:0] NO_ACCELERATION = 40'd0;
-    localparam [23:0] NO_TICKS = 24'd0;
 
     reg  [7:0]  entry_byte;
     reg  [7:0]  augend;
@@ -184,7 +177,7 @@ module posicast_integrator (
     assign backwards = exact_velocity[47];
 
     // In the last 32nd before an end of the word, and
-    // outwards; in the last 64th a stop stands at once
+    // outwards; in the last 64th a stop is immediate
     assign below = exact_position[55];
     assign outwards = (backwards == below) & !modulo;
     assign upper_bits = exact_position[54:49];
@@ -192,7 +185,7 @@ module posicast_integrator (
     assign stand_bit = upper_bits[0];
     assign stands = past_reach & (stand_bit != below);
 
-    // Beyond the end; a change of sign; any motion
+    // Beyond the end, a change of sign, any motion
     assign turned_sign = sum[7] != augend[7];
     assign unfit = turned_sign & (augend[7] == addend[7]);
 
@@ -200,7 +193,7 @@ module posicast_integrator (
     assign deceleration = {9'd0, stop_deceleration} << 8;
     assign starts_anew = takes_tick & (loads | extrapolates) & !brakes;
 
-    // Position: what is above is never seen
+    // Position: bits above are never used
     assign preset_word = $unsigned(preset_position);
     assign preset_bits = preset_word[23:0];
     assign position_sum = exact_position[55:23] + HALF;
@@ -210,7 +203,7 @@ module posicast_integrator (
     assign velocity = $signed(velocity_sum[32:1]);
     assign acceleration = $signed(acceleration_sum[32:1]);
 
-    // What comes of the tick
+    // Results of the tick
     assign at_rest = !moving;
     assign overflowed = passes_failed;
     assign leaves = past_reach & moving;
@@ -233,7 +226,7 @@ module posicast_integrator (
         moving_next = moving;
 
         // A byte of the entry: half a word first, since
-        // what a memory shows comes late in its clock
+        // a memory's output comes late in its clock
         entry_half_next = read_data[15:0];
         if (passes_read_byte_1) begin
             entry_half_next = read_data[31:16];
@@ -243,7 +236,7 @@ module posicast_integrator (
             entry_byte = entry_half[15:8];
         end
         if (blank) begin
-            entry_byte = NIL;
+            entry_byte = 8'd0;
         end
 
         // One adder of a byte
@@ -257,7 +250,7 @@ module posicast_integrator (
                 augend = ticks[7:0];
             end
         end
-        chosen = NIL;
+        chosen = 8'd0;
         if (passes_add_acceleration) begin
             chosen = exact_acceleration[7:0];
         end
@@ -274,7 +267,7 @@ module posicast_integrator (
         end
         past_reach = outwards & (reach_bits == FULL_REACH);
         if (below) begin
-            past_reach = outwards & (reach_bits == NO_REACH);
+            past_reach = outwards & (reach_bits == 5'd0);
         end
         carry_next = wide_sum[9];
         if (passes_first) begin
@@ -312,7 +305,7 @@ module posicast_integrator (
             end
         end
         if (preset | starts_anew | (brakes & stands) | passes_clear_acceleration) begin
-            exact_acceleration_next = NO_ACCELERATION;
+            exact_acceleration_next = 40'd0;
         end
 
         // Velocity
@@ -324,7 +317,7 @@ module posicast_integrator (
             exact_velocity_next = (exact_velocity >> 8) | ({40'd0, velocity_byte} << 40);
         end
         if (preset | passes_clear_velocity) begin
-            exact_velocity_next = NO_VELOCITY;
+            exact_velocity_next = 48'd0;
         end
         if (passes_turn_position) begin
             exact_position_next = (exact_position >> 8) | ({48'd0, sum} << 48);
@@ -333,25 +326,25 @@ module posicast_integrator (
             exact_position_next = {32'd0, preset_bits} << 32;
         end
         if (passes_clear_position) begin
-            exact_position_next = NO_POSITION;
+            exact_position_next = 56'd0;
         end
 
-        // Ticks of the entry: up to 0, from -ticks
+        // Ticks of the entry, counting from -ticks up to 0
         if (passes_turn_ticks) begin
             ticks_next = (ticks >> 8) | ({16'd0, sum} << 16);
         end
         if (passes_clear_ticks) begin
-            ticks_next = NO_TICKS;
+            ticks_next = 24'd0;
         end
 
         // Each rounded once, half up, without wrapping
         velocity_half = HALF;
         if (velocity_ends) begin
-            velocity_half = NO_HALF;
+            velocity_half = 33'd0;
         end
         acceleration_half = HALF;
         if (acceleration_ends) begin
-            acceleration_half = NO_HALF;
+            acceleration_half = 33'd0;
         end
     end
 
@@ -401,7 +394,7 @@ module posicast_integrator (
         acceleration_ends = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, wide_sum[0], shifted_addend[0], preset_word[31:24], position_sum[0],
         velocity_sum[0], acceleration_sum[0]};
 endmodule

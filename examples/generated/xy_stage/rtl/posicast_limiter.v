@@ -59,7 +59,7 @@ module posicast_limiter (
     reg  [15:0]        ticks;
     reg  [15:0]        ticks_next;
 
-    // held - limit, less one for a positive word
+    // held - limit, minus one for a positive word
     assign minuend = $unsigned(held_q);
     assign margin = ({1'd0, minuend} << 1) - (({2'd0, limit} << 1) | borrow);
     assign part = margin[32:1] ^ inverts;
@@ -85,7 +85,7 @@ module posicast_limiter (
             inverts = ~32'd0;
         end
 
-        // Twice less the limit, once inverted: its size
+        // Minus the limit twice, inverted once: magnitude
         works = cuts & over;
         if ((take | inverted) & negative) begin
             works = 1'd1;
@@ -108,7 +108,7 @@ module posicast_limiter (
             low_q_next = over & negative;
         end
 
-        // Ticks in a row
+        // Consecutive ticks with a clamped command
         if (count & !(&ticks)) begin
             ticks_next = ticks + 16'd1;
         end
@@ -130,7 +130,7 @@ module posicast_limiter (
         low_q <= 1'd0;
         ticks <= 16'd0;
     end else begin
-        // Its turns, one a clock
+        // Its steps, one per clock
         inverted <= take;
         compares <= inverted;
         returns <= compares;
@@ -158,7 +158,7 @@ module posicast_limiter (
         ticks = 16'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, margin[0]};
 endmodule
 

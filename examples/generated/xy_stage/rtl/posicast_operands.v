@@ -64,7 +64,7 @@ module posicast_operands (
     assign takes_held_next = (step == RATE_AGAIN) | (step == ON_RATE) | (step == ON_FEEDBACK)
         | (step == TO_DUTY);
 
-    // One of them, or nothing
+    // The selected word, or 0
     assign error_bits = $unsigned(tracking_error);
     assign operand = $signed(from_error | from_sliding | from_held | from_integral | from_reference
         | from_acceleration | from_velocity | from_word);
@@ -114,7 +114,7 @@ module posicast_operands (
         takes_velocity <= 1'd0;
         takes_word <= 1'd0;
     end else begin
-        // Whose turn it is
+        // Select bits of the words
         takes_error <= (step == SURFACE) | (step == TO_SUM) | ((step == ON_ERROR) & linear);
         takes_sliding <= (step == ON_ERROR) & !linear;
         takes_held <= takes_held_next;

@@ -65,10 +65,6 @@ module posicast_passes (
 );
     localparam [5:0] JERK_PHASE = 6'd5;
     localparam [5:0] SPEED_PHASE = 6'd14;
-    localparam [1:0] WORD_0 = 2'd0;
-    localparam [1:0] WORD_1 = 2'd1;
-    localparam [1:0] WORD_2 = 2'd2;
-    localparam [1:0] WORD_3 = 2'd3;
 
     wire later;
     wire middle;
@@ -123,7 +119,7 @@ module posicast_passes (
     assign judges_jerk = phase == JERK_PHASE;
     assign judges_speed = phase == SPEED_PHASE;
 
-    // Whole turns: 5, 6, 7 and 3 bytes
+    // Whole rotations: 5, 6, 7 and 3 bytes
     assign turn_acceleration = !later & any_slot & !(slot_2 & slot_1);
     assign turn_velocity = (!later | travels) & any_slot & !(slot_2 & slot_1 & slot_0);
     assign turn_position = travels & any_slot;
@@ -150,7 +146,7 @@ module posicast_passes (
     assign add_velocity = add_velocity_q;
     assign invert = invert_q;
 
-    // Is there any motion left; the outputs
+    // Detect remaining motion; update the outputs
     assign forgets_moving = corrects & !any_slot;
     assign sees_moving = middle & (turn_acceleration | (odd & turn_velocity));
     assign sizes = counts & !slot_2 & slot_1 & slot_0;
@@ -178,18 +174,18 @@ module posicast_passes (
         if (ends_jerk) begin
             invert_q_next = addend_sign;
         end
-        read_word = WORD_0;
+        read_word = 2'd0;
         if (loads) begin
             if (speeds) begin
-                read_word = WORD_1;
+                read_word = 2'd1;
             end else if (!later) begin
-                read_word = WORD_2;
+                read_word = 2'd2;
             end
         end else if (!later & fifth_ahead) begin
-            read_word = WORD_1;
+            read_word = 2'd1;
         end
         if (last_word) begin
-            read_word = WORD_3;
+            read_word = 2'd3;
         end
     end
 

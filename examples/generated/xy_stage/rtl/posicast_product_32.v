@@ -37,7 +37,7 @@ module posicast_product_32 (
         .product (lower_product)
     );
 
-    // The rest of a long one
+    // Product of the rest of a long word
     posicast_smul_15x18 u_upper_0 (
         .clk     (clk),
         .a       (upper_0_a),
@@ -45,7 +45,7 @@ module posicast_product_32 (
         .product (upper_0_product)
     );
 
-    // The lower 17 bits, or all of a short word
+    // Product of the lower 17 bits, or of a short word
     assign word = sample;
     assign word_bits = $unsigned(word);
     assign lower_part = word_bits[17:0] & LOWER_MASK;

@@ -1,9 +1,8 @@
 // posicast_pulse_counter
-// Pulse counter: encoder or scale signals to position, index and velocity.
+// Pulse counter: turns encoder or scale signals into position, index and velocity.
 // The count never jumps: a preset moves the origin, position = count - origin.
 //
-// Lines to steps, steps to the count, the index latch, and the velocity: all that the pulse counter
-// shows.
+// Joins the parts of the pulse counter: lines, decoder, count, index latch and velocity.
 //
 // An edge at a pin appears in the count `filter_clocks` + 4 clocks later: 2 for the synchroniser,
 // `filter_clocks` + 1 for the filter, 1 for the count.
@@ -15,59 +14,62 @@
 module posicast_pulse_counter (
     input  wire               clk,
     input  wire               rst,               // Synchronous reset
-    input  wire               a,                 // Line A, or step, or up; any time
+    input  wire               a,                 // Line A, or step, or up; asynchronous
     input  wire               b,                 // Line B, or direction (high is up), or down
-    input  wire               z,                 // Index line; any time
+    input  wire               z,                 // Index line; asynchronous
     input  wire               a_n,               // Complement of A, used if `differential`
     input  wire               b_n,               // Complement of B, used if `differential`
     input  wire               z_n,               // Complement of Z, used if `differential`
-    input  wire               differential,      // The lines are pairs
-    input  wire [5:0]         filter_clocks,     // Pulses of up to so many clocks are ignored
+    input  wire               differential,      // The lines are differential pairs
+    input  wire [5:0]         filter_clocks,     // Pulses of up to this many clocks are ignored
     input  wire [2:0]         mode,              // 0 quadrature x4, 1 x2, 2 x1, 3 step and
-                                                 // direction, 4 up and down, else none
+                                                 // direction, 4 up and down, 5 to 7 nothing counts
     input  wire               swap,              // Exchanges A and B
     input  wire               invert,            // Reverses the direction
-    input  wire               index_arm,         // One clock: latch the next index
-    input  wire               index_always,      // Latch every index
-    input  wire               index_presets,     // A latched index also presets
-    input  wire [3:0]         index_gate,        // Bit 0: only while A is as bit 1
+    input  wire               index_arm,         // One clock: latches the next index
+    input  wire               index_always,      // Latches every index
+    input  wire               index_presets,     // A latched index also presets the position
+    input  wire [3:0]         index_gate,        // Bit 0: an index counts only while A equals bit 1
     input  wire               preset,            // One clock: the position becomes `preset_value`,
-                                                 // shown 2 clocks later
-    input  wire signed [31:0] preset_value,      // What a preset makes of the position [counts]
+                                                 // visible 2 clocks later
+    input  wire signed [31:0] preset_value,      // Position after a preset [counts]
     input  wire               clear_flags,       // Clears `illegal`, `illegal_count`,
                                                  // `disagreement`, `velocity_missed`
     input  wire               tick,              // One clock: the sample tick
-    input  wire [23:0]        time_stamp,        // The stage's clock counter, lowest 24 bits
+    input  wire [23:0]        time_stamp,        // Lowest 24 bits of the stage's clock counter
                                                  // [clocks]
-    input  wire               velocity_m,        // Velocity by M alone: counts per tick
-    input  wire [1:0]         smoothing,         // K of the one-pole filter with coefficient 2^-k,
-                                                 // 0 to 3
-    input  wire [7:0]         timeout,           // Without an edge for so many times 65,536 clocks,
-                                                 // the velocity is 0
+    input  wire               velocity_m,        // Velocity by method M alone: counts per tick
+    input  wire [1:0]         smoothing,         // Exponent k of the one-pole filter with
+                                                 // coefficient 2^-k, 0 to 3
+    input  wire [7:0]         timeout,           // Time without an edge after which the velocity is
+                                                 // 0, in units of 65,536 clocks
     input  wire               quotient_valid,    // One clock: `quotient` is that of `steps` and
                                                  // `elapsed`
-    input  wire signed [31:0] quotient,          // From the divider, Q16.16 counts per tick [counts
-                                                 // per tick, Q16.16]
+    input  wire signed [31:0] quotient,          // Quotient of the divider, Q16.16 counts per tick
+                                                 // [counts per tick, Q16.16]
     output wire signed [31:0] count,             // Steps since reset, modulo 2^32 [counts]
-    output wire signed [31:0] origin,            // The count at which the position is 0 [counts]
-    output wire signed [31:0] position,          // `count - origin` [counts]
-    output wire signed [31:0] index_count,       // The count at the index [counts]
-    output wire               index_seen,        // One clock, the one in which `index_count` is
-                                                 // new: an index was latched
+    output wire signed [31:0] origin,            // Count at which the position is 0 [counts]
+    output wire signed [31:0] position,          // Position, `count - origin` [counts]
+    output wire signed [31:0] index_count,       // Count at the last latched index [counts]
+    output wire               index_seen,        // One clock, in which `index_count` is new: an
+                                                 // index was latched
     output wire               index_armed,       // The next index will be latched
-    output wire [7:0]         illegal_count,     // Transitions in which A and B changed together
-    output wire               illegal,           // Sticky: there was one
-    output wire               disagreement,      // Sticky: a pair was equal for longer than the
-                                                 // filter
-    output wire               level_a,           // Filtered A
-    output wire               level_b,           // Filtered B
-    output wire               level_z,           // Filtered Z
-    output wire signed [17:0] steps,             // For the divider: counts
-    output wire [23:0]        elapsed,           // For the divider: clocks; 0 is one tick
+    output wire [7:0]         illegal_count,     // Number of transitions in which A and B changed
+                                                 // together
+    output wire               illegal,           // Sticky: there was such a transition
+    output wire               disagreement,      // Sticky: the lines of a differential pair were
+                                                 // equal for longer than the filter
+    output wire               level_a,           // Filtered level of A
+    output wire               level_b,           // Filtered level of B
+    output wire               level_z,           // Filtered level of Z
+    output wire signed [17:0] steps,             // Dividend for the divider: counts
+    output wire [23:0]        elapsed,           // Divisor for the divider: clocks
     output wire               velocity_pending,  // A tick waits for its quotient
-    output wire signed [31:0] velocity,          // Q16.16 counts per tick [counts per tick, Q16.16]
+    output wire signed [31:0] velocity,          // Velocity in counts per tick, Q16.16 [counts per
+                                                 // tick, Q16.16]
     output wire               velocity_valid,    // One clock: `velocity` is that of the last tick
-    output wire               velocity_missed    // Sticky: a tick came while one waited
+    output wire               velocity_missed    // Sticky: a tick came while another one waited for
+                                                 // its quotient
 );
     localparam [1:0]         LAST_CLOCK = 2'd2;
     localparam signed [31:0] COUNT_UP = 32'sd1;
@@ -120,7 +122,7 @@ module posicast_pulse_counter (
     reg                disagreement_q;
     reg                disagreement_q_next;
 
-    // Lines, all delayed alike
+    // Lines, all with the same delay
     posicast_line_receiver u_line_a (
         .clk           (clk),
         .rst           (rst),
@@ -208,8 +210,8 @@ module posicast_pulse_counter (
     assign disagreement_filter_input_level = line_a_disagrees | line_b_disagrees | line_z_disagrees;
     assign counted = count_q + change;
 
-    // Illegal transitions, in two halves: so short a
-    // sum takes no carry chain
+    // Illegal transitions, in two halves: such a short
+    // sum needs no carry chain
     assign low_full = (&illegal_low);
     assign counts_illegal = decoder_illegal & !(low_full & (&illegal_high));
     assign gated = gate & line_z_level;
@@ -262,7 +264,7 @@ module posicast_pulse_counter (
             end
         end
 
-        // Flags, set over clear
+        // Flags; setting wins over clearing
         if (clear_flags) begin
             disagreement_q_next = 1'd0;
         end
@@ -322,7 +324,7 @@ module posicast_pulse_counter (
         count_q <= counted;
         origin_q <= origin_q_next;
         // Presets move the origin, not the count; a clock
-        // later: the count has the step of their clock
+        // later the count includes the step of their clock
         presets <= preset | (index & index_presets);
         index_count_q <= index_count_q_next;
         index_before <= gated;
@@ -348,7 +350,7 @@ module posicast_pulse_counter (
         disagreement_q = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, count_bits[31:18]};
 endmodule
 

@@ -64,8 +64,8 @@ module posicast_pwm_carrier_on_time_base (
     assign valley_lead = position == lead;
     assign peak_lead = position == (lead >> 1);
 
-    // Astray and off, it waits for a sync at its phase;
-    // with another period it is in phase by chance only
+    // Out of phase and off, it waits for a sync;
+    // with another period it is in phase only by chance
     assign in_use = period_q[15:0] == period;
     assign in_phase = position == phase;
     assign holds = astray & in_phase & !running;

@@ -153,7 +153,7 @@ module posicast_pwm_command (
     assign below_zero = duty_q[16];
     assign one_sided = (mode_q == 2'd1) & below_zero;
 
-    // To count: where nothing is computed
+    // Counts where nothing is computed
     assign counts = !works | (!takes & !(less_dead_first | less_dead | shortness | to_fall));
     assign down = !works & !rises;
 
@@ -173,8 +173,8 @@ module posicast_pwm_command (
     assign writes = counts | size | (loads & !one_sided) | (of_period & !over_period) | of_dead
         | to_rise | to_fall;
 
-    // Duty or limit; dead time or pulse, doubled; both
-    // at once: the period. A choice of two bits a LUT
+    // Operand: 01 duty or limit, 10 twice dead time or
+    // pulse, 11 period; two bits select in one LUT
     assign first_0 = of_duty | of_period;
     assign first_1 = of_maximum | of_period;
     assign second_0 = of_dead | of_period;
@@ -250,7 +250,7 @@ module posicast_pwm_command (
             chosen = ~((first & second & {2'd0, period}) | (first ^ second));
         end
 
-        // And small numbers, where it is none of these
+        // Small constants, if it is none of these
         step_size = 19'd0;
         if (counts) begin
             step_size = 19'd4;
@@ -268,7 +268,7 @@ module posicast_pwm_command (
             step_size = 19'd1;
         end
         if (!waits) begin
-            // Counted from the lead on
+            // Steps count from the lead on
             if ((|step) | valley_lead | peak_lead) begin
                 step_next = step + 5'd1;
             end
@@ -309,7 +309,7 @@ module posicast_pwm_command (
             less_dead_first_next = plus_periods | resumes;
             to_fall_next = shortness & !rises;
 
-            // The results
+            // Results
             if (writes) begin
                 accumulator_next = sum;
             end
@@ -329,7 +329,7 @@ module posicast_pwm_command (
                 long_q_next = !under;
             end
 
-            // The level: the sign, or the edge noted before
+            // Level: the sign, or the edge noted before
             if (begins) begin
                 early_next = accumulator[5:2];
                 if (rises) begin

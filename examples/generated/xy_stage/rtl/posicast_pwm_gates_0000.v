@@ -47,7 +47,7 @@ module posicast_pwm_gates_0000 (
     assign b_high = (b_high_gate & on) ^ B_HIGH_OFF;
     assign b_low = (b_low_gate & on) ^ B_LOW_OFF;
 
-    // What the mask hides
+    // Gates before the mask
     assign leg_a_high = {3'd0, a_high_gate};
     assign leg_a = {leg_a_high[3:2], a_low_gate, leg_a_high[0]};
     assign leg_b_high = {leg_a[3], b_high_gate, leg_a[1:0]};
@@ -75,7 +75,7 @@ module posicast_pwm_gates_0000 (
             end
         end
         if (mode == 2'd3) begin
-            // Locked antiphase: the other leg is against it
+            // Locked antiphase: the other leg is in antiphase
             b_high_gate_next = low_side;
             b_low_gate_next = high_side;
         end
@@ -92,7 +92,7 @@ module posicast_pwm_gates_0000 (
         a_low_gate <= a_low_gate_next;
         b_high_gate <= b_high_gate_next;
         b_low_gate <= b_low_gate_next;
-        // Fault path and mask only ever add off
+        // Fault path and mask can only switch off
         masked <= mask_pins;
     end
 
@@ -104,7 +104,7 @@ module posicast_pwm_gates_0000 (
         masked = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, leg_a_high[1], leg_a[2], leg_b_high[3]};
 endmodule
 

@@ -43,7 +43,7 @@ module posicast_pwm_leg (
         lit_next = lit_q;
         high_next = high_q;
 
-        // The timer counts up to what the state lasts
+        // The timer counts up to the state's duration
         lasts = dead_time;
         if (lit_q) begin
             lasts = minimum_pulse;

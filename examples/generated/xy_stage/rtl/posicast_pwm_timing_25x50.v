@@ -40,7 +40,7 @@ module posicast_pwm_timing_25x50 (
         dead_time_q_next = dead_time_q;
         minimum_pulse_q_next = minimum_pulse_q;
 
-        // Below: the floor has the highest bit that differs
+        // Below: the limit has the highest differing bit
         dead_below = 1'd0;
         if (dead_time[0] != 1'd1) begin
             dead_below = 1'd1;

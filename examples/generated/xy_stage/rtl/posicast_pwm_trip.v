@@ -53,7 +53,7 @@ module posicast_pwm_trip (
         .armed  (fault_latch_armed)
     );
 
-    // Cleared once off, and seen to be over
+    // Cleared once off and once the cause is over
     posicast_synchroniser u_armed_synchroniser (
         .clk   (clk),
         .rst   (rst),
@@ -75,7 +75,7 @@ module posicast_pwm_trip (
         .level (pll_synchroniser_level)
     );
 
-    // Filtered faults and PLL, set over clear
+    // Filtered faults and PLL; setting wins
     posicast_filtered_fault u_fault_0 (
         .clk           (clk),
         .rst           (rst),
@@ -92,7 +92,7 @@ module posicast_pwm_trip (
         .active        (fault_1_active)
     );
 
-    // Without a clock: the pins, and the latch
+    // Asynchronous: the pins and the latch
     assign trip_n = fault_n & pll_locked;
     assign armed = fault_latch_armed & trip_n;
     assign latched = !armed_synchroniser_level;
@@ -142,7 +142,7 @@ module posicast_pwm_trip (
         unfed = 8'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, none[0], with_latch[1], with_fault_0[2], with_fault_1[3], with_pll[4]};
 endmodule
 

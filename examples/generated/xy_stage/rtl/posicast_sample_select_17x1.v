@@ -1,6 +1,6 @@
 // posicast_sample_select_17x1
-// Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock
-// late.
+// Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs
+// come a clock late.
 //
 // The reference is `posicast_model::rtl::sample_select`.
 //
@@ -11,13 +11,13 @@
 module posicast_sample_select_17x1 (
     input  wire               clk,
     input  wire               rst,          // Synchronous reset
-    input  wire               from_pins,    // The samples come from pins; low: from the host
-    input  wire               host_strobe,  // Of the host, one clock: its words are a sample
-    input  wire               host_start,   // Of the host: the sample is the first of a motion
-    input  wire signed [16:0] host_x_0,     // Of the host: a word per channel
-    input  wire               pin_strobe,   // As `host_strobe`, from a pin
-    input  wire               pin_start,    // As `host_start`, from a pin
-    input  wire signed [16:0] pin_x_0,      // As `host_x`, from pins
+    input  wire               from_pins,    // High: the samples come from pins
+    input  wire               host_strobe,  // One clock, from the host: its words are a sample
+    input  wire               host_start,   // From the host: the sample is the first of a motion
+    input  wire signed [16:0] host_x_0,     // From the host: a word per channel
+    input  wire               pin_strobe,   // `host_strobe` from a pin
+    input  wire               pin_start,    // `host_start` from a pin
+    input  wire signed [16:0] pin_x_0,      // `host_x` from pins
     output wire               strobe,       // One clock: the words are a sample
     output wire               start,        // The sample is the first of a motion
     output wire signed [16:0] x_0           // A word per channel

@@ -1,6 +1,6 @@
 // posicast_sample_select_32x5
-// Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock
-// late.
+// Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs
+// come a clock late.
 //
 // The reference is `posicast_model::rtl::sample_select`.
 //
@@ -11,17 +11,17 @@
 module posicast_sample_select_32x5 (
     input  wire               clk,
     input  wire               rst,          // Synchronous reset
-    input  wire               from_pins,    // The samples come from pins; low: from the host
-    input  wire               host_strobe,  // Of the host, one clock: its words are a sample
-    input  wire               host_start,   // Of the host: the sample is the first of a motion
-    input  wire signed [31:0] host_x_0,     // Of the host: a word per channel
+    input  wire               from_pins,    // High: the samples come from pins
+    input  wire               host_strobe,  // One clock, from the host: its words are a sample
+    input  wire               host_start,   // From the host: the sample is the first of a motion
+    input  wire signed [31:0] host_x_0,     // From the host: a word per channel
     input  wire signed [31:0] host_x_1,
     input  wire signed [31:0] host_x_2,
     input  wire signed [31:0] host_x_3,
     input  wire signed [31:0] host_x_4,
-    input  wire               pin_strobe,   // As `host_strobe`, from a pin
-    input  wire               pin_start,    // As `host_start`, from a pin
-    input  wire signed [31:0] pin_x_0,      // As `host_x`, from pins
+    input  wire               pin_strobe,   // `host_strobe` from a pin
+    input  wire               pin_start,    // `host_start` from a pin
+    input  wire signed [31:0] pin_x_0,      // `host_x` from pins
     input  wire signed [31:0] pin_x_1,
     input  wire signed [31:0] pin_x_2,
     input  wire signed [31:0] pin_x_3,

@@ -90,7 +90,7 @@ module posicast_scaled_product (
     assign last_bits = lower_bits[16:0];
     assign product = ({17'd0, upper_sum} << 17) | {33'd0, last_bits};
 
-    // Shift by one, so often as the gain says
+    // Shift by one, as many times as the gain says
     assign by_one = $signed(shifter[50:1]);
     assign scaled = shifter;
 
@@ -98,7 +98,7 @@ module posicast_scaled_product (
         shifter_next = shifter;
         left_next = left;
 
-        // Multiply by the gain, or by one or minus one
+        // Multiply by the gain, by one or by minus one
         of_gain = gain[17:0];
         of_unit = 18'd0;
         distance = gain[22:18];

@@ -1,5 +1,5 @@
 // posicast_schedule_210
-// When the controllers of a stage start: a fixed number of clocks after each tick.
+// The schedule starts the controllers of a stage a fixed number of clocks after each tick.
 //
 // The reference is `posicast_model::rtl::schedule`.
 //

@@ -100,7 +100,7 @@ module posicast_sequencer (
     reg        integrates_q;
     reg        integrates_q_next;
 
-    // Steps of ones move nothing, but that of e
+    // A product with one is not shifted, except e
     assign begins_pass = start & !busy_q;
     assign last_phase = phase == MARK_PHASE;
     assign last_step = step_q == OF_DUTY;

@@ -1,6 +1,6 @@
 // posicast_setting_banks_94eabf14
-// The settings of a controller that stands alone: bank 0 a ROM with the machine's, banks 1 and 2 to
-// be loaded.
+// The settings of a controller that stands alone: bank 0 is a ROM with the machine's settings,
+// banks 1 and 2 can be loaded.
 //
 // The reference is `posicast_model::rtl::setting_banks`. Which rows were written since the reset is
 // kept in flip-flops, since a memory has no reset: others read as 0. A host reads any row back
@@ -12,21 +12,22 @@
 
 module posicast_setting_banks_94eabf14 (
     input  wire        clk,
-    input  wire        rst,                // Synchronous reset: banks 1 and 2 are forgotten
-    input  wire        setting_write,      // One clock: `setting_word` goes to its bank and row
-    input  wire [1:0]  setting_bank,       // Bank that is written, 1 or 2
-    input  wire [3:0]  setting_row,        // Row that is written
-    input  wire [31:0] setting_word,       // What is written
-    input  wire [1:0]  bank,               // Bank that is read: 0 the machine's, 1 and 2 the loaded
-                                           // ones
-    input  wire [3:0]  row,                // Row that is read
-    input  wire        busy,               // The controller reads: a host's read waits
-    input  wire        setting_read,       // One clock: the word at `setting_bank` and
-                                           // `setting_row` is to be read back
-    output reg  [31:0] setting,            // The word that was read, a clock after its bank and row
+    input  wire        rst,                // Synchronous reset
+    input  wire        setting_write,      // One clock: writes `setting_word` to `setting_row` of
+                                           // `setting_bank`
+    input  wire [1:0]  setting_bank,       // Bank to write, 1 or 2, or to read back
+    input  wire [3:0]  setting_row,        // Row to write or to read back
+    input  wire [31:0] setting_word,       // Word to write
+    input  wire [1:0]  bank,               // Bank that the controller reads: 0 is the machine's, 1
+                                           // and 2 are the loaded ones
+    input  wire [3:0]  row,                // Row that the controller reads
+    input  wire        busy,               // The controller is reading, so a host's read waits
+    input  wire        setting_read,       // One clock: read back the word at `setting_row` of
+                                           // `setting_bank`
+    output reg  [31:0] setting,            // The word read, one clock after its bank and row
     output wire        setting_refused,    // One clock: a write was refused
-    output wire [31:0] setting_loaded,     // The word that the host read back last; 0 after reset
-    output wire        setting_read_waits  // A host's read was not served yet
+    output wire [31:0] setting_loaded,     // Last word that the host read back; 0 after reset
+    output wire        setting_read_waits  // A host's read waits to be served
 );
     localparam [1:0] BANK_MACHINE = 2'd0;
     localparam [4:0] LOWER_HALF = 5'd0;
@@ -69,7 +70,7 @@ module posicast_setting_banks_94eabf14 (
         .read_data     (loaded_settings_read_data)
     );
 
-    // Writes: only to a bank that is not in use
+    // Writes go only to a bank that is not in use
     assign loadable = ((setting_bank == 2'd1) | (setting_bank == 2'd2)) & (setting_bank != bank);
     assign taken = setting_write & loadable;
     assign write_address = write_half | {1'd0, setting_row};
@@ -100,7 +101,7 @@ module posicast_setting_banks_94eabf14 (
             read_row = setting_row;
         end
 
-        // Reads: what was not written is 0
+        // A row that was not written reads as 0
         read_half = LOWER_HALF;
         if (read_bank == 2'd2) begin
             read_half = UPPER_HALF;

@@ -1,9 +1,10 @@
 // posicast_sliding_mode
-// Controller: reference and measurement to the drive's command, by sliding mode, PD or PID.
+// Controller: computes the drive's command from reference and measurement, by sliding mode, PD or
+// PID.
 // Each step reads its gain at setting_address: the word comes in the next clock, as from a block
 // RAM.
 //
-// The controller: what a step multiplies, and what becomes of its sum.
+// The controller: selects the operand of each step, and the word that takes its sum.
 //
 // | step | operand | times | sum so far | taken by |
 // |---|---|---|---|---|
@@ -32,46 +33,47 @@
 module posicast_sliding_mode (
     input  wire               clk,
     input  wire               rst,                     // Synchronous reset
-    input  wire               start,                   // One clock: a tick
-    input  wire [1:0]         law,                     // 0 sliding mode, 1 PD, 2 PID, 3 as 1
-    input  wire               modulo,                  // Tied: a rotary axis, whose references wrap
-    input  wire signed [31:0] position_reference,      // Reference r of the position [counts,
-                                                       // Q24.8]
-    input  wire signed [31:0] velocity_reference,      // Reference dr of the velocity [counts per
-                                                       // tick, Q16.16]
-    input  wire signed [31:0] acceleration_reference,  // Reference ddr of the acceleration [counts
-                                                       // per tick², Q8.24]
-    input  wire signed [31:0] position,                // Measured position x, live [counts]
+    input  wire               start,                   // One clock: computes a tick
+    input  wire [1:0]         law,                     // Law: 0 sliding mode, 1 PD, 2 PID, 3 as 1
+    input  wire               modulo,                  // Constant
+    input  wire signed [31:0] position_reference,      // Reference position r [counts, Q24.8]
+    input  wire signed [31:0] velocity_reference,      // Reference velocity dr [counts per tick,
+                                                       // Q16.16]
+    input  wire signed [31:0] acceleration_reference,  // Reference acceleration ddr [counts per
+                                                       // tick², Q8.24]
+    input  wire signed [31:0] position,                // Measured position x, changing at any time
+                                                       // [counts]
     input  wire signed [31:0] velocity,                // Measured velocity v [counts per tick,
                                                        // Q16.16]
-    input  wire [31:0]        setting,                 // The word at the `setting_address` of the
+    input  wire [31:0]        setting,                 // Setting at the `setting_address` of the
                                                        // clock before
     input  wire               clear_integral,          // Clears sum ofe
     input  wire               clear_flags,             // Clears `saturated_high`, `saturated_low`,
                                                        // `overrun`
-    output wire [3:0]         setting_address,         // Row of the settings: its word is expected
-                                                       // in the next clock
-    output wire signed [31:0] error,                   // e: new in the clock after `start` [counts,
-                                                       // Q16.16]
-    output wire signed [31:0] sliding,                 // s, with every law [counts per tick,
-                                                       // Q16.16]
+    output wire [3:0]         setting_address,         // Row of the settings, whose word is
+                                                       // expected in the next clock
+    output wire signed [31:0] error,                   // Position error e: new in the clock after
+                                                       // `start` [counts, Q16.16]
+    output wire signed [31:0] sliding,                 // Sliding variable s, with every law [counts
+                                                       // per tick, Q16.16]
     output wire signed [31:0] command,                 // The command, within +/-limit [command
                                                        // units, Q20.12]
-    output wire signed [17:0] duty,                    // The command as clocks of the PWM period
-    output wire               valid,                   // One clock: all outputs are of the last
+    output wire signed [17:0] duty,                    // The command in clocks of the PWM period
+    output wire               valid,                   // One clock: all outputs belong to the last
                                                        // `start`
-    output wire               busy,                    // A pass runs
-    output wire               limited_high,            // The last command was cut at +limit
-    output wire               limited_low,             // The last command was cut at -limit
-    output wire [15:0]        limited_ticks,           // For so many ticks in a row commands were
-                                                       // cut
-    output wire [6:0]         saturated_high,          // Sticky: what was cut at its upper end: bit
-                                                       // 0 e, 1 de, 2 s, 3 a, 4 sum ofe, 5 command,
-                                                       // 6 duty
-    output wire [6:0]         saturated_low,           // Sticky: what was cut at its lower end
-    output wire               overrun,                 // Sticky: a `start` came while `busy`, and
+    output wire               busy,                    // A computation is running
+    output wire               limited_high,            // The last command was clamped at +limit
+    output wire               limited_low,             // The last command was clamped at -limit
+    output wire [15:0]        limited_ticks,           // Number of consecutive ticks with a clamped
+                                                       // command
+    output wire [6:0]         saturated_high,          // Sticky: values that were clamped at their
+                                                       // upper end: bit 0 e, 1 de, 2 s, 3 a, 4 sum
+                                                       // ofe, 5 command, 6 duty
+    output wire [6:0]         saturated_low,           // Sticky: values that were clamped at their
+                                                       // lower end
+    output wire               overrun,                 // Sticky: a `start` came while `busy` and
                                                        // was ignored
-    output wire               ends                     // One clock: the last of a pass
+    output wire               ends                     // One clock: the last of a computation
 );
     localparam [4:0] OF_REFERENCE = 5'd0;
     localparam [4:0] OF_VELOCITY = 5'd1;
@@ -186,7 +188,7 @@ module posicast_sliding_mode (
         .low                (tracking_low)
     );
 
-    // What a step multiplies, and by what
+    // Operand of a step, and its factor
     posicast_operands u_operands (
         .clk                    (clk),
         .rst                    (rst),
@@ -320,7 +322,7 @@ module posicast_sliding_mode (
         duty_q_next = duty_q;
         opposes_next = opposes;
 
-        // The integral works against the feedback's sign
+        // The integral's sign is opposite to the feedback's
         if (reads & (sequencer_step == ON_REST)) begin
             opposes_next = setting[17];
         end
@@ -328,7 +330,7 @@ module posicast_sliding_mode (
             opposes_next = opposes ^ setting[17];
         end
 
-        // Who takes a word, and the flag of its cut
+        // Destination of a word, and its saturation flag
         if (settles & (sequencer_step == SURFACE)) begin
             sliding_q_next = accumulator_word;
         end
@@ -380,7 +382,7 @@ module posicast_sliding_mode (
         opposes = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, setting[31]};
 endmodule
 

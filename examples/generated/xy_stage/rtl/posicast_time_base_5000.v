@@ -42,7 +42,7 @@ module posicast_time_base_5000 (
     always @(*) begin
         tick_count_q_next = tick_count_q;
 
-        // The bits that a tick has not go at synthesis
+        // Synthesis removes bits that a tick does not need
         phase_next = (phase + 17'd1) & USED_PHASE;
         tick_q_next = 1'd0;
         if (phase == LAST_PHASE) begin

@@ -122,8 +122,8 @@ module posicast_velocity (
     assign lost = !velocity_m & (!known | turned);
     assign rests = !velocity_m & (!fresh | turned);
 
-    // Steps; 0 without an edge, where 1 or -1 is to be
-    // divided: a borrow at bit 0 makes all bits ones
+    // Steps; 0 without an edge, where 1 or -1 is
+    // divided: a borrow at bit 0 sets all bits to one
     assign waits = !moved & !velocity_m;
     assign counted = ({1'd0, count} << 1) - (({1'd0, captured} << 1) | borrow);
 
@@ -166,8 +166,8 @@ module posicast_velocity (
             smoothed_next = REST;
         end
 
-        // The last edge, less than 2^18 clocks ago: its
-        // high bits are those of the time, or one less
+        // The last edge was less than 2^18 clocks ago: its
+        // high bits are those of now, or one less
         last_carry = 5'd0;
         if (last_low[18] & !time_stamp[18]) begin
             last_carry = 5'd1;
@@ -213,12 +213,12 @@ module posicast_velocity (
             steps_q_next = 18'd0;
         end
 
-        // Time of the last edge; after a tick without: now
+        // Time of the last edge, or now after a tick without
         if (step | tick | !moved) begin
             last_low_next = time_stamp[18:0];
         end
 
-        // An edge; in the clock of a tick, of the next
+        // An edge; at a tick it belongs to the next one
         if (step) begin
             last_up_next = up;
             moved_next = 1'd1;
@@ -274,7 +274,7 @@ module posicast_velocity (
         missed_q = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, counted[0], resolved[0]};
 endmodule
 

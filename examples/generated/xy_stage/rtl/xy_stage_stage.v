@@ -351,7 +351,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_07d7cdfd u_registers (
+    posicast_stage_registers_0b6795ae u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),
@@ -1007,7 +1007,7 @@ module xy_stage_stage (
         .index_seen                (y_index_seen)
     );
 
-    // Nets that nothing reads.
+    // Nets that are never read.
     wire unused = &{1'b0, divider_busy, divider_saturated, divider_overrun};
 endmodule
 

@@ -546,7 +546,7 @@ module xy_stage_stage_y (
         .refused                (refused)
     );
 
-    // Nets that nothing reads.
+    // Nets that are never read.
     wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, ends, velocity_pending,
         velocity_valid, negative, peak, pwm_refused, pwm_below_floor, dead_time_used,
         minimum_pulse_used, enabled, started, disabled};

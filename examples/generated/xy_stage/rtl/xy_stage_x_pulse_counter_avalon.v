@@ -70,7 +70,7 @@ module xy_stage_x_pulse_counter_avalon (
     wire               saturated;
     wire               divider_overrun;
 
-    posicast_pulse_counter_registers_37b05b8c u_registers (
+    posicast_pulse_counter_registers_b6c14a58 u_registers (
         .clk              (clk),
         .rst              (rst),
         .avs_address      (avs_address),
@@ -188,7 +188,7 @@ module xy_stage_x_pulse_counter_avalon (
         .overrun     (divider_overrun)
     );
 
-    // Nets that nothing reads.
+    // Nets that are never read.
     wire unused = &{1'b0, divider_busy, divider_overrun};
 endmodule
 

@@ -65,7 +65,7 @@ module xy_stage_x_pwm_avalon (
     wire [9:0]         minimum_pulse_used;
     wire [3:0]         gates;
 
-    posicast_pwm_registers_d4473319 u_registers (
+    posicast_pwm_registers_afef7fa5 u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),
@@ -162,7 +162,7 @@ module xy_stage_x_pwm_avalon (
         .gates              (gates)
     );
 
-    // Nets that nothing reads.
+    // Nets that are never read.
     wire unused = &{1'b0, no_start, gates};
 endmodule
 

@@ -2,7 +2,7 @@
 // Input shaper: y[n] = saturate( (sum of c_i * x[n - d_i] + 2^(F-1)) >> F )
 // strobe: x is a sample; start: begin anew, all samples before are x. One tap per clock.
 //
-// The pass over the taps, one per clock.
+// Computes a sample over the taps, one tap per clock.
 //
 // tap -> tap_banks -> delay -----> history -> sample ------> weighted_sum -----------------> y
 //                  |> coefficient -------------------------->
@@ -27,32 +27,33 @@ module xy_stage_x_shaper (
     input  wire               clk,
     input  wire               rst,                 // Synchronous reset, active high
     input  wire               strobe,              // For one clock: the next sample of the command
-    input  wire               start,               // For one clock: begin anew, all samples before
-                                                   // now count as the command of now
+    input  wire               start,               // For one clock: restart
     input  wire signed [31:0] x,                   // Command word
     input  wire               clear_flags,         // Clears `saturated`, `overrun`, `refused`
-    input  wire               tap_write,           // For one clock: one tap for a loadable bank
-    input  wire [1:0]         tap_bank,            // The bank it is for, 1 or 2
-    input  wire [5:0]         tap_index,           // Its place in the table: 0 begins a table, then
-                                                   // one after the other
-    input  wire signed [17:0] tap_coefficient,     // Its coefficient [2^-F]
-    input  wire [6:0]         tap_delay,           // Its delay, 0 ... 2^A - 2 [samples]
-    input  wire               tap_read,            // For one clock: the tap at `tap_index` of
-                                                   // `tap_bank`, of any bank, is to be read back
+    input  wire               tap_write,           // For one clock: writes one tap to a loadable
+                                                   // bank
+    input  wire [1:0]         tap_bank,            // Bank of the tap: 1 or 2 for a write
+    input  wire [5:0]         tap_index,           // Index of the tap: 0 begins a table, then one
+                                                   // after the other
+    input  wire signed [17:0] tap_coefficient,     // Coefficient of the tap [2^-F]
+    input  wire [6:0]         tap_delay,           // Delay of the tap, 0 ... 2^A - 2 [samples]
+    input  wire               tap_read,            // For one clock: read back the tap at
+                                                   // `tap_index` of `tap_bank`, which may be any
+                                                   // bank
     input  wire               swap,                // For one clock: make `swap_bank` active
     input  wire [1:0]         swap_bank,           // The bank to make active, 0 to 2
     output wire signed [31:0] y,                   // Shaped command; holds between samples
     output wire               valid,               // For one clock: the shaped command is new
-    output wire               saturated,           // Sticky: some output was clamped
-    output wire               busy,                // A pass over the table runs
-    output wire               overrun,             // Sticky: a strobe came while a pass ran
+    output wire               saturated,           // Sticky: an output was clamped
+    output wire               busy,                // A pass over the table is running
+    output wire               overrun,             // Sticky: a strobe came while a pass was running
     output wire               swap_pending,        // A swap waits, or hands over
     output wire [1:0]         bank,                // The active bank
     output wire               refused,             // Sticky: a write or a swap was refused
     output wire signed [17:0] loaded_coefficient,  // Coefficient of the tap that was read back last
                                                    // [2^-F]
-    output wire [6:0]         loaded_delay,        // Its delay [samples]
-    output wire               tap_read_waits       // A read was not served yet
+    output wire [6:0]         loaded_delay,        // Delay of that tap [samples]
+    output wire               tap_read_waits       // A read waits to be served
 );
     localparam [5:0] FIRST_TAP = 6'd0;
     localparam [5:0] FIRST_STAGE = 6'd1;
@@ -88,8 +89,8 @@ module xy_stage_x_shaper (
     reg                overrun_q;
     reg                overrun_q_next;
 
-    // The tables: the word of tap, two clocks later
-    // A swap has one way: all at the next strobe
+    // Tables: the word of tap comes two clocks later
+    // A swap takes effect at the next strobe
     xy_stage_x_tap_banks u_banks (
         .clk                (clk),
         .rst                (rst),
@@ -122,7 +123,7 @@ module xy_stage_x_shaper (
         .tap_read_waits     (banks_tap_read_waits)
     );
 
-    // The samples: the one at delay, a clock later
+    // Samples: the one at delay comes a clock later
     posicast_history_32x128x1 u_history (
         .clk      (clk),
         .rst      (rst),
@@ -150,7 +151,7 @@ module xy_stage_x_shaper (
         .saturated   (sum_saturated)
     );
 
-    // The sum: a pass that is cut off leaves y
+    // Sum: an abandoned pass leaves y unchanged
     assign finish = done & !start & !strobe;
 
     // One tap per clock, up to the last of the table
@@ -188,7 +189,7 @@ module xy_stage_x_shaper (
             busy_q_next = 1'd0;
         end
 
-        // A start or a strobe cuts off what runs
+        // A start or a strobe abandons a running pass
         if (start | strobe) begin
             running_next = 1'd0;
             stages_next = 6'd0;
@@ -236,7 +237,7 @@ module xy_stage_x_shaper (
         overrun_q = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, banks_accepted, banks_reach};
 endmodule
 

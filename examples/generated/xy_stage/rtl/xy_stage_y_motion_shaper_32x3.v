@@ -3,7 +3,7 @@
 // strobe: x is a sample; start: begin anew, all samples before are x. One tap per clock.
 // x_0: position, x_1: velocity, x_2: acceleration. swap_how: 0 at once, 1 handover, 2 when settled.
 //
-// The pass over the taps, one per clock.
+// Computes a sample over the taps, one tap per clock.
 //
 // tap -> tap_banks -> delay -----> history -> sample ------> weighted_sum -----------------> y
 //                  |> coefficient -------------------------->
@@ -31,21 +31,22 @@ module xy_stage_y_motion_shaper_32x3 (
     input  wire               clk,
     input  wire               rst,                 // Synchronous reset, active high
     input  wire               strobe,              // For one clock: the next sample of the command
-    input  wire               start,               // For one clock: begin anew, all samples before
-                                                   // now count as the command of now
+    input  wire               start,               // For one clock: restart
     input  wire signed [31:0] x_0,                 // Command words: position, velocity,
                                                    // acceleration
     input  wire signed [31:0] x_1,
     input  wire signed [31:0] x_2,
     input  wire               clear_flags,         // Clears `saturated`, `overrun`, `refused`
-    input  wire               tap_write,           // For one clock: one tap for a loadable bank
-    input  wire [1:0]         tap_bank,            // The bank it is for, 1 or 2
-    input  wire [5:0]         tap_index,           // Its place in the table: 0 begins a table, then
-                                                   // one after the other
-    input  wire signed [17:0] tap_coefficient,     // Its coefficient [2^-F]
-    input  wire [6:0]         tap_delay,           // Its delay, 0 ... 2^A - 2 [samples]
-    input  wire               tap_read,            // For one clock: the tap at `tap_index` of
-                                                   // `tap_bank`, of any bank, is to be read back
+    input  wire               tap_write,           // For one clock: writes one tap to a loadable
+                                                   // bank
+    input  wire [1:0]         tap_bank,            // Bank of the tap: 1 or 2 for a write
+    input  wire [5:0]         tap_index,           // Index of the tap: 0 begins a table, then one
+                                                   // after the other
+    input  wire signed [17:0] tap_coefficient,     // Coefficient of the tap [2^-F]
+    input  wire [6:0]         tap_delay,           // Delay of the tap, 0 ... 2^A - 2 [samples]
+    input  wire               tap_read,            // For one clock: read back the tap at
+                                                   // `tap_index` of `tap_bank`, which may be any
+                                                   // bank
     input  wire               swap,                // For one clock: make `swap_bank` active
     input  wire [1:0]         swap_bank,           // The bank to make active, 0 to 2
     input  wire [1:0]         swap_how,            // When the swap takes effect: 0 at once, 1 by
@@ -54,16 +55,16 @@ module xy_stage_y_motion_shaper_32x3 (
     output wire signed [31:0] y_1,
     output wire signed [31:0] y_2,
     output wire               valid,               // For one clock: the shaped command is new
-    output wire               saturated,           // Sticky: some output was clamped
-    output wire               busy,                // A pass over the table runs
-    output wire               overrun,             // Sticky: a strobe came while a pass ran
+    output wire               saturated,           // Sticky: an output was clamped
+    output wire               busy,                // A pass over the table is running
+    output wire               overrun,             // Sticky: a strobe came while a pass was running
     output wire               swap_pending,        // A swap waits, or hands over
     output wire [1:0]         bank,                // The active bank
     output wire               refused,             // Sticky: a write or a swap was refused
     output wire signed [17:0] loaded_coefficient,  // Coefficient of the tap that was read back last
                                                    // [2^-F]
-    output wire [6:0]         loaded_delay,        // Its delay [samples]
-    output wire               tap_read_waits       // A read was not served yet
+    output wire [6:0]         loaded_delay,        // Delay of that tap [samples]
+    output wire               tap_read_waits       // A read waits to be served
 );
     localparam [5:0] FIRST_TAP = 6'd0;
     localparam [1:0] FIRST_CHANNEL = 2'd0;
@@ -155,8 +156,8 @@ module xy_stage_y_motion_shaper_32x3 (
         .tap_read_waits     (banks_tap_read_waits)
     );
 
-    // When a swap takes effect
-    // What a handover makes of a tap
+    // Time at which a swap takes effect
+    // Tap during a handover
     posicast_handover_32x128_f16 u_handover (
         .clk             (clk),
         .rst             (rst),
@@ -180,7 +181,7 @@ module xy_stage_y_motion_shaper_32x3 (
         .delay           (handover_delay)
     );
 
-    // The samples: those at delay, a clock later
+    // Samples: those at delay come a clock later
     posicast_history_32x128x3 u_history (
         .clk      (clk),
         .rst      (rst),
@@ -196,7 +197,7 @@ module xy_stage_y_motion_shaper_32x3 (
         .blank    (history_blank)
     );
 
-    // The sums: one ends and the next begins
+    // Sums: one ends and the next begins
     posicast_channel_sums_32x57x3_f16 u_sums (
         .clk            (clk),
         .rst            (rst),
@@ -222,11 +223,11 @@ module xy_stage_y_motion_shaper_32x3 (
         .saturated      (sums_saturated)
     );
 
-    // The tables: the word of tap, two clocks later
+    // Tables: the word of tap comes two clocks later
     assign of_position = channel == FIRST_CHANNEL;
     assign old = handover_active & !second;
 
-    // A product per clock; after a channel none
+    // A product per clock, and none after a channel
     assign tap_number = {1'd0, tap} + 7'd1;
     assign table_ends = tap_number == banks_taps;
 
@@ -284,7 +285,7 @@ module xy_stage_y_motion_shaper_32x3 (
             sample_channel_next = sample_channel + 2'd1;
         end
 
-        // A start or a strobe cuts off what runs
+        // A start or a strobe abandons a running pass
         begin_lasts = 9'd0;
         if (strobe) begin
             begin_lasts = SECOND_STAGE;
@@ -337,7 +338,7 @@ module xy_stage_y_motion_shaper_32x3 (
         overrun_q = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, handover_since};
 endmodule
 

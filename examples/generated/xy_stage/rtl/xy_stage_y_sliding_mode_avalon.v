@@ -66,7 +66,7 @@ module xy_stage_y_sliding_mode_avalon (
     wire               overrun;
     wire               ends;
 
-    posicast_sliding_mode_registers_e659ee46 u_registers (
+    posicast_sliding_mode_registers_1e2606d4 u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),
@@ -185,7 +185,7 @@ module xy_stage_y_sliding_mode_avalon (
         .ends                   (ends)
     );
 
-    // Nets that nothing reads.
+    // Nets that are never read.
     wire unused = &{1'b0, no_start};
 endmodule
 

@@ -143,7 +143,7 @@ module xy_stage_y_tap_banks (
 
     assign begins = !(|tap_index);
 
-    // Taken in sequence, into a bank at rest
+    // Accepted in sequence, into an inactive bank
     assign loadable = (tap_bank == 2'd1) | (tap_bank == 2'd2);
     assign free = !(pending | locked);
     assign at_rest = (tap_bank != active) & free & !swap;
@@ -185,7 +185,7 @@ module xy_stage_y_tap_banks (
         refused_q_next = refused_q;
         read_back_next = read_back;
 
-        // Writing: how far the bank addressed is loaded
+        // Write: number of taps in the addressed bank
         taps_so_far = taps_1;
         sum_so_far = sum_1;
         longest_so_far = longest_1;
@@ -224,7 +224,7 @@ module xy_stage_y_tap_banks (
             host_taps = MACHINE_COUNT;
         end
 
-        // Swapping: only to a table that sums to one
+        // Swap: only to a table whose sum is one
         swap_taken = 1'd0;
         if (swap_bank == BANK_ROM) begin
             swap_taken = swap & free & known;
@@ -245,7 +245,7 @@ module xy_stage_y_tap_banks (
             pending_next = 1'd1;
         end
 
-        // How far back the tables of a swap reach
+        // Longest delay of a swap's tables
         active_longest = longest_1;
         if (active == 2'd2) begin
             active_longest = longest_2;
@@ -267,7 +267,7 @@ module xy_stage_y_tap_banks (
             end
         end
 
-        // Refusals, set over clear
+        // Refusals; setting wins over clearing
         if (clear_flags) begin
             refused_q_next = 1'd0;
         end
@@ -275,7 +275,7 @@ module xy_stage_y_tap_banks (
             refused_q_next = 1'd1;
         end
 
-        // Reading: the active table, or the old one
+        // Read: the active table, or the old one
         read_bank = active;
         if (old) begin
             read_bank = previous;
@@ -295,7 +295,7 @@ module xy_stage_y_tap_banks (
         end
         read_tap = tap;
 
-        // The host's place is that of a write
+        // The host reads at the address of a write
         if (serves) begin
             read_address = write_address;
             read_tap = tap_index;

@@ -40,7 +40,7 @@ set_module_assignment embeddedsw.dts.compatible {posicast,stage-2.2}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_stage
-    add_fileset_file posicast_stage_registers_07d7cdfd.v VERILOG PATH ../rtl/posicast_stage_registers_07d7cdfd.v
+    add_fileset_file posicast_stage_registers_0b6795ae.v VERILOG PATH ../rtl/posicast_stage_registers_0b6795ae.v
     add_fileset_file posicast_time_base_5000.v VERILOG PATH ../rtl/posicast_time_base_5000.v
     add_fileset_file posicast_schedule_210.v VERILOG PATH ../rtl/posicast_schedule_210.v
     add_fileset_file posicast_divider_share_2.v VERILOG PATH ../rtl/posicast_divider_share_2.v

@@ -1,4 +1,4 @@
-// posicast_pwm_registers_d4473319
+// posicast_pwm_registers_afef7fa5
 // Registers of pwm: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -10,7 +10,7 @@
 
 `default_nettype none
 
-module posicast_pwm_registers_d4473319 (
+module posicast_pwm_registers_afef7fa5 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -316,7 +316,7 @@ module posicast_pwm_registers_d4473319 (
         irq = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, written[31:26]};
 endmodule
 

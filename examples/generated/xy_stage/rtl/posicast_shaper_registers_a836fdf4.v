@@ -1,4 +1,4 @@
-// posicast_shaper_registers_269aa9e6
+// posicast_shaper_registers_a836fdf4
 // Registers of shaper: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -15,7 +15,7 @@
 
 `default_nettype none
 
-module posicast_shaper_registers_269aa9e6 (
+module posicast_shaper_registers_a836fdf4 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -337,7 +337,7 @@ module posicast_shaper_registers_269aa9e6 (
         irq = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, written[31:4]};
 endmodule
 

@@ -1,4 +1,4 @@
-// posicast_pulse_counter_registers_37b05b8c
+// posicast_pulse_counter_registers_b6c14a58
 // Registers of pulse_counter: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -9,7 +9,7 @@
 
 `default_nettype none
 
-module posicast_pulse_counter_registers_37b05b8c (
+module posicast_pulse_counter_registers_b6c14a58 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -357,7 +357,7 @@ module posicast_pulse_counter_registers_37b05b8c (
         irq = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, written[31:5]};
 endmodule
 

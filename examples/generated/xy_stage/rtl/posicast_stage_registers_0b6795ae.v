@@ -1,4 +1,4 @@
-// posicast_stage_registers_07d7cdfd
+// posicast_stage_registers_0b6795ae
 // Registers of stage: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -22,7 +22,7 @@
 
 `default_nettype none
 
-module posicast_stage_registers_07d7cdfd (
+module posicast_stage_registers_0b6795ae (
     input  wire               clk,
     input  wire               rst,
     input  wire [9:0]         avs_address,
@@ -1696,7 +1696,7 @@ module posicast_stage_registers_07d7cdfd (
         irq = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, written[27:14], written[31:30]};
 endmodule
 

@@ -1,4 +1,4 @@
-// posicast_sliding_mode_registers_e659ee46
+// posicast_sliding_mode_registers_1e2606d4
 // Registers of sliding_mode: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -6,7 +6,7 @@
 
 `default_nettype none
 
-module posicast_sliding_mode_registers_e659ee46 (
+module posicast_sliding_mode_registers_1e2606d4 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -416,7 +416,7 @@ module posicast_sliding_mode_registers_e659ee46 (
         irq = 1'd0;
     end
 
-    // Bits that nothing reads.
+    // Bits that are never read.
     wire unused = &{1'b0, written[31:4]};
 endmodule
 
