@@ -41,6 +41,11 @@ impl Gathering {
         }
     }
 
+    /// Whether samples behind the divergence are still to come.
+    pub(super) fn is_missing_some(&self) -> bool {
+        self.missing > 0
+    }
+
     /// A sample; `shown` gives the values of a pair.
     pub(super) fn add(&mut self, time_fs: u128, shown: impl Fn(usize) -> (Shown, Shown)) {
         self.context.times.push(seconds(time_fs));

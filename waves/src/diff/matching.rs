@@ -9,6 +9,20 @@ use crate::WaveError;
 /// Scopes that may be stripped from each file when full names do not meet.
 const STRIPPED_SCOPES: usize = 4;
 
+/// How two signals were found to belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MatchedBy {
+    /// A `--map` says so.
+    Map,
+    /// They have the same full name.
+    Name,
+    /// They have the same name below the scopes that all signals of their file share.
+    Scopes,
+    /// They have the same name in another writing.
+    Writing,
+}
+
 /// Two signals that belong together, or one without a partner. Never both `None`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Pair {
@@ -18,6 +32,7 @@ pub(super) struct Pair {
     pub(super) b_name: Option<String>,
     pub(super) a: Option<u32>,
     pub(super) b: Option<u32>,
+    pub(super) by: Option<MatchedBy>,
 }
 
 impl Pair {
@@ -40,6 +55,7 @@ struct Partners<'a> {
     a: &'a [Entry],
     b: &'a [Entry],
     of_a: Vec<Option<usize>>,
+    by: Vec<Option<MatchedBy>>,
     claimed_a: Vec<bool>,
     claimed_b: HashSet<usize>,
 }
@@ -50,6 +66,7 @@ impl Matched {
             a: &a.entries,
             b: &b.entries,
             of_a: vec![None; a.entries.len()],
+            by: vec![None; a.entries.len()],
             claimed_a: vec![false; a.entries.len()],
             claimed_b: HashSet::new(),
         };
@@ -84,8 +101,9 @@ impl Matched {
 }
 
 impl Partners<'_> {
-    fn claim(&mut self, a: usize, b: usize) {
+    fn claim(&mut self, a: usize, b: usize, by: MatchedBy) {
         self.of_a[a] = Some(b);
+        self.by[a] = Some(by);
         self.claimed_b.insert(b);
     }
 
@@ -120,7 +138,7 @@ impl Partners<'_> {
                     .find_map(|top| by_name.get(format!("{top}{target}").as_str()));
                 if let Some(target) = target {
                     meets = true;
-                    self.claim(at, *target);
+                    self.claim(at, *target, MatchedBy::Map);
                 }
             }
             if !known || !meets {
@@ -142,6 +160,10 @@ impl Partners<'_> {
     fn meet_by_name(&mut self) {
         let (free_a, free_b) = self.free();
         let (top_a, top_b) = best_tops(self.a, self.b, &free_a, &free_b);
+        let by = match top_a.is_empty() && top_b.is_empty() {
+            true => MatchedBy::Name,
+            false => MatchedBy::Scopes,
+        };
         let targets: HashMap<&str, usize> = free_b
             .iter()
             .filter_map(|at| Some((self.b[*at].path.strip_prefix(top_b.as_str())?, *at)))
@@ -149,7 +171,7 @@ impl Partners<'_> {
         for at in free_a {
             let name = self.a[at].path.strip_prefix(top_a.as_str());
             if let Some(target) = name.and_then(|name| targets.get(name)) {
-                self.claim(at, *target);
+                self.claim(at, *target, by);
             }
         }
     }
@@ -189,7 +211,7 @@ impl Partners<'_> {
             }
         }
         for (a, b) in best {
-            self.claim(a, b);
+            self.claim(a, b, MatchedBy::Writing);
         }
     }
 
@@ -216,9 +238,10 @@ impl Partners<'_> {
         let of_a = self
             .a
             .iter()
-            .zip(&self.of_a)
-            .filter(|(entry, partner)| listed(entry, &parts_a, partner.is_some()));
-        let of_a = of_a.map(|(entry, partner)| Pair {
+            .zip(self.of_a.iter().zip(&self.by))
+            .filter(|(entry, (partner, _))| listed(entry, &parts_a, partner.is_some()));
+        let of_a = of_a.map(|(entry, (partner, by))| Pair {
+            by: by.filter(|_| partner.is_some()),
             name: entry.full.clone(),
             a: Some(entry.slot),
             b_name: partner.map(|at| self.b[at].full.clone()),
@@ -232,6 +255,7 @@ impl Partners<'_> {
         let of_b = alone.map(|(_, entry)| Pair {
             name: entry.full.clone(),
             b_name: Some(entry.full.clone()),
+            by: None,
             a: None,
             b: Some(entry.slot),
         });
@@ -309,6 +333,7 @@ mod tests {
         Names {
             entries: paths.iter().enumerate().map(entry).collect(),
             groups: Vec::new(),
+            left_out: 0,
         }
     }
 

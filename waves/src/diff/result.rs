@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::explain::MatchReport;
 use super::matching::{Matched, Pair};
 use super::rule::{Rule, View};
 use super::value::{Shown, UnknownPolicy};
@@ -71,6 +72,31 @@ pub struct ContextRow {
     pub view: View,
 }
 
+/// A signal's values at the first difference, and at the sample before.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SignalState {
+    /// Full name.
+    pub signal: String,
+    /// The value of both files at the sample before; missing at the first one.
+    pub before: Shown,
+    /// The first file's value at the difference.
+    pub a: Shown,
+    /// The second file's.
+    pub b: Shown,
+    /// How the text reads the bits.
+    #[serde(skip)]
+    pub view: View,
+}
+
+/// A file that is compared only up to where it was cut off.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CutFile {
+    /// `first` or `second`.
+    pub file: &'static str,
+    /// Where it was cut off.
+    pub place: String,
+}
+
 /// How a signal is compared, where that is not bit by bit in equal widths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Leniency {
@@ -124,6 +150,15 @@ pub struct Comparison {
     /// Events: not compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
+    /// With [`DiffOptions::first`](super::DiffOptions::first): all signals at the first difference.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub state: Vec<SignalState>,
+    /// Files that were compared only up to where they were cut off.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cut: Vec<CutFile>,
+    /// With [`DiffOptions::explain`](super::DiffOptions::explain): how the signals were matched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matching: Option<MatchReport>,
     /// Names of all signals that were compared, in the first file and in the second.
     #[serde(skip)]
     pub compared: Vec<(String, String)>,
@@ -182,6 +217,9 @@ impl Comparison {
             only_in_a: names(|pair| pair.b.is_none()),
             only_in_b: names(|pair| pair.a.is_none()),
             not_compared: matched.not_compared.clone(),
+            state: Vec::new(),
+            cut: Vec::new(),
+            matching: None,
             compared: matched.pairs.iter().filter_map(Pair::names).collect(),
             clock: None,
             notes: Vec::new(),

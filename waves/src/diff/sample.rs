@@ -1,5 +1,25 @@
-//! A recording as values of a block's ports, clock by clock: the names, the clock and the reset of a comparison, with the ports
-//! in the place of the second file.
+//! A recording as values of signals of one's own, the ports of a block, clock by clock: the names, the clock and the reset of a
+//! comparison, with the ports in the place of the second file.
+//!
+//! ```
+//! use wavecmp::diff::DiffOptions;
+//! use wavecmp::sample::{PortMap, WantedSignal};
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("a.vcd");
+//! # std::fs::write(&path, "$scope module t $end $var wire 1 ! clk $end $var wire 4 \" y $end $upscope $end \
+//! #     $enddefinitions $end\n#0\n0!\nb1010 \"\n#5\n1!\nb11 \"\n#10\n0!\n#15\n1!\n")?;
+//!
+//! let y = WantedSignal { name: "y".to_owned(), width: 4 };
+//! let map = PortMap::find(&path, "t", &[y], &DiffOptions::default())?.ok_or("nothing in common")?;
+//! let mut player = map.play()?;
+//! let mut row = [None];
+//! let mut values = Vec::new();
+//! while player.next(&mut row)?.is_some() {
+//!     values.extend(row[0].map(|value| value.bits));
+//! }
+//! assert_eq!(values, [0b1010, 0b11]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use std::path::{Path, PathBuf};
 
@@ -142,13 +162,16 @@ impl PortMap {
             &filter,
             "recorded",
         )?;
-        let (declarations, feed) = wave.play(Some(Watch {
-            slot: self.clock[0],
-            falling: self.options.edge == SamplingEdge::Falling,
-        }))?;
+        let (declarations, feed) = wave.play(
+            Some(Watch {
+                slot: self.clock[0],
+                falling: self.options.edge == SamplingEdge::Falling,
+            }),
+            false,
+        )?;
         let groups: Vec<&Group> = self.groups.iter().collect();
         let Declarations { kinds, unit_fs, .. } = declarations;
-        let mut side = Side::new(feed, &kinds, unit_fs, &groups, &mut [], &[]);
+        let mut side = Side::new(0, feed, &kinds, unit_fs, &groups, &mut [], &[]);
         side.start()?;
         Ok(Player {
             side,

@@ -1,5 +1,7 @@
 //! Which pairs a change touches, and which were touched.
 
+use super::cells::Cells;
+
 /// Pairs to look at again.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
@@ -7,6 +9,8 @@ pub(super) struct Touched {
     list: Vec<u32>,
     /// Pairs that wait for a delayed value to arrive.
     pub(super) waiting: Vec<bool>,
+    /// The pairs that are simpler than that.
+    pub(super) cells: Cells,
 }
 
 impl Touched {
@@ -16,6 +20,7 @@ impl Touched {
             flags: vec![true; pairs],
             list: (0..pairs as u32).collect(),
             waiting: vec![false; pairs],
+            cells: Cells::default(),
         }
     }
 
@@ -24,6 +29,12 @@ impl Touched {
         if !std::mem::replace(&mut self.flags[pair as usize], true) {
             self.list.push(pair);
         }
+    }
+
+    /// These pairs are cells: they are not looked at one by one.
+    pub(super) fn leave_to(&mut self, cells: Cells, is_cell: impl Fn(u32) -> bool) {
+        self.list.retain(|pair| !is_cell(*pair));
+        self.cells = cells;
     }
 
     /// The pairs touched since, which are then untouched.

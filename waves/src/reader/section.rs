@@ -12,12 +12,13 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::batch::Gatherer;
+use super::batch::{Gatherer, NOWHERE};
 use super::counted::Counted;
-use super::digits::{digit, known_word};
+use super::digits::{digit, known_run};
 use super::header::Kind;
-use super::ids::{Ids, id_number};
+use super::ids::{Ids, short_id_number};
 use super::put::{put_digits, put_real, put_text, shown};
 use crate::WaveError;
 
@@ -30,6 +31,8 @@ const COMMAND_BYTES: usize = 1 << 25;
 pub(super) enum Ended {
     /// The file is at its end; whether its last line lacks the line break, so that it may have been cut off.
     File { unterminated: bool },
+    /// The file was cut off behind so many bytes, and was read up to its last whole time.
+    Cut { byte: u64 },
     /// Nobody listens any more.
     Unheard,
 }
@@ -50,7 +53,7 @@ struct Fault {
 pub(super) struct Section {
     path: PathBuf,
     input: Counted,
-    ids: Ids,
+    ids: Arc<Ids>,
     buffer: Vec<u8>,
     /// The unread part of the buffer, and where the buffer begins in the file.
     from: usize,
@@ -58,13 +61,21 @@ pub(super) struct Section {
     start: u64,
     last_byte: u8,
     at_end: bool,
+    /// What is packed ends in the middle of its packing.
+    broken: bool,
+    /// The bytes are those of the file, so that its lines can be counted.
+    is_plain: bool,
     in_dump: bool,
     in_comment: bool,
+    /// A file that is cut off is read up to its last whole time.
+    pub(super) allow_truncated: bool,
+    /// Bytes behind which it was, once that is known.
+    cut: Option<u64>,
 }
 
 impl Section {
     /// Goes on behind the declarations.
-    pub(super) fn new(path: &Path, input: BufReader<Counted>, ids: Ids) -> Self {
+    pub(super) fn new(path: &Path, input: BufReader<Counted>, ids: Arc<Ids>, is_plain: bool) -> Self {
         let mut buffer = input.buffer().to_vec();
         let to = buffer.len();
         let start = input.get_ref().bytes - to as u64;
@@ -80,8 +91,33 @@ impl Section {
             start,
             last_byte,
             at_end: false,
+            broken: false,
+            is_plain,
             in_dump: false,
             in_comment: false,
+            allow_truncated: false,
+            cut: None,
+        }
+    }
+
+    /// Goes on in the middle of the file, at a byte at which a time stands.
+    pub(super) fn resumed(path: &Path, input: Counted, ids: Arc<Ids>) -> Self {
+        Self {
+            path: path.to_owned(),
+            start: input.bytes,
+            input,
+            ids,
+            buffer: vec![0; BUFFER_BYTES],
+            from: 0,
+            to: 0,
+            last_byte: b'\n',
+            at_end: false,
+            broken: false,
+            is_plain: true,
+            in_dump: false,
+            in_comment: false,
+            allow_truncated: false,
+            cut: None,
         }
     }
 
@@ -99,6 +135,16 @@ impl Section {
                 Pause::More => self.fill()?,
             }
             gatherer.batch.bytes = self.start + self.from as u64;
+        }
+        let whole =
+            self.from == self.to && !self.in_dump && !self.in_comment && !self.broken && self.last_byte == b'\n';
+        if self.allow_truncated && !whole {
+            gatherer.drop_step();
+            let byte = self.start + self.to as u64 - u64::from(self.at_end);
+            return Ok(Ended::Cut { byte });
+        }
+        if self.broken {
+            return Err(self.truncated("in the middle of its packed data"));
         }
         if self.from < self.to {
             return Err(self.truncated("in the middle of a command"));
@@ -135,18 +181,30 @@ impl Section {
         let count = loop {
             match self.input.read(&mut self.buffer[self.to..]) {
                 Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
+                Err(cause) if cause.kind() == io::ErrorKind::UnexpectedEof && !self.is_plain => {
+                    self.broken = true;
+                    break 0;
+                }
                 other => break other.map_err(WaveError::file(&self.path, "read"))?,
             }
         };
         self.to += count;
         if count > 0 {
             self.last_byte = self.buffer[self.to - 1];
-        } else {
-            // A last line that is complete but for its line break counts.
-            self.at_end = true;
-            self.buffer[self.to] = b'\n';
-            self.to += 1;
+            return Ok(());
         }
+        self.at_end = true;
+        let ends_within = self.broken || self.in_dump || self.in_comment || self.last_byte != b'\n';
+        if self.allow_truncated && ends_within {
+            // Half a line may read as another one: a time, a value, an id code.
+            self.cut = Some(self.start + self.to as u64);
+            let unread = &self.buffer[self.from..self.to];
+            self.to = self.from + memchr::memrchr(b'\n', unread).map_or(0, |at| at + 1);
+            return Ok(());
+        }
+        // A last line that is complete but for its line break counts.
+        self.buffer[self.to] = b'\n';
+        self.to += 1;
         Ok(())
     }
 
@@ -177,7 +235,7 @@ impl Section {
                         return Ok(Pause::More);
                     };
                     let id_at = skip_space(data, digits_end);
-                    let (number, end) = id_number(data, id_at);
+                    let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
@@ -210,7 +268,8 @@ impl Section {
                         });
                     }
                     self.from = end;
-                    if gatherer.advance(time) && !hand_over(gatherer) {
+                    let place = if self.in_dump { NOWHERE } else { self.start + at as u64 };
+                    if gatherer.advance(time, place) && !hand_over(gatherer) {
                         return Ok(Pause::Stop);
                     }
                 }
@@ -219,7 +278,7 @@ impl Section {
                         return Ok(Pause::More);
                     };
                     let id_at = skip_space(data, word_to);
-                    let (number, end) = id_number(data, id_at);
+                    let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
@@ -269,13 +328,13 @@ impl Section {
                     };
                     // IEEE 1364 has no space between the digit and the id code, some writers do.
                     let id_at = skip_space(data, at + 1);
-                    let (number, end) = id_number(data, id_at);
+                    let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
                     let slot = slot(&self.ids, number, data, id_at, end)?;
                     if gatherer.kind(slot) == Kind::Bits(1) {
-                        gatherer.put_word(slot, u64::from(digit & 1), u64::from(digit >> 1));
+                        gatherer.put_digit(slot, digit);
                     } else {
                         put_digits(gatherer, slot, &[byte]).map_err(|what| Fault { at, what })?;
                     }
@@ -287,9 +346,10 @@ impl Section {
 
     fn problem(&self, fault: &Fault) -> WaveError {
         let byte = self.start + fault.at as u64;
+        let line = if self.is_plain { line_of(&self.path, byte) } else { None };
         WaveError::Damaged {
             path: self.path.clone(),
-            place: line_of(&self.path, byte).map_or_else(|| format!("byte {byte}"), |line| format!("line {line}")),
+            place: line.map_or_else(|| format!("byte {byte}"), |line| format!("line {line}")),
             problem: fault.what.clone(),
         }
     }
@@ -349,12 +409,7 @@ fn skip_space(data: &[u8], mut at: usize) -> usize {
 /// The end of the digits at `at`, and their number if all are known and at most 64; `None` if the data ends in them.
 #[inline]
 fn leading_word(data: &[u8], at: usize) -> Option<(Option<u64>, usize)> {
-    let mut end = at;
-    let mut word = 0u64;
-    while let Some(eight) = data.get(end..end + 8).and_then(known_word) {
-        word = word << 8 | eight;
-        end += 8;
-    }
+    let (mut word, mut end) = known_run(data, at);
     while let Some(bit @ 0..=1) = data.get(end).map(|byte| byte ^ b'0') {
         word = word << 1 | u64::from(bit);
         end += 1;

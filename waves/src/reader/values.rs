@@ -135,6 +135,11 @@ impl Values {
         self.kinds.len() as u32 - 1
     }
 
+    /// How many slots there are.
+    pub(crate) fn count(&self) -> usize {
+        self.kinds.len()
+    }
+
     pub(crate) fn kind(&self, slot: u32) -> Kind {
         self.kinds[slot as usize]
     }
@@ -151,6 +156,13 @@ impl Values {
     pub(crate) fn set(&mut self, slot: u32, words: &[u64]) -> bool {
         let from = self.offsets[slot as usize];
         let own = &mut self.words[from..from + words.len()];
+        if let ([own_bits, own_unknown], [bits, unknown]) = (&mut *own, words) {
+            if own_bits == bits && own_unknown == unknown {
+                return false;
+            }
+            (*own_bits, *own_unknown) = (*bits, *unknown);
+            return true;
+        }
         if own == words {
             return false;
         }
@@ -174,7 +186,7 @@ impl Values {
 }
 
 /// The words of a kind as a value.
-fn value(kind: Kind, words: &[u64]) -> Value<'_> {
+pub(crate) fn value(kind: Kind, words: &[u64]) -> Value<'_> {
     let (bits, unknown) = words.split_at(words.len() / 2);
     match kind {
         Kind::Bits(width) => Value::Bits { width, bits, unknown },
