@@ -55,19 +55,19 @@ fn unit_files_without_a_common_signal_are_not_equal() {
 fn unit_a_clock_that_runs_at_another_rate_or_stands_still_is_not_equal() {
     let same = [7; 10];
     let a = vcd(10, "y", &same);
-    for other in [vcd(20, "y", &same[..5]), vcd(5, "y", &[7; 20]), vcd(0, "y", &same)] {
+    for other in [vcd(20, "y", &same[..5]), vcd(5, "y", &[7; 20])] {
         for (a, b) in [(&a, &other), (&other, &a)] {
             let result = compare(a, b, &DiffOptions::default());
             assert_eq!(result.result, DiffVerdict::Different, "{result}");
             assert_eq!(result.differences[0].signal, "t.clk", "{result}");
         }
     }
-    // Nothing is sampled where both stand still.
+    // Nothing is sampled where the clock of either file stands still.
     let still = vcd(0, "y", &same);
-    assert_eq!(
-        compare(&still, &still, &DiffOptions::default()).result,
-        DiffVerdict::Incomparable
-    );
+    for (a, b) in [(&a, &still), (&still, &a), (&still, &still)] {
+        let result = compare(a, b, &DiffOptions::default());
+        assert_eq!(result.result, DiffVerdict::Incomparable, "{result}");
+    }
 }
 
 #[test]

@@ -272,6 +272,17 @@ impl<'a> Engine<'a> {
         let glitch_fs = self.options.glitch_fs;
         loop {
             self.follow_alike(false, progress)?;
+            match (self.a.has_ended(), self.b.has_ended()) {
+                (true, true) => {
+                    self.a.forget_delayed();
+                    self.b.forget_delayed();
+                }
+                (false, true) if self.b.feed().cut().is_some() => return Ok(()),
+                (true, false) if self.a.feed().cut().is_some() => return Ok(()),
+                (false, true) => self.b.cut_off()?,
+                (true, false) => self.a.cut_off()?,
+                (false, false) => {}
+            }
             let next = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min();
             let Some(time) = next else { return Ok(()) };
             // With a glitch filter, a value comes into effect when it has lasted; it began before.
@@ -291,17 +302,6 @@ impl<'a> Engine<'a> {
                         return Ok(());
                     }
                 }
-            }
-            match (self.a.has_ended(), self.b.has_ended()) {
-                (true, true) => {
-                    self.a.forget_delayed();
-                    self.b.forget_delayed();
-                }
-                (false, true) if self.b.feed().cut().is_some() => return Ok(()),
-                (true, false) if self.a.feed().cut().is_some() => return Ok(()),
-                (false, true) => self.b.cut_off()?,
-                (true, false) => self.a.cut_off()?,
-                (false, false) => {}
             }
         }
     }

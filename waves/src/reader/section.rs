@@ -69,8 +69,9 @@ pub(super) struct Section {
     in_comment: bool,
     /// A file that is cut off is read up to its last whole time.
     pub(super) allow_truncated: bool,
-    /// Bytes behind which it was, once that is known.
+    /// Bytes behind which it was, once that is known; and whether a time begins in what is cut, so that the one before is whole.
     cut: Option<u64>,
+    cut_in_time: bool,
 }
 
 impl Section {
@@ -97,6 +98,7 @@ impl Section {
             in_comment: false,
             allow_truncated: false,
             cut: None,
+            cut_in_time: false,
         }
     }
 
@@ -118,6 +120,7 @@ impl Section {
             in_comment: false,
             allow_truncated: false,
             cut: None,
+            cut_in_time: false,
         }
     }
 
@@ -129,18 +132,24 @@ impl Section {
     ) -> Result<Ended, WaveError> {
         loop {
             let pause = self.parse(gatherer, hand_over);
-            match pause.map_err(|fault| self.problem(&fault))? {
+            let pause = pause.map_err(|fault| self.problem(&fault))?;
+            gatherer.batch.bytes = self.start + self.from as u64;
+            match pause {
                 Pause::Stop => return Ok(Ended::Unheard),
                 Pause::More if self.at_end => break,
                 Pause::More => self.fill()?,
             }
-            gatherer.batch.bytes = self.start + self.from as u64;
         }
         let whole =
             self.from == self.to && !self.in_dump && !self.in_comment && !self.broken && self.last_byte == b'\n';
         if self.allow_truncated && !whole {
-            gatherer.drop_step();
-            let byte = self.start + self.to as u64 - u64::from(self.at_end);
+            if self.cut_in_time {
+                gatherer.end_step();
+            } else {
+                gatherer.drop_step();
+            }
+            // Without a place so far, the line break that was put behind the file is not the file's.
+            let byte = self.cut.unwrap_or(self.start + self.to as u64 - 1);
             return Ok(Ended::Cut { byte });
         }
         if self.broken {
@@ -199,6 +208,7 @@ impl Section {
             // Half a line may read as another one: a time, a value, an id code.
             self.cut = Some(self.start + self.to as u64);
             let unread = &self.buffer[self.from..self.to];
+            self.cut_in_time = !self.in_comment && unread.first() == Some(&b'#');
             self.to = self.from + memchr::memrchr(b'\n', unread).map_or(0, |at| at + 1);
             return Ok(());
         }
