@@ -74,6 +74,8 @@ enum Command {
     Generate(generate::Args),
     Simulate(simulate::Args),
     Verify(verify::Args),
+    /// Compare two waveforms (VCD or FST), sampled at the clock
+    #[command(after_help = diff::EXAMPLES)]
     Diff(Box<diff::Args>),
     Synth(synth::Args),
     Identify(identify::Args),

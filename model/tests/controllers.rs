@@ -110,7 +110,7 @@ fn golden_the_bit_exact_controller_follows_as_the_float_law_does() {
 #[test]
 fn golden_the_bit_exact_reaching_law_in_samples() {
     const COUNT_M: f64 = 1e-6;
-    const GAIN: f64 = 500.0;
+    const GAIN: f64 = 250.0;
     let golden: Value = serde_json::from_str(include_str!("golden/drive.json")).unwrap();
     for run in golden["smc_discrete"].as_array().unwrap() {
         let of = |key: &str| run[key].as_f64().unwrap();

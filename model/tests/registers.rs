@@ -174,8 +174,8 @@ fn unit_parts_that_make_no_whole_are_refused() {
         "no unconnected port `strat`",
         "other bits than the net `quotient`",
         "cannot be tied to 2",
-        "`steps` is no net",
-        "`nothing` is no net",
+        "`steps` cannot be a port of the whole",
+        "`nothing` cannot be a port of the whole",
     ]) {
         assert!(found.contains(expected), "{found}: {expected}");
     }

@@ -2,8 +2,8 @@
 
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::segments::{
-    CUBIC, Cubic, ENTRIES_MAX, ENTRY_WORDS, Entry, EntryMotion, Inputs, Integrator, LATENCY_CLOCKS, Outputs, Point,
-    REACH_COUNTS, STAND_COUNTS, Segments, SegmentsState, TICK_CLOCKS,
+    CUBIC, CubicEntry, ENTRIES_MAX, ENTRY_WORDS, Entry, EntryMotion, Inputs, Integrator, LATENCY_CLOCKS, Outputs,
+    Point, REACH_COUNTS, STAND_COUNTS, Segments, SegmentsState, TICK_CLOCKS,
 };
 use proptest::prelude::*;
 
@@ -56,7 +56,7 @@ fn tick_with(segments: &mut Segments, inputs: &Inputs) -> Outputs {
 fn cubic(ticks: u32, velocity: i32, acceleration: i32, jerk: i32) -> Entry {
     Entry {
         ticks,
-        motion: EntryMotion::Cubic(Cubic {
+        motion: EntryMotion::Cubic(CubicEntry {
             jerk,
             velocity,
             acceleration,

@@ -7,6 +7,9 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
+/// Tolerances of gap and feasibility, one after the other: where rounding ends the first attempt, the second mostly succeeds.
+const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
+
 /// A cone program under construction. Rows of one cone follow each other; the cones are given in the order of [`Rows`].
 #[derive(Debug, Default)]
 pub(crate) struct ConeProgram {
@@ -86,26 +89,34 @@ impl ConeProgram {
         let squares: Vec<f64> = on_diagonal.iter().map(|j| self.squares[*j]).collect();
         let quadratic = CscMatrix::new_from_triplets(columns, columns, on_diagonal.clone(), on_diagonal, squares);
         let matrix = CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values);
-        let settings = DefaultSettingsBuilder::default()
-            .verbose(false)
-            .max_threads(1)
-            .presolve_enable(false)
-            .tol_gap_abs(1e-9)
-            .tol_gap_rel(1e-9)
-            .tol_feas(1e-9)
-            .build()
-            .map_err(|error| Unsolved::Stopped(error.to_string()))?;
-        let mut solver = DefaultSolver::new(&quadratic, &self.linear, &matrix, &self.right, &self.cones, settings)
-            .map_err(|error| Unsolved::Stopped(error.to_string()))?;
-        solver.solve();
-        match solver.solution.status {
-            // Progress that stalls near the end leaves a point that the caller judges by its own arithmetic.
-            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => Ok(Solution {
-                x: solver.solution.x,
-                z: solver.solution.z,
-            }),
-            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Err(Unsolved::Infeasible),
-            other => Err(Unsolved::Stopped(format!("{other:?}"))),
+        let mut stopped = String::new();
+        for tolerance in TOLERANCES {
+            let settings = DefaultSettingsBuilder::default()
+                .verbose(false)
+                .max_threads(1)
+                .presolve_enable(false)
+                .tol_gap_abs(tolerance)
+                .tol_gap_rel(tolerance)
+                .tol_feas(tolerance)
+                .build()
+                .map_err(|error| Unsolved::Stopped(error.to_string()))?;
+            let mut solver = DefaultSolver::new(&quadratic, &self.linear, &matrix, &self.right, &self.cones, settings)
+                .map_err(|error| Unsolved::Stopped(error.to_string()))?;
+            solver.solve();
+            match solver.solution.status {
+                // Progress that stalls near the end leaves a point that the caller judges by its own arithmetic.
+                SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
+                    return Ok(Solution {
+                        x: solver.solution.x,
+                        z: solver.solution.z,
+                    });
+                }
+                SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                    return Err(Unsolved::Infeasible);
+                }
+                other => stopped = format!("{other:?}"),
+            }
         }
+        Err(Unsolved::Stopped(stopped))
     }
 }

@@ -68,13 +68,13 @@ module segments_properties (
     wire [5:0] slot = write_address[7:2];
     wire [5:0] behind_oldest = slot - oldest;
     wire [7:0] kept = {1'b0, entries} + {1'b0, staged};
-    wire [7:0] held = kept + {7'd0, fifo_plays};
+    wire [7:0] filled = kept + {7'd0, fifo_plays};
     wire       dropped = past_ends & !past_entered;
     wire [6:0] came = entries + {6'd0, past_pop} - past_entries;
     wire [5:0] free_moved = free - past_free;
     wire [5:0] head_moved = head - past_head;
     always @(*) begin
-        level_bound: assert (held <= 8'd64);
+        level_bound: assert (filled <= 8'd64);
         pointers: assert (kept[5:0] == distance);
         in_one: assert (past_reset | past_flush | free_moved == (dropped ? 6'd0 - past_staged[5:0] : {5'd0, past_entered}));
         batch_whole: assert (past_reset | past_flush
@@ -86,7 +86,7 @@ module segments_properties (
         out_one: assert (past_reset | past_flush | head_moved == {5'd0, past_pop});
         no_overwrite: assert (!fifo_takes | ({2'd0, behind_oldest} >= kept & kept != 8'd64 & !(fifo_plays & slot == head)));
         never_from_empty: assert (!fifo_pop | entries != 7'd0);
-        refused_when_full: assert (!(fifo_write & held == 8'd64) | (fifo_refused & !fifo_takes & !fifo_entered));
+        refused_when_full: assert (!(fifo_write & filled == 8'd64) | (fifo_refused & !fifo_takes & !fifo_entered));
         accounted: assert (entries == count);
     end
 

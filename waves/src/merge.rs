@@ -99,7 +99,7 @@ struct Open {
 
 impl Open {
     fn new(part: &MergePart<'_>, only: Option<&HashSet<String>>) -> Result<Self, WaveError> {
-        let (declarations, feed) = Wave::open(part.path)?.play(None)?;
+        let (declarations, feed) = Wave::open(part.path)?.play(None, true)?;
         let mut names = declarations.names;
         if let Some(only) = only {
             names.retain(|named| only.contains(&named.path));
@@ -229,12 +229,17 @@ fn changes(
             if part.next_fs() != Some(time_fs) {
                 continue;
             }
-            for (slot, words) in part.feed.changes() {
-                if part.now.set(slot, words) {
-                    part.values[slot as usize] += 1;
-                    write_value(output, part.ids[slot as usize], part.now.get(slot))?;
+            let mut written = Ok(());
+            let Open {
+                feed, now, values, ids, ..
+            } = &mut *part;
+            feed.each_change(|slot, words| {
+                if written.is_ok() && now.set(slot, words) {
+                    values[slot as usize] += 1;
+                    written = write_value(output, ids[slot as usize], now.get(slot));
                 }
-            }
+            });
+            written?;
             part.step = part.feed.next_step()?;
         }
         for subtraction in &mut *subtractions {

@@ -1,10 +1,13 @@
 //! The tests of `wavecmp` in one program, because linking takes most of the time of a small test program.
 #![cfg(test)]
 
+mod complaints;
 mod diff;
+mod files;
 mod fuzz;
 mod hostile;
 mod options;
 mod producers;
+mod program;
 mod support;
 mod text;

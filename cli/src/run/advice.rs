@@ -139,6 +139,16 @@ const ADVICE: [(&str, Advice); 13] = [
             ],
         },
     ),
+    (
+        "at the corners",
+        Advice {
+            cause: "the shaped step saturates the command word, or a mode lies outside the band that was designed for",
+            remedies: [
+                "raise command_bits, or lower command_fraction",
+                "run `posicast design --certify`, and compare its bound with tolerance",
+            ],
+        },
+    ),
 ];
 
 /// The advice for a failed check.

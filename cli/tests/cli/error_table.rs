@@ -65,7 +65,7 @@ fn cli_the_folder_holds_the_file_and_is_verified() {
         "--block",
         "error_table",
         "--cycles",
-        "30000",
+        "200000",
         "--simulator",
         "icarus",
         "--json",

@@ -44,7 +44,7 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
             ("sliding_mode", "x, y"),
             ("cascade", "4 stages, 32 bits"),
             ("axis", "alone"),
-            ("error_table", "alone"),
+            ("error_table", "9 entries"),
             ("encoder_generator", "alone"),
             ("excitation", "alone"),
             ("drive_command", "alone"),

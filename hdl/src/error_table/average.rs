@@ -1,6 +1,4 @@
 //! The one adder: the average of what it has and what comes, in every clock, and that rounded half up by the bit dropped last.
-//!
-//! What comes is chosen here, not beside the address of the memories: an event simulator would else go round between the two for ever.
 
 use crate::prelude::*;
 
@@ -9,17 +7,14 @@ kernel! {
 
     inputs {
         rst: Bit,
-        entry: Signed<18>,
-        takes_entry: Bit,
-        whole: Signed<18>,
-        takes_whole: Bit,
+        addend: Signed<18>,
         load: Bit,
         clear: Bit,
     }
     outputs { rounded: Signed<18> }
     registers { average: Signed<18>, dropped: Bits<1> }
     wires {
-        addend: Signed<18>, wide_average: Signed<19>, wide_addend: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>,
+        wide_average: Signed<19>, wide_addend: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>,
         half: Signed<18>,
     }
     constants { none: Signed<18> = from_i64(0) }
@@ -30,13 +25,6 @@ impl Logic for Average {
     fn update(&mut self) {
         comment!("@module error_average");
 
-        self.addend.next = self.none.val();
-        if self.takes_entry.val() {
-            self.addend.next = self.entry.val();
-        }
-        if self.takes_whole.val() {
-            self.addend.next = self.whole.val();
-        }
         self.wide_average.next = signed_bit_cast::<19, 18>(self.average.q.val());
         self.wide_addend.next = signed_bit_cast::<19, 18>(self.addend.val());
         self.sum.next = self.wide_average.val() + self.wide_addend.val();

@@ -85,7 +85,6 @@ pub(super) const KEYS: &[Key] = &[
         Values::Table(error_table::KEYS),
         "Compensates a measured error of the screw or the scale.",
     ),
-    Key::new("trace", Values::Table(trace::KEYS), "Records signals of the loop."),
 ];
 
 /// Reads one axis, whose name has been read already. Checks that need a valid clock or number format are skipped

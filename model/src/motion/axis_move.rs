@@ -335,12 +335,12 @@ mod tests {
             refused(Some(60.0), None),
             "a move of 60 mm goes from 0 mm to 60 mm, beyond the travel of -100 mm to 50 mm: give a distance from -100 mm to 50 mm"
         );
-        assert!(refused(Some(0.0), None).contains("a move of 0 moves nothing"));
-        assert!(refused(Some(f64::NAN), None).contains("moves nothing"));
+        assert!(refused(Some(0.0), None).contains("a move of 0 causes no motion"));
+        assert!(refused(Some(f64::NAN), None).contains("causes no motion"));
         assert!(refused(Some(1e-4), None).contains("0.100 counts, less than one: give at least 0.001 mm"));
         assert!(refused(None, Some(300.0)).contains("300 mm/s is above the axis's velocity limit of 250 mm/s"));
         for still in [0.0, -1.0, f64::INFINITY] {
-            assert!(refused(None, Some(still)).contains("moves nothing"));
+            assert!(refused(None, Some(still)).contains("causes no motion"));
         }
     }
 

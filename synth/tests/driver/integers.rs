@@ -1,7 +1,7 @@
 //! The integrator and the planner in C compared with the model's arithmetic.
 
 use crate::driver::support::{Driver, beside};
-use posicast_model::rtl::segments::{ACCELERATION_BITS, CUBIC, Cubic, Entry, EntryMotion, Integrator, Point};
+use posicast_model::rtl::segments::{ACCELERATION_BITS, CUBIC, CubicEntry, Entry, EntryMotion, Integrator, Point};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -86,7 +86,7 @@ fn prop_the_integrator_in_c_gives_the_integers_of_the_model() {
                 velocity: numbers.signed(32) as i32,
                 acceleration: numbers.signed(32) as i32,
             }),
-            4 => EntryMotion::Cubic(Cubic {
+            4 => EntryMotion::Cubic(CubicEntry {
                 jerk: numbers.signed(32) as i32,
                 velocity: numbers.signed(32) as i32,
                 acceleration: numbers.signed(32) as i32,
@@ -229,7 +229,7 @@ fn prop_a_stream_meets_its_points_and_a_cubic_does_not_jump() {
             let [jerk, first, acceleration, _] = words.collect::<Vec<_>>().try_into().unwrap();
             assert_eq!(said[1][3], i64::from(CUBIC) + i64::from(period));
             let before = at;
-            let cubic = Cubic {
+            let cubic = CubicEntry {
                 jerk,
                 velocity: first,
                 acceleration,

@@ -2,7 +2,7 @@
 //! rest and others; ticks at every pace; requests, resets, and stops of every size.
 
 use posicast_model::rtl::segments::{
-    CUBIC, Cubic, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState, TICK_CLOCKS,
+    CUBIC, CubicEntry, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState, TICK_CLOCKS,
 };
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -178,7 +178,7 @@ impl SegmentsRandom {
     fn cubic(&mut self) -> Entry {
         let rng = &mut self.rng;
         let mut word = || rng.next_u64() as i32 >> rng.random_range(0..32);
-        let motion = EntryMotion::Cubic(Cubic {
+        let motion = EntryMotion::Cubic(CubicEntry {
             jerk: word(),
             velocity: word(),
             acceleration: word(),

@@ -1,91 +1,211 @@
-//! Writes large files like those of Verilator: a clock, counters, accumulators, flags; about seven changes at a time
-//! and 26 bytes per change.
+//! Large files as simulators write them: a clock, counters, accumulators, flags; 13 changes a clock.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Widths of the signals other than the clock.
-const WIDTHS: [u32; 100] = {
-    let mut widths = [1; 100];
-    let mut at = 0;
-    while at < 70 {
-        widths[at] = if at < 30 {
-            32
-        } else if at < 50 {
-            48
-        } else {
-            16
-        };
-        at += 1;
-    }
-    widths
-};
-const CHANGES_PER_CLOCK: u64 = 13;
+/// Signals beside the clock.
+const SIGNALS: usize = 100;
+const CHANGES_PER_CLOCK: usize = 13;
 
-/// Writes at least `bytes` bytes; with `flip`, one bit differs near the end. Returns a description of the file.
-pub(crate) fn write(path: &Path, bytes: u64, flip: bool) -> io::Result<String> {
-    let mut out = Counting {
-        inner: BufWriter::with_capacity(1 << 20, File::create(path)?),
-        bytes: 0,
-    };
-    let ids: Vec<String> = (0..=WIDTHS.len() as u64)
-        .map(|number| vcd::IdCode::from(number).to_string())
-        .collect();
-    write!(
-        out,
-        "$timescale 1ps $end\n $scope module TOP $end\n  $var wire 1 {} clk $end\n",
-        ids[0]
-    )?;
-    for (at, width) in WIDTHS.iter().enumerate() {
-        let range = if *width > 1 {
-            format!(" [{}:0]", width - 1)
-        } else {
-            String::new()
-        };
-        writeln!(out, "  $var wire {width} {} s{at}{range} $end", ids[at + 1])?;
-    }
-    out.write_all(b" $upscope $end\n$enddefinitions $end\n#0\n0!\n")?;
-    let mut values = [0u64; WIDTHS.len()];
-    let mut random = 0x9e37_79b9_7f4a_7c15u64;
-    let (mut clocks, mut changes, mut flipped) = (0u64, 0u64, !flip);
-    let mut line = Vec::new();
-    while out.bytes < bytes {
-        line.clear();
-        writeln!(line, "#{}\n1!", clocks * 10_000 + 5_000)?;
-        let start = (clocks * 7) as usize;
-        for at in 0..CHANGES_PER_CLOCK as usize {
-            let signal = (start + at * 9) % WIDTHS.len();
-            random ^= random << 13;
-            random ^= random >> 7;
-            random ^= random << 17;
-            let width = WIDTHS[signal];
-            let mask = u64::MAX >> (64 - width);
-            let before = values[signal];
-            values[signal] = match width {
-                1 => before ^ 1,
-                _ => before.wrapping_add(random >> 44 | 1) & mask,
-            };
-            let mut shown = values[signal];
-            if !flipped && out.bytes > bytes - bytes / 50 {
-                flipped = true;
-                shown ^= 1;
-            }
-            put(&mut line, shown, width, &ids[signal + 1]);
+/// What changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// Words of 16 to 48 bits, some flags: 26 bytes a change.
+    Words,
+    /// Flags, some words of 8 bits: 5 bytes a change.
+    Flags,
+}
+
+/// How the second file differs from the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Second {
+    /// Other id codes, and another order at each time.
+    OtherNames,
+    /// Nothing.
+    SameBytes,
+    /// Nothing, and both are FST.
+    Fst,
+}
+
+impl Shape {
+    fn width(self, at: usize) -> u32 {
+        match (self, at) {
+            (Self::Words, 0..30) => 32,
+            (Self::Words, 30..50) => 48,
+            (Self::Words, 50..70) => 16,
+            (Self::Flags, 0..15) => 8,
+            _ => 1,
         }
-        writeln!(line, "#{}\n0!", clocks * 10_000 + 10_000)?;
-        out.write_all(&line)?;
-        changes += CHANGES_PER_CLOCK + 2;
-        clocks += 1;
     }
-    out.inner.flush()?;
-    Ok(format!(
+}
+
+/// What happens, clock by clock.
+struct Process {
+    widths: Vec<u32>,
+    values: [u64; SIGNALS],
+    random: u64,
+    clocks: usize,
+}
+
+impl Process {
+    fn new(shape: Shape) -> Self {
+        Self {
+            widths: (0..SIGNALS).map(|at| shape.width(at)).collect(),
+            values: [0; SIGNALS],
+            random: 0x9e37_79b9_7f4a_7c15,
+            clocks: 0,
+        }
+    }
+
+    /// The signals that change in the next clock, and their values.
+    fn clock(&mut self) -> [(usize, u64); CHANGES_PER_CLOCK] {
+        let start = self.clocks * 7;
+        self.clocks += 1;
+        std::array::from_fn(|at| {
+            let signal = (start + at * 9) % SIGNALS;
+            self.random ^= self.random << 13;
+            self.random ^= self.random >> 7;
+            self.random ^= self.random << 17;
+            let mask = u64::MAX >> (64 - self.widths[signal]);
+            let before = self.values[signal];
+            let next = before.wrapping_add(self.random >> 44 | 1) & mask;
+            self.values[signal] = if mask == 1 { before ^ 1 } else { next };
+            (signal, self.values[signal])
+        })
+    }
+}
+
+/// One of two files.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Recording {
+    pub(crate) shape: Shape,
+    /// Id codes and the order at each time are reversed.
+    pub(crate) reversed: bool,
+    /// One bit is another near the end.
+    pub(crate) flip: bool,
+}
+
+impl Recording {
+    /// Writes a VCD of at least `bytes`. Returns what it is, for people.
+    pub(crate) fn write(self, path: &Path, bytes: u64) -> io::Result<String> {
+        let mut out = Counting {
+            inner: BufWriter::with_capacity(1 << 20, File::create(path)?),
+            bytes: 0,
+        };
+        let mut process = Process::new(self.shape);
+        let mut ids: Vec<String> = (0..=SIGNALS as u64)
+            .map(|number| vcd::IdCode::from(number).to_string())
+            .collect();
+        if self.reversed {
+            ids.reverse();
+        }
+        write!(
+            out,
+            "$timescale 1ps $end\n $scope module TOP $end\n  $var wire 1 {} clk $end\n",
+            ids[0]
+        )?;
+        for (at, width) in process.widths.iter().enumerate() {
+            let range = if *width > 1 {
+                format!(" [{}:0]", width - 1)
+            } else {
+                String::new()
+            };
+            writeln!(out, "  $var wire {width} {} s{at}{range} $end", ids[at + 1])?;
+        }
+        writeln!(out, " $upscope $end\n$enddefinitions $end\n#0\n0{}", ids[0])?;
+        let mut flipped = !self.flip;
+        let mut text = Vec::new();
+        let mut lines: Vec<Vec<u8>> = Vec::new();
+        while out.bytes < bytes {
+            lines.clear();
+            lines.push(format!("1{}\n", ids[0]).into_bytes());
+            let clock = process.clocks;
+            for (signal, value) in process.clock() {
+                let flip = !flipped && out.bytes > bytes - bytes / 50;
+                flipped |= flip;
+                let mut line = Vec::new();
+                put(
+                    &mut line,
+                    value ^ u64::from(flip),
+                    process.widths[signal],
+                    &ids[signal + 1],
+                );
+                lines.push(line);
+            }
+            if self.reversed {
+                lines.reverse();
+            }
+            text.clear();
+            writeln!(text, "#{}", clock * 10_000 + 5_000)?;
+            lines.iter().for_each(|line| text.extend_from_slice(line));
+            writeln!(text, "#{}\n0{}", clock * 10_000 + 10_000, ids[0])?;
+            out.write_all(&text)?;
+        }
+        out.inner.flush()?;
+        Ok(summary(out.bytes, process.clocks))
+    }
+
+    /// Writes the same as an FST, in blocks as `vcd2fst` has them, of so many clocks.
+    pub(crate) fn write_fst(self, path: &Path, clocks: usize) -> io::Result<String> {
+        use fst_writer::{FstFileType, FstInfo, FstScopeType, FstSignalType, FstVarDirection, FstVarType, open_fst};
+
+        let failed = |cause| io::Error::other(format!("{cause:?}"));
+        let info = FstInfo {
+            start_time: 0,
+            timescale_exponent: -12,
+            version: "wavecmp bench".to_owned(),
+            date: String::new(),
+            file_type: FstFileType::Verilog,
+        };
+        let mut process = Process::new(self.shape);
+        let mut head = open_fst(path, &info).map_err(failed)?;
+        head.scope("TOP", "", FstScopeType::Module).map_err(failed)?;
+        let mut var = |name: &str, width: u32| {
+            let kind = FstSignalType::bit_vec(width);
+            head.var(name, kind, FstVarType::Wire, FstVarDirection::Implicit, None)
+                .map_err(failed)
+        };
+        let clk = var("clk", 1)?;
+        let ids = process.widths.iter().enumerate();
+        let ids = ids
+            .map(|(at, width)| var(&format!("s{at}"), *width))
+            .collect::<io::Result<Vec<_>>>()?;
+        head.up_scope().map_err(failed)?;
+        let mut body = head.finish().map_err(failed)?;
+        body.time_change(0).map_err(failed)?;
+        body.signal_change(clk, b"0").map_err(failed)?;
+        for clock in 0..clocks {
+            if body.size() >= FST_BLOCK {
+                body.flush().map_err(failed)?;
+            }
+            body.time_change(clock as u64 * 10_000 + 5_000).map_err(failed)?;
+            body.signal_change(clk, b"1").map_err(failed)?;
+            for (at, (signal, value)) in process.clock().into_iter().enumerate() {
+                let flip = self.flip && at == 0 && clock == clocks - clocks / 50;
+                let width = process.widths[signal] as usize;
+                let digits = format!("{:0width$b}", value ^ u64::from(flip));
+                body.signal_change(ids[signal], digits.as_bytes()).map_err(failed)?;
+            }
+            body.time_change(clock as u64 * 10_000 + 10_000).map_err(failed)?;
+            body.signal_change(clk, b"0").map_err(failed)?;
+        }
+        body.finish().map_err(failed)?;
+        Ok(summary(path.metadata()?.len(), clocks))
+    }
+}
+
+/// Bytes of changes that an FST holds in a block.
+const FST_BLOCK: usize = 32 << 20;
+
+fn summary(bytes: u64, clocks: usize) -> String {
+    format!(
         "{:.0} MB, {} signals, {:.1} M changes at {:.1} M times",
-        out.bytes as f64 / 1e6,
-        WIDTHS.len() + 1,
-        changes as f64 / 1e6,
+        bytes as f64 / 1e6,
+        SIGNALS + 1,
+        (clocks * (CHANGES_PER_CLOCK + 2)) as f64 / 1e6,
         2.0 * clocks as f64 / 1e6
-    ))
+    )
 }
 
 fn put(line: &mut Vec<u8>, value: u64, width: u32, id: &str) {

@@ -1,14 +1,16 @@
-//! Speed and memory of `wavecmp` on two large files, compared with a probe on the crate `wellen` that loads them.
+//! Speed and memory of `wavecmp` on pairs of large files that it makes itself, beside a probe on the crate `wellen` that loads
+//! them, and beside reading the bytes alone, all in one run.
 //!
 //! ```sh
-//! cargo bench -p wavecmp --bench speed                       # two files of 500 MB
+//! cargo bench -p wavecmp --bench speed                       # pairs of 400 MB
 //! cargo bench -p wavecmp --bench speed -- --megabytes 50
-//! cargo bench -p wavecmp --bench speed -- --generate DIR     # only writes a.vcd and b.vcd there
+//! cargo bench -p wavecmp --bench speed -- --generate DIR     # only writes the pairs there
 //! cargo bench -p wavecmp --bench speed -- --files A B        # two files that are there
 //! ```
 //!
-//! The files differ in one bit near their end. Each run is a separate process, so that its peak memory (`VmHWM`) can
-//! be measured; both read files that are in the system's cache.
+//! The files of a pair differ in one bit near their end. Each run is a process of its own, so that its peak memory (`VmHWM`) and
+//! its processor time are its own; all read files that are in the system's cache. On a machine that does other work, the processor's
+//! time says more than the time that passes: with two free cores, half of it is the least that can pass.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::panic)] // a bench stops where it fails
 
 mod generator;
@@ -20,40 +22,70 @@ use std::time::Instant;
 
 use wavecmp::diff::{self, DiffOptions, DiffVerdict};
 
+use self::generator::{Recording, Second, Shape};
+
 const RUNS: usize = 3;
+const PAIRS: [(&str, Shape, Second); 5] = [
+    ("words, other names", Shape::Words, Second::OtherNames),
+    ("words, same bytes", Shape::Words, Second::SameBytes),
+    ("flags, other names", Shape::Flags, Second::OtherNames),
+    ("flags, same bytes", Shape::Flags, Second::SameBytes),
+    ("words, FST", Shape::Words, Second::Fst),
+];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["--run", how, a, b] => run(how, Path::new(a), Path::new(b)),
-        ["--files", a, b] => compare(Path::new(a), Path::new(b)),
-        ["--generate", folder] => drop(generate(Path::new(folder), 500)),
-        ["--megabytes", megabytes] => in_scratch(megabytes.parse().expect("--megabytes takes a whole number")),
-        [] => in_scratch(500),
+        ["--files", a, b] => compare("two files", Path::new(a), Path::new(b)),
+        ["--generate", folder] => {
+            for pair in 0..PAIRS.len() {
+                generate(Path::new(folder), pair, 400);
+            }
+        }
+        ["--megabytes", megabytes] => all(megabytes.parse().expect("--megabytes takes a whole number")),
+        [] => all(400),
         _ => panic!("--megabytes N, --generate DIR or --files A B"),
     }
 }
 
-fn in_scratch(megabytes: u64) {
+fn all(megabytes: u64) {
     let folder = tempfile::tempdir().unwrap();
-    let [a, b] = generate(folder.path(), megabytes);
-    compare(&a, &b);
+    for (pair, (name, ..)) in PAIRS.iter().enumerate() {
+        let [a, b] = generate(folder.path(), pair, megabytes);
+        compare(name, &a, &b);
+        for path in [a, b] {
+            std::fs::remove_file(path).unwrap();
+        }
+    }
 }
 
-fn generate(folder: &Path, megabytes: u64) -> [PathBuf; 2] {
-    let paths = ["a.vcd", "b.vcd"].map(|name| folder.join(name));
-    for (path, flip) in paths.iter().zip([false, true]) {
-        let summary = generator::write(path, megabytes * 1_000_000, flip).unwrap();
+fn generate(folder: &Path, pair: usize, megabytes: u64) -> [PathBuf; 2] {
+    let (_, shape, second) = PAIRS[pair];
+    let extension = if second == Second::Fst { "fst" } else { "vcd" };
+    let paths = ["a", "b"].map(|name| folder.join(format!("{pair}{name}.{extension}")));
+    for (path, is_second) in paths.iter().zip([false, true]) {
+        let recording = Recording {
+            shape,
+            reversed: is_second && second == Second::OtherNames,
+            flip: is_second,
+        };
+        let summary = match second {
+            // As many clocks as a VCD of that length has.
+            Second::Fst => recording.write_fst(path, megabytes as usize * 1_000_000 / 370),
+            _ => recording.write(path, megabytes * 1_000_000),
+        };
+        let summary = summary.unwrap();
         println!("{}: {summary}", path.display());
     }
     paths
 }
 
-fn compare(a: &Path, b: &Path) {
+fn compare(name: &str, a: &Path, b: &Path) {
     let bytes: u64 = [a, b].iter().map(|path| path.metadata().unwrap().len()).sum();
-    println!("{:.0} MB in two files, best of {RUNS} runs", bytes as f64 / 1e6);
-    for how in ["wavecmp", "wellen"] {
+    println!("{name}: {:.0} MB in two files, best of {RUNS} runs", bytes as f64 / 1e6);
+    for how in ["reading", "wavecmp", "wellen"] {
         let runs = (0..RUNS).map(|_| {
             let program = std::env::current_exe().unwrap();
             let output = Command::new(program)
@@ -64,19 +96,23 @@ fn compare(a: &Path, b: &Path) {
                 .unwrap();
             let text = String::from_utf8(output.stdout).unwrap();
             let numbers: Vec<f64> = text.split_whitespace().map(|n| n.parse().expect(&text)).collect();
-            (numbers[0], numbers[1])
+            [numbers[0], numbers[1], numbers[2]]
         });
-        let best = runs.min_by(|x, y| x.0.total_cmp(&y.0)).unwrap();
+        let runs: Vec<[f64; 3]> = runs.collect();
+        let least = |at: usize| runs.iter().map(|run| run[at]).fold(f64::INFINITY, f64::min);
+        let megabytes = bytes as f64 / 1e6;
         println!(
-            "{how:9} {:6.2} s  {:6.0} MB/s  peak {:6.1} MB",
-            best.0,
-            bytes as f64 / 1e6 / best.0,
-            best.1
+            "  {how:9} {:6.2} s {:6.0} MB/s   processor {:6.2} s {:6.0} MB/s on 2 cores   peak {:6.1} MB",
+            least(0),
+            megabytes / least(0),
+            least(1),
+            2.0 * megabytes / least(1),
+            least(2)
         );
     }
 }
 
-/// Runs one comparison, and prints its seconds and its peak memory in MB.
+/// Runs one comparison, and prints its seconds, those of the processor, and its peak memory in MB.
 fn run(how: &str, a: &Path, b: &Path) {
     let start = Instant::now();
     let differs = match how {
@@ -84,14 +120,36 @@ fn run(how: &str, a: &Path, b: &Path) {
             let result = diff::compare(a, b, &DiffOptions::default(), &mut |_| {}).unwrap();
             result.result == DiffVerdict::Different
         }
-        _ => probe::differs(a, b),
+        "wellen" => probe::differs(a, b),
+        _ => {
+            let mut buffer = vec![0; 1 << 18];
+            for path in [a, b] {
+                let mut file = std::fs::File::open(path).unwrap();
+                while std::io::Read::read(&mut file, &mut buffer).unwrap() > 0 {}
+            }
+            true
+        }
     };
     let seconds = start.elapsed().as_secs_f64();
     assert!(differs, "the files differ in one bit");
-    println!("{seconds} {}", peak_megabytes());
+    println!("{seconds} {} {}", processor_seconds(), peak_megabytes());
 }
 
-/// Returns the largest resident memory of this process so far, as Linux reports it.
+/// Time of the processor that this process has taken, in all its threads, as Linux tells it in hundredths of a second.
+fn processor_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let behind_name = stat.rsplit(')').next().unwrap_or_default();
+    let fields: Vec<f64> = behind_name
+        .split_whitespace()
+        .map(|field| field.parse().unwrap_or(0.0))
+        .collect();
+    fields
+        .get(11)
+        .zip(fields.get(12))
+        .map_or(f64::NAN, |(user, system)| (user + system) / 100.0)
+}
+
+/// Largest resident memory of this process so far, as Linux tells it.
 fn peak_megabytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));

@@ -1,30 +1,32 @@
 //! Compares what changed, at the samples or at every change.
 //!
-//! The cost of a sample is the number of signals that changed since the previous one: a pair that did not change
-//! stays as equal or as different as it was, and its count is added when that state ends.
+//! The cost of a sample is the number of signals that changed since the last one: a pair that did not change stays as
+//! equal or as different as it was, and its count is added up when that ends.
 
+use super::alike::Alike;
+use super::cells::{Cells, GENERAL};
 use super::clocking::Slots;
 use super::gather::Gathering;
 use super::matching::Pair;
 use super::options::{DiffOptions, SamplingEdge};
-use super::result::{Difference, seconds};
+use super::result::{Difference, SignalState, seconds};
 use super::rule::{Rule, View};
 use super::side::{ClockEdge, Side, slot_of};
 use super::touched::Touched;
 use super::value::Shown;
 use crate::WaveError;
-use crate::reader::{Kind, Value, Values};
+use crate::reader::{Kind, Value, Values, value};
 
 const PROGRESS_SAMPLES: u64 = 1 << 14;
 
-/// Progress of a comparison.
+/// How far a comparison has come.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Progress {
-    /// Number of samples compared.
+    /// Samples compared.
     pub samples: u64,
-    /// Number of bytes read from both files.
+    /// Bytes read, of both files.
     pub bytes: u64,
-    /// Length of both files in bytes; `None` if one is a pipe.
+    /// Length of both files; `None` where one is a pipe.
     pub total_bytes: Option<u64>,
 }
 
@@ -37,21 +39,21 @@ pub(super) struct First {
     pub(super) b_number: Option<f64>,
 }
 
-/// Data that the comparison of words needs, close together in memory.
+/// What a comparison of words needs, close together.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hot {
     pub(super) a: Option<u32>,
     pub(super) b: Option<u32>,
-    /// Whether the two values are equal exactly if their words are equal.
-    plain: bool,
-    different: bool,
+    /// The cell that holds its values, or [`GENERAL`].
+    pub(super) cell: u32,
+    pub(super) different: bool,
 }
 
 #[derive(Debug)]
 pub(super) struct State {
     pub(super) name: String,
     pub(super) rule: Rule,
-    /// Sample and time since which the pair differs, and its values then.
+    /// Sample and time since which it differs, with what it then was.
     pub(super) since: Option<(u64, First)>,
     pub(super) count: u64,
     pub(super) first: Option<First>,
@@ -62,21 +64,24 @@ pub(super) struct Engine<'a> {
     pub(super) b: Side,
     pub(super) hot: Vec<Hot>,
     pub(super) states: Vec<State>,
-    touched: Touched,
-    options: &'a DiffOptions,
+    pub(super) touched: Touched,
+    pub(super) options: &'a DiffOptions,
     pub(super) samples: u64,
-    total_bytes: Option<u64>,
-    /// Values per pair when the pair was last equal; kept until the first difference.
+    pub(super) total_bytes: Option<u64>,
+    /// A value per pair, as it was when the pair was equal last; until the first difference.
     pub(super) before: Option<(Values, u128)>,
     pub(super) context: Option<Gathering>,
     /// Edges of the clock that the other file does not have.
     pub(super) surplus: Option<Difference>,
-    /// First time at which paired edges are at different times.
+    /// First time at which paired edges lie at different times.
     pub(super) shifted_fs: Option<u128>,
-    /// Number of samples that one file does not record.
+    /// Samples that one file does not record.
     pub(super) unrecorded: u64,
-    /// Number of differences that did not last longer than the time tolerance.
+    /// Differences that did not last as long as the time tolerance.
     pub(super) forgiven: u64,
+    pub(super) alike: Alike,
+    /// All signals at the first difference, where they are asked for.
+    pub(super) state: Vec<SignalState>,
 }
 
 impl<'a> Engine<'a> {
@@ -90,21 +95,17 @@ impl<'a> Engine<'a> {
         let mut before = Values::default();
         let mut hot = Vec::new();
         let mut states = Vec::new();
-        for (pair, rule) in pairs {
+        let (cells, cell_of) = cells(&a, &b, &pairs);
+        for ((pair, rule), cell) in pairs.into_iter().zip(cell_of) {
             let kinds = [
                 pair.a.map(|slot| a.values.kind(slot)),
                 pair.b.map(|slot| b.values.kind(slot)),
             ];
-            let plain = rule.is_plain()
-                && match kinds {
-                    [Some(Kind::Bits(a)), Some(Kind::Bits(b))] => a == b && a <= 64,
-                    _ => false,
-                };
             before.add(kinds.into_iter().flatten().next().unwrap_or(Kind::Event));
             hot.push(Hot {
                 a: pair.a,
                 b: pair.b,
-                plain,
+                cell,
                 different: false,
             });
             states.push(State {
@@ -115,10 +116,12 @@ impl<'a> Engine<'a> {
                 first: None,
             });
         }
+        let mut touched = Touched::new(states.len());
+        touched.leave_to(cells, |at| hot[at as usize].cell != GENERAL);
         Self {
             a,
             b,
-            touched: Touched::new(states.len()),
+            touched,
             hot,
             states,
             options,
@@ -130,10 +133,12 @@ impl<'a> Engine<'a> {
             shifted_fs: None,
             unrecorded: 0,
             forgiven: 0,
+            alike: Alike::default(),
+            state: Vec::new(),
         }
     }
 
-    /// Excludes these pairs from the comparison until a delayed value has arrived.
+    /// These pairs are not compared before a delayed value has arrived.
     pub(super) fn wait_for(&mut self, pairs: impl Iterator<Item = u32>) {
         for pair in pairs {
             self.touched.waiting[pair as usize] = true;
@@ -157,6 +162,8 @@ impl<'a> Engine<'a> {
             let (a, b) = match (a, b) {
                 (Some(a), Some(b)) => (a, b),
                 (None, None) => return Ok(()),
+                (Some(_), None) if self.b.feed().cut().is_some() => return Ok(()),
+                (None, Some(_)) if self.a.feed().cut().is_some() => return Ok(()),
                 (Some(edge), None) => {
                     self.b.cut_off()?;
                     return self.count_surplus(clock, edge, true);
@@ -185,11 +192,18 @@ impl<'a> Engine<'a> {
             }
             if self.options.start_fs.is_none_or(|start| a.time_fs >= start) {
                 self.compare(a.time_fs, progress);
+                if self.is_stopped() {
+                    return Ok(());
+                }
+                if let Some(times_fs) = self.follow_alike(true, progress)? {
+                    last = Some([times_fs[0]; 2]);
+                    period_fs = times_fs[0] - times_fs[1];
+                }
             }
         }
     }
 
-    /// After a period that one file does not record, pairs edges by their time, with the same offset as before.
+    /// After a stretch that one file does not record, edges meet by their time, as far apart as they were before.
     fn meet_again(
         &mut self,
         mut a: ClockEdge,
@@ -197,7 +211,7 @@ impl<'a> Engine<'a> {
         last: Option<[u128; 2]>,
         period_fs: u128,
     ) -> Result<(Option<ClockEdge>, Option<ClockEdge>), WaveError> {
-        // The times are compared in a common scale: each file's own time relative to its last common edge.
+        // In a common time: each file's own, plus where the other stood at the last common edge.
         let [last_a, last_b] = last.unwrap_or_default();
         loop {
             let (time_a, time_b) = (a.time_fs + last_b, b.time_fs + last_a);
@@ -212,14 +226,13 @@ impl<'a> Engine<'a> {
             };
             match behind.0.next_edge(&mut self.touched)? {
                 Some(edge) => *behind.1 = edge,
-                // The remaining edges of the other file have no partner that could have been recorded.
+                // The rest of the other file has no partner that could have been recorded.
                 None => return Ok((None, None)),
             }
         }
     }
 
-    /// Counts a difference of the clock if one file has more edges than the other, from the first edge without a
-    /// partner.
+    /// One file has more edges than the other: a difference of the clock, from the first edge that is alone.
     fn count_surplus(&mut self, clock: Slots, edge: ClockEdge, of_a: bool) -> Result<(), WaveError> {
         let within = |edge: ClockEdge| self.options.end_fs.is_none_or(|end| edge.time_fs <= end);
         if !within(edge) {
@@ -257,8 +270,22 @@ impl<'a> Engine<'a> {
         self.a.start()?;
         self.b.start()?;
         let glitch_fs = self.options.glitch_fs;
-        while let Some(time) = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min() {
-            // With a glitch filter, a value takes effect when it has lasted long enough; it began before.
+        loop {
+            self.follow_alike(false, progress)?;
+            match (self.a.has_ended(), self.b.has_ended()) {
+                (true, true) => {
+                    self.a.forget_delayed();
+                    self.b.forget_delayed();
+                }
+                (false, true) if self.b.feed().cut().is_some() => return Ok(()),
+                (true, false) if self.a.feed().cut().is_some() => return Ok(()),
+                (false, true) => self.b.cut_off()?,
+                (true, false) => self.a.cut_off()?,
+                (false, false) => {}
+            }
+            let next = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min();
+            let Some(time) = next else { return Ok(()) };
+            // With a glitch filter, a value comes into effect when it has lasted; it began before.
             let began = time.saturating_sub(glitch_fs);
             if self.options.end_fs.is_some_and(|end| began > end) {
                 return Ok(());
@@ -271,19 +298,17 @@ impl<'a> Engine<'a> {
                     self.unrecorded += 1;
                 } else {
                     self.compare(began, progress);
+                    if self.is_stopped() {
+                        return Ok(());
+                    }
                 }
-            }
-            match (self.a.has_ended(), self.b.has_ended()) {
-                (true, true) => {
-                    self.a.forget_delayed();
-                    self.b.forget_delayed();
-                }
-                (false, true) => self.b.cut_off()?,
-                (true, false) => self.a.cut_off()?,
-                (false, false) => {}
             }
         }
-        Ok(())
+    }
+
+    /// Whether the first difference is found and no other is asked for.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.options.first && self.context.is_some()
     }
 
     fn compare(&mut self, time_fs: u128, progress: &mut dyn FnMut(Progress)) {
@@ -298,6 +323,20 @@ impl<'a> Engine<'a> {
         } = self;
         let mut diverged: Vec<u32> = Vec::new();
         let mut ended: Vec<u32> = Vec::new();
+        if !touched.cells.all_equal() {
+            let cells = &touched.cells;
+            for noted in &cells.noted {
+                let equal = cells.is_equal(noted.cell);
+                let list = if equal { &mut ended } else { &mut diverged };
+                let pairs = cells.pairs.get(noted.cell).iter();
+                list.extend(pairs.filter(|pair| equal == hot[**pair as usize].different));
+            }
+            // A cell may be noted several times.
+            for list in [&mut ended, &mut diverged] {
+                list.sort_unstable();
+                list.dedup();
+            }
+        }
         let is_waiting = std::mem::take(&mut touched.waiting);
         touched.drain(|at| {
             if is_waiting[at as usize] {
@@ -305,10 +344,6 @@ impl<'a> Engine<'a> {
             }
             let pair = hot[at as usize];
             let equal = match (pair.a, pair.b) {
-                (Some(slot_a), Some(slot_b)) if pair.plain => {
-                    let (words_a, words_b) = (a.values.words(slot_a), b.values.words(slot_b));
-                    words_a == words_b
-                }
                 (Some(slot_a), Some(slot_b)) => states[at as usize]
                     .rule
                     .equal(a.values.get(slot_a), b.values.get(slot_b)),
@@ -325,12 +360,13 @@ impl<'a> Engine<'a> {
         for at in ended {
             self.end(at as usize, time_fs);
         }
-        // They are in the order of the file, so that the report does not depend on the order of the changes.
+        // In the order of the file, so that the report does not depend on the order of the changes.
         diverged.sort_unstable();
         for at in &diverged {
             self.begin(*at as usize, time_fs);
         }
         self.gather(&diverged, time_fs);
+        self.touched.cells.noted.clear();
         self.samples += 1;
         if self.samples.is_multiple_of(PROGRESS_SAMPLES) {
             progress(Progress {
@@ -343,10 +379,45 @@ impl<'a> Engine<'a> {
 
     pub(super) fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {
         let pair = self.hot[at];
+        if let (Some(cell), Some(slot)) = (self.touched.cells.cells.get(pair.cell as usize), pair.a) {
+            let [a, b] = cell.of.each_ref().map(|words| value(self.a.values.kind(slot), words));
+            return (Some(a), Some(b));
+        }
         (
             pair.a.map(|slot| self.a.values.get(slot)),
             pair.b.map(|slot| self.b.values.get(slot)),
         )
+    }
+
+    /// The value of a pair at the sample before, when both were equal.
+    fn shown_before(&self, at: usize, before: &Values) -> (Shown, Shown) {
+        let pair = self.hot[at];
+        let words;
+        let value = match (pair.a, pair.b) {
+            (Some(slot), Some(_)) if pair.cell != GENERAL => {
+                words = self.touched.cells.before(pair.cell);
+                Some(value(self.a.values.kind(slot), &words))
+            }
+            (Some(_), Some(_)) => Some(before.get(at as u32)),
+            _ => None,
+        };
+        self.states[at].rule.shown(value, value)
+    }
+
+    fn state_of_all(&self, before: Option<&Values>) -> Vec<SignalState> {
+        let state = |at: usize| {
+            let rule = self.states[at].rule;
+            let (a, b) = self.values(at);
+            let (a, b) = rule.shown(a, b);
+            SignalState {
+                signal: self.states[at].name.clone(),
+                before: before.map_or(Shown::Missing, |before| self.shown_before(at, before).0),
+                a,
+                b,
+                view: rule.reading(),
+            }
+        };
+        (0..self.states.len()).map(state).collect()
     }
 
     fn begin(&mut self, at: usize, time_fs: u128) {
@@ -362,11 +433,13 @@ impl<'a> Engine<'a> {
             b_number,
         };
         self.hot[at].different = true;
+        self.touched.cells.different += usize::from(self.hot[at].cell != GENERAL);
         self.states[at].since = Some((self.samples, first));
     }
 
     fn end(&mut self, at: usize, time_fs: u128) {
         self.hot[at].different = false;
+        self.touched.cells.different -= usize::from(self.hot[at].cell != GENERAL);
         let state = &mut self.states[at];
         let Some((since, first)) = state.since.take() else {
             return;
@@ -379,17 +452,17 @@ impl<'a> Engine<'a> {
         state.first.get_or_insert(first);
     }
 
-    /// Collects the values around the first divergence of all: the last equal sample, the diverging one, and some
-    /// after it.
+    /// Notes what stands around the first divergence of all: the last equal sample, itself, and some behind it.
     fn gather(&mut self, diverged: &[u32], time_fs: u128) {
         if self.context.is_none() && !diverged.is_empty() {
             let of = |at: usize| (self.states[at].name.clone(), self.states[at].rule.reading());
             let mut gathering = Gathering::new(self.samples, diverged, of);
-            if let (Some((before, before_fs)), 1..) = (self.before.take(), self.samples) {
-                gathering.add(before_fs, |at| {
-                    let value = self.hot[at].a.and(self.hot[at].b).map(|_| before.get(at as u32));
-                    self.states[at].rule.shown(value, value)
-                });
+            let before = self.before.take().filter(|_| self.samples > 0);
+            if let Some((before, before_fs)) = &before {
+                gathering.add(*before_fs, |at| self.shown_before(at, before));
+            }
+            if self.options.first {
+                self.state = self.state_of_all(before.as_ref().map(|(before, _)| before));
             }
             self.context = Some(gathering);
         }
@@ -404,4 +477,49 @@ impl<'a> Engine<'a> {
             self.context = Some(gathering);
         }
     }
+}
+
+/// The cells, and the cell of each pair: of those that are compared word by word, where each slot has one partner.
+fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u32>) {
+    let mut cell_of = vec![GENERAL; pairs.len()];
+    if !(a.is_plain() && b.is_plain()) {
+        return (Cells::default(), cell_of);
+    }
+    let slots = [a.values.count(), b.values.count()];
+    let mut partners = slots.map(|count| vec![None; count]);
+    let mut is_general = slots.map(|count| vec![false; count]);
+    for (side, reset) in [a.reset_slot(), b.reset_slot()].into_iter().enumerate() {
+        if let Some(slot) = reset {
+            is_general[side][slot as usize] = true;
+        }
+    }
+    let width = |pair: &Pair| match (a.values.kind(pair.a?), b.values.kind(pair.b?)) {
+        (Kind::Bits(a), Kind::Bits(b)) if a == b && a <= 64 => Some(a),
+        _ => None,
+    };
+    for (pair, rule) in pairs {
+        let simple = rule.is_plain() && width(pair).is_some();
+        for (side, [slot, partner]) in [[pair.a, pair.b], [pair.b, pair.a]].into_iter().enumerate() {
+            let Some(slot) = slot else { continue };
+            let known = partners[side][slot as usize].get_or_insert(partner);
+            is_general[side][slot as usize] |= !simple || *known != partner;
+        }
+    }
+    let mut cells: Vec<([u32; 2], u32, Vec<u32>)> = Vec::new();
+    let mut of_slot = std::collections::HashMap::new();
+    for (at, (pair, _)) in (0..).zip(pairs) {
+        let (Some(slot_a), Some(slot_b), Some(width)) = (pair.a, pair.b, width(pair)) else {
+            continue;
+        };
+        if is_general[0][slot_a as usize] || is_general[1][slot_b as usize] {
+            continue;
+        }
+        let cell = *of_slot.entry(slot_a).or_insert_with(|| {
+            cells.push(([slot_a, slot_b], width, Vec::new()));
+            cells.len() - 1
+        });
+        cells[cell].2.push(at);
+        cell_of[at as usize] = cell as u32;
+    }
+    (Cells::new(slots, &cells), cell_of)
 }

@@ -1,7 +1,7 @@
 //! Converts the engine's findings into the result.
 
 use super::engine::Engine;
-use super::result::{Comparison, Difference, seconds};
+use super::result::{Comparison, CutFile, Difference, seconds};
 use crate::wording::{counted, time};
 
 impl Engine<'_> {
@@ -56,6 +56,21 @@ impl Engine<'_> {
                 "no longer than the time tolerance and not counted: {}",
                 counted(self.forgiven, "difference")
             ));
+        }
+        for (side, file) in [(&self.a, "first"), (&self.b, "second")] {
+            if let Some(byte) = side.feed().cut() {
+                let place = format!("byte {byte}");
+                comparison.notes.push(format!(
+                    "the {file} file is cut off at {place}: compared up to the last whole time before it"
+                ));
+                comparison.cut.push(CutFile { file, place });
+            }
+        }
+        if !self.state.is_empty() {
+            comparison
+                .notes
+                .push("stopped at the first difference: what lies behind it was not compared".to_owned());
+            comparison.state = self.state;
         }
         comparison.context = self.context.map(|gathering| gathering.context);
         comparison.conclude(self.samples, differences);

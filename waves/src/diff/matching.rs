@@ -1,4 +1,4 @@
-//! Matches the signals of the first file with those of the second.
+//! Which signal of the first file belongs to which of the second.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,22 +6,37 @@ use super::names::{Entry, Names, canonical};
 use super::pattern::Pattern;
 use crate::WaveError;
 
-/// Largest number of scopes that may be stripped from each file if full names do not match.
+/// Scopes that may be stripped from each file when full names do not meet.
 const STRIPPED_SCOPES: usize = 4;
 
-/// Two signals that belong together, or one without a partner. They are never both `None`.
+/// How two signals were found to belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MatchedBy {
+    /// A `--map` says so.
+    Map,
+    /// They have the same full name.
+    Name,
+    /// They have the same name below the scopes that all signals of their file share.
+    Scopes,
+    /// They have the same name in another writing.
+    Writing,
+}
+
+/// Two signals that belong together, or one without a partner. Never both `None`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Pair {
-    /// Full name in the first file, or else in the second.
+    /// Full name in the first file, else in the second.
     pub(super) name: String,
     /// Full name in the second file.
     pub(super) b_name: Option<String>,
     pub(super) a: Option<u32>,
     pub(super) b: Option<u32>,
+    pub(super) by: Option<MatchedBy>,
 }
 
 impl Pair {
-    /// Returns the names in both files, if both have the signal.
+    /// The names in both files, if both have it.
     pub(super) fn names(&self) -> Option<(String, String)> {
         self.a.and(self.b)?;
         Some((self.name.clone(), self.b_name.clone()?))
@@ -32,7 +47,7 @@ pub(super) struct Matched {
     pub(super) pairs: Vec<Pair>,
     /// Names of events, which have no value to compare.
     pub(super) not_compared: Vec<String>,
-    /// Vectors of each file that were assembled from parts and have a partner: indices in [`Names::groups`].
+    /// Vectors of each file that were put together from parts and have a partner: places in [`Names::groups`].
     pub(super) groups: [Vec<usize>; 2],
 }
 
@@ -40,6 +55,7 @@ struct Partners<'a> {
     a: &'a [Entry],
     b: &'a [Entry],
     of_a: Vec<Option<usize>>,
+    by: Vec<Option<MatchedBy>>,
     claimed_a: Vec<bool>,
     claimed_b: HashSet<usize>,
 }
@@ -50,6 +66,7 @@ impl Matched {
             a: &a.entries,
             b: &b.entries,
             of_a: vec![None; a.entries.len()],
+            by: vec![None; a.entries.len()],
             claimed_a: vec![false; a.entries.len()],
             claimed_b: HashSet::new(),
         };
@@ -59,15 +76,15 @@ impl Matched {
         Ok(partners.finish(a, b))
     }
 
-    /// Removes the events, which have no comparable value, from the pairs.
+    /// Moves the events, which have no comparable value, out of the pairs.
     pub(super) fn leave_out(&mut self, other_a: impl Fn(u32) -> bool, other_b: impl Fn(u32) -> bool) {
         let other = |pair: &Pair| pair.a.is_some_and(&other_a) || pair.b.is_some_and(&other_b);
         self.not_compared = self.pairs.iter().filter(|p| other(p)).map(|p| p.name.clone()).collect();
         self.pairs.retain(|p| !other(p));
     }
 
-    /// Returns the pairs that `name` means: those that the pattern fits, else the one with this full name, else all
-    /// whose name ends with it.
+    /// The pairs that `name` means: those that the pattern fits, else that of this full name, else all whose name ends
+    /// with it.
     pub(super) fn meant(&self, name: &str) -> Result<Vec<usize>, WaveError> {
         let pattern = Pattern::new(name)?;
         let full = !pattern.has_wildcards() && self.pairs.iter().any(|pair| pair.name == name);
@@ -84,8 +101,9 @@ impl Matched {
 }
 
 impl Partners<'_> {
-    fn claim(&mut self, a: usize, b: usize) {
+    fn claim(&mut self, a: usize, b: usize, by: MatchedBy) {
         self.of_a[a] = Some(b);
+        self.by[a] = Some(by);
         self.claimed_b.insert(b);
     }
 
@@ -93,8 +111,8 @@ impl Partners<'_> {
         let (tops_a, tops_b) = (tops(self.a), tops(self.b));
         let by_name: HashMap<&str, usize> = (0..).zip(self.b).map(|(at, entry)| (entry.path.as_str(), at)).collect();
         let mut maps: Vec<&(String, String)> = maps.iter().collect();
-        // The longer name is more specific: a signal's own map comes before that of its scope, and both before those
-        // with wildcards.
+        // The longer name is the more special one: a signal's own map comes before that of its scope, and both before
+        // those with wildcards.
         maps.sort_by_key(|(from, _)| (from.contains(['*', '?']), std::cmp::Reverse(from.len())));
         for (from, to) in maps {
             let (from_pattern, to_pattern) = (Pattern::new(from)?, Pattern::new(to)?);
@@ -120,7 +138,7 @@ impl Partners<'_> {
                     .find_map(|top| by_name.get(format!("{top}{target}").as_str()));
                 if let Some(target) = target {
                     meets = true;
-                    self.claim(at, *target);
+                    self.claim(at, *target, MatchedBy::Map);
                 }
             }
             if !known || !meets {
@@ -142,6 +160,10 @@ impl Partners<'_> {
     fn meet_by_name(&mut self) {
         let (free_a, free_b) = self.free();
         let (top_a, top_b) = best_tops(self.a, self.b, &free_a, &free_b);
+        let by = match top_a.is_empty() && top_b.is_empty() {
+            true => MatchedBy::Name,
+            false => MatchedBy::Scopes,
+        };
         let targets: HashMap<&str, usize> = free_b
             .iter()
             .filter_map(|at| Some((self.b[*at].path.strip_prefix(top_b.as_str())?, *at)))
@@ -149,13 +171,13 @@ impl Partners<'_> {
         for at in free_a {
             let name = self.a[at].path.strip_prefix(top_a.as_str());
             if let Some(target) = name.and_then(|name| targets.get(name)) {
-                self.claim(at, *target);
+                self.claim(at, *target, by);
             }
         }
     }
 
-    /// Matches names that are written differently on each side if each has one candidate. Of the scopes that all
-    /// signals share, as many are stripped as give the most pairs.
+    /// Names that are written in another way on each side, where each has one candidate: with as many of the scopes
+    /// stripped that all share as give the most pairs.
     fn meet_by_canonical_name(&mut self) {
         let (free_a, free_b) = self.free();
         if free_a.is_empty() || free_b.is_empty() {
@@ -189,12 +211,12 @@ impl Partners<'_> {
             }
         }
         for (a, b) in best {
-            self.claim(a, b);
+            self.claim(a, b, MatchedBy::Writing);
         }
     }
 
     fn finish(mut self, a: &Names, b: &Names) -> Matched {
-        // Two vectors that are in parts in both files are compared part by part.
+        // Two vectors that are both in parts compare part by part.
         for (at, partner) in self.of_a.iter_mut().enumerate() {
             if let Some(other) = *partner
                 && self.a[at].group.is_some()
@@ -216,9 +238,10 @@ impl Partners<'_> {
         let of_a = self
             .a
             .iter()
-            .zip(&self.of_a)
-            .filter(|(entry, partner)| listed(entry, &parts_a, partner.is_some()));
-        let of_a = of_a.map(|(entry, partner)| Pair {
+            .zip(self.of_a.iter().zip(&self.by))
+            .filter(|(entry, (partner, _))| listed(entry, &parts_a, partner.is_some()));
+        let of_a = of_a.map(|(entry, (partner, by))| Pair {
+            by: by.filter(|_| partner.is_some()),
             name: entry.full.clone(),
             a: Some(entry.slot),
             b_name: partner.map(|at| self.b[at].full.clone()),
@@ -232,6 +255,7 @@ impl Partners<'_> {
         let of_b = alone.map(|(_, entry)| Pair {
             name: entry.full.clone(),
             b_name: Some(entry.full.clone()),
+            by: None,
             a: None,
             b: Some(entry.slot),
         });
@@ -248,13 +272,13 @@ impl Partners<'_> {
     }
 }
 
-/// Returns what follows `scope` in `path`: empty if it is the signal itself.
+/// What follows `scope` in `path`: empty if it is the signal itself.
 fn below<'a>(path: &'a str, scope: &str) -> Option<&'a str> {
     let rest = path.strip_prefix(scope)?;
     (rest.is_empty() || rest.starts_with('.')).then_some(rest)
 }
 
-/// Returns the scopes that all signals share: "", "top.", "top.inner.", …
+/// The scopes that all signals share: "", "top.", "top.inner.", …
 fn tops(entries: &[Entry]) -> Vec<String> {
     let mut tops = vec![String::new()];
     let Some(first) = entries.first() else { return tops };
@@ -268,7 +292,7 @@ fn tops(entries: &[Entry]) -> Vec<String> {
     tops
 }
 
-/// Returns the fewest scopes to strip that give the most pairs; none if any full names match.
+/// The fewest scopes to strip that give the most pairs; none if full names meet at all.
 fn best_tops(a: &[Entry], b: &[Entry], free_a: &[usize], free_b: &[usize]) -> (String, String) {
     let (tops_a, tops_b) = (tops(a), tops(b));
     let mut choices: Vec<(usize, usize)> = (0..tops_a.len())
@@ -309,6 +333,7 @@ mod tests {
         Names {
             entries: paths.iter().enumerate().map(entry).collect(),
             groups: Vec::new(),
+            left_out: 0,
         }
     }
 

@@ -30,16 +30,23 @@
 //! Both files are read once and at the same time; memory depends on the number of signals and their widths, not on
 //! the length. Only [`show`] reads them again, on request.
 
+mod alike;
+#[cfg(test)]
+mod alike_tests;
+mod cells;
 mod clocking;
 mod delay;
 mod engine;
+mod explain;
 mod finish;
 mod gather;
+mod github;
 mod human;
 mod junit;
 mod matching;
 mod names;
 mod options;
+mod page;
 mod pattern;
 mod picture;
 mod result;
@@ -53,17 +60,24 @@ mod value;
 
 use std::path::Path;
 
+/// The JSON Schema of a [`Comparison`], as `--json` prints it.
+pub const JSON_SCHEMA: &str = include_str!("../../wavecmp.schema.json");
+
 use self::clocking::Clocking;
 pub use self::clocking::SAMPLE_CLOCK;
 use self::engine::Engine;
 pub use self::engine::Progress;
+pub use self::explain::{MatchReport, MatchedSignal, UnmatchedSignal};
+pub use self::github::{annotations, step_summary};
 pub use self::human::{value, value_and_digits};
 pub use self::junit::junit;
+pub use self::matching::MatchedBy;
 use self::matching::{Matched, Pair};
 use self::names::{Filter, Names};
 pub use self::options::{DiffOptions, Latency, Reset, SamplingEdge, parse_time_fs};
-pub use self::picture::{show, shown_files};
-pub use self::result::{Comparison, Context, ContextRow, DiffVerdict, Difference, Leniency};
+pub use self::page::html;
+pub use self::picture::{merged, merged_files, show, shown_files};
+pub use self::result::{Comparison, Context, ContextRow, CutFile, DiffVerdict, Difference, Leniency, SignalState};
 use self::rule::Rule;
 pub use self::rule::{Tolerance, View};
 use self::side::{Delayed, Side, slot_of};
@@ -83,6 +97,17 @@ pub fn compare(
     options: &DiffOptions,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Comparison, WaveError> {
+    compare_by(a, b, options, progress, false)
+}
+
+/// As [`compare`]; `plainly` reads every change of both files.
+fn compare_by(
+    a: &Path,
+    b: &Path,
+    options: &DiffOptions,
+    progress: &mut dyn FnMut(Progress),
+    plainly: bool,
+) -> Result<Comparison, WaveError> {
     let mut waves = [Wave::open(a)?, Wave::open(b)?];
     let plan = Plan::new(&mut waves, options)?;
     let widths = widths(&plan.matched, &waves);
@@ -93,6 +118,10 @@ pub fn compare(
     comparison.only_widths &= strict;
     comparison.unit_fs = waves.iter().map(|wave| wave.declarations.unit_fs).min().unwrap_or(1);
     comparison.notes.clone_from(&plan.clocking.notes);
+    if options.explain {
+        let left_out = plan.names.iter().map(|names| names.left_out).sum();
+        comparison.matching = Some(MatchReport::new(&plan.matched, left_out));
+    }
     comparison.signals = comparison.compared.len() as u64;
     let clock = plan.clocking.clock;
     let is_clock = |pair: &Pair| clock.is_some_and(|[a, b]| (pair.a, pair.b) == (Some(a), Some(b)));
@@ -108,6 +137,9 @@ pub fn compare(
         return Ok(comparison);
     }
     let mut engine = plan.start(waves, options)?;
+    if !plainly {
+        engine.look_for_alike();
+    }
     match clock {
         Some(clock) => engine.at_edges(clock, progress)?,
         None => engine.at_changes(progress)?,
@@ -204,7 +236,7 @@ impl Plan {
                 slot: slot_of(clock, of_b),
                 falling: options.edge == SamplingEdge::Falling,
             });
-            let (declarations, feed) = wave.play(watch)?;
+            let (declarations, feed) = wave.play(watch, options.allow_truncated)?;
             let Declarations { kinds, unit_fs, .. } = declarations;
             let groups: Vec<_> = matched.groups[at]
                 .iter()
@@ -212,7 +244,7 @@ impl Plan {
                 .collect();
             let slot = |pair: &mut Pair| if of_b { pair.b } else { pair.a };
             let mut slots: Vec<Option<u32>> = pairs.iter_mut().map(|(pair, _)| slot(pair)).collect();
-            let mut side = Side::new(feed, &kinds, unit_fs, &groups, &mut slots, &delays[at]);
+            let mut side = Side::new(at, feed, &kinds, unit_fs, &groups, &mut slots, &delays[at]);
             for ((pair, _), slot) in pairs.iter_mut().zip(slots) {
                 *(if of_b { &mut pair.b } else { &mut pair.a }) = slot;
             }

@@ -42,6 +42,8 @@ pub(super) struct Group {
 pub(super) struct Names {
     pub(super) entries: Vec<Entry>,
     pub(super) groups: Vec<Group>,
+    /// Names of the file that do not take part.
+    pub(super) left_out: usize,
 }
 
 /// Selection of the names of a file that take part.
@@ -115,7 +117,10 @@ impl Names {
             )));
         }
         vectors.retain(|_, members| members.len() >= 2);
-        let mut names = Self::default();
+        let mut names = Self {
+            left_out: declarations.names.len() - taken.len(),
+            ..Self::default()
+        };
         for (at, mut path) in taken {
             let named = &declarations.names[at];
             let mut full = named.path.clone();

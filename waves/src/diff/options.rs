@@ -83,6 +83,12 @@ pub struct DiffOptions {
     pub unknown: UnknownPolicy,
     /// Whether a signal that only one file has is a difference, instead of being listed.
     pub require_all: bool,
+    /// Stop at the first difference, and note the state of all signals there.
+    pub first: bool,
+    /// A VCD that ends in the middle of a line is compared up to its last whole time, instead of being refused.
+    pub allow_truncated: bool,
+    /// Note which signals were matched and how, and why the others were not.
+    pub explain: bool,
 }
 
 impl DiffOptions {

@@ -1,4 +1,4 @@
-//! Shows a difference: both sides in one VCD with their difference, files that open it at that time, and a drawing.
+//! Shows a difference: both sides in one VCD with their difference, files that open it there, and a drawing.
 //!
 //! ```text
 //!  first.vcd    a.…  b.…  difference.…   the signals that differ, the clock, over all of the time
@@ -7,7 +7,7 @@
 //!  first.svg    a drawing of the neighbourhood
 //! ```
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::svg::{self, Lane, Trace, Window};
@@ -17,15 +17,15 @@ use crate::files::{OutputSink, write_text};
 use crate::merge::{DifferenceSignal, Focus, MergePart, merge_around};
 use crate::reader::{Kind, Value, Values, Wave};
 
-/// Largest number of signals that are shown, the earliest first.
+/// Signals that are shown, the earliest first.
 const SIGNALS: usize = 8;
-/// Number of samples shown before the divergence and after it.
+/// Samples before the divergence and behind it.
 const BEFORE: u128 = 5;
 const BEHIND: u128 = 6;
-/// Largest number of values of a signal in a drawing; more could not be distinguished.
+/// Values of a signal that a drawing holds; more could not be told apart.
 const VALUES: usize = 200;
 
-/// Returns the files that [`show`] writes.
+/// The files that [`show`] writes.
 pub fn shown_files(base: &Path) -> [PathBuf; 4] {
     ["vcd", "gtkw", "sucl", "svg"].map(|extension| base.with_extension(extension))
 }
@@ -61,7 +61,14 @@ pub fn show(
 
     let of = |side: fn(&(String, String)) -> &String| lanes.iter().map(|pair| side(pair).clone()).collect();
     let signals: [Vec<String>; 2] = [of(|pair| &pair.0), of(|pair| &pair.1)];
-    let [traces_a, traces_b] = [traces(a, &signals[0], window)?, traces(b, &signals[1], window)?];
+    let all = |path: &Path, signals: &[String]| -> Result<Vec<Trace>, WaveError> {
+        let request = Request {
+            signals: signals.to_vec(),
+            window,
+        };
+        Ok(traces(path, &[request])?.pop().unwrap_or_default())
+    };
+    let [traces_a, traces_b] = [all(a, &signals[0])?, all(b, &signals[1])?];
     let lanes = lanes
         .iter()
         .zip(traces_a.into_iter().zip(traces_b))
@@ -72,7 +79,7 @@ pub fn show(
             b,
         });
     let lanes: Vec<Lane> = lanes.collect();
-    // A signal with several names is drawn once.
+    // One signal under several names is drawn once.
     let mut drawn: Vec<Lane> = Vec::new();
     for lane in &lanes {
         let leaf = |lane: &Lane| lane.signal.rsplit('.').next().map(str::to_owned);
@@ -89,7 +96,7 @@ pub fn show(
     let leaves: Vec<String> = shown.iter().map(|(name, _)| name.replace('.', "_")).collect();
     let numeric = |signal: &str| {
         let d = comparison.differences.iter().find(|d| d.signal == signal);
-        // A vector that is assembled from parts has no trace of its own for the difference.
+        // A vector that is put together from parts has no trace of its own to subtract.
         let traced = |lane: &Lane| lane.signal == signal && !lane.a.values.is_empty() && !lane.b.values.is_empty();
         d.is_some_and(|d| matches!(d.a, Shown::Bits(_) | Shown::Real(_))) && lanes.iter().any(traced)
     };
@@ -116,8 +123,8 @@ pub fn show(
     Ok(true)
 }
 
-/// Returns some samples around the first divergence, with their spacing there.
-fn window(comparison: &Comparison, first: f64) -> Window {
+/// Some samples around the first divergence, as far apart as they are there.
+pub(super) fn window(comparison: &Comparison, first: f64) -> Window {
     let fs = |seconds: f64| comparison.femtoseconds(seconds);
     let at = fs(first);
     let times = comparison.context.as_ref().map_or(&[][..], |context| &context.times);
@@ -130,51 +137,129 @@ fn window(comparison: &Comparison, first: f64) -> Window {
     }
 }
 
-/// Returns the traces of the signals in the window; an empty trace for one that the file does not have under that
-/// name.
-fn traces(path: &Path, signals: &[String], window: Window) -> Result<Vec<Trace>, WaveError> {
-    let (declarations, mut feed) = Wave::open(path)?.play(None)?;
-    let slot = |signal: &String| declarations.names.iter().find(|named| named.path == *signal);
-    let slots: Vec<Option<u32>> = signals.iter().map(|signal| Some(slot(signal)?.slot)).collect();
+/// Signals, full names, and the stretch of time of which they are wanted.
+pub(super) struct Request {
+    pub(super) signals: Vec<String>,
+    pub(super) window: Window,
+}
+
+/// Of each request, what its signals do in its window, read in one pass; an empty trace for a signal that the file does not
+/// have by that name.
+pub(super) fn traces(path: &Path, requests: &[Request]) -> Result<Vec<Vec<Trace>>, WaveError> {
+    let (declarations, mut feed) = Wave::open(path)?.play(None, true)?;
+    let by_name: HashMap<&str, u32> = declarations.names.iter().map(|n| (n.path.as_str(), n.slot)).collect();
     let mut values = Values::new(&declarations.kinds);
-    let is_bit = |slot: &Option<u32>| slot.is_some_and(|slot| values.kind(slot) == Kind::Bits(1));
-    let empty = slots.iter().map(|slot| Trace {
-        is_bit: is_bit(slot),
-        values: Vec::new(),
-    });
-    let mut traces: Vec<Trace> = empty.collect();
-    let note = |time: u128, values: &Values, traces: &mut Vec<Trace>| {
-        for (trace, slot) in traces.iter_mut().zip(&slots) {
+    let mut drawings: Vec<Drawing> = requests.iter().map(|r| Drawing::new(r, &by_name, &values)).collect();
+    while let Some(step) = feed.next_step()? {
+        let time = u128::from(step.time) * u128::from(declarations.unit_fs);
+        for drawing in drawings.iter_mut().filter(|d| !d.entered && time > d.window.from) {
+            drawing.note(drawing.window.from, &values);
+            drawing.entered = true;
+        }
+        if drawings.iter().all(|drawing| time >= drawing.window.to) {
+            break;
+        }
+        feed.each_change(|slot, words| {
+            values.set(slot, words);
+        });
+        for drawing in drawings.iter_mut().filter(|d| d.entered && time < d.window.to) {
+            drawing.note(time, &values);
+        }
+    }
+    for drawing in drawings.iter_mut().filter(|drawing| !drawing.entered) {
+        drawing.note(drawing.window.from, &values);
+    }
+    Ok(drawings.into_iter().map(|drawing| drawing.traces).collect())
+}
+
+/// The traces of a request, as far as they are known.
+struct Drawing {
+    window: Window,
+    slots: Vec<Option<u32>>,
+    traces: Vec<Trace>,
+    entered: bool,
+}
+
+impl Drawing {
+    fn new(request: &Request, by_name: &HashMap<&str, u32>, values: &Values) -> Self {
+        let slots: Vec<Option<u32>> = request
+            .signals
+            .iter()
+            .map(|s| by_name.get(s.as_str()).copied())
+            .collect();
+        let empty = slots.iter().map(|slot| Trace {
+            is_bit: slot.is_some_and(|slot| values.kind(slot) == Kind::Bits(1)),
+            values: Vec::new(),
+        });
+        Self {
+            window: request.window,
+            traces: empty.collect(),
+            slots,
+            entered: false,
+        }
+    }
+
+    fn note(&mut self, time: u128, values: &Values) {
+        for (trace, slot) in self.traces.iter_mut().zip(&self.slots) {
             let Some(slot) = slot else { continue };
             let text = text(values.get(*slot));
             if trace.values.last().is_none_or(|(_, last)| *last != text) && trace.values.len() < VALUES {
                 trace.values.push((time, text));
             }
         }
-    };
-    let mut entered = false;
-    while let Some(step) = feed.next_step()? {
-        let time = u128::from(step.time) * u128::from(declarations.unit_fs);
-        if time >= window.to {
-            break;
-        }
-        if time > window.from && !std::mem::replace(&mut entered, true) {
-            note(window.from, &values, &mut traces);
-        }
-        for (slot, words) in feed.changes() {
-            values.set(slot, words);
-        }
-        if entered {
-            note(time, &values, &mut traces);
-        }
     }
-    if !entered {
-        note(window.from, &values, &mut traces);
-    }
-    Ok(traces)
 }
 
-/// Formats a value for a drawing: a bit, hexadecimal digits, a number, text.
+/// The files that [`merged`] writes.
+pub fn merged_files(path: &Path) -> [PathBuf; 3] {
+    [
+        path.to_owned(),
+        path.with_extension("gtkw"),
+        path.with_extension("sucl"),
+    ]
+}
+
+/// Writes one VCD with all signals of both files, in the scopes `a` and `b`, and the differences of those that differ and are
+/// numbers, in `difference`; and beside it the files that open it in GTKWave and Surfer.
+///
+/// # Errors
+/// As [`show`].
+pub fn merged(
+    sink: &dyn OutputSink,
+    path: &Path,
+    a: &Path,
+    b: &Path,
+    comparison: &Comparison,
+) -> Result<(), WaveError> {
+    let is_number = |shown: &Shown| matches!(shown, Shown::Bits(_) | Shown::Real(_));
+    let traced = [traced(a)?, traced(b)?];
+    let differing: Vec<(&(String, String), String)> = comparison
+        .differences
+        .iter()
+        .filter(|d| is_number(&d.a) && is_number(&d.b))
+        .filter_map(|d| comparison.compared.iter().find(|(name, _)| *name == d.signal))
+        .filter(|(of_a, of_b)| traced[0].contains(of_a) && traced[1].contains(of_b))
+        .map(|names| (names, names.0.replace('.', "_")))
+        .collect();
+    let differences: Vec<DifferenceSignal<'_>> = differing
+        .iter()
+        .map(|((of_a, of_b), name)| DifferenceSignal {
+            name,
+            minuend: (0, of_a),
+            subtrahend: (1, of_b),
+        })
+        .collect();
+    let parts = [MergePart { scope: "a", path: a }, MergePart { scope: "b", path: b }];
+    merge_around(sink, path, &parts, &differences, None)
+}
+
+/// The names that a file has; not those of vectors that were put together from parts.
+fn traced(path: &Path) -> Result<HashSet<String>, WaveError> {
+    let names = Wave::open(path)?.declarations.names;
+    Ok(names.into_iter().map(|named| named.path).collect())
+}
+
+/// A value in a drawing: a bit, hexadecimal digits, a number, text.
 fn text(value: Value<'_>) -> String {
     match value {
         Value::Bits { width: 1, .. } => value.digits(1, false),

@@ -1,18 +1,19 @@
-//! The result of a comparison as data (the document of `diff --json`).
+//! The result of a comparison, as data (the contract's `diff --json`).
 
 use serde::Serialize;
 
+use super::explain::MatchReport;
 use super::matching::{Matched, Pair};
 use super::rule::{Rule, View};
 use super::value::{Shown, UnknownPolicy};
 
-/// Verdict of a comparison.
+/// Equal, different, or nothing to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DiffVerdict {
-    /// Every compared value was equal, and every signal had a partner or was left out on request.
+    /// Every compared value was equal, and every signal had a partner or was left out on demand.
     Equal,
-    /// At least one value was not equal.
+    /// At least one was not.
     Different,
     /// Nothing was compared: exit status 2.
     Incomparable,
@@ -21,22 +22,22 @@ pub enum DiffVerdict {
 /// A signal that differs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Difference {
-    /// Full name in the first file, or in the second if the first does not have it.
+    /// Full name in the first file; in the second, if the first does not have it.
     pub signal: String,
     /// Time of the first difference in seconds, by the first file's clock.
     pub time: f64,
-    /// The first file's value at that time.
+    /// The first file's value then.
     pub a: Shown,
-    /// The second file's value at that time.
+    /// The second file's.
     pub b: Shown,
-    /// Number of samples at which they differ.
+    /// Samples at which they differ.
     pub count: u64,
-    /// Whether they still differ at the end; otherwise the difference is transient.
+    /// Whether they still differ at the end; else it was transient.
     pub persistent: bool,
-    /// `a` as a number, if it is read as one.
+    /// `a` as a number, where it is looked at as one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub a_number: Option<f64>,
-    /// `b` as a number, if it is read as one.
+    /// `b` as a number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_number: Option<f64>,
     /// How the text reads the bits.
@@ -44,14 +45,14 @@ pub struct Difference {
     pub view: View,
 }
 
-/// Values around the first divergence of all.
+/// What stands around the first divergence of all.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Context {
-    /// Number of the diverging sample, counted from 0.
+    /// Number of the diverging sample, from 0.
     pub sample: u64,
-    /// Number of signals that diverge there too and are not shown.
+    /// Signals that diverge there too and are not shown.
     pub others: usize,
-    /// Times of the samples in seconds: the last equal one if there is any, the diverging one, and some more.
+    /// Times of the samples in seconds: the last equal one if there is any, the diverging one, some more.
     pub times: Vec<f64>,
     /// The signals that diverge first.
     pub rows: Vec<ContextRow>,
@@ -71,48 +72,73 @@ pub struct ContextRow {
     pub view: View,
 }
 
-/// How a signal is compared, if it is not compared bit by bit in equal widths.
+/// A signal's values at the first difference, and at the sample before.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SignalState {
+    /// Full name.
+    pub signal: String,
+    /// The value of both files at the sample before; missing at the first one.
+    pub before: Shown,
+    /// The first file's value at the difference.
+    pub a: Shown,
+    /// The second file's.
+    pub b: Shown,
+    /// How the text reads the bits.
+    #[serde(skip)]
+    pub view: View,
+}
+
+/// A file that is compared only up to where it was cut off.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CutFile {
+    /// `first` or `second`.
+    pub file: &'static str,
+    /// Where it was cut off.
+    pub place: String,
+}
+
+/// How a signal is compared, where that is not bit by bit in equal widths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Leniency {
     /// Full name.
     pub signal: String,
     /// How its bits are read: `signed`, `uq16` …
     pub view: String,
-    /// Its tolerance, such as `0.5 LSB`; `None` for no tolerance.
+    /// What it may be off: `0.5 LSB` …; `None`: nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<String>,
-    /// Time by which it is later in the second file.
+    /// How much later it is in the second file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency: Option<String>,
-    /// Its widths in the first and the second file, if they differ: the narrower value is extended.
+    /// Its width in the first file and in the second, where they differ: the narrower is extended.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub widths: Option<[u32; 2]>,
-    /// Whether it is extended with its sign, otherwise with zeros.
+    /// Whether it is extended with its sign; else with zeros.
     #[serde(skip)]
     pub extends_sign: bool,
 }
 
-/// The whole result. It serialises to the document of `diff --json`.
+/// The whole result. Serialises to `diff --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// The verdict.
     pub result: DiffVerdict,
-    /// Number of compared signals, which both files have.
+    /// Signals compared: those that both files have.
     pub signals: u64,
-    /// Number of clock edges, or times of change, at which they were compared.
+    /// Clock edges, or times of change, at which they were compared.
     pub samples: u64,
     /// One entry per signal that differs, by time.
     pub differences: Vec<Difference>,
-    /// Time of the first difference of all in seconds.
+    /// Time of the first difference of all.
     pub first_time: Option<f64>,
-    /// Whether nothing was tolerated: no tolerance, no latency, equal widths, unknown bits equal only to themselves.
+    /// Whether nothing was forgiven: no tolerance, no latency, equal widths, unknown bits equal to themselves only.
     pub exact: bool,
     /// Signals that are not compared bit by bit at the same time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lenient: Vec<Leniency>,
-    /// What unknown bits are equal to.
+    /// What unknown bits equal.
     pub unknown: UnknownPolicy,
-    /// Values around the first divergence.
+    /// What stands around the first divergence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub context: Option<Context>,
     /// Signals that only the first file has.
@@ -121,22 +147,31 @@ pub struct Comparison {
     /// Signals that only the second file has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub only_in_b: Vec<String>,
-    /// Names of events, which are not compared.
+    /// Events: not compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
+    /// With [`DiffOptions::first`](super::DiffOptions::first): all signals at the first difference.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub state: Vec<SignalState>,
+    /// Files that were compared only up to where they were cut off.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cut: Vec<CutFile>,
+    /// With [`DiffOptions::explain`](super::DiffOptions::explain): how the signals were matched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matching: Option<MatchReport>,
     /// Names of all signals that were compared, in the first file and in the second.
     #[serde(skip)]
     pub compared: Vec<(String, String)>,
-    /// Whether different widths are all that was tolerated.
+    /// Whether widths are all that was forgiven.
     #[serde(skip)]
     pub only_widths: bool,
-    /// Number of femtoseconds per unit of time of the files, the finer of the two.
+    /// Femtoseconds per unit of time of the files, the finer of the two.
     #[serde(skip)]
     pub unit_fs: u64,
     /// The clock's names, if there is one.
     #[serde(skip)]
     pub clock: Option<(String, String)>,
-    /// Notes for the reader: the clock, edges at different times, why nothing could be compared.
+    /// What a reader should know: the clock, edges at different times, why nothing could be compared.
     pub notes: Vec<String>,
 }
 
@@ -182,6 +217,9 @@ impl Comparison {
             only_in_a: names(|pair| pair.b.is_none()),
             only_in_b: names(|pair| pair.a.is_none()),
             not_compared: matched.not_compared.clone(),
+            state: Vec::new(),
+            cut: Vec::new(),
+            matching: None,
             compared: matched.pairs.iter().filter_map(Pair::names).collect(),
             clock: None,
             notes: Vec::new(),
@@ -209,7 +247,7 @@ impl Comparison {
     }
 }
 
-/// Converts femtoseconds to seconds, correctly rounded.
+/// Seconds, correctly rounded.
 pub(super) fn seconds(time_fs: u128) -> f64 {
     time_fs as f64 / 1e15
 }

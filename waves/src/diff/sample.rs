@@ -1,5 +1,25 @@
-//! Reads a recording as values of a block's ports, clock by clock. It uses the names, the clock and the reset of a
-//! comparison, with the ports instead of the second file.
+//! A recording as values of signals of one's own, the ports of a block, clock by clock: the names, the clock and the reset of a
+//! comparison, with the ports in the place of the second file.
+//!
+//! ```
+//! use wavecmp::diff::DiffOptions;
+//! use wavecmp::sample::{PortMap, WantedSignal};
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("a.vcd");
+//! # std::fs::write(&path, "$scope module t $end $var wire 1 ! clk $end $var wire 4 \" y $end $upscope $end \
+//! #     $enddefinitions $end\n#0\n0!\nb1010 \"\n#5\n1!\nb11 \"\n#10\n0!\n#15\n1!\n")?;
+//!
+//! let y = WantedSignal { name: "y".to_owned(), width: 4 };
+//! let map = PortMap::find(&path, "t", &[y], &DiffOptions::default())?.ok_or("nothing in common")?;
+//! let mut player = map.play()?;
+//! let mut row = [None];
+//! let mut values = Vec::new();
+//! while player.next(&mut row)?.is_some() {
+//!     values.extend(row[0].map(|value| value.bits));
+//! }
+//! assert_eq!(values, [0b1010, 0b11]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use std::path::{Path, PathBuf};
 
@@ -15,12 +35,12 @@ use crate::wording::{counted, time};
 
 const CLOCK: &str = "clk";
 
-/// A signal to find in a file.
+/// A signal that is looked for in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WantedSignal {
     /// Its name below the scope.
     pub name: String,
-    /// Its width in bits.
+    /// Its bits.
     pub width: u32,
 }
 
@@ -33,11 +53,11 @@ pub struct Recorded {
     pub unknown: u64,
 }
 
-/// The signals of a file that belong to the ports of a block.
+/// Which signals of a file are which ports of a block.
 #[derive(Debug, Clone)]
 pub struct PortMap {
     path: PathBuf,
-    /// Slot in the file of each port, in the order of the ports.
+    /// Of each port, in the order of the ports: its slot in the file.
     slots: Vec<Option<u32>>,
     groups: Vec<Group>,
     clock: Slots,
@@ -45,13 +65,12 @@ pub struct PortMap {
     options: DiffOptions,
     /// How clock and reset were found.
     pub notes: Vec<String>,
-    /// Number of signals of the file that are not ports.
+    /// Signals of the file that are no port.
     pub strangers: usize,
 }
 
 impl PortMap {
-    /// Matches the signals of the file with `clk` and `ports` below the scope `top`; `None` if no port is in the
-    /// file.
+    /// Matches the signals of the file with `clk` and `ports` below the scope `top`; nothing, where no port is in the file.
     ///
     /// # Errors
     /// [`WaveError::Option`] where there is no clock, an option fits nothing, or a signal has not the width of its port;
@@ -64,7 +83,7 @@ impl PortMap {
     ) -> Result<Option<Self>, WaveError> {
         let mut wave = Wave::open(path)?;
         if wave.bytes().is_none() {
-            let pipe = std::io::Error::other("it is not a regular file, and must be read several times; save it first");
+            let pipe = std::io::Error::other("it is no regular file, and must be read several times; save it first");
             return Err(WaveError::file(path, "replay")(pipe));
         }
         let mut declared = declarations(top, ports).map_err(WaveError::Option)?;
@@ -97,7 +116,7 @@ impl PortMap {
             let port = &ports[place as usize - 1];
             if kinds[slot as usize] != Kind::Bits(port.width) {
                 return Err(WaveError::Option(format!(
-                    "{}: `{}` is not a vector of {}, as the port `{}` is; map another signal to it with --map A=B",
+                    "{}: `{}` is no vector of {}, as the port `{}` is; map another signal to it with --map A=B",
                     path.display(),
                     pair.name,
                     counted(port.width.into(), "bit"),
@@ -119,12 +138,12 @@ impl PortMap {
         }))
     }
 
-    /// Returns whether a port, given by its index, is in the file.
+    /// Whether a port, by its place, is in the file.
     pub fn has(&self, port: usize) -> bool {
         self.slots.get(port).is_some_and(Option::is_some)
     }
 
-    /// Returns the number of ports in the file.
+    /// How many ports are.
     pub fn found(&self) -> usize {
         self.slots.iter().flatten().count()
     }
@@ -135,7 +154,7 @@ impl PortMap {
     /// As [`PortMap::find`].
     pub fn play(&self) -> Result<Player, WaveError> {
         let mut wave = Wave::open(&self.path)?;
-        // The filter is built in the same way, so that assembled vectors get the same slots.
+        // The same again, so that wholes of vectors get the same slots.
         let filter = Filter::new(&self.options.only, &self.options.ignore)?;
         Names::new(
             &mut wave.declarations,
@@ -143,13 +162,16 @@ impl PortMap {
             &filter,
             "recorded",
         )?;
-        let (declarations, feed) = wave.play(Some(Watch {
-            slot: self.clock[0],
-            falling: self.options.edge == SamplingEdge::Falling,
-        }))?;
+        let (declarations, feed) = wave.play(
+            Some(Watch {
+                slot: self.clock[0],
+                falling: self.options.edge == SamplingEdge::Falling,
+            }),
+            false,
+        )?;
         let groups: Vec<&Group> = self.groups.iter().collect();
         let Declarations { kinds, unit_fs, .. } = declarations;
-        let mut side = Side::new(feed, &kinds, unit_fs, &groups, &mut [], &[]);
+        let mut side = Side::new(0, feed, &kinds, unit_fs, &groups, &mut [], &[]);
         side.start()?;
         Ok(Player {
             side,
@@ -162,7 +184,7 @@ impl PortMap {
     }
 }
 
-/// Returns `clk` and the ports as a file would declare them: slot 0 is the clock, slot n + 1 is port n.
+/// `clk` and the ports as a file would declare them: slot 0 is the clock, slot n + 1 is port n.
 fn declarations(top: &str, ports: &[WantedSignal]) -> Result<Declarations, String> {
     let mut declarations = Declarations::default();
     declarations.enter(top)?;
@@ -181,15 +203,14 @@ pub struct Player {
     path: PathBuf,
     touched: Touched,
     slots: Vec<Option<u32>>,
-    /// The reset's slot and active value, until it has been released.
+    /// Until it has been released.
     reset: Option<(u32, bool)>,
     is_first: bool,
 }
 
 impl Player {
-    /// Advances to the next edge of the clock, and fills in the values just before it: one per port, `None` if the
-    /// port is not in the file. Returns `None` if there was no edge; the value tells whether the reset, if there is
-    /// one, has been released.
+    /// Goes to the next edge of the clock, and fills in what stands just before it: a value per port, none where the port is not
+    /// in the file. Whether there was an edge; the second value says whether the reset, if there is one, has been released.
     ///
     /// # Errors
     /// [`WaveError::Damaged`] where the file is damaged, or does not record some clocks; [`WaveError::File`] where it cannot be read.

@@ -9,6 +9,7 @@
 
 use std::collections::VecDeque;
 
+use super::cells::GENERAL;
 use super::clocking::Slots;
 use super::delay::DelayLine;
 use super::names::Group;
@@ -49,6 +50,8 @@ pub(super) struct ClockEdge {
 
 /// One of the two files.
 pub(super) struct Side {
+    /// 0: the first file, 1: the second.
+    number: usize,
     feed: Feed,
     pub(super) values: Values,
     unit_fs: u128,
@@ -81,6 +84,7 @@ impl Side {
     /// Creates a side. `slots` are those of the pairs, in their order. Returns the slots that the pairs must use:
     /// delayed pairs get their own.
     pub(super) fn new(
+        number: usize,
         feed: Feed,
         kinds: &[Kind],
         unit_fs: u64,
@@ -132,6 +136,7 @@ impl Side {
             .collect();
         let pairs = Lists::new(kinds.len() + delays.len(), &entries);
         Self {
+            number,
             feed,
             values,
             unit_fs: u128::from(unit_fs),
@@ -254,32 +259,84 @@ impl Side {
     }
 
     fn take_in(&mut self, touched: &mut Touched) {
-        let plain = self.parts.is_empty() && self.lines.is_empty();
-        for (slot, words) in self.feed.changes() {
-            if !self.values.set(slot, words) {
-                continue;
+        let Self {
+            number,
+            feed,
+            values,
+            pairs,
+            parts,
+            delayed,
+            lines,
+            ..
+        } = self;
+        let number = *number;
+        let (pairs, parts, delayed) = (&*pairs, &**parts, &**delayed);
+        let plain = parts.is_empty() && lines.is_empty();
+        feed.each_change(|slot, words| {
+            let cell = touched.cells.of(number, slot);
+            if cell != GENERAL
+                && let [bits, unknown] = *words
+            {
+                touched.cells.set(number, cell, [bits, unknown]);
+                return;
             }
-            for pair in self.pairs.get(slot) {
+            if !values.set(slot, words) {
+                return;
+            }
+            for pair in pairs.get(slot) {
                 touched.touch(*pair);
             }
             if !plain {
-                let derived = Derived {
-                    pairs: &self.pairs,
-                    parts: &self.parts,
-                    delayed: &self.delayed,
-                };
-                derived.follow(slot, &mut self.values, &mut self.lines, touched);
+                let derived = Derived { pairs, parts, delayed };
+                derived.follow(slot, values, lines, touched);
             }
-        }
+        });
+    }
+
+    /// Whether every value goes straight to the pairs: nothing is put together, delayed or held back.
+    pub(super) fn is_plain(&self) -> bool {
+        self.parts.is_empty() && self.lines.is_empty() && self.settle.is_none()
+    }
+
+    /// The step at hand.
+    pub(super) fn step(&self) -> Option<Step> {
+        self.step
+    }
+
+    pub(super) fn feed(&self) -> &Feed {
+        &self.feed
+    }
+
+    /// Femtoseconds per unit of time.
+    pub(super) fn unit_fs(&self) -> u128 {
+        self.unit_fs
+    }
+
+    /// The pairs that look at a slot.
+    pub(super) fn pairs_of(&self, slot: u32) -> &[u32] {
+        self.pairs.get(slot)
+    }
+
+    /// Goes on with another feed of the same file, whose first step is an edge that was returned, or is none.
+    pub(super) fn go_on(&mut self, feed: Feed, at_edge: bool) -> Result<(), WaveError> {
+        self.feed = feed;
+        self.step = self.feed.next_step()?;
+        self.at_edge = at_edge;
+        Ok(())
+    }
+
+    /// The slot of the reset, until it has been released.
+    pub(super) fn reset_slot(&self) -> Option<u32> {
+        self.reset.map(|(slot, _)| slot)
     }
 
     fn hold_back(&mut self, time_fs: u128) -> Result<(), WaveError> {
         let Some(settle) = &mut self.settle else { return Ok(()) };
-        for (slot, words) in self.feed.changes() {
+        self.feed.each_change(|slot, words| {
             settle.next.set(slot, words);
             settle.since[slot as usize] = Some(time_fs);
             settle.queue.push_back((time_fs, slot));
-        }
+        });
         if settle.queue.len() > HELD_CHANGES {
             return Err(WaveError::Option(format!(
                 "--glitch: {} changes within one glitch, and at most {HELD_CHANGES} are held back; give a shorter time",

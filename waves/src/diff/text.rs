@@ -45,9 +45,21 @@ impl fmt::Display for Comparison {
             f.write_str("\ndiffering signals, the earliest first")?;
             list(f, &self.differences, |d| self.difference(d, width))?;
         }
+        if !self.state.is_empty() {
+            f.write_str("\nall signals there: before, then first | second file")?;
+            for state in &self.state {
+                let [before, a, b] =
+                    [&state.before, &state.a, &state.b].map(|shown| short(&value(shown, state.view), CELL));
+                write!(f, "\n  {}  {before}, {a} | {b}", short(&state.signal, NAME))?;
+            }
+        }
         list(f, &self.only_in_a, |name| format!("only in the first file: {name}"))?;
         list(f, &self.only_in_b, |name| format!("only in the second file: {name}"))?;
-        list(f, &self.not_compared, |name| format!("not compared: {name}"))
+        list(f, &self.not_compared, |name| format!("not compared: {name}"))?;
+        match &self.matching {
+            Some(matching) => write!(f, "\n{matching}"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -83,6 +95,7 @@ impl Comparison {
         let is_width = |l: &Leniency| l.widths.is_some() && l.tolerance.is_none() && l.latency.is_none();
         let only_widths = self.only_widths && self.lenient.iter().any(is_width);
         match (self.exact, only_widths) {
+            (true, _) if !self.cut.is_empty() => "equal up to where a file was cut off",
             (true, _) => "equal",
             (false, true) => "equal, but for the widths below",
             (false, false) => "equal within the tolerances below",

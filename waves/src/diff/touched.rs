@@ -1,21 +1,26 @@
-//! The pairs that a change affects, and those that were affected.
+//! Which pairs a change touches, and which were touched.
 
-/// Pairs to compare again.
+use super::cells::Cells;
+
+/// Pairs to look at again.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
     flags: Vec<bool>,
     list: Vec<u32>,
-    /// Whether each pair waits for a delayed value to arrive.
+    /// Pairs that wait for a delayed value to arrive.
     pub(super) waiting: Vec<bool>,
+    /// The pairs that are simpler than that.
+    pub(super) cells: Cells,
 }
 
 impl Touched {
-    /// Creates a set of this many pairs, all to be compared.
+    /// So many pairs, all to be looked at.
     pub(super) fn new(pairs: usize) -> Self {
         Self {
             flags: vec![true; pairs],
             list: (0..pairs as u32).collect(),
             waiting: vec![false; pairs],
+            cells: Cells::default(),
         }
     }
 
@@ -26,7 +31,13 @@ impl Touched {
         }
     }
 
-    /// Calls `each` for the pairs affected since, and clears the set.
+    /// These pairs are cells: they are not looked at one by one.
+    pub(super) fn leave_to(&mut self, cells: Cells, is_cell: impl Fn(u32) -> bool) {
+        self.list.retain(|pair| !is_cell(*pair));
+        self.cells = cells;
+    }
+
+    /// The pairs touched since, which are then untouched.
     pub(super) fn drain(&mut self, mut each: impl FnMut(u32)) {
         for pair in self.list.drain(..) {
             self.flags[pair as usize] = false;

@@ -55,20 +55,20 @@ fn finished(signals: impl Iterator<Item = Vec<(u64, String)>>) -> Changes {
 }
 
 fn ours(path: &Path) -> Changes {
-    let (declarations, mut feed) = Wave::open(path).unwrap().play(None).unwrap();
+    let (declarations, mut feed) = Wave::open(path).unwrap().play(None, false).unwrap();
     let mut values = Values::new(&declarations.kinds);
     let mut changes = vec![Vec::new(); declarations.kinds.len()];
     while let Some(step) = feed.next_step().unwrap() {
-        for (slot, words) in feed.changes() {
+        feed.each_change(|slot, words| {
             values.set(slot, words);
             let value = match values.get(slot) {
                 bits @ Value::Bits { width, .. } => bits.digits(width, false),
                 Value::Real(Some(real)) => real.to_string(),
                 text @ Value::Text(_) => text.text().unwrap(),
-                Value::Real(None) | Value::Event => continue,
+                Value::Real(None) | Value::Event => return,
             };
             note(&mut changes[slot as usize], step.time, value);
-        }
+        });
     }
     let kinds = declarations.kinds.iter();
     let comparable = kinds.zip(changes).filter(|(kind, _)| **kind != Kind::Event);

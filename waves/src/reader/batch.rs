@@ -1,45 +1,88 @@
-//! Packed changes of a period of time, passed from the thread that reads to the one that compares.
+//! What a file says in a stretch of time, packed, on its way from the thread that reads to the one that compares.
 //!
 //! ```text
 //!  steps    time 0, ends at 3 │ time 5, ends at 4, edge │ …        all that happens at one time is one step
-//!  changes  slot, word │ slot, word │ slot, word ║ slot, word ║ …
+//!  changes  slot, value │ slot, value │ slot, place of its words ║ slot, value ║ …
 //!  words    bits, unknown │ bits, unknown │ …                       as many of each as the slot's kind asks for
 //! ```
+//!
+//! Known values below 2^32 and single digits, nearly all there are, need no words: a third of the memory to write and read.
 
 use super::header::Kind;
 use super::values::words_of;
 
-/// A batch is handed over when it has this many changes.
-const CHANGES: usize = 1 << 13;
-const WORDS: usize = 1 << 16;
+/// A batch is handed over when it is this full.
+const CHANGES: usize = 1 << 14;
+const WORDS: usize = 1 << 15;
 
-/// All changes at one time.
+/// Place in a file of a step that has none to which one could return.
+pub(crate) const NOWHERE: u64 = u64::MAX;
+
+/// All that changes at one time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Step {
-    /// Time in the file's unit.
+    /// In the file's unit.
     pub(crate) time: u64,
-    /// End of its changes; they start at the end of the previous step.
-    pub(super) end: usize,
-    /// Whether the watched clock has its edge here.
+    /// Byte of the file at which its time stands, or [`NOWHERE`].
+    pub(crate) place: u64,
+    /// End of its changes; they start at the end of the step before.
+    pub(super) end: u32,
+    /// The watched clock has its edge here.
     pub(crate) edge: bool,
-    /// Whether nothing is recorded from here on (`$dumpoff`), until a later step.
+    /// From here on nothing is recorded (`$dumpoff`), until a step says otherwise.
     pub(crate) off: bool,
 }
 
-/// A slot and the position of its words.
+/// What the upper two bits of a change's slot say of its value.
+const TAG_SHIFT: u32 = 30;
+const IN_WORDS: u32 = 0;
+const KNOWN: u32 = 1;
+const DIGIT: u32 = 2;
+const SLOT: u32 = (1 << TAG_SHIFT) - 1;
+
+/// A slot and its value, or where its words are.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
-    pub(super) slot: u32,
-    pub(super) word: u32,
+    slot: u32,
+    value: u32,
 }
 
-/// Steps to be handed over.
+impl Change {
+    #[inline]
+    fn new(tag: u32, slot: u32, value: u32) -> Self {
+        let slot = slot | tag << TAG_SHIFT;
+        Self { slot, value }
+    }
+
+    #[inline]
+    pub(super) fn slot(self) -> u32 {
+        self.slot & SLOT
+    }
+
+    /// The value, if it needs no words: bits, and which of them are unknown.
+    #[inline]
+    pub(super) fn small(self) -> Option<[u64; 2]> {
+        match self.slot >> TAG_SHIFT {
+            KNOWN => Some([self.value.into(), 0]),
+            DIGIT => Some([u64::from(self.value & 1), u64::from(self.value >> 1)]),
+            _ => None,
+        }
+    }
+
+    /// Where its words begin.
+    #[inline]
+    pub(super) fn words_at(self) -> usize {
+        self.value as usize
+    }
+}
+
+/// Steps on their way.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     pub(super) steps: Vec<Step>,
     pub(super) changes: Vec<Change>,
     pub(super) words: Vec<u64>,
-    /// Number of bytes of the file that were read up to here.
+    /// Bytes of the file that were read up to here.
     pub(super) bytes: u64,
 }
 
@@ -49,6 +92,26 @@ impl Batch {
         self.changes.clear();
         self.words.clear();
     }
+
+    /// Slot and words of the changes from `first` to `end`. `lengths` has the words of each slot.
+    #[inline]
+    pub(super) fn each(&self, first: usize, end: usize, lengths: &[u32], mut each: impl FnMut(u32, &[u64])) {
+        for change in &self.changes[first..end] {
+            let slot = change.slot();
+            let small;
+            let words = match change.small() {
+                Some(words) => {
+                    small = words;
+                    &small[..]
+                }
+                None => {
+                    let from = change.words_at();
+                    &self.words[from..from + lengths[slot as usize] as usize]
+                }
+            };
+            each(slot, words);
+        }
+    }
 }
 
 /// The bit whose edges are marked.
@@ -56,24 +119,40 @@ impl Batch {
 pub(crate) struct Watch {
     /// Slot of a signal of one bit.
     pub(crate) slot: u32,
-    /// Whether the falling edge is marked.
+    /// Whether the edge is the falling one.
     pub(crate) falling: bool,
 }
 
-/// Collects changes into steps, and steps into a batch.
+impl Watch {
+    /// Whether it is an edge when the clock goes from one value to the other: each is a bit and whether it is unknown.
+    pub(super) fn is_edge(self, before: [u64; 2], after: [u64; 2]) -> bool {
+        let [from, to] = if self.falling { [1, 0] } else { [0, 1] };
+        before == [from, 0] && after == [to, 0]
+    }
+
+    /// The clock just before its edge.
+    pub(super) fn before_edge(self) -> [u64; 2] {
+        [u64::from(self.falling), 0]
+    }
+}
+
+/// Gathers changes into steps, and steps into a batch.
 pub(super) struct Gatherer {
     pub(super) batch: Batch,
     kinds: Vec<Kind>,
     watch: Option<Watch>,
+    /// The slot of the watched clock, or one that no signal has.
+    watched: u32,
     /// The clock before this step, and now: bit and unknown.
     clock: [[u64; 2]; 2],
     time: u64,
+    place: u64,
     off: bool,
     was_off: bool,
     /// Start of the step in the changes and in the words.
     from: (usize, usize),
-    /// With more words than this, the step is compacted.
-    press_at: usize,
+    /// Beyond so many changes or words, the step is pressed together.
+    press_at: (usize, usize),
 }
 
 impl Gatherer {
@@ -82,54 +161,84 @@ impl Gatherer {
             batch: Batch::default(),
             kinds,
             watch,
+            watched: watch.map_or(u32::MAX, |watch| watch.slot),
             clock: [[0, 1]; 2],
             time: 0,
+            place: NOWHERE,
             off: false,
             was_off: false,
             from: (0, 0),
-            press_at: 2 * WORDS,
+            press_at: (2 * CHANGES, 2 * WORDS),
         }
     }
 
+    /// Goes on in the middle of a file, behind a time, with the clock as it is just before its edge.
+    pub(super) fn resumed(kinds: Vec<Kind>, watch: Option<Watch>, time: u64) -> Self {
+        let mut gatherer = Self::new(kinds, watch);
+        gatherer.time = time;
+        if let Some(watch) = watch {
+            gatherer.clock = [watch.before_edge(); 2];
+        }
+        gatherer
+    }
+
+    /// Words of each slot's values.
+    pub(super) fn lengths(&self) -> Vec<u32> {
+        self.kinds.iter().map(|kind| words_of(*kind) as u32).collect()
+    }
+
+    #[inline]
     pub(super) fn kind(&self, slot: u32) -> Kind {
         self.kinds[slot as usize]
     }
 
-    /// Adds a known or unknown value of at most 64 bits, or a real number.
+    /// A known or unknown value of at most 64 bits, or a real number.
     #[inline]
     pub(super) fn put_word(&mut self, slot: u32, bits: u64, unknown: u64) {
-        let batch = &mut self.batch;
-        let word = batch.words.len() as u32;
-        batch.changes.push(Change { slot, word });
-        batch.words.extend_from_slice(&[bits, unknown]);
-        if let Some(watch) = self.watch
-            && watch.slot == slot
-        {
-            self.clock[1] = [bits, unknown];
+        let change = if let (Ok(value), 0) = (u32::try_from(bits), unknown) {
+            Change::new(KNOWN, slot, value)
+        } else {
+            let word = self.batch.words.len() as u32;
+            self.batch.words.extend_from_slice(&[bits, unknown]);
+            Change::new(IN_WORDS, slot, word)
+        };
+        self.put(change, [bits, unknown]);
+    }
+
+    /// A single digit: bit 0 the bit, bit 1 whether it is unknown.
+    #[inline]
+    pub(super) fn put_digit(&mut self, slot: u32, digit: u8) {
+        let value = [u64::from(digit & 1), u64::from(digit >> 1)];
+        self.put(Change::new(DIGIT, slot, digit.into()), value);
+    }
+
+    #[inline]
+    fn put(&mut self, change: Change, value: [u64; 2]) {
+        self.batch.changes.push(change);
+        if self.watched == change.slot() {
+            self.clock[1] = value;
         }
-        if self.batch.words.len() > self.press_at {
+        if self.batch.changes.len() > self.press_at.0 || self.batch.words.len() > self.press_at.1 {
             self.press();
         }
     }
 
-    /// Adds a value of the slot's kind and returns its words, all zero.
+    /// Words for a value of the slot's kind, all zero.
     pub(super) fn put_words(&mut self, slot: u32) -> &mut [u64] {
-        if self.batch.words.len() > self.press_at {
+        if self.batch.words.len() > self.press_at.1 {
             self.press();
         }
         let batch = &mut self.batch;
         let from = batch.words.len();
-        let word = from as u32;
-        batch.changes.push(Change { slot, word });
+        batch.changes.push(Change::new(IN_WORDS, slot, from as u32));
         batch.words.resize(from + words_of(self.kinds[slot as usize]), 0);
         &mut batch.words[from..]
     }
 
-    /// Checks the value that was added last, if it is the clock's.
+    /// Looks at the value that was put last with [`Gatherer::put_words`], if it is the clock's.
     pub(super) fn watch_last(&mut self, slot: u32) {
-        let words = &self.batch.words;
-        if let (Some(watch), [.., bits, unknown]) = (self.watch, words.as_slice())
-            && watch.slot == slot
+        if self.watched == slot
+            && let [.., bits, unknown] = self.batch.words.as_slice()
         {
             self.clock[1] = [*bits, *unknown];
         }
@@ -139,14 +248,19 @@ impl Gatherer {
         self.off = off;
     }
 
-    /// Advances the time, which must not go back. Returns whether the batch is full and must be handed over.
+    /// The time goes on, as byte `place` of the file says; it must not go back. Whether the batch is full and must be handed
+    /// over.
     #[inline]
-    pub(super) fn advance(&mut self, time: u64) -> bool {
+    pub(super) fn advance(&mut self, time: u64, place: u64) -> bool {
         if time == self.time {
+            if self.place == NOWHERE && self.batch.changes.len() == self.from.0 {
+                self.place = place;
+            }
             return false;
         }
         self.end_step();
         self.time = time;
+        self.place = place;
         self.batch.changes.len() >= CHANGES || self.batch.words.len() >= WORDS
     }
 
@@ -154,21 +268,19 @@ impl Gatherer {
         self.time
     }
 
-    /// Ends the current step, if anything happened in it.
+    /// Ends the step at hand, if anything happened in it.
     pub(super) fn end_step(&mut self) {
         let end = self.batch.changes.len();
         if end == self.from.0 && self.off == self.was_off {
             return;
         }
-        let (before, after) = if self.watch.is_some_and(|watch| watch.falling) {
-            (1, 0)
-        } else {
-            (0, 1)
-        };
         self.batch.steps.push(Step {
             time: self.time,
-            end,
-            edge: self.clock == [[before, 0], [after, 0]],
+            place: self.place,
+            end: end as u32,
+            edge: self
+                .watch
+                .is_some_and(|watch| watch.is_edge(self.clock[0], self.clock[1])),
             off: self.off,
         });
         self.clock[0] = self.clock[1];
@@ -176,37 +288,49 @@ impl Gatherer {
         self.from = (end, self.batch.words.len());
     }
 
-    /// Takes the complete steps out, leaving `empty` in their place. The current step must have ended.
+    /// Forgets the step at hand.
+    pub(super) fn drop_step(&mut self) {
+        let (changes, words) = self.from;
+        self.batch.changes.truncate(changes);
+        self.batch.words.truncate(words);
+    }
+
+    /// Takes the whole steps out, leaving `empty` in their place. The step at hand must have ended.
     pub(super) fn take(&mut self, mut empty: Batch) -> Batch {
         empty.clear();
         self.from = (0, 0);
-        self.press_at = 2 * WORDS;
+        self.press_at = (2 * CHANGES, 2 * WORDS);
         std::mem::replace(&mut self.batch, empty)
     }
 
-    /// Keeps only the last change of each slot in the current step, since a file may have any number of changes at
-    /// one time.
+    /// Keeps only the last change of each slot in the step at hand: a file may say as much as it likes about one time.
     fn press(&mut self) {
         let mut seen = vec![false; self.kinds.len()];
         let (first, first_word) = self.from;
         let mut kept: Vec<Change> = Vec::new();
         for change in self.batch.changes[first..].iter().rev() {
-            if !std::mem::replace(&mut seen[change.slot as usize], true) {
+            if !std::mem::replace(&mut seen[change.slot() as usize], true) {
                 kept.push(*change);
             }
         }
         kept.reverse();
         let mut words = Vec::new();
         for change in &mut kept {
-            let from = change.word as usize;
-            change.word = (first_word + words.len()) as u32;
-            words.extend_from_slice(&self.batch.words[from..from + words_of(self.kinds[change.slot as usize])]);
+            if change.small().is_none() {
+                let from = change.words_at();
+                change.value = (first_word + words.len()) as u32;
+                words.extend_from_slice(&self.batch.words[from..from + words_of(self.kinds[change.slot() as usize])]);
+            }
         }
         self.batch.changes.truncate(first);
         self.batch.changes.extend(kept);
         self.batch.words.truncate(first_word);
         self.batch.words.extend(words);
-        // At least as much again comes in before the next time, so that the cost per change stays the same.
-        self.press_at = (2 * self.batch.words.len()).max(2 * WORDS);
+        // At least as much again comes in before the next time: the cost per change stays the same.
+        let twice = |length: usize, least: usize| (2 * length).max(2 * least);
+        self.press_at = (
+            twice(self.batch.changes.len(), CHANGES),
+            twice(self.batch.words.len(), WORDS),
+        );
     }
 }

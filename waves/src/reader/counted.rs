@@ -1,17 +1,16 @@
-//! Counts how far a reader has come.
+//! How far a reader has come.
 
-use std::fs::File;
 use std::io::{self, Read};
 
-/// A file that counts the bytes read from it.
+/// A file, or what is unpacked of one, that knows how much of it was read.
 pub(super) struct Counted {
-    pub(super) file: File,
+    pub(super) input: Box<dyn Read + Send>,
     pub(super) bytes: u64,
 }
 
 impl Read for Counted {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.file.read(buffer)?;
+        let count = self.input.read(buffer)?;
         self.bytes += count as u64;
         Ok(count)
     }

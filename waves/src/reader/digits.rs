@@ -62,6 +62,36 @@ pub(super) fn known_word(digits: &[u8]) -> Option<u64> {
     Some(word)
 }
 
+/// The known digits at `at`, and the place behind them: their number if there are at most 64, else its last 64 bits. Eight bytes
+/// must follow the last digit, else the run ends too early.
+#[inline]
+pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
+    const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
+    const OTHER: u64 = u64::from_le_bytes([0xfe; 8]);
+    const HIGH: u64 = u64::from_le_bytes([0x80; 8]);
+    const LOW: u64 = u64::from_le_bytes([0x7f; 8]);
+    let (mut word, mut end) = (0u64, at);
+    while let Some(eight) = data.get(end..end + 8) {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(eight);
+        let digits = u64::from_le_bytes(bytes) ^ ZEROS;
+        let other = digits & OTHER;
+        // Byte 0 goes to bit 7, byte 7 to bit 0: no two products meet.
+        if other == 0 {
+            word = word << 8 | digits.wrapping_mul(0x8040_2010_0804_0201) >> 56;
+            end += 8;
+            continue;
+        }
+        let first = (((other & LOW) + LOW) | other) & HIGH;
+        let count = first.trailing_zeros() / 8;
+        // The digits before the other byte, behind zeros.
+        let digits = digits.unbounded_shl(64 - 8 * count);
+        word = word << count | digits.wrapping_mul(0x8040_2010_0804_0201) >> 56;
+        return (word, end + count as usize);
+    }
+    (word, end)
+}
+
 /// Packs `digits`, most significant first, into `bits` and `unknown`, which hold `width` bits, least significant word
 /// first. Missing digits are as in VCD: zeros, or the first digit if that is unknown. There must not be more digits
 /// than `width`.
@@ -137,6 +167,14 @@ mod tests {
         fn prop_known_digits_are_a_binary_number(number: u64, width in 1usize..=64) {
             let number = number >> (64 - width);
             prop_assert_eq!(known_word(format!("{number:0width$b}").as_bytes()), Some(number));
+        }
+
+        #[test]
+        fn prop_a_run_of_known_digits_ends_where_it_ends(digits in "[01]{0,64}", next in 0u8..=255, rest in any::<[u8; 7]>()) {
+            prop_assume!(!b"01".contains(&next));
+            let data = [digits.as_bytes(), &[next], &rest].concat();
+            let expected = u64::from_str_radix(&digits, 2).unwrap_or(0);
+            prop_assert_eq!(known_run(&data, 0), (expected, digits.len()));
         }
 
         #[test]

@@ -1,4 +1,4 @@
-//! A thread that reads a file ahead, and the batches that it hands over.
+//! A thread that reads a file ahead, and what it hands over.
 //!
 //! ```text
 //!  reading thread ──► full batches (at most 3) ──► comparing thread
@@ -6,22 +6,23 @@
 //!        └──────────────── empty batches ◄──────────────┘
 //! ```
 //!
-//! The batches are reused in a circle, so that nothing is allocated on the way; a reader that is faster than the
-//! comparison waits.
+//! The batches go round, so that nothing is allocated on the way, and a reader that is faster than the comparison waits.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 use super::batch::{Batch, Gatherer, Step};
 use super::section::{Ended, truncated};
+use super::twin::Reopen;
 use crate::WaveError;
 
 const BATCHES: usize = 3;
 
 enum Message {
     Batch(Batch),
-    Ended { unterminated: bool },
+    Ended { unterminated: bool, cut: Option<u64> },
     Failed(WaveError),
 }
 
@@ -31,21 +32,26 @@ pub(crate) struct Feed {
     full: Receiver<Message>,
     empty: SyncSender<Batch>,
     batch: Batch,
-    /// The current step, and the start of its changes.
+    /// Words of each slot's values.
+    lengths: Vec<u32>,
+    /// The step at hand, and where its changes start.
     step: usize,
     first: usize,
     started: bool,
     ended: bool,
     unterminated: bool,
+    cut: Option<u64>,
+    reopen: Option<Arc<Reopen>>,
 }
 
 impl Feed {
-    /// Starts `read` in a separate thread. It hands its batches to the function that it gets, which returns whether
-    /// anybody still receives them.
+    /// Starts `read` in a thread of its own; it hands its batches to the function that it is given, which says whether
+    /// somebody still listens.
     pub(super) fn start<F>(path: &Path, mut gatherer: Gatherer, read: F) -> Result<Self, WaveError>
     where
         F: FnOnce(&mut Gatherer, &mut dyn FnMut(&mut Gatherer) -> bool) -> Result<Ended, WaveError> + Send + 'static,
     {
+        let lengths = gatherer.lengths();
         let (send_full, full) = sync_channel(BATCHES);
         let (empty, take_empty) = sync_channel::<Batch>(BATCHES + 1);
         for _ in 0..BATCHES {
@@ -59,11 +65,18 @@ impl Feed {
             };
             let end = match read(&mut gatherer, &mut hand_over) {
                 Ok(Ended::Unheard) => return,
-                Ok(Ended::File { unterminated }) => Message::Ended { unterminated },
+                Ok(Ended::File { unterminated }) => Message::Ended {
+                    unterminated,
+                    cut: None,
+                },
+                Ok(Ended::Cut { byte }) => Message::Ended {
+                    unterminated: false,
+                    cut: Some(byte),
+                },
                 Err(error) => Message::Failed(error),
             };
             if hand_over(&mut gatherer) {
-                // The receiver may be gone.
+                // Nobody may listen any more.
                 let _ = send_full.send(end);
             }
         };
@@ -75,12 +88,25 @@ impl Feed {
             full,
             empty,
             batch: Batch::default(),
+            lengths,
             step: 0,
             first: 0,
             started: false,
             ended: false,
             unterminated: false,
+            cut: None,
+            reopen: None,
         })
+    }
+
+    /// With what it takes to read the file again from somewhere in its middle.
+    pub(super) fn with_reopen(mut self, reopen: Arc<Reopen>) -> Self {
+        self.reopen = Some(reopen);
+        self
+    }
+
+    pub(super) fn reopen(&self) -> Option<Arc<Reopen>> {
+        self.reopen.clone()
     }
 
     /// Goes to the next step and returns it; `None` at the end of the file.
@@ -92,7 +118,7 @@ impl Feed {
         if self.started
             && let Some(step) = self.batch.steps.get(self.step)
         {
-            self.first = step.end;
+            self.first = step.end as usize;
             self.step += 1;
         }
         self.started = true;
@@ -111,17 +137,18 @@ impl Feed {
         match self.full.recv() {
             Ok(Message::Batch(batch)) => {
                 let used = std::mem::replace(&mut self.batch, batch);
-                // The first batch, which never held anything, is one too many; so is one that the reader no longer
-                // takes.
+                // The first one, which never held anything, is one too many; so is one that the reader no longer takes.
                 let _ = self.empty.try_send(used);
                 (self.step, self.first) = (0, 0);
             }
-            Ok(Message::Ended { unterminated }) => (self.ended, self.unterminated) = (true, unterminated),
+            Ok(Message::Ended { unterminated, cut }) => {
+                (self.ended, self.unterminated, self.cut) = (true, unterminated, cut);
+            }
             Ok(Message::Failed(error)) => {
                 self.ended = true;
                 return Err(error);
             }
-            // The thread ended without a message: the crate that reads FST panicked on an unexpected file.
+            // The thread is gone without a word: the crate that reads FST gave up on a file that it did not expect.
             Err(_) => {
                 self.ended = true;
                 return Err(WaveError::Damaged {
@@ -134,26 +161,28 @@ impl Feed {
         Ok(())
     }
 
-    /// Returns the changes of the current step: slot and words.
+    /// The changes of the step at hand: slot and words.
     #[inline]
-    pub(crate) fn changes(&self) -> impl Iterator<Item = (u32, &[u64])> {
-        let end = self.batch.steps.get(self.step).map_or(self.first, |step| step.end);
-        let words = &self.batch.words;
-        let changes = &self.batch.changes;
-        (self.first..end).map(move |at| {
-            let change = changes[at];
-            let to = changes.get(at + 1).map_or(words.len(), |next| next.word as usize);
-            (change.slot, &words[change.word as usize..to])
-        })
+    pub(crate) fn each_change(&self, each: impl FnMut(u32, &[u64])) {
+        let end = self
+            .batch
+            .steps
+            .get(self.step)
+            .map_or(self.first, |step| step.end as usize);
+        self.batch.each(self.first, end, &self.lengths, each);
     }
 
-    /// Returns the number of bytes of the file that were read so far.
+    /// Bytes of the file that were read so far.
     pub(crate) fn bytes(&self) -> u64 {
         self.batch.bytes
     }
 
-    /// Returns the error of a file that has ended while another continues; only a file whose last line is cut has
-    /// one.
+    /// Bytes behind which the file was cut off, once that has been found.
+    pub(crate) fn cut(&self) -> Option<u64> {
+        self.cut
+    }
+
+    /// What is wrong with a file that has nothing more to say while another goes on: nothing, unless its last line is cut.
     pub(crate) fn cut_off(&self) -> Result<(), WaveError> {
         if self.unterminated {
             let inside = "before the other, in a line without line break";

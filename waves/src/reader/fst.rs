@@ -1,4 +1,4 @@
-//! Reads FST, GTKWave's packed format, with the crate `fst-reader`.
+//! FST, GTKWave's packed format, through the crate `fst-reader`.
 //!
 //! That crate reads block by block and calls back in the order of time, so memory is bounded by the size of a block, which
 //! the writer chooses, and not by the length of the file; but a file that is packed as a whole, as GHDL writes it, is unpacked
@@ -8,7 +8,7 @@
 //! What it does not tell: the stretches of `$dumpoff`. It gives up by panic on some damaged files; that is caught here.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
@@ -16,25 +16,26 @@ use fst_reader::{
     FstFilter, FstHierarchyEntry, FstReader, FstSignalHandle, FstSignalValue, FstVarType, ReadSignalsError,
 };
 
-use super::batch::Gatherer;
+use super::batch::{Gatherer, NOWHERE};
 use super::digits::pack;
+use super::fst_blocks::{Blocks, Stop};
 use super::header::{Declarations, Kind};
 use super::section::Ended;
 use super::values::pack_text;
 use crate::WaveError;
 
-type Source = FstReader<BufReader<File>>;
+type Source = FstReader<BufReader<Whole>>;
 
-/// Beginning of a file with a header block: its first byte and the length.
+/// First byte of a file that begins with a header block, whose length follows.
 const HEADER: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 0x49];
 /// First byte of a file that is packed as a whole.
 const PACKED: u8 = 254;
-/// Largest length of such a file after unpacking, which the crate does in memory.
+/// How long such a file may be when it is unpacked: the crate does that in memory.
 const PACKED_BYTES: u64 = 1 << 28;
-/// Number of bytes of a block header: kind and length.
+/// Bytes of a block header: kind and length.
 const BLOCK_BYTES: u64 = 9;
 
-/// Returns whether the file begins like an FST.
+/// Whether the file begins like an FST.
 pub(super) fn is_fst(beginning: &[u8]) -> bool {
     beginning.starts_with(&HEADER) || beginning.first() == Some(&PACKED)
 }
@@ -46,14 +47,81 @@ pub(super) struct FstValues {
     /// Slot of each handle.
     slots: Vec<Option<u32>>,
     bytes: u64,
+    /// It ends where its writer was ended.
+    is_cut: bool,
+    /// The short way to the values, where there is one.
+    blocks: Option<Blocks>,
+}
+
+/// The file up to the end of its last whole block.
+struct Whole {
+    file: File,
+    at: u64,
+    end: u64,
+}
+
+impl Whole {
+    fn new(file: File, end: u64) -> Self {
+        Self { file, at: 0, end }
+    }
+}
+
+impl Read for Whole {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let left = usize::try_from(self.end.saturating_sub(self.at)).unwrap_or(usize::MAX);
+        let room = left.min(buffer.len());
+        let count = self.file.read(&mut buffer[..room])?;
+        self.at += count as u64;
+        Ok(count)
+    }
+}
+
+impl Seek for Whole {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.at = self.file.seek(match to {
+            SeekFrom::End(by) => SeekFrom::Start(self.end.checked_add_signed(by).ok_or(io::ErrorKind::InvalidInput)?),
+            other => other,
+        })?;
+        Ok(self.at)
+    }
+}
+
+/// What a writer keeps beside its file until it has put it in: `x.fst.hier`.
+fn hierarchy_beside(path: &Path) -> Option<File> {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".hier");
+    let found = File::open(name).or_else(|_| File::open(path.with_extension("hier")));
+    found
+        .ok()
+        .filter(|file| file.metadata().is_ok_and(|data| data.is_file() && data.len() > 0))
 }
 
 /// Opens a file and reads its declarations.
 pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> {
     let mut file = File::open(path).map_err(WaveError::file(path, "open"))?;
-    let bytes = check_blocks(path, &mut file)?;
-    let source = guarded(path, || FstReader::open(BufReader::new(file)))?;
-    let mut source = source.map_err(|cause| damaged(path, &cause.to_string()))?;
+    let (bytes, cut) = check_blocks(path, &mut file)?;
+    let up_to = |end| {
+        let file = File::open(path).map_err(WaveError::file(path, "open"))?;
+        Ok::<_, WaveError>(BufReader::new(Whole::new(file, end)))
+    };
+    let opened = match &cut {
+        None => {
+            let whole = up_to(bytes)?;
+            let source = guarded(path, || FstReader::open(whole))?;
+            source.map_err(|cause| damaged(path, &cause.to_string()))
+        }
+        Some((_, what)) => Err(damaged(path, what)),
+    };
+    // Its writer was ended before it put the hierarchy in.
+    let (mut source, is_cut) = match (opened, hierarchy_beside(path)) {
+        (Ok(source), _) => (source, false),
+        (Err(why), None) => return Err(why),
+        (Err(_), Some(hierarchy)) => {
+            let whole = up_to(cut.map_or(bytes, |(at, _)| at))?;
+            let source = guarded(path, || FstReader::open_incomplete(whole, BufReader::new(hierarchy)))?;
+            (source.map_err(|cause| damaged(path, &cause.to_string()))?, true)
+        }
+    };
     let unit_fs = unit_fs(source.get_header().timescale_exponent).map_err(|what| damaged(path, &what))?;
     let mut declarations = Declarations::new(unit_fs);
     let mut slots: Vec<Option<u32>> = Vec::new();
@@ -72,12 +140,18 @@ pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> 
         Some(what) => Err(damaged(path, &what)),
         None => declarations.finish().map_err(|what| damaged(path, &what)),
     }?;
+    let blocks = match File::open(path) {
+        Ok(file) if !is_cut => Blocks::find(file, &slots, &declarations.kinds).unwrap_or(None),
+        _ => None,
+    };
     let path = path.to_owned();
     let values = FstValues {
         path,
         source,
         slots,
         bytes,
+        is_cut,
+        blocks,
     };
     Ok((declarations, values))
 }
@@ -123,12 +197,22 @@ fn declare(
 }
 
 impl FstValues {
-    /// Reads to the end. `hand_over` takes full batches, and returns whether to continue.
+    /// Reads to the end. `hand_over` takes full batches, and says whether to go on.
     pub(super) fn read(
         mut self,
         gatherer: &mut Gatherer,
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
     ) -> Result<Ended, WaveError> {
+        if let Some(mut blocks) = self.blocks.take() {
+            match blocks.read(&self.slots, gatherer, hand_over) {
+                Ok(()) => {}
+                Err(Stop::Unheard) => return Ok(Ended::Unheard),
+                Err(Stop::Damaged(what)) => return Err(damaged(&self.path, &what)),
+                Err(Stop::Io(cause)) => return Err(WaveError::file(&self.path, "read")(cause)),
+            }
+            gatherer.end_step();
+            return Ok(Ended::File { unterminated: false });
+        }
         let wanted = (0..self.slots.len()).filter(|at| self.slots[*at].is_some());
         let filter = FstFilter::filter_signals(wanted.map(FstSignalHandle::from_index).collect());
         let (slots, path, bytes) = (&self.slots, &self.path, self.bytes);
@@ -139,7 +223,7 @@ impl FstValues {
                 if time < gatherer.time() {
                     return Err(Some(format!("time goes back to {time}")));
                 }
-                if gatherer.advance(time) {
+                if gatherer.advance(time, NOWHERE) {
                     if !hand_over(gatherer) {
                         return Err(None);
                     }
@@ -157,6 +241,11 @@ impl FstValues {
             Err(ReadSignalsError::CallbackError(Some(what))) => return Err(damaged(path, &what)),
             Err(ReadSignalsError::ReadError(cause)) => return Err(damaged(path, &cause.to_string())),
         }
+        if self.is_cut {
+            // More may have happened at the last time.
+            gatherer.drop_step();
+            return Ok(Ended::Cut { byte: self.bytes });
+        }
         gatherer.end_step();
         Ok(Ended::File { unterminated: false })
     }
@@ -171,7 +260,7 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
             }
             let words = gatherer.put_words(slot);
             let (bits, unknown) = words.split_at_mut(words.len() / 2);
-            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is not a digit"))?;
+            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is no digit"))?;
             gatherer.watch_last(slot);
         }
         (Kind::Text, FstSignalValue::String(text)) => pack_text(text, gatherer.put_words(slot)),
@@ -181,20 +270,21 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
     Ok(())
 }
 
-/// Checks that every block ends within the file, and that a file packed as a whole is not too large to unpack; returns
-/// the file's length.
-fn check_blocks(path: &Path, file: &mut File) -> Result<u64, WaveError> {
+/// Where a block does not lie within its file, and how.
+type Cut = (u64, String);
+
+/// The file's length, and the first block that does not lie within it.
+fn check_blocks(path: &Path, file: &mut File) -> Result<(u64, Option<Cut>), WaveError> {
     let read = WaveError::file(path, "read");
-    let walk = |file: &mut File| -> std::io::Result<Result<u64, String>> {
+    let mut walk = || -> io::Result<Result<(u64, Option<Cut>), String>> {
         let length = file.metadata()?.len();
         let mut at = 0;
         while at < length {
             file.seek(SeekFrom::Start(at))?;
             let mut head = [0; BLOCK_BYTES as usize];
             if length - at < BLOCK_BYTES {
-                return Ok(Err(format!(
-                    "the file ends inside a block at byte {at}: it was cut off"
-                )));
+                let what = format!("the file ends inside a block at byte {at}: it was cut off");
+                return Ok(Ok((length, Some((at, what)))));
             }
             file.read_exact(&mut head)?;
             if head[0] == PACKED {
@@ -211,18 +301,21 @@ fn check_blocks(path: &Path, file: &mut File) -> Result<u64, WaveError> {
             let section = u64::from_be_bytes([head[1], head[2], head[3], head[4], head[5], head[6], head[7], head[8]]);
             let next = at.checked_add(1).and_then(|at| at.checked_add(section));
             at = match next {
+                // A block that is still being written is marked to be skipped.
                 Some(next) if section >= 8 && next <= length => next,
                 _ => {
                     let what =
                         format!("a block of {section} bytes at byte {at} does not end in the file: it was cut off");
-                    return Ok(Err(what));
+                    return Ok(Ok((length, Some((at, what)))));
                 }
             };
         }
-        file.seek(SeekFrom::Start(0))?;
-        Ok(Ok(length))
+        Ok(Ok((length, None)))
     };
-    walk(file).map_err(read)?.map_err(|what| damaged(path, &what))
+    let walked = walk();
+    let back = file.seek(SeekFrom::Start(0));
+    let found = walked.and_then(|found| back.map(|_| found)).map_err(read)?;
+    found.map_err(|what| damaged(path, &what))
 }
 
 fn unit_fs(exponent: i8) -> Result<u64, String> {
@@ -232,7 +325,7 @@ fn unit_fs(exponent: i8) -> Result<u64, String> {
         .ok_or_else(|| format!("a timescale of 10^{exponent} s: 1 fs to 100 s are allowed"))
 }
 
-/// Runs a call into the crate; if that panics, the file is damaged.
+/// Runs a call into the crate; where that panics, the file is damaged.
 fn guarded<T>(path: &Path, call: impl FnOnce() -> T) -> Result<T, WaveError> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|_| damaged(path, "its reader gave up"))
 }

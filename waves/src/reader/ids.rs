@@ -23,8 +23,32 @@ pub(super) fn id_number(data: &[u8], mut at: usize) -> (Option<u64>, usize) {
     (((1..10).contains(&(at - from))).then_some(number), at)
 }
 
+/// As [`id_number`], where eight bytes follow: most id codes have one to four characters, whose number is computed at once.
+#[inline]
+pub(super) fn short_id_number(data: &[u8], at: usize) -> (Option<u64>, usize) {
+    let Some(eight) = data.get(at..at + 8) else {
+        return id_number(data, at);
+    };
+    let mut bytes = [0; 8];
+    bytes.copy_from_slice(eight);
+    let characters = u64::from_le_bytes(bytes);
+    // The upper bit of each byte below `!`, and of each from 0x80 on: the first of them is right, those behind it need not be.
+    let ends = (characters.wrapping_sub(0x2121_2121_2121_2121) | characters) & 0x8080_8080_8080_8080;
+    let length = ends.trailing_zeros() / 8;
+    if !(1..=4).contains(&length) || characters >> (8 * length) & 0xff > b' '.into() {
+        return id_number(data, at);
+    }
+    let id = characters & (u64::MAX >> (64 - 8 * length));
+    if (id + 0x0101_0101) & 0x8080_8080 != 0 {
+        return id_number(data, at);
+    }
+    let character = |place: u32| (id >> (8 * place) & 0xff).saturating_sub(u64::from(b' '));
+    let number = character(0) + 94 * character(1) + 94 * 94 * character(2) + 94 * 94 * 94 * character(3);
+    (Some(number), at + length as usize)
+}
+
 /// Slots by id code.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Ids {
     table: Vec<u32>,
     others: HashMap<u64, u32>,
@@ -54,5 +78,27 @@ impl Ids {
             return slot.filter(|slot| *slot != NO_SLOT);
         }
         self.others.get(&number).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn prop_the_short_way_gives_the_same_number(id in prop::collection::vec(any::<u8>(), 0..6), behind in any::<[u8; 3]>()) {
+            let data = [id.as_slice(), &behind, b"\n\n\n\n\n\n\n\n"].concat();
+            prop_assert_eq!(short_id_number(&data, 0), id_number(&data, 0));
+        }
+
+        #[test]
+        fn prop_ids_of_writers_give_the_same_number(id in "[!-~]{1,5}") {
+            let data = [id.as_bytes(), b"\n#1234567"].concat();
+            prop_assert_eq!(short_id_number(&data, 0), id_number(&data, 0));
+            prop_assert_eq!(short_id_number(&data, 0).1, id.len());
+        }
     }
 }

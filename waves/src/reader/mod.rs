@@ -1,4 +1,4 @@
-//! Reads waveforms in steps of time, in bounded memory, whatever the file contains.
+//! Reads waveforms in steps of time, in bounded memory, whatever the file holds.
 //!
 //! ```text
 //!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
@@ -6,12 +6,12 @@
 //!  x.fst ────┴─ declarations: crate `fst-reader` ───────────────┘                                       step by step
 //! ```
 //!
-//! The crate `vcd` reads the declarations, [`section`] the value changes, because the crate makes a string of each
-//! and is four times as slow. Tests compare the two, and `wellen`, on every fixture.
+//! Declarations are read by the crate `vcd`, value changes by [`section`]: the crate makes a string of each, and streams at
+//! a quarter of the speed. Tests hold the two, and `wellen`, against each other on every fixture.
 //!
-//! Limits keep a hostile file from using up the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of
-//! names, scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file
-//! that ends in the middle of something, the result is an error with the place.
+//! Limits, so that a hostile file cannot eat the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of names,
+//! scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file that ends in
+//! the middle of something, the answer is an error with the place.
 
 #[cfg(test)]
 mod agreement;
@@ -21,20 +21,24 @@ mod dialect;
 mod digits;
 mod feed;
 mod fst;
+mod fst_blocks;
 mod header;
 mod ids;
 mod put;
 mod section;
+mod twin;
+mod unpack;
 mod values;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use vcd::{Command, IdCode, ParseError, Parser, VarType};
 
 use self::batch::Gatherer;
-pub(crate) use self::batch::{Step, Watch};
+pub(crate) use self::batch::{NOWHERE, Step, Watch};
 use self::counted::Counted;
 use self::dialect::Dialect;
 pub(crate) use self::feed::Feed;
@@ -42,8 +46,13 @@ use self::fst::FstValues;
 pub(crate) use self::header::{Declarations, Kind, Named};
 use self::ids::Ids;
 use self::section::{Section, truncated};
-pub(crate) use self::values::{Value, Values};
+use self::twin::Reopen;
+pub(crate) use self::twin::{Stretch, Twins};
+pub(crate) use self::values::{Value, Values, value};
 use crate::WaveError;
+
+/// How a GHW begins.
+const GHW: &[u8] = b"GHDLwave";
 
 /// Some writers begin a text file with it.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -59,51 +68,92 @@ pub(crate) struct Wave {
     pub(crate) declarations: Declarations,
     rest: Rest,
     bytes: Option<u64>,
+    /// To read a VCD from its middle on.
+    again: Option<(File, Arc<Ids>)>,
 }
 
 impl Wave {
-    /// Opens a VCD or an FST, distinguished by its beginning, and reads its declarations.
+    /// Opens a VCD or an FST, told apart by how it begins, and reads its declarations.
     pub(crate) fn open(path: &Path) -> Result<Self, WaveError> {
-        let file = File::open(path).map_err(WaveError::file(path, "open"))?;
-        let data = file.metadata().map_err(WaveError::file(path, "read"))?;
-        if data.is_dir() {
-            let folder = io::Error::from(io::ErrorKind::IsADirectory);
-            return Err(WaveError::file(path, "read")(folder));
+        let source = unpack::open(path)?;
+        let counted = Counted {
+            input: source.input,
+            bytes: 0,
+        };
+        let mut input = BufReader::with_capacity(1 << 16, counted);
+        let beginning: &[u8] = match input.fill_buf() {
+            // The declarations will say that they are missing.
+            Err(cause) if cause.kind() == io::ErrorKind::UnexpectedEof => &[],
+            other => other.map_err(WaveError::file(path, "read"))?,
+        };
+        if beginning.starts_with(GHW) {
+            return Err(WaveError::Damaged {
+                path: path.to_owned(),
+                place: "GHW".to_owned(),
+                problem:
+                    "this format is not read; let GHDL write FST (`--fst=wave.fst`) or VCD (`--vcd=wave.vcd`) instead"
+                        .to_owned(),
+            });
         }
-        let mut input = BufReader::with_capacity(1 << 16, Counted { file, bytes: 0 });
-        let beginning = input.fill_buf().map_err(WaveError::file(path, "read"))?;
-        let (declarations, rest) = if fst::is_fst(beginning) {
+        let (declarations, rest, again) = if fst::is_fst(beginning) {
+            if source.bytes.is_none() {
+                return Err(WaveError::Damaged {
+                    path: path.to_owned(),
+                    place: "FST".to_owned(),
+                    problem: "an FST is read from a plain file only: unpack it, or save it, first".to_owned(),
+                });
+            }
             let (declarations, values) = fst::open(path)?;
-            (declarations, Rest::Fst(Box::new(values)))
+            (declarations, Rest::Fst(Box::new(values)), None)
         } else {
             let (declarations, ids) = read_declarations(path, &mut input)?;
-            (declarations, Rest::Vcd(Box::new(Section::new(path, input, ids))))
+            let ids = Arc::new(ids);
+            let section = Section::new(path, input, Arc::clone(&ids), source.file.is_some());
+            let again = source.file.map(|file| (file, ids));
+            (declarations, Rest::Vcd(Box::new(section)), again)
         };
         Ok(Self {
             path: path.to_owned(),
             declarations,
             rest,
-            bytes: data.is_file().then_some(data.len()),
+            bytes: source.bytes,
+            again,
         })
     }
 
-    /// Returns the length of the file; `None` for a pipe.
+    /// Length of the file; `None` for a pipe.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.bytes
     }
 
-    /// Starts to read the values in a separate thread, and marks the edges of a clock.
-    pub(crate) fn play(self, watch: Option<Watch>) -> Result<(Declarations, Feed), WaveError> {
-        let gatherer = Gatherer::new(self.declarations.kinds.clone(), watch);
+    /// Starts to read the values in a thread of its own, and marks the edges of a clock. A file that is cut off in the middle
+    /// of a line is an error, or is read up to its last whole time.
+    pub(crate) fn play(self, watch: Option<Watch>, allow_truncated: bool) -> Result<(Declarations, Feed), WaveError> {
+        let kinds = self.declarations.kinds.clone();
+        let gatherer = Gatherer::new(kinds.clone(), watch);
         let feed = match self.rest {
-            Rest::Vcd(mut section) => Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
-                section.read(gatherer, hand_over)
-            }),
+            Rest::Vcd(mut section) => {
+                section.allow_truncated = allow_truncated;
+                Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
+                    section.read(gatherer, hand_over)
+                })
+            }
             Rest::Fst(values) => Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
                 values.read(gatherer, hand_over)
             }),
         };
-        Ok((self.declarations, feed?))
+        let mut feed = feed?;
+        if let Some((file, ids)) = self.again {
+            feed = feed.with_reopen(Arc::new(Reopen {
+                path: self.path,
+                file,
+                ids,
+                kinds,
+                watch,
+                allow_truncated,
+            }));
+        }
+        Ok((self.declarations, feed))
     }
 }
 

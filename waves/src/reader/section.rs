@@ -1,4 +1,4 @@
-//! Reads the value changes of a VCD, byte by byte; this part takes almost all of the time.
+//! The value changes of a VCD, byte by byte: the part where all of the time goes.
 //!
 //! ```text
 //!  #25              time                          1!   0"   x#      one digit and an id code
@@ -6,42 +6,44 @@
 //!  $dumpoff … $end  blocks around changes         $comment … $end   nothing
 //! ```
 //!
-//! Nothing is allocated per change: digits are packed into words eight at a time, and id codes are numbers that index
-//! a table. The buffer is refilled when it does not contain a whole command, and grows only for a command that is
-//! longer than the buffer.
+//! Nothing is allocated per change: digits go into words eight at a time, id codes are numbers that index a table. The
+//! buffer is refilled when a command is not all in it, and grows only for a command that is longer than it.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::batch::Gatherer;
+use super::batch::{Gatherer, NOWHERE};
 use super::counted::Counted;
-use super::digits::{digit, known_word};
+use super::digits::{digit, known_run};
 use super::header::Kind;
-use super::ids::{Ids, id_number};
+use super::ids::{Ids, short_id_number};
 use super::put::{put_digits, put_real, put_text, shown};
 use crate::WaveError;
 
 const BUFFER_BYTES: usize = 1 << 18;
-/// Largest number of bytes of a command: a vector of 2^24 bits, twice over.
+/// Bytes that one command may have: a vector of 2^24 bits, twice over.
 const COMMAND_BYTES: usize = 1 << 25;
 
-/// How the reading ended.
+/// What the reading ended with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// The file is at its end; if its last line lacks the line break, it may have been cut off.
+    /// The file is at its end; whether its last line lacks the line break, so that it may have been cut off.
     File { unterminated: bool },
-    /// The receiver is gone.
+    /// The file was cut off behind so many bytes, and was read up to its last whole time.
+    Cut { byte: u64 },
+    /// Nobody listens any more.
     Unheard,
 }
 
 enum Pause {
-    /// A command continues after the buffer.
+    /// A command goes on behind the buffer.
     More,
     Stop,
 }
 
-/// An error at a place in the buffer.
+/// What is wrong at a place in the buffer.
 struct Fault {
     at: usize,
     what: String,
@@ -51,21 +53,30 @@ struct Fault {
 pub(super) struct Section {
     path: PathBuf,
     input: Counted,
-    ids: Ids,
+    ids: Arc<Ids>,
     buffer: Vec<u8>,
-    /// The unread part of the buffer, and the position of the buffer in the file.
+    /// The unread part of the buffer, and where the buffer begins in the file.
     from: usize,
     to: usize,
     start: u64,
     last_byte: u8,
     at_end: bool,
+    /// What is packed ends in the middle of its packing.
+    broken: bool,
+    /// The bytes are those of the file, so that its lines can be counted.
+    is_plain: bool,
     in_dump: bool,
     in_comment: bool,
+    /// A file that is cut off is read up to its last whole time.
+    pub(super) allow_truncated: bool,
+    /// Bytes behind which it was, once that is known; and whether a time begins in what is cut, so that the one before is whole.
+    cut: Option<u64>,
+    cut_in_time: bool,
 }
 
 impl Section {
-    /// Continues after the declarations.
-    pub(super) fn new(path: &Path, input: BufReader<Counted>, ids: Ids) -> Self {
+    /// Goes on behind the declarations.
+    pub(super) fn new(path: &Path, input: BufReader<Counted>, ids: Arc<Ids>, is_plain: bool) -> Self {
         let mut buffer = input.buffer().to_vec();
         let to = buffer.len();
         let start = input.get_ref().bytes - to as u64;
@@ -81,12 +92,39 @@ impl Section {
             start,
             last_byte,
             at_end: false,
+            broken: false,
+            is_plain,
             in_dump: false,
             in_comment: false,
+            allow_truncated: false,
+            cut: None,
+            cut_in_time: false,
         }
     }
 
-    /// Reads to the end. `hand_over` takes full batches, and returns whether to continue.
+    /// Goes on in the middle of the file, at a byte at which a time stands.
+    pub(super) fn resumed(path: &Path, input: Counted, ids: Arc<Ids>) -> Self {
+        Self {
+            path: path.to_owned(),
+            start: input.bytes,
+            input,
+            ids,
+            buffer: vec![0; BUFFER_BYTES],
+            from: 0,
+            to: 0,
+            last_byte: b'\n',
+            at_end: false,
+            broken: false,
+            is_plain: true,
+            in_dump: false,
+            in_comment: false,
+            allow_truncated: false,
+            cut: None,
+            cut_in_time: false,
+        }
+    }
+
+    /// Reads to the end. `hand_over` takes full batches, and says whether to go on.
     pub(super) fn read(
         &mut self,
         gatherer: &mut Gatherer,
@@ -94,12 +132,28 @@ impl Section {
     ) -> Result<Ended, WaveError> {
         loop {
             let pause = self.parse(gatherer, hand_over);
-            match pause.map_err(|fault| self.problem(&fault))? {
+            let pause = pause.map_err(|fault| self.problem(&fault))?;
+            gatherer.batch.bytes = self.start + self.from as u64;
+            match pause {
                 Pause::Stop => return Ok(Ended::Unheard),
                 Pause::More if self.at_end => break,
                 Pause::More => self.fill()?,
             }
-            gatherer.batch.bytes = self.start + self.from as u64;
+        }
+        let whole =
+            self.from == self.to && !self.in_dump && !self.in_comment && !self.broken && self.last_byte == b'\n';
+        if self.allow_truncated && !whole {
+            if self.cut_in_time {
+                gatherer.end_step();
+            } else {
+                gatherer.drop_step();
+            }
+            // Without a place so far, the line break that was put behind the file is not the file's.
+            let byte = self.cut.unwrap_or(self.start + self.to as u64 - 1);
+            return Ok(Ended::Cut { byte });
+        }
+        if self.broken {
+            return Err(self.truncated("in the middle of its packed data"));
         }
         if self.from < self.to {
             return Err(self.truncated("in the middle of a command"));
@@ -136,22 +190,35 @@ impl Section {
         let count = loop {
             match self.input.read(&mut self.buffer[self.to..]) {
                 Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
+                Err(cause) if cause.kind() == io::ErrorKind::UnexpectedEof && !self.is_plain => {
+                    self.broken = true;
+                    break 0;
+                }
                 other => break other.map_err(WaveError::file(&self.path, "read"))?,
             }
         };
         self.to += count;
         if count > 0 {
             self.last_byte = self.buffer[self.to - 1];
-        } else {
-            // A last line that lacks only its line break counts.
-            self.at_end = true;
-            self.buffer[self.to] = b'\n';
-            self.to += 1;
+            return Ok(());
         }
+        self.at_end = true;
+        let ends_within = self.broken || self.in_dump || self.in_comment || self.last_byte != b'\n';
+        if self.allow_truncated && ends_within {
+            // Half a line may read as another one: a time, a value, an id code.
+            self.cut = Some(self.start + self.to as u64);
+            let unread = &self.buffer[self.from..self.to];
+            self.cut_in_time = !self.in_comment && unread.first() == Some(&b'#');
+            self.to = self.from + memchr::memrchr(b'\n', unread).map_or(0, |at| at + 1);
+            return Ok(());
+        }
+        // A last line that is complete but for its line break counts.
+        self.buffer[self.to] = b'\n';
+        self.to += 1;
         Ok(())
     }
 
-    /// Handles all commands that are completely in the buffer.
+    /// Takes all commands that are whole in the buffer.
     fn parse(
         &mut self,
         gatherer: &mut Gatherer,
@@ -178,7 +245,7 @@ impl Section {
                         return Ok(Pause::More);
                     };
                     let id_at = skip_space(data, digits_end);
-                    let (number, end) = id_number(data, id_at);
+                    let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
@@ -198,7 +265,7 @@ impl Section {
                     };
                     let time = number(&data[at + 1..end]).ok_or_else(|| Fault {
                         at,
-                        what: format!("`{}` is not a time", shown(&data[at..end])),
+                        what: format!("`{}` is no time", shown(&data[at..end])),
                     })?;
                     if time < gatherer.time() {
                         let before = gatherer.time();
@@ -211,7 +278,8 @@ impl Section {
                         });
                     }
                     self.from = end;
-                    if gatherer.advance(time) && !hand_over(gatherer) {
+                    let place = if self.in_dump { NOWHERE } else { self.start + at as u64 };
+                    if gatherer.advance(time, place) && !hand_over(gatherer) {
                         return Ok(Pause::Stop);
                     }
                 }
@@ -220,7 +288,7 @@ impl Section {
                         return Ok(Pause::More);
                     };
                     let id_at = skip_space(data, word_to);
-                    let (number, end) = id_number(data, id_at);
+                    let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
@@ -263,20 +331,20 @@ impl Section {
                 byte => {
                     let Some(digit) = digit(byte) else {
                         let what = format!(
-                            "unexpected character `{}`: this is not a VCD, or it is damaged",
+                            "unexpected character `{}`: this is no VCD, or it is damaged",
                             shown(&[byte])
                         );
                         return Err(Fault { at, what });
                     };
-                    // IEEE 1364 has no space between the digit and the id code, but some writers do.
+                    // IEEE 1364 has no space between the digit and the id code, some writers do.
                     let id_at = skip_space(data, at + 1);
-                    let (number, end) = id_number(data, id_at);
+                    let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
                     let slot = slot(&self.ids, number, data, id_at, end)?;
                     if gatherer.kind(slot) == Kind::Bits(1) {
-                        gatherer.put_word(slot, u64::from(digit & 1), u64::from(digit >> 1));
+                        gatherer.put_digit(slot, digit);
                     } else {
                         put_digits(gatherer, slot, &[byte]).map_err(|what| Fault { at, what })?;
                     }
@@ -288,15 +356,16 @@ impl Section {
 
     fn problem(&self, fault: &Fault) -> WaveError {
         let byte = self.start + fault.at as u64;
+        let line = if self.is_plain { line_of(&self.path, byte) } else { None };
         WaveError::Damaged {
             path: self.path.clone(),
-            place: line_of(&self.path, byte).map_or_else(|| format!("byte {byte}"), |line| format!("line {line}")),
+            place: line.map_or_else(|| format!("byte {byte}"), |line| format!("line {line}")),
             problem: fault.what.clone(),
         }
     }
 
     fn truncated(&self, inside: &str) -> WaveError {
-        // The line break that was appended to the file does not belong to it.
+        // The line break that was put behind the file is not the file's.
         truncated(&self.path, self.start + self.to as u64 - u64::from(self.at_end), inside)
     }
 }
@@ -312,7 +381,7 @@ pub(super) fn truncated(path: &Path, byte: u64, inside: &str) -> WaveError {
     }
 }
 
-/// Returns the line of a byte, which is counted only for an error; `None` if the file cannot be read again.
+/// The line of a byte, counted only now that it is asked for; `None` where the file cannot be read again.
 fn line_of(path: &Path, byte: u64) -> Option<u64> {
     let file = File::open(path).ok()?;
     if !file.metadata().ok()?.is_file() {
@@ -331,15 +400,14 @@ fn line_of(path: &Path, byte: u64) -> Option<u64> {
     }
 }
 
-/// Returns the end of the word at `at`; `None` if the data ends in it.
+/// End of the word at `at`; `None` if the data ends in it.
 #[inline]
 fn word_end(data: &[u8], at: usize) -> Option<usize> {
     let length = data.get(at..)?.iter().position(|byte| *byte <= b' ')?;
     Some(at + length)
 }
 
-/// Returns the end of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty
-/// for ever.
+/// End of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty for ever.
 #[inline]
 fn skip_space(data: &[u8], mut at: usize) -> usize {
     while let Some(0..=b' ') = data.get(at) {
@@ -348,16 +416,10 @@ fn skip_space(data: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// Returns the end of the digits at `at`, and their number if all are known and there are at most 64; `None` if the
-/// data ends in them.
+/// The end of the digits at `at`, and their number if all are known and at most 64; `None` if the data ends in them.
 #[inline]
 fn leading_word(data: &[u8], at: usize) -> Option<(Option<u64>, usize)> {
-    let mut end = at;
-    let mut word = 0u64;
-    while let Some(eight) = data.get(end..end + 8).and_then(known_word) {
-        word = word << 8 | eight;
-        end += 8;
-    }
+    let (mut word, mut end) = known_run(data, at);
     while let Some(bit @ 0..=1) = data.get(end).map(|byte| byte ^ b'0') {
         word = word << 1 | u64::from(bit);
         end += 1;

@@ -77,7 +77,7 @@ fn cli_a_component_says_what_the_hardware_says() {
         ("embeddedsw.CMacro.AXES", "2"),
         ("embeddedsw.CMacro.TICK_CLOCKS", "5000"),
         ("embeddedsw.CMacro.X_PWM_PERIOD_CLOCKS", "2500"),
-        ("embeddedsw.dts.compatible", "posicast,stage-2.1"),
+        ("embeddedsw.dts.compatible", "posicast,stage-2.2"),
     ] {
         assert_eq!(assignments.get(name), Some(&value), "{name}");
     }

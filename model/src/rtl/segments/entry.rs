@@ -34,7 +34,7 @@ pub enum EntryMotion {
     /// A state, taken at once and held.
     Point(Point),
     /// A path that goes on from the present position.
-    Cubic(Cubic),
+    Cubic(CubicEntry),
 }
 
 /// A state of the command, in its words.
@@ -51,7 +51,7 @@ pub struct Point {
 /// A polynomial of third order from wherever the command is, so that no such entry makes the position jump. The first tick takes velocity and
 /// acceleration, and moves by that velocity; each further one adds the jerk, as a segment does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Cubic {
+pub struct CubicEntry {
     /// Q0.32 counts per tick³.
     pub jerk: i32,
     /// Of the first tick, Q16.16 counts per tick.
@@ -113,7 +113,7 @@ impl Entry {
                 acceleration: third as i32,
             })
         } else if last & CUBIC != 0 {
-            EntryMotion::Cubic(Cubic {
+            EntryMotion::Cubic(CubicEntry {
                 jerk: first as i32,
                 velocity: second as i32,
                 acceleration: third as i32,
@@ -147,7 +147,7 @@ mod tests {
             velocity: i32::MAX,
             acceleration: i32::MIN,
         });
-        let cubic = EntryMotion::Cubic(Cubic {
+        let cubic = EntryMotion::Cubic(CubicEntry {
             jerk: i32::MIN,
             velocity: -1,
             acceleration: i32::MAX,

@@ -3,7 +3,7 @@
 //! All quantities are integers in LSB of 2^−32 counts per tick³, tick², tick, and counts, so nothing is ever rounded:
 //! adding the same numbers in hardware, here or in C gives the same position.
 
-use super::entry::{ACCELERATION_BITS, Cubic, EntryMotion, Point};
+use super::entry::{ACCELERATION_BITS, CubicEntry, EntryMotion, Point};
 
 /// Fraction bits of jerk, acceleration, velocity and position.
 pub const FRACTION_BITS: u32 = 32;
@@ -72,7 +72,7 @@ impl Integrator {
     }
 
     /// The first tick of a cubic. The others are those of its jerk.
-    fn begin_cubic(&mut self, cubic: &Cubic) {
+    fn begin_cubic(&mut self, cubic: &CubicEntry) {
         self.velocity = i64::from(cubic.velocity) << (FRACTION_BITS - VELOCITY_FRACTION);
         self.acceleration = i64::from(cubic.acceleration) << (FRACTION_BITS - ACCELERATION_FRACTION);
         self.position = self.position.wrapping_add(self.velocity);
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn unit_a_cubic_is_its_closed_form_and_goes_on_straight() {
         // p = n·v + a·n(n−1)/2 + j·(n−1)n(n+1)/6 from the present position, whatever the velocity was before.
-        let cubic = Cubic {
+        let cubic = CubicEntry {
             jerk: -77,
             velocity: 1_234,
             acceleration: 56,

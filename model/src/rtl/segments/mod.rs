@@ -41,7 +41,8 @@ mod integrator;
 mod ports;
 
 pub use entry::{
-    ACCELERATION_BITS, CUBIC, Cubic, ENTRY_WORDS, Entry, EntryMotion, MORE, NOTIFY, POINT, Point, RESERVED, TICK_BITS,
+    ACCELERATION_BITS, CUBIC, CubicEntry, ENTRY_WORDS, Entry, EntryMotion, MORE, NOTIFY, POINT, Point, RESERVED,
+    TICK_BITS,
 };
 pub use fifo::ENTRIES_MAX;
 pub use integrator::{

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use posicast_model::rtl::axis::KICK;
 use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::segments::{Cubic, ENTRY_WORDS, Entry, EntryMotion, Point};
+use posicast_model::rtl::segments::{CubicEntry, ENTRY_WORDS, Entry, EntryMotion, Point};
 use posicast_model::taps::COEFFICIENT_MAX;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -410,7 +410,7 @@ impl Driver {
         let any = self.rng.next_u32() as i32;
         let cubic = |velocity, acceleration, jerk| Entry {
             ticks: 2,
-            motion: EntryMotion::Cubic(Cubic {
+            motion: EntryMotion::Cubic(CubicEntry {
                 jerk,
                 velocity,
                 acceleration,

@@ -1,0 +1,151 @@
+//! Following stretches that are the same gives what reading every change gives. The pieces are small here (`cfg(test)`), so that
+//! short files have many.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use proptest::prelude::*;
+
+use super::{Comparison, DiffOptions, compare_by};
+
+const WIDTHS: [usize; 6] = [1, 1, 8, 33, 64, 100];
+
+/// A clock's time and the changes at it.
+type Row = Vec<(usize, u128)>;
+
+#[derive(Debug, Clone)]
+struct Edit {
+    row: prop::sample::Index,
+    signal: usize,
+    value: u128,
+    /// The value is put right again in the next row, or stays.
+    transient: bool,
+}
+
+fn text(rows: &[Row], odd: &[(prop::sample::Index, usize)]) -> String {
+    let mut text = "$timescale 1ns $end\n$scope module t $end\n$var wire 1 ! clk $end\n".to_owned();
+    for (at, width) in WIDTHS.iter().enumerate() {
+        let _ = writeln!(text, "$var wire {width} s{at} w{at} $end");
+    }
+    text += "$var real 64 r r $end\n$upscope $end\n$enddefinitions $end\n#0\n$dumpvars\n0!\n$end\n";
+    for (clock, row) in rows.iter().enumerate() {
+        for (index, what) in odd {
+            if index.index(rows.len()) == clock {
+                text += [
+                    "$comment a\n#5\n$end\n",
+                    "#\n",
+                    "$dumpoff\n$end\n$dumpon\n$end\n",
+                    "1s0 \n",
+                    "x!\n",
+                ][*what];
+            }
+        }
+        let _ = write!(text, "#{}\n1!\n", 10 * clock + 5);
+        for (signal, value) in row {
+            let width = WIDTHS[*signal];
+            let value = value & (u128::MAX >> (128 - width));
+            let _ = match width {
+                1 => writeln!(text, "{value}s{signal}"),
+                _ if value % 7 == 3 => writeln!(text, "bx{:b} s{signal}", value & 1),
+                _ => writeln!(text, "b{value:b} s{signal}"),
+            };
+        }
+        if clock % 3 == 0 {
+            let _ = writeln!(text, "r{}.5 r", clock / 6);
+        }
+        let _ = write!(text, "#{}\n0!\n", 10 * clock + 10);
+    }
+    text
+}
+
+/// All that a result says, or its error.
+fn said(path: [&Path; 2], options: &DiffOptions, plainly: bool) -> String {
+    let compared = compare_by(path[0], path[1], options, &mut |_| {}, plainly);
+    let whole = |comparison: Comparison| format!("{comparison}\n{comparison:?}");
+    compared.map_or_else(|error| error.to_string(), whole)
+}
+
+fn rows() -> impl Strategy<Value = Vec<Row>> {
+    prop::collection::vec(prop::collection::vec((0..WIDTHS.len(), any::<u128>()), 0..6), 1..120)
+}
+
+fn edits() -> impl Strategy<Value = Vec<Edit>> {
+    let edit = (
+        any::<prop::sample::Index>(),
+        0..WIDTHS.len(),
+        any::<u128>(),
+        any::<bool>(),
+    );
+    let edit = edit.prop_map(|(row, signal, value, transient)| Edit {
+        row,
+        signal,
+        value,
+        transient,
+    });
+    prop::collection::vec(edit, 0..4)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn prop_following_the_same_bytes_says_what_reading_every_change_says(
+        rows in rows(),
+        edits in edits(),
+        odd in prop::collection::vec((any::<prop::sample::Index>(), 0usize..5), 0..2),
+        odd_in_both: bool,
+        raw: bool,
+        first: bool,
+        tolerance: bool,
+        cut in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        let mut other = rows.clone();
+        for edit in &edits {
+            let at = edit.row.index(rows.len());
+            other[at].push((edit.signal, edit.value));
+            if edit.transient && at + 1 < rows.len() {
+                let right = rows[..=at].iter().flatten().rev().find(|(signal, _)| *signal == edit.signal);
+                other[at + 1].insert(0, (edit.signal, right.map_or(0, |(_, value)| *value)));
+            }
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.vcd", "b.vcd"].map(|name| folder.path().join(name));
+        std::fs::write(&a, text(&rows, if odd_in_both { &odd } else { &[] })).unwrap();
+        let mut content = text(&other, &odd);
+        if let Some(cut) = cut {
+            content.truncate(content.len() - cut.index(content.len() / 4));
+        }
+        std::fs::write(&b, content).unwrap();
+        let mut options = DiffOptions { raw, first, allow_truncated: first, ..DiffOptions::default() };
+        if tolerance {
+            options.add_tolerance("w2=3").unwrap();
+        }
+        prop_assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
+        prop_assert_eq!(said([&b, &a], &options, false), said([&b, &a], &options, true));
+    }
+}
+
+#[test]
+fn unit_stretches_that_are_the_same_are_found() {
+    let rows: Vec<Row> = (0..2000u128)
+        .map(|at| vec![(2, at), (0, at % 2), (5, at * at)])
+        .collect();
+    let mut other = rows.clone();
+    other[1000].push((3, 7));
+    let folder = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.vcd", "b.vcd"].map(|name| folder.path().join(name));
+    std::fs::write(&a, text(&rows, &[])).unwrap();
+    std::fs::write(&b, text(&other, &[])).unwrap();
+    for raw in [false, true] {
+        let options = DiffOptions {
+            raw,
+            ..DiffOptions::default()
+        };
+        // Only pieces report between the rare marks of samples.
+        let mut reports = 0;
+        let result = compare_by(&a, &b, &options, &mut |_| reports += 1, false).unwrap();
+        assert!(reports > 100, "{reports}");
+        assert_eq!(result.differences.len(), 1, "{result}");
+        assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
+    }
+}

@@ -1,0 +1,132 @@
+//! The pairs that are compared word by word, which are nearly all: both values side by side.
+//!
+//! A change costs one comparison, and a sample at which all are equal again costs nothing. What changed since the last sample is
+//! noted with the value that it had then.
+
+use super::touched::Lists;
+
+/// Slot that no cell stands for: what it feeds is found the general way.
+pub(super) const GENERAL: u32 = u32::MAX;
+
+/// Bits and which of them are unknown.
+pub(super) type Words = [u64; 2];
+
+/// A value of each file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    pub(super) of: [Words; 2],
+}
+
+/// A cell that became equal or different, and the first file's value before that.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Noted {
+    pub(super) cell: u32,
+    pub(super) before: Words,
+}
+
+/// The cells of a comparison.
+#[derive(Debug, Default)]
+pub(super) struct Cells {
+    pub(super) cells: Vec<Cell>,
+    /// Of each slot of either file; empty where there are no cells.
+    pub(super) of_slot: [Vec<u32>; 2],
+    /// The pairs that each stands for.
+    pub(super) pairs: Lists,
+    /// Cells whose values differ now.
+    unequal: usize,
+    /// Cells whose pairs count as different since the last sample.
+    pub(super) different: usize,
+    pub(super) noted: Vec<Noted>,
+}
+
+impl Cells {
+    /// Cells of these pairs of slots, each with the pairs (by number) that it stands for, all without a value.
+    pub(super) fn new(slots: [usize; 2], cells: &[([u32; 2], u32, Vec<u32>)]) -> Self {
+        let mut of_slot = slots.map(|count| vec![GENERAL; count]);
+        let mut entries = Vec::new();
+        let mut values = Vec::new();
+        for (at, (slots, width, pairs)) in (0..).zip(cells) {
+            for (of_slot, slot) in of_slot.iter_mut().zip(slots) {
+                of_slot[*slot as usize] = at;
+            }
+            entries.extend(pairs.iter().map(|pair| (at, *pair)));
+            let unknown = [0, u64::MAX >> (64 - width)];
+            values.push(Cell { of: [unknown; 2] });
+        }
+        let noted = (0..cells.len() as u32).map(|cell| Noted {
+            cell,
+            before: values[cell as usize].of[0],
+        });
+        Self {
+            noted: noted.collect(),
+            cells: values,
+            of_slot,
+            pairs: Lists::new(cells.len(), &entries),
+            unequal: 0,
+            different: 0,
+        }
+    }
+
+    /// The cell of a slot of a file, or [`GENERAL`].
+    #[inline]
+    pub(super) fn of(&self, side: usize, slot: u32) -> u32 {
+        self.of_slot[side].get(slot as usize).copied().unwrap_or(GENERAL)
+    }
+
+    /// A file's value changes.
+    #[inline]
+    pub(super) fn set(&mut self, side: usize, at: u32, words: Words) {
+        let cell = &mut self.cells[at as usize];
+        let before = cell.of[0];
+        let was_equal = before == cell.of[1];
+        cell.of[side] = words;
+        let is_equal = cell.of[0] == cell.of[1];
+        if was_equal == is_equal {
+            // Both values of an equal cell cannot change at once; of a different one, the difference goes on.
+            return;
+        }
+        if is_equal {
+            self.unequal -= 1;
+            if self.different == 0 {
+                return;
+            }
+        } else {
+            self.unequal += 1;
+        }
+        self.noted.push(Noted { cell: at, before });
+        if self.noted.len() > 4 * self.cells.len() + 1024 {
+            self.press();
+        }
+    }
+
+    /// Both files' values change to the same.
+    pub(super) fn set_both(&mut self, at: u32, words: Words) {
+        let cell = &mut self.cells[at as usize];
+        self.unequal -= usize::from(cell.of[0] != cell.of[1]);
+        cell.of = [words; 2];
+    }
+
+    /// Whether nothing has to be looked at: all are equal, and were.
+    #[inline]
+    pub(super) fn all_equal(&self) -> bool {
+        self.unequal == 0 && self.different == 0
+    }
+
+    pub(super) fn is_equal(&self, at: u32) -> bool {
+        let cell = &self.cells[at as usize];
+        cell.of[0] == cell.of[1]
+    }
+
+    /// The first file's value at the last sample.
+    pub(super) fn before(&self, at: u32) -> Words {
+        let noted = self.noted.iter().find(|noted| noted.cell == at);
+        noted.map_or(self.cells[at as usize].of[0], |noted| noted.before)
+    }
+
+    /// Keeps the first note of each cell: there may be no sample for a long time.
+    fn press(&mut self) {
+        let mut seen = vec![false; self.cells.len()];
+        self.noted
+            .retain(|noted| !std::mem::replace(&mut seen[noted.cell as usize], true));
+    }
+}
