@@ -7,7 +7,7 @@ pub(crate) struct Advice {
 }
 
 /// Advice by the beginning of a check's name.
-const ADVICE: [(&str, Advice); 13] = [
+const ADVICE: [(&str, Advice); 14] = [
     (
         "the command moves every axis",
         Advice {
