@@ -1,8 +1,6 @@
 //! Controllers under friction, compared with independently computed runs.
 
-use posicast_model::control::{COMMAND_FRACTION, Gains};
 use posicast_model::papers::controllers::{ControllerCase, ControllerFigures};
-use posicast_model::rtl::sliding_mode::{Law, SettingRow, TickController, TickMotion};
 use serde_json::Value;
 use std::error::Error;
 use std::path::Path;
@@ -102,58 +100,6 @@ fn golden_the_bit_exact_controller_follows_as_the_float_law_does() {
         compared += 1;
     }
     assert_eq!(compared, 21);
-}
-
-/// The reaching law by itself: `s(k+1) = (1 − kT)·s(k) − εT·sgn s(k)`, which ends between ±εT/(2 − kT).
-///
-/// The hardware's controller moves `s`: without a slope `c` its command over its gain is what the velocity is to lose in a tick.
-#[test]
-fn golden_the_bit_exact_reaching_law_in_samples() {
-    const COUNT_M: f64 = 1e-6;
-    const GAIN: f64 = 250.0;
-    let golden: Value = serde_json::from_str(include_str!("golden/drive.json")).unwrap();
-    for run in golden["smc_discrete"].as_array().unwrap() {
-        let of = |key: &str| run[key].as_f64().unwrap();
-        let (tick_s, epsilon, rate) = (of("T"), of("eps"), of("k"));
-        let per_tick = COUNT_M / tick_s;
-        let gains = Gains::default().with(&[
-            (SettingRow::Feedback, GAIN),
-            (SettingRow::Limit, 5e5),
-            (SettingRow::Boundary, 255.0),
-            (SettingRow::Reaching, rate * tick_s),
-            (SettingRow::Switching, epsilon * tick_s * tick_s / COUNT_M),
-        ]);
-        let settings = gains.quantise().unwrap();
-        let mut controller = TickController::default();
-        // Velocity that is too little, Q16.16 counts per tick.
-        let mut sliding = (of("s0") / per_tick * 65536.0).round();
-        let mut step = || {
-            let motion = TickMotion {
-                velocity: -(sliding as i32),
-                ..TickMotion::default()
-            };
-            let command = controller.control(Law::SlidingMode, false, &motion, &settings).command;
-            sliding -= (f64::from(command) / f64::from(1u32 << COMMAND_FRACTION) / GAIN * 65536.0).round();
-            sliding / 65536.0 * per_tick
-        };
-        for (tick, expected) in run["first8"].as_array().unwrap().iter().enumerate() {
-            let (found, expected) = (step(), expected.as_f64().unwrap());
-            // Words of 18 bits for kT and εT².
-            assert!(
-                (found - expected).abs() < 1e-4,
-                "{tick_s} s, tick {tick}: {found} instead of {expected}"
-            );
-        }
-        for _ in 0..2000 {
-            step();
-        }
-        let most = (0..1000).map(|_| step().abs()).fold(0.0, f64::max);
-        assert!(
-            (most / of("limit") - 1.0).abs() < 0.02,
-            "{tick_s} s: {most} instead of {}",
-            of("limit")
-        );
-    }
 }
 
 const TITLE: &str = "| controller | max \\|e\\| | rms e | max \\|e′\\| | rms command | chatter |";

@@ -15,7 +15,7 @@ pub struct FrontPoint {
     pub least_ratio: f64,
 }
 
-/// What each of these durations buys. They must hold: none is below [`Shortest::least_samples`](crate::Shortest::least_samples).
+/// What each of these durations buys; a later one of which the solver does not converge is left out. They must hold: none is below [`Shortest::least_samples`](crate::Shortest::least_samples).
 ///
 /// # Errors
 /// [`OptimalError::Solver`], also for a duration that does not hold.
@@ -26,16 +26,26 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
     };
     let mut points = Points::new(&request);
     let mut front = Vec::with_capacity(durations.len());
+    // A shaper of one duration is also one of each longer duration.
+    let mut least = f64::INFINITY;
     for &samples in durations {
-        let taps = fewest_at(&request, samples, &mut points)?.ok_or_else(|| OptimalError::Solver {
+        let all: Vec<u32> = (0..=samples).collect();
+        let found = fewest_at(&request, samples, &mut points)
+            .and_then(|taps| Ok((taps, least_ratio(&request, &all, &mut points)?)));
+        let (taps, ratio) = match found {
+            // Rounding ends some programs of long durations: the next one says as much.
+            Err(OptimalError::Solver { .. }) if !front.is_empty() => continue,
+            other => other?,
+        };
+        let taps = taps.ok_or_else(|| OptimalError::Solver {
             samples,
             status: "no shaper of this duration holds".into(),
         })?;
-        let all: Vec<u32> = (0..=samples).collect();
+        least = ratio.min(least);
         front.push(FrontPoint {
             samples,
             taps,
-            least_ratio: least_ratio(&request, &all, &mut points)?,
+            least_ratio: least,
         });
     }
     Ok(front)

@@ -130,9 +130,9 @@ fn unit_more_duration_buys_fewer_taps_or_less_residual() {
     let least = shortest(&request).unwrap().least_samples;
     let points = front(&request, &[least, least + 16, least + 40]).unwrap();
     assert!(points.windows(2).all(|pair| pair[1].least_ratio <= pair[0].least_ratio));
-    // At the least duration, the tolerance is needed; a quarter more needs much less of it.
+    // At the least duration most of the tolerance is needed: a sample less has no solution. A quarter more needs much less of it.
     assert!(
-        (0.9..=1.0 + 1e-6).contains(&points[0].least_ratio),
+        (0.8..=1.0 + 1e-6).contains(&points[0].least_ratio),
         "{}",
         points[0].least_ratio
     );

@@ -7,15 +7,17 @@ kernel! {
 
     inputs {
         rst: Bit,
-        addend: Signed<18>,
+        entry: Signed<18>,
+        takes_entry: Bit,
+        whole: Signed<18>,
+        takes_whole: Bit,
         load: Bit,
         clear: Bit,
     }
     outputs { rounded: Signed<18> }
     registers { average: Signed<18>, dropped: Bits<1> }
     wires {
-        wide_average: Signed<19>, wide_addend: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>,
-        half: Signed<18>,
+        wide_average: Signed<19>, wide_entry: Signed<19>, wide_whole: Signed<19>, sum_bits: Bits<19>, half: Signed<18>,
     }
     constants { none: Signed<18> = from_i64(0) }
 }
@@ -26,13 +28,22 @@ impl Logic for Average {
         comment!("@module error_average");
 
         self.wide_average.next = signed_bit_cast::<19, 18>(self.average.q.val());
-        self.wide_addend.next = signed_bit_cast::<19, 18>(self.addend.val());
-        self.sum.next = self.wide_average.val() + self.wide_addend.val();
-        self.sum_bits.next = unsigned_cast(self.sum.val());
+        self.wide_entry.next = signed_bit_cast::<19, 18>(self.entry.val());
+        self.wide_whole.next = signed_bit_cast::<19, 18>(self.whole.val());
+        self.sum_bits.next = unsigned_cast(self.wide_average.val());
+        if self.takes_entry.val() {
+            self.sum_bits.next = unsigned_cast(self.wide_average.val() + self.wide_entry.val());
+        }
+        if self.takes_whole.val() {
+            self.sum_bits.next = unsigned_cast(self.wide_average.val() + self.wide_whole.val());
+        }
         self.average.d.next = signed_cast(self.sum_bits.val().get_bits::<18>(1));
         self.dropped.d.next = self.sum_bits.val().get_bits::<1>(0);
         if self.load.val() {
-            self.average.d.next = self.addend.val();
+            self.average.d.next = self.none.val();
+            if self.takes_entry.val() {
+                self.average.d.next = self.entry.val();
+            }
         }
         if self.clear.val() {
             self.average.d.next = self.none.val();

@@ -10,7 +10,6 @@
 //! without a product; the average of 0 and the whole error by the bits of the weight is the weighted error.
 
 use super::average::Average;
-use super::operand::Operand;
 use crate::prelude::*;
 use posicast_model::rtl::error_table::{ErrorTableConfig, FULL_WEIGHT};
 
@@ -26,7 +25,7 @@ kernel! {
         entry: Signed<18>,
     }
     outputs { address: Bits<8>, busy: Bit, ends: Bit, error: Signed<18> }
-    parts { operand: Operand, average: Average }
+    parts { average: Average }
     registers {
         runs: Bit, step: Bits<7>, place_low: Bits<8>, place_high: Bits<32>, index: Bits<8>, beyond: Bit, below: Bit,
         in_table: Bit, whole: Signed<18>, shown: Signed<18>,
@@ -127,11 +126,10 @@ impl Logic for Lookup {
         self.fades.next = self.step.q.val() > self.found_step.val();
         self.average.clk.next = self.clk.val();
         self.average.rst.next = self.rst.val();
-        self.operand.entry.next = self.entry.val();
-        self.operand.takes_entry.next = self.weight.val().any() & !self.fades.val();
-        self.operand.whole.next = self.whole.q.val();
-        self.operand.takes_whole.next = self.fades.val() & self.leaving.val();
-        self.average.addend.next = self.operand.operand.val();
+        self.average.entry.next = self.entry.val();
+        self.average.takes_entry.next = self.weight.val().any() & !self.fades.val();
+        self.average.whole.next = self.whole.q.val();
+        self.average.takes_whole.next = self.fades.val() & self.leaving.val();
         self.average.load.next = self.step.q.val() == self.load_step.val();
         self.average.clear.next = self.step.q.val() == self.found_step.val();
         if self.step.q.val() == self.found_step.val() {

@@ -6,7 +6,6 @@ mod average;
 mod entry_banks;
 mod kernel;
 mod lookup;
-mod operand;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
