@@ -1,8 +1,8 @@
 //! What more duration buys: fewer taps, or less residual.
 
 use crate::prefer::fewest_at;
-use crate::refine::{Points, least_ratio};
-use crate::{OptimalError, Prefer, Request, Tap};
+use crate::refine::{Points, least_ratio, peaks};
+use crate::{OptimalError, Prefer, Request, Tap, shortest};
 
 /// A duration, and what it buys.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +11,7 @@ pub struct FrontPoint {
     pub samples: u32,
     /// Few taps that hold every tolerance.
     pub taps: Vec<Tap>,
-    /// Least largest ratio of residual to tolerance that any shaper of this duration reaches, with any number of taps.
+    /// Least largest ratio of residual to tolerance that was found at this duration, with any number of taps.
     pub least_ratio: f64,
 }
 
@@ -30,17 +30,20 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
     let mut least = f64::INFINITY;
     for &samples in durations {
         let all: Vec<u32> = (0..=samples).collect();
-        let found = fewest_at(&request, samples, &mut points)
-            .and_then(|taps| Ok((taps, least_ratio(&request, &all, &mut points)?)));
-        let (taps, ratio) = match found {
-            // Rounding ends some programs of long durations: the next one says as much.
+        let taps = match fewest_at(&request, samples, &mut points) {
             Err(OptimalError::Solver { .. }) if !front.is_empty() => continue,
+            Err(OptimalError::Solver { .. }) => Some(shortest(&request)?.taps),
             other => other?,
         };
         let taps = taps.ok_or_else(|| OptimalError::Solver {
             samples,
             status: "no shaper of this duration holds".into(),
         })?;
+        // Rounding ends some programs: what the few taps reach stands for them.
+        let ratio = match least_ratio(&request, &all, &mut points) {
+            Err(OptimalError::Solver { .. }) => peaks(&request, &taps).first().map_or(0.0, |peak| peak.0),
+            other => other?,
+        };
         least = ratio.min(least);
         front.push(FrontPoint {
             samples,

@@ -91,10 +91,11 @@ impl ErrorTableRandom {
         // At first bank 1 is loaded, then used, so that a short run sees both.
         self.lives += 1;
         if self.lives <= 2 {
-            self.life.clocks = 12 * (u32::from(self.config.last()) + 1) + 4 * latency;
+            self.life.clocks = 12 * (u32::from(self.config.last()) + 1) + 40 * latency;
             self.life.off_pace = 1 << 30;
             self.life.pace = latency;
             self.life.write_pace = if self.lives == 1 { 3 } else { 1 << 30 };
+            self.inputs.error_enable = self.lives == 2;
             self.inputs.error_select = self.lives == 2;
         }
     }

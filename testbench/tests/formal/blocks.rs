@@ -180,8 +180,8 @@ fn formal_a_fifo_that_writes_over_its_oldest_entry_is_found() {
 fn formal_a_fifo_that_writes_over_the_entry_that_plays_is_found() {
     fails(
         "segments",
-        "slot = (head + waiting) + 6'd1",
-        "slot = head + waiting",
+        "slot = (head + behind) + 6'd1",
+        "slot = head + behind",
         "pointers",
     );
 }
