@@ -174,9 +174,9 @@ fn joined(ports: &[Port]) -> (String, Vec<Port>) {
     text.push_str("\n);\n");
     let mut instance = |module: &str, parameters: &str, names: &mut dyn Iterator<Item = &str>| {
         let connected: Vec<String> = names.map(|name| format!(".{name}({name})")).collect();
-        let _ = write!(
+        let _ = writeln!(
             text,
-            "    {module} {parameters}{module}_0 (.clk(clk), {});\n",
+            "    {module} {parameters}{module}_0 (.clk(clk), {});",
             connected.join(", ")
         );
     };
