@@ -3,6 +3,7 @@
 use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
+use crate::hal::HalArgs;
 use crate::hardware::{Built, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
@@ -27,6 +28,8 @@ pub(crate) struct Args {
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    hal: HalArgs,
     /// List every file that was written
     #[arg(short, long)]
     verbose: bool,
@@ -48,6 +51,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (components, stage) = (&built.components, built.stage.as_ref());
     sopc::add(&mut package, &file.machine, board, stage, components)?;
     driver::add(&mut package, &file.machine, &modules, components, stage)?;
+    args.hal.add(
+        &mut package,
+        &file.machine,
+        &report.design,
+        stage.is_some(),
+        &args.machine,
+    )?;
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;

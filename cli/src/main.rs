@@ -19,6 +19,7 @@ mod driver;
 mod failure;
 mod generate;
 mod guards;
+mod hal;
 mod hardware;
 mod identify;
 mod kit;

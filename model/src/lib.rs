@@ -26,6 +26,7 @@ pub mod motion;
 pub mod papers;
 pub mod plant;
 pub mod rtl;
+pub mod shaper_tables;
 pub mod simulation;
 pub mod spelling;
 pub mod taps;

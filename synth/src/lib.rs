@@ -1,5 +1,5 @@
 //! Everything that posicast writes for a device: the output folder ([`package`]), the files for Quartus ([`sopc`]),
-//! the C driver ([`driver`]), the documents of the registers ([`register_documents`]), the datasheets
+//! the C driver ([`driver`]), the component for LinuxCNC ([`hal`]), the documents of the registers ([`register_documents`]), the datasheets
 //! ([`datasheets`]), the kit for the user's own design ([`kit`]), and estimates of the resources ([`yosys`]) and the
 //! clock ([`clock`]) of its Verilog.
 //!
@@ -10,6 +10,7 @@ pub mod clock;
 pub mod core_file;
 pub mod datasheets;
 pub mod driver;
+pub mod hal;
 pub mod kit;
 pub mod package;
 pub mod register_documents;

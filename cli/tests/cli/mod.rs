@@ -15,6 +15,7 @@ mod doctor;
 mod error_table;
 mod folder;
 mod fuzz;
+mod hal;
 mod hardware;
 mod identify;
 mod kit;

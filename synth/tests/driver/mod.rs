@@ -6,6 +6,7 @@ mod error_table;
 mod family;
 mod identify;
 mod integers;
+mod path;
 pub(crate) mod support;
 
 use bridge::{Bridge, INDEX_AT};

@@ -7,11 +7,12 @@ use super::sample::{LoadError, loadable};
 use super::tables::Tables;
 use super::wrap;
 use crate::taps::TapTable;
+use std::sync::Arc;
 
 /// A swap in progress.
 #[derive(Debug, Clone)]
 struct Change {
-    table: TapTable,
+    table: Arc<TapTable>,
     how: u8,
 }
 
@@ -20,13 +21,16 @@ struct Change {
 ///
 /// Unlike that model, this one fills its ring buffers at a start instead of knowing their age, and never ends a
 /// handover: it keeps the old table for as long as one of its taps reaches behind the change.
+///
+/// [`Self::push`] and [`Self::swap_shared`] allocate nothing, and free nothing while the caller holds [`Self::active`] of the
+/// beginning and all tables that it swaps to: a real-time thread can call both.
 #[derive(Debug, Clone)]
 pub struct MotionShaper {
     config: ShaperConfig,
     rings: Vec<Vec<i64>>,
     head: usize,
-    active: TapTable,
-    before: Option<(TapTable, u32)>,
+    active: Arc<TapTable>,
+    before: Option<(Arc<TapTable>, u32)>,
     change: Option<Change>,
     saturated: bool,
 }
@@ -37,7 +41,7 @@ impl MotionShaper {
         Self {
             rings: vec![vec![0; 1 << config.ring_address_bits()]; config.channels()],
             head: 0,
-            active: config.table().clone(),
+            active: Arc::new(config.table().clone()),
             before: None,
             change: None,
             saturated: false,
@@ -85,12 +89,25 @@ impl MotionShaper {
     /// # Errors
     /// [`LoadError`] where the shaper cannot hold the table; the active table then stays.
     pub fn swap(&mut self, table: &TapTable, how: u8) -> Result<(), LoadError> {
+        self.swap_shared(&Arc::new(table.clone()), how)
+    }
+
+    /// As [`Self::swap`], of a table that the caller keeps.
+    ///
+    /// # Errors
+    /// [`LoadError`] where the shaper cannot hold the table; the active table then stays.
+    pub fn swap_shared(&mut self, table: &Arc<TapTable>, how: u8) -> Result<(), LoadError> {
         loadable(&self.config, table)?;
         self.change = Some(Change {
-            table: table.clone(),
+            table: Arc::clone(table),
             how,
         });
         Ok(())
+    }
+
+    /// The active table.
+    pub fn active(&self) -> &Arc<TapTable> {
+        &self.active
     }
 
     /// Whether a swap waits or hands over; while it does, the hardware refuses the next.

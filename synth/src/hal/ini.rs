@@ -1,0 +1,124 @@
+//! The INI file: the machine's limits in LinuxCNC's units.
+
+use super::{HalAxis, HalMachine};
+use std::fmt::Write;
+
+/// Servo periods from a command to the stage's FIFO's end: two in the FIFO, one that plays, one to interpolate.
+const LATENCY_PERIODS: f64 = 4.0;
+/// Part of the largest velocity at which an axis looks for its index.
+const INDEX_SEARCH: f64 = 0.02;
+/// Following error that LinuxCNC allows where the stage has no limit, as a part of a second at full velocity.
+const FOLLOWING_S: f64 = 0.01;
+/// Travel where the machine file has none, mm or degrees.
+const TRAVEL: [f64; 2] = [-1e6, 1e6];
+
+/// Its text.
+pub(super) fn text(machine: &HalMachine<'_>, letters: &[char]) -> String {
+    let coordinates: String = letters.iter().collect();
+    let spaced: Vec<String> = letters.iter().map(char::to_string).collect();
+    let linear = machine.axes.iter().filter(|axis| !axis.rotary);
+    let velocity = linear.map(|axis| axis.velocity).fold(0.0, f64::max);
+    let velocity = if velocity > 0.0 {
+        velocity
+    } else {
+        machine.axes.iter().map(|axis| axis.velocity).fold(0.0, f64::max)
+    };
+    let mut text = format!(
+        "# {name} in LinuxCNC. Written by posicast; docs/linuxcnc.md says how to begin.
+[EMC]
+MACHINE = {name}
+VERSION = 1.1
+
+[POSICAST]
+# The stage's registers: uio:/dev/uio0, or unix:PATH of a simulated stage.
+STAGE = uio:/dev/uio0
+# How long the servo thread may be silent before the stage stops the axes.
+WATCHDOG_MS = 20
+
+[DISPLAY]
+DISPLAY = axis
+
+[RS274NGC]
+PARAMETER_FILE = {name}.var
+
+[EMCMOT]
+EMCMOT = motmod
+COMM_TIMEOUT = 1.0
+SERVO_PERIOD = {servo_ns}
+
+[TASK]
+TASK = milltask
+CYCLE_TIME = 0.010
+
+[HAL]
+HALFILE = {name}.hal
+
+[TRAJ]
+COORDINATES = {spaced}
+LINEAR_UNITS = mm
+ANGULAR_UNITS = degree
+DEFAULT_LINEAR_VELOCITY = {default}
+MAX_LINEAR_VELOCITY = {velocity}
+
+[EMCIO]
+EMCIO = io
+CYCLE_TIME = 0.1
+
+[KINS]
+KINEMATICS = trivkins coordinates={coordinates}
+JOINTS = {joints}
+",
+        name = machine.name,
+        servo_ns = machine.servo_ns(),
+        spaced = spaced.join(" "),
+        default = figure(velocity / 5.0),
+        velocity = figure(velocity),
+        joints = machine.axes.len(),
+    );
+    for (number, (axis, letter)) in machine.axes.iter().zip(letters).enumerate() {
+        of_axis(&mut text, machine, number, axis, *letter);
+    }
+    text
+}
+
+fn of_axis(text: &mut String, machine: &HalMachine<'_>, number: usize, axis: &HalAxis<'_>, letter: char) {
+    let [low, high] = axis.travel.unwrap_or(TRAVEL);
+    let lag = axis.velocity * (axis.delay_s + LATENCY_PERIODS / machine.servo_hz);
+    let following = lag + axis.following_error.unwrap_or(FOLLOWING_S * axis.velocity);
+    let limits = format!(
+        "MIN_LIMIT = {}\nMAX_LIMIT = {}\nMAX_VELOCITY = {}\nMAX_ACCELERATION = {}\n",
+        figure(low),
+        figure(high),
+        figure(axis.velocity),
+        figure(axis.acceleration),
+    );
+    let homing = match axis.index {
+        // Only the index: an axis with a switch gets HOME_SEARCH_VEL, too.
+        true => format!(
+            "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = {}\nHOME_USE_INDEX = YES\n",
+            figure(INDEX_SEARCH * axis.velocity)
+        ),
+        false => "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\n".to_owned(),
+    };
+    let kind = if axis.rotary { "ANGULAR" } else { "LINEAR" };
+    let _ = write!(
+        text,
+        "\n[AXIS_{letter}]\n{limits}
+[JOINT_{number}]
+TYPE = {kind}
+{limits}# The stage's limit, and what shaper and FIFO are behind at full velocity.
+FERROR = {following}
+MIN_FERROR = {following}
+HOME = 0
+HOME_OFFSET = 0
+{homing}HOME_SEQUENCE = 0
+",
+        following = figure(following),
+    );
+}
+
+/// A figure with at most six significant digits after what the machine file's conversion leaves.
+fn figure(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
