@@ -14,6 +14,7 @@ mod error_table_loop;
 mod excitation;
 mod fault_campaign;
 mod formal;
+mod latency;
 mod linear_scale;
 mod moving_modes;
 mod mutation;
