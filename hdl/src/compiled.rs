@@ -11,7 +11,7 @@ use crate::simulation::Pins;
 
 /// A kernel at one of its compiled sizes; `C` is its configuration.
 pub(crate) struct Compiled<C> {
-    /// The sizes; the word's width comes first.
+    /// The sizes; the width of the word comes first if it is one of them.
     pub(crate) sizes: &'static [u32],
     /// Makes the kernel for a configuration. If the configuration exceeds the kernel's sizes, the block can be
     /// emitted but not simulated.
@@ -33,11 +33,11 @@ pub(crate) fn emit<C>(
     emit::emit_sized(&samples, sizes, options)
 }
 
-/// The kernel that can represent one of `sizes`: with words of the same width if there is one, else, unless the word
-/// must be `exact`, with wider words.
+/// The kernel that holds a block of these `sizes`: one whose first size is equal if there is one, else, unless the
+/// first size must be `exact`, one that is larger.
 pub(crate) fn holding<'a, C>(compiled: &'a [Compiled<C>], sizes: &[u32], exact: bool) -> Option<&'a Compiled<C>> {
     let holds = |kernel: &&Compiled<C>| kernel.sizes.iter().zip(sizes).all(|(there, wanted)| there >= wanted);
-    let same_word = |kernel: &&Compiled<C>| kernel.sizes.first() == sizes.first();
-    let wider = || compiled.iter().find(holds).filter(|_| !exact);
-    compiled.iter().filter(same_word).find(holds).or_else(wider)
+    let same_first = |kernel: &&Compiled<C>| kernel.sizes.first() == sizes.first();
+    let larger = || compiled.iter().find(holds).filter(|_| !exact);
+    compiled.iter().filter(same_first).find(holds).or_else(larger)
 }

@@ -23,10 +23,10 @@
 //!         ...
 //! ```
 //!
-//! | section | field | starts as |
-//! |---|---|---|
 //! | section | field | initial value |
-//! | `registers` | [`Dff<T>`](crate::prim::Dff), clocked by `clk` and reset by `rst`; it keeps its value unless the logic sets `d` | `= reset value`, else 0 |
+//! |---|---|---|
+//! | `inputs`, `outputs`, `wires` | `Signal<In, T>`, `Signal<Out, T>`, `Signal<Local, T>` | 0 |
+//! | `parts` | `T`, another kernel or a leaf; the logic wires its inputs, `clk` and `rst` among them | `= T::new(..)`, else `T::default()` |
 //! | `registers` | [`Dff<T>`](crate::prim::Dff), clocked by `clk` and reset by `rst`; it keeps its value unless the logic sets `d` | `= reset value`, else 0 |
 //! | `constants` | `Constant<T>` | `= value` |
 //!

@@ -310,17 +310,28 @@ impl Composite<'_> {
         print::declarations(lines, &declared.collect::<Vec<_>>());
     }
 
+    /// Declares the nets; a register and its value after the next clock share a line.
     fn nets(&self, lines: &mut Lines, variables: &BTreeSet<NetId>) {
+        let registers = self.scope.registers.iter();
+        let next: BTreeMap<_, _> = registers
+            .filter(|register| variables.contains(&register.next))
+            .map(|register| (register.now, register.next))
+            .collect();
         let declared = self.scope.iter().filter_map(|(id, net)| {
             let keyword = match net.role {
                 Role::Register => "reg",
                 Role::PinOut => "wire",
                 Role::Output => return None,
+                Role::Next if variables.contains(&id) => return None,
                 role if role.is_driven() && variables.contains(&id) => "reg",
                 role if role.is_driven() && !self.drivers.direct.contains_key(&id) => "wire",
                 _ => return None,
             };
-            Some((keyword, net.ty, net.name.clone()))
+            let names = match next.get(&id) {
+                Some(next) => format!("{}, {}", net.name, self.scope.net(*next).name),
+                None => net.name.clone(),
+            };
+            Some((keyword, net.ty, names))
         });
         print::declarations(lines, &declared.collect::<Vec<_>>());
     }

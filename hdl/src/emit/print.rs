@@ -1,5 +1,5 @@
 //! Writes the text of a module: header, ports, declarations, statements. It is Verilog-2001 with four spaces per
-//! level and one declaration per line.
+//! level. Each declaration has a line of its own; that of a register also declares its next value.
 
 use super::collect::{Kind, Node, Signal};
 use super::ir::Statement;
@@ -196,7 +196,7 @@ fn noted(code: &str, column: usize, text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Declarations `keyword type name;`, names in one column.
+/// Declarations `keyword type names;`, names in one column.
 pub(super) fn declarations(lines: &mut Lines, declarations: &[(&str, Type, String)]) {
     let widths = declarations.iter().map(|(_, ty, _)| ty.declaration().len());
     let width = widths.max().unwrap_or(0);

@@ -12,14 +12,16 @@ use super::memory::TraceMemory;
 use super::signal_select::SignalSelect;
 use super::trigger::Trigger;
 use crate::prelude::*;
-use posicast_model::rtl::trace::TraceState;
+use posicast_model::rtl::trace::{TraceConfig, TraceState};
 
 kernel! {
     /// Sizes: A address bits, R = A + 1 bits of a number of rows.
-    pub(super) struct Trace<const A: usize, const R: usize>;
+    ///
+    /// A trace memory for `config`, whose size must not be above this.
+    pub(super) struct Trace<const A: usize, const R: usize>(config: &TraceConfig) where R == A + 1;
     ports posicast_model::trace_ports;
 
-    parts { selector: SignalSelect, watch: Trigger, memory: TraceMemory<A> }
+    parts { selector: SignalSelect, watch: Trigger, memory: TraceMemory<A> = TraceMemory::new(config) }
     registers {
         active: Bit, triggered: Bit, halting: Bit, phase: Bits<3>, signals_q: Bits<2>, pre_trigger_q: Bits<A>,
         skip: Bits<16>, rows_q: Bits<R>, missed_q: Bit, done_q: Bit, select: Bits<4>,
@@ -38,12 +40,12 @@ kernel! {
         one_phase: Bits<3> = from_u64(1),
         one_signal: Bits<2> = from_u64(0),
         two_signals: Bits<2> = from_u64(1),
-        rows_of_one: Bits<R> = from_u64(1 << A),
-        rows_of_two: Bits<R> = from_u64(1 << (A - 1)),
-        rows_of_four: Bits<R> = from_u64(1 << (A - 2)),
-        last_of_one: Bits<11> = from_u64((1 << A) - 1),
-        last_of_two: Bits<11> = from_u64((1 << (A - 1)) - 1),
-        last_of_four: Bits<11> = from_u64((1 << (A - 2)) - 1),
+        rows_of_one: Bits<R> = from_u64(words(config)),
+        rows_of_two: Bits<R> = from_u64(words(config) / 2),
+        rows_of_four: Bits<R> = from_u64(words(config) / 4),
+        last_of_one: Bits<11> = from_u64(words(config) - 1),
+        last_of_two: Bits<11> = from_u64(words(config) / 2 - 1),
+        last_of_four: Bits<11> = from_u64(words(config) / 4 - 1),
         no_rows: Bits<R> = from_u64(0),
         one_row: Bits<R> = from_u64(1),
         no_strobes: Bits<16> = from_u64(0),
@@ -53,6 +55,11 @@ kernel! {
         waiting_state: Bits<2> = from_u64(TraceState::Waiting as u64),
         taking_state: Bits<2> = from_u64(TraceState::Taking as u64),
     }
+}
+
+/// Words in the memory.
+fn words(config: &TraceConfig) -> u64 {
+    u64::from(config.samples())
 }
 
 impl<const A: usize, const R: usize> Logic for Trace<A, R> {

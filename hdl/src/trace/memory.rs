@@ -6,10 +6,11 @@
 //! unknown.
 
 use crate::prelude::*;
+use posicast_model::rtl::trace::TraceConfig;
 
 kernel! {
     /// Sizes: A address bits.
-    pub(super) struct TraceMemory<const A: usize>;
+    pub(super) struct TraceMemory<const A: usize>(config: &TraceConfig);
 
     inputs {
         rst: Bit,
@@ -28,7 +29,7 @@ kernel! {
     constants {
         no_address: Bits<A> = from_u64(0),
         one_word: Bits<A> = from_u64(1),
-        all_words: Bits<12> = from_u64(1 << A),
+        all_words: Bits<12> = from_u64(u64::from(config.samples())),
         no_data: Bits<32> = from_u64(0),
     }
 }

@@ -2,29 +2,63 @@
 //!
 //! The datasheet is `docs/trace.md`, the reference `posicast_model::rtl::trace`.
 //!
-//! One kernel serves all sizes. A size is a type in RustHDL, so `block` lists the types and selects the one for a
-//! [`TraceConfig`].
+//! One kernel serves all sizes. It is compiled at three sizes, from which the emitter writes any: see `compiled`.
 
 mod kernel;
 mod memory;
 mod signal_select;
 mod trigger;
 
+use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
-use crate::simulation::{Pins, Simulated, SimulationError};
+use crate::simulation::{Simulated, SimulationError};
 use kernel::Trace;
 use posicast_model::rtl::trace::{PORTS, TraceConfig, ports, row_clocks};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
+/// Width of the recorded words.
+const WORD_BITS: u32 = 32;
 /// Value of the port `signals` for a row of four, the longest.
 const FOUR_SIGNALS: u8 = 2;
 
+/// The trace memory of 2^A words.
+macro_rules! trace {
+    ($a:literal) => {
+        Compiled {
+            sizes: &[$a],
+            build: |config| Box::new(Trace::<$a, { $a + 1 }>::new(config)),
+        }
+    };
+}
+
+const SIZES: [Compiled<TraceConfig>; 3] = [trace!(11), trace!(8), trace!(10)];
+
 /// The trace memory in RustHDL's own simulator.
+///
+/// It runs at a compiled size that holds this memory and has the same outputs: its ring buffer may be larger.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &TraceConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    Ok(Box::new(Simulated::new("trace", block(config), ports())?))
+    let holding = simulated(config).ok_or(SimulationError::Size {
+        block: "trace",
+        word_bits: WORD_BITS,
+    })?;
+    Ok(Box::new(Simulated::new("trace", (holding.build)(config), ports())?))
+}
+
+/// The size at which [`simulate`] runs the trace memory, in words, if it differs from its own.
+pub fn simulated_as(config: &TraceConfig) -> Option<String> {
+    match simulated(config)?.sizes {
+        &[address_bits] if address_bits != config.address_bits() => {
+            Some(format!("a memory of {} words", 1u32 << address_bits))
+        }
+        _ => None,
+    }
+}
+
+fn simulated(config: &TraceConfig) -> Option<&'static Compiled<TraceConfig>> {
+    compiled::holding(&SIZES, &[config.address_bits()], false)
 }
 
 /// Name of the last module that [`emit()`] writes.
@@ -66,15 +100,5 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
             ],
         },
     };
-    emit::emit(block(config).as_ref(), &options)
-}
-
-/// The kernel of this size. The last arm is the largest size; [`TraceConfig`] allows no other.
-fn block(config: &TraceConfig) -> Box<dyn Pins> {
-    match config.address_bits() {
-        8 => Box::<Trace<8, 9>>::default(),
-        9 => Box::<Trace<9, 10>>::default(),
-        10 => Box::<Trace<10, 11>>::default(),
-        _ => Box::<Trace<11, 12>>::default(),
-    }
+    compiled::emit(&SIZES, config, &[config.address_bits()], &options)
 }

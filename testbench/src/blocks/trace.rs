@@ -2,7 +2,7 @@
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_hdl::trace::{emit, simulate};
+use posicast_hdl::trace::{emit, simulate, simulated_as};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::trace::{SIGNALS, Trace, TraceConfig, ports};
 
@@ -87,6 +87,10 @@ impl Block for TraceBlock {
 
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
         simulate(&self.config)
+    }
+
+    fn simulated_as(&self) -> Option<String> {
+        simulated_as(&self.config)
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
