@@ -1,4 +1,4 @@
-//! Compares waveforms of hardware simulations: VCD and FST, of whatever tools.
+//! Compares waveforms of hardware simulations: VCD and FST, of any tools.
 //!
 //! ```text
 //!  a ─► reader ─┐                                            ┌─► text, JSON, JUnit
@@ -22,11 +22,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`diff`] compares two files and says which signals differ, since when, and how often.
-//! - [`sample`] reads signals of one's own out of a file, clock by clock.
+//! - [`diff`] compares two files and reports which signals differ, since when, and how often.
+//! - [`sample`] reads given signals from a file, clock by clock.
 //! - [`merge`] puts several files into one, with their differences, for a viewer.
-//! - [`files`] is where the caller says which files may be written.
-//! - [`wording`] counts things and writes times for people.
+//! - [`files`] lets the caller decide which files may be written.
+//! - [`wording`] writes counts and times for people.
 
 #[cfg(feature = "cli")]
 pub mod cli;

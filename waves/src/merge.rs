@@ -156,7 +156,8 @@ struct Subtraction {
 /// Writes `path` (a `.vcd`) and beside it the `.gtkw` and `.sucl` of the same name.
 ///
 /// # Errors
-/// [`WaveError::File`] and [`WaveError::Damaged`] as for reading each part; [`WaveError::Option`] where a difference names no signal.
+/// [`WaveError::File`] and [`WaveError::Damaged`] as for reading each part; [`WaveError::Option`] where a difference
+/// names an unknown signal.
 pub fn merge(
     sink: &dyn OutputSink,
     path: &Path,

@@ -1,4 +1,4 @@
-//! The files that the program `wavecmp` writes: it replaces what it wrote itself, never an input, and nothing else without
+//! The files that the program `wavecmp` writes: it replaces its own files, never an input, and other files only with
 //! `--force`.
 
 use std::fs::File;
@@ -10,10 +10,10 @@ use wavecmp::cli::CommandHost;
 use wavecmp::files::{OutputSink, WriteContent};
 
 const MARK: &str = "written by wavecmp";
-/// The mark stands within so many bytes from the beginning.
+/// Number of bytes at the beginning of a file in which the mark is looked for.
 const HEAD_BYTES: u64 = 4096;
 
-/// Files of one run.
+/// The files of one run.
 #[derive(Default)]
 pub(crate) struct OwnFiles {
     force: bool,
@@ -53,7 +53,7 @@ fn is_standard_output(path: &Path) -> bool {
     path == Path::new("-") || path == Path::new("/dev/stdout")
 }
 
-/// Whether two names lead to one file.
+/// Returns whether two paths are the same file.
 fn same(a: &Path, b: &Path) -> bool {
     a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b)) || same_file(a, b)
 }
@@ -91,7 +91,7 @@ impl OutputSink for OwnFiles {
         if is_standard_output(path) {
             return content(&mut io::stdout().lock());
         }
-        // A pipe or a device is written to; the file behind a link is replaced, and the link stays.
+        // Pipes and devices are written to; if the path is a link, the file that it points to is replaced.
         let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
         if path.metadata().is_ok_and(|data| !data.is_file()) {
             let file = File::options().write(true).open(path).map_err(failed)?;

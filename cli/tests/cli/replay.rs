@@ -194,7 +194,7 @@ fn cli_replay_refuses_what_it_cannot_use() {
     for (text, expected) in [
         (cut_within_a_line, "recorded.vcd"),
         (foreign.into_bytes(), "no signal in common"),
-        (narrow.into_bytes(), "is no vector of 18 bits"),
+        (narrow.into_bytes(), "is not a vector of 18 bits"),
         (b"no waveform at all".to_vec(), "recorded.vcd"),
     ] {
         std::fs::write(&path, &text).unwrap();

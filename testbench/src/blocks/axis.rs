@@ -11,10 +11,11 @@ use super::{Bins, Block, proofs};
 use crate::lockstep::Clock;
 use crate::stimuli::{AxisCoverage, AxisRandom, Stimuli};
 
-/// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
+/// Number of clocks after which the stimuli have driven every flag, and have revealed every named mutant of
+/// `mutation::INSIDE`.
 const LEAST_CLOCKS: u64 = 30_000;
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "axis",
     benches: |sizes| Ok(one(AxisBlock::new(&sizes.prefix, "alone"))),
@@ -28,7 +29,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     },
 };
 
-/// The supervisor of an axis, which has one size: what it does is in registers.
+/// The supervisor of an axis, which has one size: registers configure it.
 #[derive(Debug, Clone)]
 pub struct AxisBlock {
     prefix: String,
@@ -36,7 +37,7 @@ pub struct AxisBlock {
 }
 
 impl AxisBlock {
-    /// The supervisor `PREFIX_axis`; `instance` says which axes it serves.
+    /// Creates the supervisor `PREFIX_axis`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),

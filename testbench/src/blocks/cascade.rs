@@ -13,7 +13,7 @@ use crate::formal::{INDUCTION, Task, refused};
 use crate::lockstep::Clock;
 use crate::stimuli::{CascadeCoverage, CascadeRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "cascade",
     benches: |sizes| {
@@ -44,7 +44,7 @@ pub struct CascadeBlock {
 }
 
 impl CascadeBlock {
-    /// The cascade `PREFIX_cascade`.
+    /// Creates the cascade `PREFIX_cascade`.
     pub fn new(config: CascadeConfig, prefix: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),
@@ -95,7 +95,7 @@ impl Block for CascadeBlock {
     }
 }
 
-/// The ends of the word are the configuration's.
+/// Coverage of a cascade; the limits of its word depend on the configuration.
 struct OfSize<'a> {
     config: &'a CascadeConfig,
     coverage: CascadeCoverage,

@@ -1,11 +1,11 @@
-//! Coverage of a block without bins of its own.
+//! Counts the coverage of a block that defines no bins.
 
 use posicast_model::rtl::{Direction, Port};
 
 use super::Bins;
 use crate::lockstep::Clock;
 
-/// How often each output changed.
+/// Number of changes of each output.
 pub(super) struct Changes {
     names: Vec<String>,
     before: Vec<u64>,

@@ -1,4 +1,4 @@
-//! The bench of a component: a block behind its registers, on an Avalon-MM agent.
+//! The bench of a component: a block with registers, driven through its Avalon-MM agent.
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
@@ -12,7 +12,7 @@ use super::{Bins, Block, inside, not_in_rusthdl, proofs};
 use crate::Error;
 use crate::stimuli::{ComponentRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "component",
     benches: |sizes| {
@@ -23,7 +23,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     ..RegistryRow::EMPTY
 };
 
-/// A component under a name of its own.
+/// A component with the name of its top module.
 #[derive(Debug, Clone)]
 pub struct ComponentBlock {
     component: Component,
@@ -34,7 +34,7 @@ pub struct ComponentBlock {
 }
 
 impl ComponentBlock {
-    /// The component with the top module `top`, of this axis.
+    /// Creates the component of an axis with the top module `top`.
     pub fn new(component: Component, top: &str, axis: &str) -> Self {
         Self {
             component,
@@ -45,8 +45,8 @@ impl ComponentBlock {
         }
     }
 
-    /// The same with modules that hold something of a machine called `PREFIX_…`: the machine's and axis's names, as a package has them. By default the prefix
-    /// is the name of the top.
+    /// Sets the prefix of the modules whose contents depend on the machine: in a package, the names of machine and
+    /// axis. By default it is the name of the top.
     pub fn with_prefix(self, prefix: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),
@@ -54,7 +54,7 @@ impl ComponentBlock {
         }
     }
 
-    /// Another component under the same names.
+    /// Replaces the component and keeps the names.
     pub fn like(&self, component: Component) -> Self {
         Self {
             component,
@@ -62,18 +62,19 @@ impl ComponentBlock {
         }
     }
 
-    /// What it is.
+    /// Returns the component.
     pub fn component(&self) -> &Component {
         &self.component
     }
 
-    /// Its blocks, each as it stands in the component, on the bench of its kind: stimuli made for a block get to corners that
-    /// traffic on the bus hardly ever sets up.
+    /// Returns the component's blocks, each with the modules of the component, on the bench of its kind: stimuli made
+    /// for a block reach corner cases that traffic on the bus hardly ever does.
     ///
-    /// What only joins them (sample select, setting banks, time base) has no bench of its own: the component's covers it.
+    /// The blocks that only connect others (sample select, setting banks, time base) are left out: the component's
+    /// bench covers them.
     ///
     /// # Errors
-    /// [`Error::Unlike`] where a shaper lacks a port that the stimuli drive.
+    /// [`Error::Unlike`] if a shaper lacks a port that the stimuli drive.
     pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
         inside::of_component(&self.component, &self.prefix, &self.axis)
     }

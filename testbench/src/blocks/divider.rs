@@ -13,7 +13,7 @@ use crate::formal::{INDUCTION, Task, refused};
 use crate::lockstep::Clock;
 use crate::stimuli::{DividerCoverage, DividerRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "divider",
     benches: |sizes| Ok(one(DividerBlock::new(sizes.tick, &sizes.prefix))),
@@ -40,7 +40,7 @@ pub struct DividerBlock {
 }
 
 impl DividerBlock {
-    /// The divider `PREFIX_divider`.
+    /// Creates the divider `PREFIX_divider`.
     pub fn new(config: DividerConfig, prefix: &str) -> Self {
         Self {
             config,
@@ -49,7 +49,7 @@ impl DividerBlock {
         }
     }
 
-    /// The same, called `instance` in the report.
+    /// Renames the block to `instance` in the report.
     pub fn called(self, instance: &str) -> Self {
         Self {
             instance: instance.to_owned(),

@@ -12,7 +12,7 @@ use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{DriveCommandCoverage, DriveCommandRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "drive_command",
     benches: |sizes| Ok(one(DriveCommandBlock::new(&sizes.prefix, "alone"))),
@@ -40,7 +40,7 @@ pub struct DriveCommandBlock {
 }
 
 impl DriveCommandBlock {
-    /// The drive command `PREFIX_drive_command`; `instance` says which axes it serves.
+    /// Creates the drive command `PREFIX_drive_command`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),

@@ -12,7 +12,7 @@ use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{EncoderGeneratorCoverage, EncoderGeneratorRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "encoder_generator",
     benches: |sizes| Ok(one(EncoderGeneratorBlock::new(&sizes.prefix, "alone"))),
@@ -39,7 +39,7 @@ pub struct EncoderGeneratorBlock {
 }
 
 impl EncoderGeneratorBlock {
-    /// The internal encoder `PREFIX_encoder_generator`; `instance` says which axes it serves.
+    /// Creates the internal encoder `PREFIX_encoder_generator`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),

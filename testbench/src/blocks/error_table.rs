@@ -13,7 +13,7 @@ use crate::formal::{INDUCTION, Task, part};
 use crate::lockstep::Clock;
 use crate::stimuli::{ErrorTableCoverage, ErrorTableRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "error_table",
     benches: |sizes| {
@@ -51,7 +51,7 @@ pub struct ErrorTableBlock {
 }
 
 impl ErrorTableBlock {
-    /// The error table `PREFIX_error_table`.
+    /// Creates the error table `PREFIX_error_table`.
     pub fn new(config: ErrorTableConfig, prefix: &str, instance: &str) -> Self {
         Self {
             config,
@@ -60,10 +60,11 @@ impl ErrorTableBlock {
         }
     }
 
-    /// One of so many entries, 2^`spacing_bits` counts apart, that go up and down as steeply as is allowed, for the ladder of verification.
+    /// Creates a table for the verification ladder: `entries` entries, 2^`spacing_bits` counts apart, which rise and
+    /// fall as steeply as is allowed.
     ///
     /// # Errors
-    /// [`Error::Option`] where there is no such table.
+    /// [`Error::Option`] if such a table is not allowed.
     pub fn of_size(entries: usize, spacing_bits: u32) -> Result<ErrorTableConfig, Error> {
         let format = ErrorTableFormat {
             first_counts: -100,
@@ -139,7 +140,7 @@ fn table_proof(config: &ErrorTableConfig) -> Result<Task, Error> {
         .properties(&macros, include_str!("../../formal/error_table.sv")))
 }
 
-/// The proof of its arithmetic: its part on its own.
+/// The proof of the block's arithmetic, for the part that computes it alone.
 fn lookup_proof(config: &ErrorTableConfig) -> Result<Task, Error> {
     let macros = [
         ("FRACTION", format!("7'd{}", config.format().spacing_bits + 8)),

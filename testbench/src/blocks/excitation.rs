@@ -12,7 +12,7 @@ use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{ExcitationCoverage, ExcitationRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "excitation",
     benches: |sizes| Ok(one(ExcitationBlock::new(&sizes.prefix, "alone"))),
@@ -37,7 +37,7 @@ pub struct ExcitationBlock {
 }
 
 impl ExcitationBlock {
-    /// The excitation `PREFIX_excitation`; `instance` says which axes it serves.
+    /// Creates the excitation `PREFIX_excitation`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),

@@ -1,7 +1,7 @@
-//! The blocks inside a component, each alone, as the modules that stand in the component's own files.
+//! The blocks inside a component or a stage, each alone, with the modules from its own files.
 //!
-//! Stimuli made for a block get to corners that traffic on the bus hardly ever sets up, and a block alone shows at its ports
-//! what a stage shows only on request, or not at all.
+//! Stimuli made for a block reach corner cases that traffic on the bus hardly ever does, and the ports of a block alone
+//! show what a stage shows only on request, or not at all.
 
 use posicast_model::rtl::component::{Component, ComponentPart as Part};
 
@@ -13,14 +13,15 @@ use super::{
 };
 use crate::Error;
 
-/// Where blocks stand: the prefix of the modules that hold something of a machine, and the instance that a report calls them.
+/// Names of blocks: the prefix of the modules whose contents depend on the machine, and the instance in a report.
 struct Place<'a> {
     prefix: &'a str,
     instance: &'a str,
 }
 
-/// The blocks of the component of `axis` whose own modules begin with `prefix`. What only joins them (sample select, setting
-/// banks, time base) has no row: the component's covers it.
+/// Returns the blocks of the component of `axis`; names of modules that depend on the machine begin with `prefix`. The
+/// blocks that only connect others (sample select, setting banks, time base) are left out: the component's row covers
+/// them.
 ///
 /// # Errors
 /// As [`ShaperBlock::new`].
@@ -43,8 +44,9 @@ pub(super) fn of_component(component: &Component, prefix: &str, axis: &str) -> R
     Ok(blocks)
 }
 
-/// The blocks of the stage whose own modules begin with `prefix`, those of each axis too. What is the same for all axes is there
-/// once; what could be another one in each is there for each, also where it happens to be the same module.
+/// Returns the blocks of the stage, including those of its axes; names of modules that depend on the machine begin with
+/// `prefix`. A block that is the same for all axes is included once; one that can differ from axis to axis is included
+/// for each, even if the modules are equal.
 ///
 /// # Errors
 /// As [`ShaperBlock::new`].
@@ -107,7 +109,7 @@ fn of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>>, Err
             word_bits: *word_bits,
             channels: *channels,
         }),
-        // Its blocks are taken out of it above.
+        // The component's blocks were added above.
         Part::Joined(_) => return Ok(None),
     }))
 }

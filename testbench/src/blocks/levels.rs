@@ -1,16 +1,16 @@
-//! What a row must have shown, where it has no list of its own: both levels of every flag at its ports.
+//! The default of what a run must have exercised: both levels of every flag at the block's ports.
 //!
-//! It is measured in the run, from the model's outputs. A flag is an output of one bit. One that stayed at a level all the run
-//! has not been compared: a wire that is tied to that level would be equal. So it is not exercised, unless the block says that
-//! it cannot change as it is built ([`super::Block::fixed`]). Bits of wider outputs are named and judged by nobody: the upper
-//! ones of a counter take longer than any run.
+//! It is measured during the run, from the model's outputs. A flag is an output of one bit. A flag that stayed at one
+//! level has not been compared: a wire that is tied to that level would be equal. So it counts as not exercised, unless
+//! the block says that it cannot change as it is built ([`super::Block::fixed`]). Bits of wider outputs that never
+//! changed are only listed, because the upper bits of a counter take longer than any run.
 
 use posicast_model::rtl::{Direction, Port};
 
 use super::Exercise;
 use crate::lockstep::Clock;
 
-/// An output, and the bits of it that were seen at one, and at zero.
+/// An output, and masks of its bits that were 1, and that were 0.
 #[derive(Debug, Clone)]
 struct Seen {
     name: String,
@@ -20,7 +20,7 @@ struct Seen {
     fixed: bool,
 }
 
-/// What the outputs of a block have shown so far.
+/// Levels that the outputs of a block have had so far.
 #[derive(Debug, Clone)]
 pub(super) struct Levels {
     instance: String,
@@ -28,7 +28,8 @@ pub(super) struct Levels {
 }
 
 impl Levels {
-    /// Nothing yet, of a block with these ports in the row `instance`. `fixed`: outputs that cannot change.
+    /// Creates an empty record for the row `instance` of a block with these ports; `fixed` lists outputs that cannot
+    /// change.
     pub(super) fn new(instance: &str, ports: &[Port], fixed: &[(String, &'static str)]) -> Self {
         let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
         let seen = |port: &Port| Seen {
@@ -73,7 +74,7 @@ impl Exercise for Levels {
     }
 }
 
-/// Ones of a word as `31:20, 3`.
+/// Formats the ones of a word as ranges: `31:20, 3`.
 fn ranges(bits: u64) -> String {
     let mut text = Vec::new();
     let mut high = 64;

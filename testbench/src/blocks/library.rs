@@ -1,10 +1,12 @@
-//! Every hardware block at one size: what the rungs of the verification ladder go through that take each block once.
+//! Every hardware block at one size, for the rungs of the verification ladder that take each block once.
 //!
-//! The rows are those of `posicast verify` for a machine of two complete axes: the shapers in their top, each block alone, the
-//! blocks that join others, each component through its bus, its register bank alone, and a stage. Sizes are those of the
-//! example stage where they matter for what is reached; the whole stage has short ticks, so that a run sees many.
+//! The rows are those of `posicast verify` for a machine of two complete axes: the shapers in their top, each block
+//! alone, the blocks that connect others, each component through its bus, its register bank alone, and a stage. Sizes
+//! are those of the example stage where they matter for coverage; the whole stage has short ticks, so that a run
+//! contains many.
 //!
-//! The kinds of blocks are those of the registry; a test of the command line insists that every name of `verify` is among them.
+//! The kinds of blocks are those of the registry; a test of the command line checks that it contains every name of
+//! `verify`.
 
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::control::Supervision;
@@ -22,19 +24,19 @@ use super::{BenchSizes, Block, ComponentBlock, ErrorTableBlock, MachineShapers, 
 use crate::Error;
 use crate::formal::refused;
 
-/// Clocks per tick of the blocks that have one.
+/// Clocks per tick of the blocks that have ticks.
 const TICK_CLOCKS: u64 = 5000;
 /// Clocks of a PWM period in the components.
 const PERIOD_CLOCKS: u32 = 2500;
 /// Clocks of a PWM period in the stage.
 const STAGE_PERIOD_CLOCKS: u32 = 80;
-/// Dead time and minimum pulse that a host cannot go below, in clocks.
+/// Smallest dead time and minimum pulse that a host can set, in clocks.
 const FLOORS_CLOCKS: [u64; 2] = [25, 50];
 
-/// Every block once, in the order of `posicast verify`.
+/// Returns every block once, in the order of `posicast verify`.
 ///
 /// # Errors
-/// [`Error::Option`] where a size is refused: one of this file's, so a fault of the project.
+/// [`Error::Option`] if a size is refused, which would be a fault of this file.
 pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
     let axis = |axis: &str, delays| -> Result<AxisShaper, Error> {
         Ok(AxisShaper {
@@ -83,14 +85,14 @@ pub fn library_sizes() -> Result<BenchSizes, Error> {
     })
 }
 
-/// Three impulses, two taps each but the first: ZVD, in the manner of the example stage.
+/// Three impulses with two taps each, except the first: ZVD, as in the example stage.
 fn shaper(delays: [u32; 4]) -> Result<ShaperConfig, Error> {
     let coefficients = [25431, 12000, 18787, 4000, 5318];
     let taps: Vec<(u32, i32)> = std::iter::once(0).chain(delays).zip(coefficients).collect();
     ShaperConfig::new(32, tap_table(16, &taps)?).map_err(refused)
 }
 
-/// Two axes: one with trace memory and test signals, one whose loop is on a linear scale.
+/// Two axes: one with trace memory and test signals, one that is controlled by a linear scale.
 pub(super) fn stage() -> Result<StageConfig, Error> {
     let axis = |name: &str| -> Result<StageAxis, Error> {
         Ok(StageAxis {
@@ -130,13 +132,13 @@ pub(super) fn stage() -> Result<StageConfig, Error> {
         tick: DividerConfig::new(TICK_CLOCKS).map_err(refused)?,
         axes: vec![x, y],
     };
-    // The shortest tick that holds the schedule, in whole periods.
+    // This is the shortest tick that is long enough for the schedule, in whole periods.
     let periods = stage.timing().duty_clocks() / STAGE_PERIOD_CLOCKS + 1;
     stage.tick = DividerConfig::new(u64::from(periods * STAGE_PERIOD_CLOCKS)).map_err(refused)?;
     Ok(stage)
 }
 
-/// Short delays, so that brake, limits and watches are met in a short run.
+/// Short delays, so that brake, limits and monitors act within a short run.
 const SUPERVISION: Supervision = Supervision {
     off_causes: 0x00ff,
     brake_release_ticks: 1,

@@ -13,7 +13,7 @@ use crate::formal::{INDUCTION, Task, part};
 use crate::lockstep::Clock;
 use crate::stimuli::{LinearScaleCoverage, LinearScaleRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "linear_scale",
     benches: |sizes| Ok(one(LinearScaleBlock::new(&sizes.prefix, "alone"))),
@@ -40,7 +40,7 @@ pub struct LinearScaleBlock {
 }
 
 impl LinearScaleBlock {
-    /// The linear scale `PREFIX_linear_scale`; `instance` says which axes it serves.
+    /// Creates the linear scale `PREFIX_linear_scale`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),
@@ -93,7 +93,7 @@ impl Bins for LinearScaleCoverage {
     }
 }
 
-/// The proof of its arithmetic: its part on its own.
+/// The proof of the block's arithmetic, for the part that computes it alone.
 fn serial_ratio(shift: u32) -> Result<Task, Error> {
     let block = part(emit("")?, "serial_ratio")?;
     let size = format!("all mantissas, 2^-{shift}");

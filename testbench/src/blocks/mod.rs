@@ -1,7 +1,7 @@
-//! One bench per hardware block: `posicast verify`, the lock-step tests and the benchmarks all take a block from here.
+//! One bench per hardware block, for `posicast verify`, the lock-step tests and the benchmarks.
 //!
-//! A [`Block`] is a hardware block at one size, with all that a comparison of it needs: its Verilog, its bit-exact model, its
-//! RustHDL simulation, its stimuli, and what these are expected to reach. To try one:
+//! A [`Block`] is a hardware block at one size, with everything that a comparison needs: its Verilog, its bit-exact
+//! model, its RustHDL simulation, its stimuli, and the cases that these are expected to reach. To try one:
 //!
 //! ```no_run
 //! use posicast_testbench::blocks::{self, Block, PulseCounterBlock, Sources};
@@ -15,7 +15,7 @@
 //! # Ok::<(), posicast_testbench::Error>(())
 //! ```
 //!
-//! A new block adds a file here that implements [`Block`] and has a row in the registry: all rungs take it from there.
+//! A new block adds a file here that implements [`Block`] and has a row in the registry, from which all rungs take it.
 
 mod axis;
 mod cascade;
@@ -80,65 +80,68 @@ use crate::lockstep::report::LockstepReport;
 use crate::lockstep::{self, Clock, Device, Instance, LockstepOptions};
 use crate::stimuli::Stimuli;
 
-/// Clocks between two looks of [`judge`] at what is still missing.
+/// Number of clocks after which [`judge`] checks again what is still missing.
 const LOOK_CLOCKS: u64 = 1 << 10;
 
-/// A hardware block at one size. It may be shared between threads; what it makes belongs to one.
+/// A hardware block at one size. It can be shared between threads; models, devices and stimuli belong to one thread.
 pub trait Block: Send + Sync {
-    /// Its name, as in `model/src/rtl/` and `docs/`.
+    /// Returns its name, as in `model/src/rtl/` and `docs/`.
     fn name(&self) -> &str;
 
-    /// What tells it from others of its kind: the axes that it serves, or its size.
+    /// Returns what distinguishes it from others of its kind: the axes that it serves, or its size.
     fn instance(&self) -> &str;
 
-    /// Its Verilog modules, the top last.
+    /// Returns its Verilog modules, the top last.
     ///
     /// # Errors
-    /// [`EmitError`] where its prefix makes no Verilog name.
+    /// [`EmitError`] if names with its prefix are not valid in Verilog.
     fn modules(&self) -> Result<Vec<Module>, EmitError>;
 
-    /// Name of the top module.
+    /// Returns the name of the top module.
     fn top(&self) -> String;
 
-    /// The Verilog that this row runs, of the files `sources`: those as they are, unless the row says otherwise.
+    /// Returns the Verilog that this row simulates, made from the files `sources`; by default they are not changed.
     ///
     /// # Errors
-    /// [`Error::File`] where a file cannot be read or written.
+    /// [`Error::File`] if a file cannot be read or written.
     fn adapted(&self, sources: Sources) -> Result<Sources, Error> {
         Ok(sources)
     }
 
-    /// The bit-exact model. Memories start with contents that depend on the seed.
+    /// Creates the bit-exact model. The initial contents of memories depend on the seed.
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock>;
 
-    /// The block in RustHDL's simulator.
+    /// Creates the block in RustHDL's simulator.
     ///
     /// # Errors
-    /// [`SimulationError`] where RustHDL finds a fault in the block, or where it is not [`Self::in_rusthdl`].
+    /// [`SimulationError`] if RustHDL finds a fault in the block, or if [`Self::in_rusthdl`] is false.
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError>;
 
-    /// The sizes at which RustHDL's simulator runs the block, in words, where they are not the block's own. Outputs are equal.
+    /// Returns the sizes at which RustHDL's simulator runs the block, in words, if they differ from its own. Outputs
+    /// are equal.
     fn simulated_as(&self) -> Option<String> {
         None
     }
 
-    /// Whether the whole block is written in RustHDL. Register banks are not, and so no component is.
+    /// Returns whether the whole block is written in RustHDL. Register banks are not, and therefore no component is.
     fn in_rusthdl(&self) -> bool {
         true
     }
 
-    /// Inputs for a run of `cycles` clocks: directed cases where there are any, then random, by the seed.
+    /// Returns inputs for a run of `cycles` clocks: directed cases if there are any, then random ones from the seed.
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_>;
 
-    /// Counts what a run reached.
+    /// Creates the counters of the cases that a run reaches.
     fn coverage(&self) -> Box<dyn Bins + '_>;
 
-    /// Clocks after which its stimuli have driven all that [`Self::exercise`] wants; 0 where it wants nothing.
+    /// Returns the number of clocks after which the stimuli have exercised everything that [`Self::exercise`] requires;
+    /// 0 if that is nothing.
     fn least_clocks(&self) -> u64 {
         0
     }
 
-    /// What a run must have driven before it says anything of the block: both levels of every flag, by default.
+    /// Returns what a run must exercise before it counts as a check of the block: both levels of every flag, by
+    /// default.
     fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
         let model = self.model(0);
         Some(Box::new(levels::Levels::new(
@@ -148,64 +151,64 @@ pub trait Block: Send + Sync {
         )))
     }
 
-    /// Flags among the outputs that cannot change as the block is built, and why.
+    /// Returns the output flags that cannot change as the block is built, each with the reason.
     fn fixed(&self) -> Vec<(String, &'static str)> {
         Vec::new()
     }
 
-    /// A testbench for what no clock sees, and the name of its top module; see [`crate::asynchronous`].
+    /// Returns a testbench for asynchronous paths, and the name of its top module; see [`crate::asynchronous`].
     fn asynchronous(&self) -> Option<(String, &'static str)> {
         None
     }
 
-    /// The entries of the report: one for all outputs, unless several blocks stand side by side in one top.
+    /// Returns the entries of the report: one for all outputs, unless one top contains several blocks side by side.
     fn instances(&self, ports: &[Port]) -> Vec<Instance> {
         vec![Instance::whole(self.name(), self.instance(), ports)]
     }
 }
 
-/// Counts what happens in a run, by name.
+/// Counts the cases that a run reaches, by name.
 pub trait Bins {
     /// Adds a clock.
     fn observe(&mut self, clock: &Clock<'_>);
 
-    /// What happened how often. A bin at 0 after a long run is a hole in the stimuli.
+    /// Returns names and counts. A bin at 0 after a long run is a gap in the stimuli.
     fn counts(&self) -> Vec<(String, u64)>;
 }
 
-/// Watches whether a run drives what it must.
+/// Records whether a run exercises what it must.
 pub trait Exercise {
     /// Adds a clock.
     fn observe(&mut self, clock: &Clock<'_>);
 
-    /// What was not driven yet: the instance of its row, and what it is, in words.
+    /// Returns what was not exercised yet: the instance of its row, and a description.
     fn missing(&self) -> Vec<(String, String)>;
 
-    /// Bits of words that never changed, for the reader; no verdict hangs on them.
+    /// Returns bits of words that never changed, for the reader; they do not affect the verdict.
     fn unchanged(&self) -> Vec<(String, String)> {
         Vec::new()
     }
 }
 
-/// A lock step that is over, and what it reached.
+/// Result of a lock step, and the cases that it reached.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// Whether it matched.
+    /// The comparison.
     pub report: LockstepReport,
-    /// What it reached: names and counts.
+    /// Names and counts of the cases reached.
     pub coverage: Vec<(String, u64)>,
 }
 
 impl Run {
-    /// The bins that were hit less than `least` times.
+    /// Returns the bins with counts below `least`.
     pub fn rare(&self, least: u64) -> Vec<&str> {
         let rare = self.coverage.iter().filter(|(_, count)| *count < least);
         rare.map(|(name, _)| name.as_str()).collect()
     }
 }
 
-/// Runs a block's model and a device under the block's stimuli, compares every output in every clock, and counts what the
-/// run reached. `progress` gets the clocks done.
+/// Runs a block's model and a device with the block's stimuli, compares every output in every clock, and counts the
+/// cases that the run reaches. `progress` is called with the number of clocks so far.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -220,7 +223,7 @@ pub fn compare(
     compare_with(block, device, stimuli.as_mut(), cycles, seed, progress)
 }
 
-/// The same under other stimuli.
+/// As [`compare`], with other stimuli.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -244,7 +247,7 @@ pub fn compare_with(
     })
 }
 
-/// As [`compare`], without the counts: faster.
+/// As [`compare`], without the counts, and therefore faster.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -267,8 +270,8 @@ pub fn check(
     )
 }
 
-/// As [`check`], for a verdict: it compares the fewest of `clocks`, then goes on until everything was exercised or the most are
-/// over. What was not exercised then stands in the report, which is no match.
+/// As [`check`], for a verdict: it compares the smallest number of `clocks`, then continues until everything was
+/// exercised or the largest number is reached. The report lists what was not exercised then, and is not a match.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -321,10 +324,10 @@ fn run(
     lockstep::run_until(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
 }
 
-/// The seed of a row: each has stimuli of its own, so that one axis's may find what another's miss. It depends on what the row
-/// is, not on where it stands, so that a row alone repeats what it did among others.
+/// Returns the seed of a row. Each row has different stimuli, so that those of one axis may find what those of another
+/// miss. The seed depends on the row's name, not on its position, so that a row alone repeats its run among others.
 pub fn row_seed(block: &dyn Block, seed: u64) -> u64 {
-    // FNV-1a, 64 bits; a byte that no text holds parts name and instance.
+    // This is FNV-1a with 64 bits; a byte that occurs in no text separates name and instance.
     let bytes = block.name().bytes().chain([0xff]).chain(block.instance().bytes());
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -332,7 +335,7 @@ pub fn row_seed(block: &dyn Block, seed: u64) -> u64 {
     seed ^ hash
 }
 
-/// Why a block that is written from a register map is not in RustHDL's simulator.
+/// Error for a block that is written from a register map and therefore not in RustHDL's simulator.
 fn not_in_rusthdl(block: &'static str) -> SimulationError {
     SimulationError::Refused {
         block,
@@ -340,7 +343,7 @@ fn not_in_rusthdl(block: &'static str) -> SimulationError {
     }
 }
 
-/// Names and counts as a report keeps them.
+/// Converts names and counts to the form of a report.
 fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u64)> {
     counts.map(|(name, count)| (name.to_owned(), count)).to_vec()
 }

@@ -1,4 +1,5 @@
-//! The bench of the small blocks between others: schedule, divider share, group, time base, sample select, setting banks.
+//! The bench of the small blocks that connect others: schedule, divider share, group, time base, sample select, setting
+//! banks.
 
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
@@ -16,7 +17,7 @@ use super::{Bins, Block, proofs};
 use crate::formal::refused;
 use crate::stimuli::{PartRandom, Stimuli};
 
-/// Their rows in the registry.
+/// The rows of these blocks in the registry.
 pub(super) const TIME_BASE: RegistryRow = RegistryRow {
     name: "time_base",
     benches: |sizes| Ok(one(PartBlock::new(SmallPart::TimeBase(sizes.tick), &sizes.prefix))),
@@ -89,35 +90,35 @@ pub(super) const SETTING_BANKS: RegistryRow = RegistryRow {
     ..RegistryRow::EMPTY
 };
 
-/// Position, velocity and acceleration in the widest words.
+/// Position, velocity and acceleration, in the widest words.
 const WIDE_SAMPLES: SmallPart = SmallPart::SampleSelect {
     word_bits: *MOTION_WORD_BITS.end(),
     channels: MOTION.channels as usize,
 };
 
-/// A block that joins others.
+/// A block that connects others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SmallPart {
-    /// When the controllers start.
+    /// `schedule`: decides when the controllers start.
     Schedule(ScheduleConfig),
-    /// One divider for so many pulse counters.
+    /// `divider_share`: one divider for this many pulse counters.
     DividerShare(usize),
-    /// What so many axes have to do with each other.
+    /// `group`: couples this many axes.
     Group(usize),
-    /// Ticks of this length.
+    /// `time_base`: makes ticks of this length.
     TimeBase(DividerConfig),
-    /// Where samples come from.
+    /// `sample_select`: selects the source of samples.
     SampleSelect {
         /// Width of a word.
         word_bits: u32,
-        /// Words per sample.
+        /// Number of words per sample.
         channels: usize,
     },
-    /// A controller's settings, these in bank 0.
+    /// `setting_banks`: the settings of a controller, with these in bank 0.
     SettingBanks(Settings),
 }
 
-/// One of them, with its own name, under inputs of every pace.
+/// A block that connects others, with its name; its stimuli change slowly and fast.
 #[derive(Debug, Clone)]
 pub struct PartBlock {
     part: SmallPart,
@@ -127,7 +128,7 @@ pub struct PartBlock {
 }
 
 impl PartBlock {
-    /// The module `PREFIX_NAME`.
+    /// Creates the block with the module `PREFIX_NAME`.
     pub fn new(part: SmallPart, prefix: &str) -> Self {
         let (model, instance) = match part {
             SmallPart::Schedule(config) => {
@@ -154,7 +155,7 @@ impl PartBlock {
         }
     }
 
-    /// The same, called `instance` in the report.
+    /// Renames the block to `instance` in the report.
     pub fn called(self, instance: &str) -> Self {
         Self {
             instance: instance.to_owned(),

@@ -12,7 +12,7 @@ use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{PulseCounterCoverage, PulseCounterRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "pulse_counter",
     benches: |sizes| Ok(one(PulseCounterBlock::new(&sizes.prefix, &sizes.with_encoder))),
@@ -32,7 +32,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     },
 };
 
-/// The pulse counter, which has one size: what it does is in registers.
+/// The pulse counter, which has one size: registers configure it.
 #[derive(Debug, Clone)]
 pub struct PulseCounterBlock {
     prefix: String,
@@ -40,7 +40,7 @@ pub struct PulseCounterBlock {
 }
 
 impl PulseCounterBlock {
-    /// The pulse counter `PREFIX_pulse_counter`; `instance` says which axes it serves.
+    /// Creates the pulse counter `PREFIX_pulse_counter`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),

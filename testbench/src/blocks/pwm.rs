@@ -13,13 +13,14 @@ use crate::formal::{INDUCTION, Task, refused};
 use crate::lockstep::Clock;
 use crate::stimuli::{PwmCoverage, PwmRandom, Stimuli};
 
-/// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
+/// Number of clocks after which the stimuli have driven every flag, and have revealed every named mutant of
+/// `mutation::INSIDE`.
 const LEAST_CLOCKS: u64 = 40_000;
 
 /// The top module of the test of the fault path.
 const ASYNCHRONOUS_TOP: &str = "posicast_asynchronous";
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "pwm",
     benches: |sizes| {
@@ -46,7 +47,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     },
 };
 
-/// The PWM with its polarities and floors.
+/// The PWM with its polarities and smallest times.
 #[derive(Debug, Clone)]
 pub struct PwmBlock {
     config: PwmConfig,
@@ -55,7 +56,7 @@ pub struct PwmBlock {
 }
 
 impl PwmBlock {
-    /// The PWM `PREFIX_pwm`; `instance` says which axes it serves.
+    /// Creates the PWM `PREFIX_pwm`; `instance` names the axes that it serves.
     pub fn new(config: PwmConfig, prefix: &str, instance: &str) -> Self {
         Self {
             config,
@@ -107,7 +108,7 @@ impl Block for PwmBlock {
             self.config.dead_time_floor_clocks(),
             self.config.minimum_pulse_floor_clocks(),
         );
-        // Long enough that either side is on for a while, at the slowest floors too.
+        // This is long enough for either side to be on for a while, even with the longest smallest times.
         let period = 8 * (u32::from(dead_time) + u32::from(pulse)) + 64;
         let bench = include_str!("pwm_asynchronous.v")
             .replace("TOP", &self.top())

@@ -1,4 +1,4 @@
-//! The bench of `registers`: the bank of one map.
+//! The bench of `registers`: the register bank of one map.
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
@@ -17,7 +17,7 @@ use crate::formal::refused;
 use crate::lockstep::Clock;
 use crate::stimuli::{RegistersCoverage, RegistersRandom, Stimuli};
 
-/// Its row in the registry: the bank of each component.
+/// The block's row in the registry, with the register bank of each component.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "registers",
     benches: |sizes| {
@@ -53,7 +53,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     },
 };
 
-/// A register bank without the block behind it.
+/// A register bank without its block.
 #[derive(Debug, Clone)]
 pub struct RegistersBlock {
     map: RegisterMap,
@@ -62,7 +62,7 @@ pub struct RegistersBlock {
 }
 
 impl RegistersBlock {
-    /// The bank `PREFIX_registers` of a map.
+    /// Creates the register bank `PREFIX_registers` of a map.
     pub fn new(map: RegisterMap, prefix: &str) -> Self {
         Self {
             instance: format!("of {}", map.name()),
@@ -71,7 +71,7 @@ impl RegistersBlock {
         }
     }
 
-    /// The same, called `instance` in the report.
+    /// Renames the block to `instance` in the report.
     pub fn called(self, instance: &str) -> Self {
         Self {
             instance: instance.to_owned(),
@@ -128,7 +128,7 @@ impl Bins for RegistersCoverage {
     }
 }
 
-/// The component whose bank has fields of every kind, an interrupt, byte enables.
+/// The component whose bank has fields of every kind, an interrupt, and byte enables.
 pub(super) fn pwm_component() -> Result<Component, Error> {
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
     Component::pwm(config, BridgeMode::Unipolar, 2500).map_err(refused)

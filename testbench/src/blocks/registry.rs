@@ -1,13 +1,13 @@
-//! The registry: one row for each kind of block, from which all rungs of the verification ladder take it.
+//! The registry has one row for each kind of block, from which all rungs of the verification ladder take it.
 //!
-//! | a row's | is taken by |
+//! | field of a row | used by |
 //! |---|---|
 //! | [`benches`](RegistryRow::benches) | `posicast verify`, the second simulator, netlists, coverage |
 //! | [`small`](RegistryRow::small) | mutants |
 //! | [`proofs`](RegistryRow::proofs) | the formal proofs |
 //! | [`areas`](RegistryRow::areas) | `docs/area.md` |
 //!
-//! A new block has its row in the file of its bench, and a line in [`REGISTRY`].
+//! The row of a new block is in the file of its bench; add it to [`REGISTRY`].
 
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::divider::DividerConfig;
@@ -50,26 +50,26 @@ const REGISTRY: [RegistryRow; 23] = [
     stage::ROW,
 ];
 
-/// Blocks on their benches.
+/// Benches of blocks.
 pub(super) type Benches = Vec<Box<dyn Block>>;
 
 /// A kind of block.
 pub(super) struct RegistryRow {
-    /// Its name everywhere. Components and stages have names of their own.
+    /// The name that the block has everywhere. Each component and each stage has its own name.
     pub(super) name: &'static str,
-    /// Its benches around a machine: one, or one for each that the machine has.
+    /// Makes its benches for a machine: one, or one for each such block of the machine.
     pub(super) benches: fn(&BenchSizes) -> Result<Benches, Error>,
-    /// A small size, with what it is called: enough for every path, and mutants of wide words that only repeat each other are
-    /// few.
+    /// Makes it at a small size, with a name for the size: it has every path, and few mutants that repeat each other in
+    /// the bits of wide words.
     pub(super) small: fn() -> Result<Vec<SmallBench>, Error>,
-    /// What is proven of it.
+    /// Makes its proofs.
     pub(super) proofs: fn() -> Result<Vec<Task>, Error>,
-    /// The sizes whose area is watched.
+    /// Makes the sizes whose area is checked.
     pub(super) areas: fn() -> Result<Vec<AreaRow>, Error>,
 }
 
 impl RegistryRow {
-    /// A row of nothing, for `..RegistryRow::EMPTY`.
+    /// An empty row, for `..RegistryRow::EMPTY`.
     pub(super) const EMPTY: Self = Self {
         name: "",
         benches: |_| Ok(Vec::new()),
@@ -82,11 +82,11 @@ impl RegistryRow {
 /// The sizes of benches: those of a machine, or of the [`library`](super::library()).
 #[derive(Debug, Clone)]
 pub struct BenchSizes {
-    /// What the names of modules begin with: the machine's name, or nothing.
+    /// Prefix of the names of modules: the machine's name, or empty.
     pub prefix: String,
-    /// The axes that have an encoder, or `alone`.
+    /// Names of the axes that have an encoder, or `alone`.
     pub with_encoder: String,
-    /// The axes that have a controller, or `alone`.
+    /// Names of the axes that have a controller, or `alone`.
     pub with_controller: String,
     /// Clocks per tick.
     pub tick: DividerConfig,
@@ -100,11 +100,11 @@ pub struct BenchSizes {
     pub settings: Settings,
     /// The components.
     pub components: Vec<ComponentBlock>,
-    /// The stage, where it is compared among the rest.
+    /// The stage, if it is compared too.
     pub stage: Option<StageConfig>,
 }
 
-/// A block at a size, and what the size is called.
+/// A block at a size, and the name of the size.
 pub struct SmallBench {
     /// The block.
     pub block: Box<dyn Block>,
@@ -112,32 +112,32 @@ pub struct SmallBench {
     pub size: &'static str,
 }
 
-/// A block at a size whose area is watched.
+/// A block at a size whose area is checked.
 #[derive(Debug, Clone)]
 pub struct AreaRow {
-    /// The block's name everywhere.
+    /// The name that the block has everywhere.
     pub block: &'static str,
-    /// Its size, where it has several.
+    /// Its size, if it has several.
     pub size: &'static str,
     /// Its Verilog, the top last.
     pub modules: Vec<Module>,
-    /// What it may take, by the hardware's specification, where that says it.
+    /// Its budget, if the specification of the hardware states one.
     pub budget: Option<AreaBudget>,
-    /// Why it takes more than its budget; for one that does not, what takes most.
+    /// The reason why it exceeds its budget, or else what needs most of its area.
     pub note: &'static str,
 }
 
-/// What a block may take.
+/// Largest area of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AreaBudget {
-    /// Look-up tables.
+    /// Number of look-up tables.
     pub luts: u64,
-    /// Flip-flops.
+    /// Number of flip-flops.
     pub flip_flops: u64,
 }
 
 impl AreaRow {
-    /// The block is that of the row.
+    /// Creates the row; the registry adds the block's name.
     pub(super) fn new(size: &'static str, modules: Vec<Module>) -> Self {
         Self {
             block: "",
@@ -158,26 +158,26 @@ impl AreaRow {
     }
 }
 
-/// The single bench of a row.
+/// Returns the single bench of a row.
 pub(super) fn one(block: impl Block + 'static) -> Benches {
     vec![Box::new(block)]
 }
 
-/// The single small size of a row.
+/// Returns the single small size of a row.
 pub(super) fn small(block: impl Block + 'static, size: &'static str) -> Vec<SmallBench> {
     let block = Box::new(block);
     vec![SmallBench { block, size }]
 }
 
-/// Every kind of block around a machine of these sizes.
+/// Returns the benches of every kind of block for a machine of these sizes.
 ///
 /// # Errors
-/// [`Error::Option`] where a size is refused, [`Error::Unlike`] where a shaper lacks a port that its stimuli drive.
+/// [`Error::Option`] if a size is refused, [`Error::Unlike`] if a shaper lacks a port that its stimuli drive.
 pub fn benches(sizes: &BenchSizes) -> Result<Vec<Box<dyn Block>>, Error> {
     joined(|row| (row.benches)(sizes))
 }
 
-/// Every kind of block that gets mutants, each at a small size.
+/// Returns every kind of block that is mutated, each at a small size.
 ///
 /// # Errors
 /// As [`benches`].
@@ -185,18 +185,18 @@ pub fn small_benches() -> Result<Vec<SmallBench>, Error> {
     joined(|row| (row.small)())
 }
 
-/// All proofs.
+/// Returns all proofs.
 ///
 /// # Errors
-/// [`Error::Block`] where a block cannot be written as Verilog.
+/// [`Error::Block`] if a block cannot be written as Verilog.
 pub fn proofs() -> Result<Vec<Task>, Error> {
     joined(|row| (row.proofs)())
 }
 
-/// The proofs with this property file.
+/// Returns the proofs with this property file.
 ///
 /// # Errors
-/// As [`proofs`], and [`Error::Option`] where there are none.
+/// As [`proofs`], and [`Error::Option`] if there are none.
 pub fn proofs_named(name: &str) -> Result<Vec<Task>, Error> {
     let all = proofs()?;
     let names: Vec<&str> = all.iter().map(|task| task.name).collect();
@@ -209,7 +209,7 @@ pub fn proofs_named(name: &str) -> Result<Vec<Task>, Error> {
     Ok(all.into_iter().filter(|task| task.name == name).collect())
 }
 
-/// All sizes whose area is watched.
+/// Returns all sizes whose area is checked.
 ///
 /// # Errors
 /// As [`proofs`].
@@ -233,7 +233,7 @@ mod tests {
     use super::*;
     use crate::blocks::library_sizes;
 
-    /// Each row makes blocks of its own name, for every rung; what joins blocks has names of its own.
+    /// Each row makes blocks with its name, for every rung, except components and stages, which have their own names.
     #[test]
     fn unit_a_row_is_of_one_block() {
         let sizes = library_sizes().unwrap();

@@ -13,10 +13,11 @@ use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{SegmentsCoverage, SegmentsRandom, Stimuli};
 
-/// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
+/// Number of clocks after which the stimuli have driven every flag, and have revealed every named mutant of
+/// `mutation::INSIDE`.
 const LEAST_CLOCKS: u64 = 60_000;
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "segments",
     benches: |sizes| Ok(one(SegmentsBlock::new(&sizes.prefix, "alone"))),
@@ -33,7 +34,7 @@ pub struct SegmentsBlock {
 }
 
 impl SegmentsBlock {
-    /// The command FIFO `PREFIX_segments`; `instance` says which axes it serves.
+    /// Creates the command FIFO `PREFIX_segments`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),
@@ -93,7 +94,7 @@ impl Bins for SegmentsCoverage {
 fn proofs() -> Result<Vec<Task>, Error> {
     let block = (emit("")?, ports());
     let counts = |counts: i32| format!("24'sd{counts}");
-    // The ends of the position's word.
+    // These are the largest and the smallest position.
     let range = [
         ("REACH_COUNTS", counts(REACH_COUNTS)),
         ("STAND_COUNTS", counts(STAND_COUNTS)),

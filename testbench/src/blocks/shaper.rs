@@ -1,4 +1,4 @@
-//! The bench of `shaper`: one alone, or those of a machine side by side in its top.
+//! The bench of `shaper`: one shaper alone, or all shapers of a machine in its top module.
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
@@ -16,7 +16,7 @@ use crate::formal::refused;
 use crate::lockstep::{Clock, Instance, SideBySide};
 use crate::stimuli::{Coverage, Layout, ShaperExercise, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "shaper",
     benches: |sizes| Ok(one(ShaperBlock::new(sizes.motion.clone(), &sizes.prefix, "motion")?)),
@@ -42,7 +42,7 @@ pub(super) const MOTION: ShaperMotion = ShaperMotion {
     modulo: false,
 };
 
-/// A shaper that stands alone.
+/// A shaper alone.
 #[derive(Debug, Clone)]
 pub struct ShaperBlock {
     config: ShaperConfig,
@@ -52,10 +52,10 @@ pub struct ShaperBlock {
 }
 
 impl ShaperBlock {
-    /// The shaper `PREFIX_shaper`.
+    /// Creates the shaper `PREFIX_shaper`.
     ///
     /// # Errors
-    /// [`Error::Unlike`] where the shaper lacks a port that the stimuli drive.
+    /// [`Error::Unlike`] if the shaper lacks a port that the stimuli drive.
     pub fn new(config: ShaperConfig, prefix: &str, instance: &str) -> Result<Self, Error> {
         Ok(Self {
             layout: Layout::new(&ports(&config), config.coefficient_fraction())?,
@@ -65,12 +65,12 @@ impl ShaperBlock {
         })
     }
 
-    /// What it is built with.
+    /// Returns its configuration.
     pub fn config(&self) -> &ShaperConfig {
         &self.config
     }
 
-    /// Where its ports are.
+    /// Returns the positions of its ports.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -136,11 +136,11 @@ pub struct MachineShapers {
 }
 
 impl MachineShapers {
-    /// The top module of the machine of this name. `words` is a move, command words per axis, that the stimuli include; none,
-    /// and they do without.
+    /// Creates the top module of the machine of this name. `words` is a move that the stimuli include, as command words
+    /// per axis; it may be empty.
     ///
     /// # Errors
-    /// [`Error::Unlike`] where there is no shaper.
+    /// [`Error::Unlike`] if there is no shaper.
     pub fn new(machine: &str, shapers: Vec<AxisShaper>, words: Vec<Vec<i64>>) -> Result<Self, Error> {
         let fraction = shapers.first().map_or(1, |s| s.config.coefficient_fraction());
         Ok(Self {
@@ -151,17 +151,17 @@ impl MachineShapers {
         })
     }
 
-    /// What is built, axis by axis.
+    /// Returns the shapers, axis by axis.
     pub fn shapers(&self) -> &[AxisShaper] {
         &self.shapers
     }
 
-    /// Where the ports are.
+    /// Returns the positions of the ports.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// The move that the stimuli include.
+    /// Returns the move that the stimuli include.
     pub fn words(&self) -> &[Vec<i64>] {
         &self.words
     }
@@ -170,7 +170,7 @@ impl MachineShapers {
         self.shapers.iter().map(|shaper| &shaper.config).collect()
     }
 
-    /// Clocks of the longest pass of all axes.
+    /// Returns the number of clocks of the longest pass of all axes.
     pub fn pass_clocks(&self) -> u32 {
         let passes = self
             .shapers
@@ -236,7 +236,7 @@ impl Block for MachineShapers {
     }
 }
 
-/// What the shapers of a layout have shown, by the names of their rows.
+/// Levels that the outputs of the shapers have had, by the names of their rows.
 struct OfInstances {
     shown: ShaperExercise,
     names: Vec<String>,
@@ -261,14 +261,14 @@ impl Exercise for OfInstances {
 
 fn joined(shapers: &[AxisShaper], seed: u64) -> SideBySide {
     let block = |(index, s): (usize, &AxisShaper)| {
-        // Each memory starts with other contents: nothing may depend on them.
+        // The initial contents of each memory differ, because nothing may depend on them.
         let block: Box<dyn ClockedBlock> = Box::new(Shaper::new(&s.config, seed.wrapping_add(index as u64)));
         (s.axis.clone(), block)
     };
     SideBySide::new(shapers.iter().enumerate().map(block).collect())
 }
 
-/// The places of the ports are the layout's; what can happen depends on what is built.
+/// Coverage of a shaper: the layout gives the positions of its ports, the configuration the cases that can occur.
 struct OfLayout<'a> {
     layout: &'a Layout,
     saturates: bool,
@@ -279,7 +279,7 @@ struct OfLayout<'a> {
 impl<'a> OfLayout<'a> {
     fn new(layout: &'a Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
         let motions: Vec<_> = configs.into_iter().map(ShaperConfig::motion).collect();
-        // A position that wraps never saturates.
+        // A position that wraps around never saturates.
         let wraps = |motion: &Option<ShaperMotion>| motion.is_some_and(|motion| motion.modulo && motion.channels == 1);
         Self {
             layout,
@@ -306,7 +306,7 @@ impl Bins for OfLayout<'_> {
     }
 }
 
-/// Three impulses, two of them on two taps each; with rates for so many channels.
+/// Three impulses, two of them with two taps each; with rates for `channels` channels.
 fn small_config(channels: Option<u32>) -> Result<ShaperConfig, Error> {
     let taps = [(0, 400), (5, 280), (6, 180), (11, 110), (12, 54)];
     let config = ShaperConfig::new(24, tap_table(10, &taps)?).map_err(refused)?;
@@ -322,7 +322,7 @@ pub(super) fn area_config() -> Result<ShaperConfig, Error> {
     ShaperConfig::new(32, tap_table(16, &taps)?).map_err(refused)
 }
 
-/// Taps of delay and coefficient.
+/// Makes taps from delays and coefficients.
 pub(super) fn tap_table(fraction: u32, taps: &[(u32, i32)]) -> Result<TapTable, Error> {
     let taps = taps.iter().map(|&(delay_samples, coefficient)| Tap {
         delay_samples,

@@ -1,16 +1,16 @@
-//! The bench of a stage with the shortest ticks that its schedule holds, on the stage's own Verilog.
+//! The bench of a stage with the shortest ticks that its schedule allows, on the stage's own Verilog.
 //!
-//! A wire between two blocks of a stage shows what it carries once per tick. At 5,000 clocks per tick a million clocks are 200
-//! ticks: too few for a tour of all that a stage does. So the same files run a second time with other *constants*: clocks per
-//! tick, period of the PWM, and the waits of the supervisor. Nothing else is touched:
+//! A wire between two blocks of a stage changes once per tick. At 5,000 clocks per tick a million clocks are 200 ticks,
+//! which are too few for everything that a stage does. So the same files run a second time with other *constants*:
+//! clocks per tick, period of the PWM, and the waiting times of the supervisor. Nothing else is changed:
 //!
 //! ```text
 //! emitted with the machine's constants ─┐ line by line
-//! emitted with short ticks ─────────────┴─► lines that differ ─► exchanged in the files under test, where they are unedited
+//! emitted with short ticks ─────────────┴─► lines that differ ─► replaced in the files under test, if they are unedited
 //! ```
 //!
-//! A line that was edited stays as it is, and the lock step judges it. A module that is another one with short ticks (more
-//! than constants differ) is taken as it is emitted: it has a row of its own, and the stage's row at the machine's ticks.
+//! A line that was edited stays as it is, and the lock step checks it. A module in which short ticks change more than
+//! constants is taken as emitted; its own row and the stage's row at the machine's ticks check it as it is.
 
 use std::collections::HashMap;
 
@@ -24,17 +24,18 @@ use super::{Bins, Block, Sources, StageBlock, not_in_rusthdl};
 use crate::Error;
 use crate::stimuli::Stimuli;
 
-/// Periods of the PWM have at least so many times dead time and minimum pulse together: below twice, a leg is never on.
+/// Smallest period of the PWM, as a multiple of dead time plus minimum pulse. Below 2, a leg is never on.
 const PERIOD_TO_TIMES: u32 = 4;
-/// And at least so many clocks.
+/// Smallest period of the PWM in clocks.
 const LEAST_PERIOD_CLOCKS: u32 = 80;
-/// Longest waits of the supervisor, in ticks: of the brake, and until a monitor acts. What is off stays off.
+/// Longest waiting times of the supervisor in ticks: of the brake, and until a monitor acts. A monitor that is off
+/// stays off.
 const MOST_WAIT_TICKS: u16 = 4;
 
-/// Clocks of the first scenes, those that drive most wires.
+/// Number of clocks of the first scenes, which drive most wires.
 const LEAST_CLOCKS: u64 = 60_000;
 
-/// A stage with short ticks, under a name of its own.
+/// A stage with short ticks, with the name of its top module.
 #[derive(Debug, Clone)]
 pub struct ShortTicksBlock {
     machine: StageBlock,
@@ -43,8 +44,8 @@ pub struct ShortTicksBlock {
 }
 
 impl ShortTicksBlock {
-    /// The stage with the top module `top`; nothing where its ticks are as short as its schedule allows already, or where it
-    /// would have other modules with short ones.
+    /// Creates the stage with the top module `top`; returns `None` if its ticks are already as short as its schedule
+    /// allows, or if short ticks would change its list of modules.
     ///
     /// # Errors
     /// As `Component::stage`.
@@ -53,7 +54,7 @@ impl ShortTicksBlock {
             return Ok(None);
         };
         let (machine, block) = (StageBlock::new(config, top)?, StageBlock::new(&short, top)?);
-        // Files are exchanged one by one. What cannot be emitted is an error of the stage's own row.
+        // Files are replaced one by one. A stage that cannot be emitted is an error of the stage's own row.
         let count = |block: &StageBlock| block.modules().map(|modules| modules.len()).ok();
         if count(&machine) != count(&block) {
             return Ok(None);
@@ -65,7 +66,7 @@ impl ShortTicksBlock {
         }))
     }
 
-    /// The same with the prefix of a package: see [`StageBlock::with_prefix`].
+    /// Sets the prefix of a package: see [`StageBlock::with_prefix`].
     pub fn with_prefix(self, prefix: &str) -> Self {
         Self {
             machine: self.machine.with_prefix(prefix),
@@ -74,8 +75,8 @@ impl ShortTicksBlock {
         }
     }
 
-    /// The modules of the machine's ticks, each with the text that it has with short ones. The names of modules say their
-    /// sizes; here each keeps the one that it has in the machine.
+    /// Returns the modules by their names in the machine, each with its text for short ticks. Sizes are part of the
+    /// names of modules, and those change with the ticks.
     fn pairs(&self) -> Result<HashMap<String, (String, String)>, EmitError> {
         let (machine, short) = (self.machine.modules()?, self.short.modules()?);
         let names: HashMap<&str, &str> = short
@@ -101,7 +102,7 @@ impl ShortTicksBlock {
     }
 }
 
-/// The stage with its shortest tick, if that is shorter than half its own.
+/// Returns the stage with its shortest tick, if that is less than half of its own.
 fn shortened(config: &StageConfig) -> Option<StageConfig> {
     let mut short = config.clone();
     let times = |axis: &posicast_model::rtl::stage::StageAxis| {
@@ -109,7 +110,7 @@ fn shortened(config: &StageConfig) -> Option<StageConfig> {
     };
     let longest = config.axes.iter().map(times).max()?;
     let least = (PERIOD_TO_TIMES * longest).max(LEAST_PERIOD_CLOCKS);
-    // As many periods as fit into what the schedule takes anyway, and then no longer than that.
+    // The tick has as many periods as fit into the schedule, and is not longer than that.
     let schedule = config.timing().duty_clocks() + 1;
     let periods = (schedule / least).max(1);
     let period = schedule.div_ceil(periods).max(least);
@@ -184,8 +185,9 @@ impl Block for ShortTicksBlock {
     }
 }
 
-/// `text` with the lines of `emitted` that are others in `short` exchanged for those: the k-th line of a wording in one is
-/// the k-th in the other. All of `short` where the two have not as many lines.
+/// Returns `text`, in which lines of `emitted` that differ in `short` are replaced by those of `short`; the k-th
+/// occurrence of a line in one belongs to the k-th in the other. Returns `short` if the two differ in their number of
+/// lines.
 fn exchanged(text: &str, emitted: &str, short: &str) -> String {
     if emitted == short {
         return text.to_owned();

@@ -11,10 +11,10 @@ use super::{Bins, Block, proofs};
 use crate::lockstep::Clock;
 use crate::stimuli::{SlidingModeCoverage, SlidingModeRandom, Stimuli};
 
-/// A run of so many clocks has room for the ticks that wind the integral up, and as many besides.
+/// Number of clocks of a run with time for the ticks that wind up the integral, and as many others.
 const LONG_CLOCKS: u64 = 2 * SlidingModeRandom::WIND_UP_CLOCKS;
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "sliding_mode",
     benches: |sizes| Ok(one(SlidingModeBlock::new(&sizes.prefix, &sizes.with_controller))),
@@ -23,7 +23,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     areas: || Ok(vec![AreaRow::new("all laws", emit("")?)]),
 };
 
-/// The controller, which has one size: what it does is in its settings.
+/// The controller, which has one size: its settings configure it.
 #[derive(Debug, Clone)]
 pub struct SlidingModeBlock {
     prefix: String,
@@ -31,7 +31,7 @@ pub struct SlidingModeBlock {
 }
 
 impl SlidingModeBlock {
-    /// The controller `PREFIX_sliding_mode`; `instance` says which axes it serves.
+    /// Creates the controller `PREFIX_sliding_mode`; `instance` names the axes that it serves.
     pub fn new(prefix: &str, instance: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),

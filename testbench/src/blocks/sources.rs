@@ -1,4 +1,4 @@
-//! A block's Verilog in files, and the simulators that take it from there.
+//! A block's Verilog in files, and the simulators that read them.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::icarus::Icarus;
 use crate::lockstep::{Device, TwoValued};
 use crate::verilator::{self, Verilated, VerilogSource};
 
-/// The Verilog files of a block: written to a folder that goes with this value, or found in one that stays.
+/// The Verilog files of a block, in a temporary folder that is removed with this value, or in an existing one.
 #[derive(Debug)]
 pub struct Sources {
     files: Vec<PathBuf>,
@@ -24,15 +24,15 @@ impl Sources {
     /// Writes the block's modules, one file each, into a temporary folder.
     ///
     /// # Errors
-    /// [`Error::Block`] where the block cannot be written as Verilog, [`Error::File`] where the files cannot be.
+    /// [`Error::Block`] if the block cannot be written as Verilog, [`Error::File`] if the files cannot be written.
     pub fn write(block: &dyn Block) -> Result<Self, Error> {
         Self::of_modules(&block.modules()?)
     }
 
-    /// Writes these modules instead: a block that was changed on purpose.
+    /// Writes these modules instead, for a block with a deliberate change.
     ///
     /// # Errors
-    /// [`Error::File`] where the files cannot be written.
+    /// [`Error::File`] if the files cannot be written.
     pub fn of_modules(modules: &[Module]) -> Result<Self, Error> {
         let temporary = std::env::temp_dir();
         let folder = scratch::Folder::new(scratch::PREFIX);
@@ -48,16 +48,16 @@ impl Sources {
         })
     }
 
-    /// Verilog that is there, as it is, one module per file. It may hold modules of other blocks.
+    /// Takes existing Verilog files without a change, one module per file. They may include modules of other blocks.
     pub fn found(files: Vec<PathBuf>) -> Self {
         Self { files, _folder: None }
     }
 
-    /// Of these files those that a block's top reaches, so that a change elsewhere builds nothing anew: the top's, and every
-    /// file whose name stands as a word in one that is reached. All of them where there is no file of the top's name.
+    /// Keeps the files that a block's top needs, so that a change elsewhere does not rebuild it: the top's file, and
+    /// every file whose name occurs as a word in one that is needed. Keeps all if no file has the top's name.
     ///
     /// # Errors
-    /// [`Error::File`] where a file cannot be read.
+    /// [`Error::File`] if a file cannot be read.
     pub fn reached_by(&self, block: &dyn Block) -> Result<Self, Error> {
         let stem = |file: &Path| file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let top = block.top();
@@ -83,10 +83,10 @@ impl Sources {
         Ok(Self::found(reached))
     }
 
-    /// Copies of these files, each with the text that `text` makes of its stem and its own text.
+    /// Writes copies of these files; `text` makes the new text of each from its stem and its old text.
     ///
     /// # Errors
-    /// [`Error::File`] where a file cannot be read or written.
+    /// [`Error::File`] if a file cannot be read or written.
     pub fn rewritten(&self, text: impl Fn(&str, &str) -> String) -> Result<Self, Error> {
         let module = |file: &PathBuf| {
             let old = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
@@ -101,19 +101,19 @@ impl Sources {
         Self::of_modules(&self.files.iter().map(module).collect::<Result<Vec<_>, Error>>()?)
     }
 
-    /// The files.
+    /// Returns the files.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// Whether a file of the name that the block's top has is among them.
+    /// Returns whether a file has the name of the block's top.
     pub fn hold(&self, block: &dyn Block) -> bool {
         let file = format!("{}.v", block.top());
         let is_top = |path: &PathBuf| path.file_name().is_some_and(|name| name == Path::new(&file));
         self.files.iter().any(is_top)
     }
 
-    /// The block, compiled by Verilator.
+    /// Compiles the block with Verilator.
     ///
     /// # Errors
     /// As [`Verilated::build`].
@@ -121,7 +121,7 @@ impl Sources {
         self.with_source(block, |source| Verilated::build(source, seed))
     }
 
-    /// The same, counting what its lines and nets do.
+    /// Compiles the block with Verilator, with counters for lines and toggling nets.
     ///
     /// # Errors
     /// As [`Verilated::build`].
@@ -129,7 +129,7 @@ impl Sources {
         self.with_source(block, |source| Verilated::counting(source, seed))
     }
 
-    /// The block in Icarus.
+    /// Compiles the block with Icarus.
     ///
     /// # Errors
     /// As [`Icarus::build`].
@@ -137,7 +137,7 @@ impl Sources {
         self.with_source(block, Icarus::build)
     }
 
-    /// The block in Icarus, with a waveform.
+    /// Compiles the block with Icarus; the run writes a waveform.
     ///
     /// # Errors
     /// As [`Icarus::build`].
@@ -145,7 +145,7 @@ impl Sources {
         self.with_source(block, Icarus::recording)
     }
 
-    /// What Verilator's lint has to say: nothing, where the list is empty.
+    /// Returns the warnings of Verilator's lint; the list is empty if there are none.
     ///
     /// # Errors
     /// As [`verilator::lint`].
@@ -167,10 +167,10 @@ impl Sources {
     }
 }
 
-/// The block in RustHDL's simulator, as a device.
+/// Creates the block in RustHDL's simulator, as a device.
 ///
 /// # Errors
-/// [`Error::Block`] where RustHDL finds a fault in it.
+/// [`Error::Block`] if RustHDL finds a fault in it.
 pub fn rusthdl(block: &dyn Block) -> Result<Box<dyn Device>, Error> {
     Ok(Box::new(TwoValued(block.simulate()?)))
 }

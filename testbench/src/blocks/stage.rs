@@ -1,4 +1,4 @@
-//! The bench of a whole `stage`: a driver, random traffic, lines and encoders at its pins.
+//! The bench of a whole `stage`, whose stimuli are a driver, random traffic, and lines and encoders at its pins.
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
@@ -16,7 +16,7 @@ use crate::formal::refused;
 use crate::lockstep::Clock;
 use crate::stimuli::{StageCoverage, StageRandom, Stimuli};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "stage",
     benches: |sizes| match &sizes.stage {
@@ -33,7 +33,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
     ..RegistryRow::EMPTY
 };
 
-/// A stage under a name of its own.
+/// A stage with the name of its top module.
 #[derive(Debug, Clone)]
 pub struct StageBlock {
     component: Component,
@@ -44,7 +44,7 @@ pub struct StageBlock {
 }
 
 impl StageBlock {
-    /// The stage with the top module `top`.
+    /// Creates the stage with the top module `top`.
     ///
     /// # Errors
     /// As [`Component::stage`].
@@ -59,16 +59,17 @@ impl StageBlock {
         })
     }
 
-    /// Its blocks, each as it stands in the stage, on the bench of its kind: what all axes share once, the rest per axis.
+    /// Returns the stage's blocks, each with the modules of the stage, on the bench of its kind: those that all axes
+    /// share once, the others per axis.
     ///
     /// # Errors
-    /// [`Error::Unlike`] where a shaper lacks a port that the stimuli drive.
+    /// [`Error::Unlike`] if a shaper lacks a port that the stimuli drive.
     pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
         inside::of_stage(&self.component, &self.prefix)
     }
 
-    /// The same with modules that hold something of a machine called `PREFIX_…`: the machine's name, as a package has it. By default the prefix
-    /// is the name of the top.
+    /// Sets the prefix of the modules whose contents depend on the machine: in a package, the machine's name. By
+    /// default it is the name of the top.
     pub fn with_prefix(self, prefix: &str) -> Self {
         Self {
             prefix: prefix.to_owned(),
@@ -76,7 +77,7 @@ impl StageBlock {
         }
     }
 
-    /// What it is.
+    /// Returns the stage.
     pub fn component(&self) -> &Component {
         &self.component
     }
@@ -130,14 +131,14 @@ impl Bins for StageCoverage {
     }
 }
 
-/// The stage of the example machine, flattened: what is tied to the machine file is folded. `traces` is written before the
-/// controller of each axis.
+/// The area of the example machine's stage, flattened, so that constants of the machine file are folded. `traces` is
+/// inserted before the controller of each axis.
 fn area(size: &'static str, traces: &str) -> Result<AreaRow, Error> {
     let component = Component::stage(&example(traces)?).map_err(refused)?;
     Ok(AreaRow::new(size, emit(&component, "xy_stage", "xy")?))
 }
 
-/// The stage of the example machine, with this text before the controller of each axis.
+/// Returns the stage of the example machine, with this text before the controller of each axis.
 pub(super) fn example(before_controllers: &str) -> Result<StageConfig, Error> {
     let controller = "[axis.controller]";
     let text = include_str!("../../machines/xy-stage.toml");

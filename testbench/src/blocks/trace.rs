@@ -13,7 +13,7 @@ use crate::formal::{INDUCTION, Task, refused};
 use crate::lockstep::Clock;
 use crate::stimuli::{Stimuli, TraceCoverage, TraceRandom};
 
-/// Its row in the registry.
+/// The block's row in the registry.
 pub(super) const ROW: RegistryRow = RegistryRow {
     name: "trace",
     benches: |sizes| {
@@ -24,7 +24,7 @@ pub(super) const ROW: RegistryRow = RegistryRow {
         let config = TraceConfig::new(256).map_err(refused)?;
         Ok(small(TraceBlock::new(config, ""), "256 samples"))
     },
-    // The smallest memory and the largest.
+    // These are the smallest and the largest memory.
     proofs: || [256, 2048].map(proof).into_iter().collect(),
     areas: || {
         let modules = emit(&TraceConfig::new(1024).map_err(refused)?, "")?;
@@ -44,7 +44,7 @@ pub struct TraceBlock {
 }
 
 impl TraceBlock {
-    /// The trace memory `PREFIX_trace`.
+    /// Creates the trace memory `PREFIX_trace`.
     pub fn new(config: TraceConfig, prefix: &str) -> Self {
         Self {
             config,
@@ -55,7 +55,7 @@ impl TraceBlock {
 }
 
 impl TraceBlock {
-    /// The same, called `instance` in the report.
+    /// Renames the block to `instance` in the report.
     pub fn called(self, instance: &str) -> Self {
         Self {
             instance: instance.to_owned(),

@@ -1,30 +1,30 @@
-//! Large files as simulators write them: a clock, counters, accumulators, flags; 13 changes a clock.
+//! Writes large files like those of simulators: a clock, counters, accumulators, flags; 13 changes per clock.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Signals beside the clock.
+/// Number of signals other than the clock.
 const SIGNALS: usize = 100;
 const CHANGES_PER_CLOCK: usize = 13;
 
-/// What changes.
+/// Kind of the signals that change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
-    /// Words of 16 to 48 bits, some flags: 26 bytes a change.
+    /// Words of 16 to 48 bits, some flags: 26 bytes per change.
     Words,
-    /// Flags, some words of 8 bits: 5 bytes a change.
+    /// Flags, some words of 8 bits: 5 bytes per change.
     Flags,
 }
 
 /// How the second file differs from the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Second {
-    /// Other id codes, and another order at each time.
+    /// It has other id codes, and another order at each time.
     OtherNames,
-    /// Nothing.
+    /// It is equal.
     SameBytes,
-    /// Nothing, and both are FST.
+    /// It is equal, and both are FST.
     Fst,
 }
 
@@ -40,7 +40,7 @@ impl Shape {
     }
 }
 
-/// What happens, clock by clock.
+/// Makes the values, clock by clock.
 struct Process {
     widths: Vec<u32>,
     values: [u64; SIGNALS],
@@ -58,7 +58,7 @@ impl Process {
         }
     }
 
-    /// The signals that change in the next clock, and their values.
+    /// Returns the signals that change in the next clock, and their values.
     fn clock(&mut self) -> [(usize, u64); CHANGES_PER_CLOCK] {
         let start = self.clocks * 7;
         self.clocks += 1;
@@ -80,14 +80,14 @@ impl Process {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Recording {
     pub(crate) shape: Shape,
-    /// Id codes and the order at each time are reversed.
+    /// Whether id codes and the order at each time are reversed.
     pub(crate) reversed: bool,
-    /// One bit is another near the end.
+    /// Whether one bit near the end is inverted.
     pub(crate) flip: bool,
 }
 
 impl Recording {
-    /// Writes a VCD of at least `bytes`. Returns what it is, for people.
+    /// Writes a VCD of at least `bytes`. Returns a description of the file.
     pub(crate) fn write(self, path: &Path, bytes: u64) -> io::Result<String> {
         let mut out = Counting {
             inner: BufWriter::with_capacity(1 << 20, File::create(path)?),
@@ -146,7 +146,7 @@ impl Recording {
         Ok(summary(out.bytes, process.clocks))
     }
 
-    /// Writes the same as an FST, in blocks as `vcd2fst` has them, of so many clocks.
+    /// Writes `clocks` clocks of the same as an FST, in blocks of the size that `vcd2fst` writes.
     pub(crate) fn write_fst(self, path: &Path, clocks: usize) -> io::Result<String> {
         use fst_writer::{FstFileType, FstInfo, FstScopeType, FstSignalType, FstVarDirection, FstVarType, open_fst};
 
@@ -195,7 +195,7 @@ impl Recording {
     }
 }
 
-/// Bytes of changes that an FST holds in a block.
+/// Bytes of changes in a block of an FST.
 const FST_BLOCK: usize = 32 << 20;
 
 fn summary(bytes: u64, clocks: usize) -> String {

@@ -1,16 +1,17 @@
-//! Speed and memory of `wavecmp` on pairs of large files that it makes itself, beside a probe on the crate `wellen` that loads
-//! them, and beside reading the bytes alone, all in one run.
+//! Speed and memory of `wavecmp` on pairs of large files, compared with a probe on the crate `wellen` that loads them,
+//! and with reading the bytes alone, all in one run.
 //!
 //! ```sh
 //! cargo bench -p wavecmp --bench speed                       # pairs of 400 MB
 //! cargo bench -p wavecmp --bench speed -- --megabytes 50
-//! cargo bench -p wavecmp --bench speed -- --generate DIR     # only writes the pairs there
-//! cargo bench -p wavecmp --bench speed -- --files A B        # two files that are there
+//! cargo bench -p wavecmp --bench speed -- --generate DIR     # only writes the pairs to DIR
+//! cargo bench -p wavecmp --bench speed -- --files A B        # two existing files
 //! ```
 //!
-//! The files of a pair differ in one bit near their end. Each run is a process of its own, so that its peak memory (`VmHWM`) and
-//! its processor time are its own; all read files that are in the system's cache. On a machine that does other work, the processor's
-//! time says more than the time that passes: with two free cores, half of it is the least that can pass.
+//! The files of a pair differ in one bit near their end. Each run is a separate process, so that its peak memory
+//! (`VmHWM`) and its processor time can be measured; all read files that are in the system's cache. On a machine that
+//! does other work, the processor time says more than the elapsed time, which with two free cores is at least half of
+//! it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::panic)] // a bench stops where it fails
 
 mod generator;
@@ -135,11 +136,12 @@ fn run(how: &str, a: &Path, b: &Path) {
     println!("{seconds} {} {}", processor_seconds(), peak_megabytes());
 }
 
-/// Time of the processor that this process has taken, in all its threads, as Linux tells it in hundredths of a second.
+/// Returns the processor time in seconds that this process has used in all its threads, as Linux reports it in
+/// hundredths of a second.
 fn processor_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let behind_name = stat.rsplit(')').next().unwrap_or_default();
-    let fields: Vec<f64> = behind_name
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    let fields: Vec<f64> = after_name
         .split_whitespace()
         .map(|field| field.parse().unwrap_or(0.0))
         .collect();
@@ -149,7 +151,7 @@ fn processor_seconds() -> f64 {
         .map_or(f64::NAN, |(user, system)| (user + system) / 100.0)
 }
 
-/// Largest resident memory of this process so far, as Linux tells it.
+/// Returns the largest resident memory of this process so far, as Linux reports it.
 fn peak_megabytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));

@@ -1,4 +1,4 @@
-//! What a comparison is answered with beside its result: files, and what GitHub Actions shows.
+//! Writes what a comparison gives in addition to its result: files, and what GitHub Actions shows.
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use crate::WaveError;
 use crate::diff::{self, Comparison, DiffOptions, DiffVerdict};
 use crate::files::write_text;
 
-/// Where GitHub Actions takes a step's summary from.
+/// Environment variable with the path from which GitHub Actions takes a step's summary.
 const SUMMARY: &str = "GITHUB_STEP_SUMMARY";
 
 pub(super) fn write(

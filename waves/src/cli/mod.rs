@@ -1,6 +1,6 @@
-//! The command line: what `wavecmp` and `posicast diff` have in common. Feature `cli`.
+//! The command line that `wavecmp` and `posicast diff` share. It needs the feature `cli`.
 //!
-//! Who runs it is the [`CommandHost`]: where files may be written, and how a message looks.
+//! The [`CommandHost`] decides where files may be written, and how a message looks.
 
 mod answers;
 mod options;
@@ -24,7 +24,7 @@ Examples:
   wavecmp pins.vcd pins2.vcd --raw --time-tolerance 2ns --glitch 1ns
   simulator | wavecmp golden.vcd - --github --junit diff.xml
 
-A SIGNAL is a full name, its end behind a dot, or a pattern: * within a scope, ** across scopes.
+A SIGNAL is a full name, its end after a dot, or a pattern: * within a scope, ** across scopes.
 
 Exit status: 0 equal, 1 different, 2 nothing in common or unreadable.
 
@@ -77,40 +77,40 @@ struct Output {
     json: bool,
 }
 
-/// Who runs the command.
+/// The program that runs the command.
 pub trait CommandHost: OutputSink {
-    /// A file that the command reads, in words for a message: it is never replaced.
+    /// Registers a file that the command reads, described by `words` in messages: it is never replaced.
     fn reads(&mut self, what: &'static str, path: &Path);
 
-    /// Asks for a file that the command writes, before any work.
+    /// Requests a file that the command will write, before any work.
     ///
     /// # Errors
-    /// Why it may not be written.
+    /// A text that says why the file may not be written.
     fn claim(&mut self, option: &str, path: &Path) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
 
-    /// Whether one of the files is the standard output.
+    /// Returns whether one of the files is the standard output.
     fn writes_standard_output(&self) -> bool;
 
     /// Prints on standard output.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the operating system.
     fn print(&self, text: &str) -> io::Result<()>;
 
-    /// Says something beside the result, on standard error.
+    /// Writes a message on standard error.
     fn say(&self, line: &str);
 }
 
-/// Why the command could not be done: exit status 2.
+/// Why the command could not run: exit status 2.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// A file or an option.
+    /// A file or an option is wrong.
     #[error(transparent)]
     Wave(#[from] WaveError),
-    /// A file that may not be written.
+    /// A file may not be written.
     #[error(transparent)]
     Refused(Box<dyn std::error::Error + Send + Sync>),
-    /// Options that exclude each other.
+    /// Two options exclude each other.
     #[error("{0}")]
     Usage(String),
     /// Standard output cannot be written.
@@ -125,7 +125,7 @@ impl Args {
     }
 }
 
-/// Compares, prints and writes what was asked for. The result says what the exit status is.
+/// Compares, prints and writes the requested files. The result determines the exit status.
 ///
 /// # Errors
 /// [`CliError`]: exit status 2.
@@ -163,7 +163,7 @@ pub fn run(args: &Args, host: &mut dyn CommandHost) -> Result<Comparison, CliErr
     Ok(comparison)
 }
 
-/// Asks for each file that is written.
+/// Requests each file that will be written.
 fn claim(args: &Args, host: &mut dyn CommandHost) -> Result<(), CliError> {
     let Output {
         junit,
@@ -204,7 +204,7 @@ fn claim(args: &Args, host: &mut dyn CommandHost) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The closing line of a command that found a difference, or nothing to compare; `None` where all is equal.
+/// Returns the last line of a command that found a difference or nothing to compare; `None` if everything is equal.
 pub fn verdict(comparison: &Comparison) -> Option<String> {
     match comparison.result {
         DiffVerdict::Equal => None,
@@ -213,6 +213,6 @@ pub fn verdict(comparison: &Comparison) -> Option<String> {
     }
 }
 
-/// Remedy where nothing could be compared.
+/// Remedy if nothing could be compared.
 pub const INCOMPARABLE: &str = "name the clock with --clock, say with --map A=B which scope or signal is which, and see \
                                 with --explain what was found";

@@ -1,4 +1,4 @@
-//! When, which and how to compare, as options of the command line.
+//! Options of the command line that say when, which and how to compare.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,8 @@ pub(super) struct When {
     /// Which edge samples
     #[arg(long, value_enum, default_value_t = EdgeName::Rising)]
     edge: EdgeName,
-    /// Compare from where this 1-bit signal is released on each side; `none`: from the start [default: the only reset found]
+    /// Compare from where this 1-bit signal is released on each side; `none`: from the start [default: the only reset
+    /// found]
     #[arg(long, value_name = "NAME[=0|1]")]
     reset: Option<String>,
     /// Compare at every change, whether there is a clock or not
@@ -27,16 +28,16 @@ pub(super) struct When {
     /// Last time that is compared
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     end: Option<u128>,
-    /// With --raw: a difference that lasts no longer is none
+    /// With --raw: ignore differences that last no longer than this
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     time_tolerance: Option<u128>,
-    /// With --raw: leave out values that last shorter, in both files
+    /// With --raw: remove values that last shorter than this, in both files
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     glitch: Option<u128>,
     /// Stop at the first difference, and show the state of all signals there
     #[arg(long)]
     first: bool,
-    /// The signal comes so many samples later in the second file, or with --raw so much time; negative: earlier (repeatable)
+    /// Samples by which a signal is later in the second file, or with --raw the time; negative: earlier (repeatable)
     #[arg(long, value_name = "SIGNAL=SAMPLES|TIME", allow_hyphen_values = true)]
     latency: Vec<String>,
 }
@@ -47,7 +48,7 @@ pub(super) struct Which {
     /// Scope or signal A of the first file is B of the second; with * in both, a pattern (repeatable)
     #[arg(long, value_name = "A=B")]
     map: Vec<String>,
-    /// Read such maps from a file, one a line
+    /// Read such maps from a file, one per line
     #[arg(long, value_name = "FILE")]
     map_file: Option<PathBuf>,
     /// Compare only what is below this scope of the first file
@@ -56,7 +57,7 @@ pub(super) struct Which {
     /// Compare only what is below this scope of the second file
     #[arg(long, value_name = "SCOPE")]
     root_b: Option<String>,
-    /// Compare nothing else than these signals or scopes (repeatable)
+    /// Compare only these signals or scopes (repeatable)
     #[arg(long, value_name = "SIGNAL")]
     only: Vec<String>,
     /// Leave out these signals or scopes (repeatable)
@@ -70,7 +71,8 @@ pub(super) struct Which {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "How to compare")]
 pub(super) struct How {
-    /// Largest difference that counts as equal, of one signal or of all: 2 LSB, 0.01abs in its unit, or 0.1% (repeatable)
+    /// Largest difference that counts as equal, of one signal or of all: 2 LSB, 0.01abs in its unit, or 0.1%
+    /// (repeatable)
     #[arg(long, value_name = "[SIGNAL=]AMOUNT")]
     tolerance: Vec<String>,
     /// Read the bits of a signal as a number: signed, unsigned, q15.16, uq16 (repeatable)
@@ -92,7 +94,7 @@ enum EdgeName {
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum UnknownName {
-    /// Themselves only
+    /// Only themselves
     Strict,
     /// Anything
     Wildcard,
@@ -106,7 +108,7 @@ impl Which {
     }
 }
 
-/// The options as data.
+/// Returns the options as data.
 pub(super) fn of(args: &Args) -> Result<DiffOptions, WaveError> {
     let Args { when, which, how, .. } = args;
     let mut options = DiffOptions {

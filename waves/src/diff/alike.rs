@@ -1,18 +1,18 @@
-//! Stretches in which both files are the same byte for byte.
+//! Follows stretches in which both files are equal byte for byte.
 //!
-//! Between two samples, the values of both files are known to the engine, and so are the places from which they go on. If the
-//! bytes from there on are the same, only one file has to be parsed ([`Twins`]): the samples are counted, and the latest values
-//! taken over. A pair that differs goes on to differ until one of its signals changes, which ends the stretch.
+//! Between two samples, the engine knows the values of both files, and the places at which they continue. If the bytes
+//! from there on are equal, only one file has to be parsed ([`Twins`]): the samples are counted, and the latest values
+//! are taken over. A pair that differs continues to differ until one of its signals changes, which ends the stretch.
 
 use super::cells::GENERAL;
 use super::engine::{Engine, Progress};
 use crate::WaveError;
 use crate::reader::{NOWHERE, Stretch, Twins};
 
-/// Bytes of the first file that are read one by one before another try.
+/// Number of bytes of the first file that are read separately before the next attempt.
 const BETWEEN_TRIES: u64 = if cfg!(test) { 0 } else { 1 << 23 };
 
-/// Whether and when to look for such a stretch.
+/// Decides whether and when to look for such a stretch.
 #[derive(Default)]
 pub(super) struct Alike {
     twins: Option<Twins>,
@@ -29,8 +29,8 @@ impl Engine<'_> {
         }
     }
 
-    /// Follows the files as long as they are the same, if they are here. `at_edge`: the step at hand of both is an edge that was
-    /// just sampled. Returns the times of the last sample and of the one before, if there were any.
+    /// Follows the files as long as they are equal from here on. `at_edge` tells that the current step of both is an
+    /// edge that was just sampled. Returns the times of the last sample and of the previous one, if there were any.
     pub(super) fn follow_alike(
         &mut self,
         at_edge: bool,

@@ -1,5 +1,5 @@
-//! Following stretches that are the same gives what reading every change gives. The pieces are small here (`cfg(test)`), so that
-//! short files have many.
+//! Compares the result of following equal stretches with that of reading every change. Pieces are small in tests
+//! (`cfg(test)`), so that short files have many.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -18,7 +18,7 @@ struct Edit {
     row: prop::sample::Index,
     signal: usize,
     value: u128,
-    /// The value is put right again in the next row, or stays.
+    /// Whether the value is corrected in the next row.
     transient: bool,
 }
 
@@ -58,7 +58,7 @@ fn text(rows: &[Row], odd: &[(prop::sample::Index, usize)]) -> String {
     text
 }
 
-/// All that a result says, or its error.
+/// Returns everything that a result says, or its error.
 fn said(path: [&Path; 2], options: &DiffOptions, plainly: bool) -> String {
     let compared = compare_by(path[0], path[1], options, &mut |_| {}, plainly);
     let whole = |comparison: Comparison| format!("{comparison}\n{comparison:?}");
@@ -141,7 +141,7 @@ fn unit_stretches_that_are_the_same_are_found() {
             raw,
             ..DiffOptions::default()
         };
-        // Only pieces report between the rare marks of samples.
+        // Between the rare reports of samples, only pieces report.
         let mut reports = 0;
         let result = compare_by(&a, &b, &options, &mut |_| reports += 1, false).unwrap();
         assert!(reports > 100, "{reports}");

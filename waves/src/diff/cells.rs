@@ -1,17 +1,17 @@
-//! The pairs that are compared word by word, which are nearly all: both values side by side.
+//! Keeps both values side by side of the pairs that are compared word by word, which are nearly all.
 //!
-//! A change costs one comparison, and a sample at which all are equal again costs nothing. What changed since the last sample is
-//! noted with the value that it had then.
+//! A change costs one comparison, and a sample at which all are equal again costs nothing. Changes since the last
+//! sample are noted with the value at that sample.
 
 use super::touched::Lists;
 
-/// Slot that no cell stands for: what it feeds is found the general way.
+/// Marks a slot without a cell; its pairs are compared the general way.
 pub(super) const GENERAL: u32 = u32::MAX;
 
-/// Bits and which of them are unknown.
+/// Bits, and a mask of the unknown ones.
 pub(super) type Words = [u64; 2];
 
-/// A value of each file.
+/// One value per file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
     pub(super) of: [Words; 2],
@@ -28,9 +28,9 @@ pub(super) struct Noted {
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     pub(super) cells: Vec<Cell>,
-    /// Of each slot of either file; empty where there are no cells.
+    /// Cell of each slot, for both files; empty if there are no cells.
     pub(super) of_slot: [Vec<u32>; 2],
-    /// The pairs that each stands for.
+    /// The pairs of each cell.
     pub(super) pairs: Lists,
     /// Cells whose values differ now.
     unequal: usize,
@@ -40,7 +40,7 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Cells of these pairs of slots, each with the pairs (by number) that it stands for, all without a value.
+    /// Creates cells for these pairs of slots, each with the numbers of its pairs, all without a value.
     pub(super) fn new(slots: [usize; 2], cells: &[([u32; 2], u32, Vec<u32>)]) -> Self {
         let mut of_slot = slots.map(|count| vec![GENERAL; count]);
         let mut entries = Vec::new();
@@ -67,13 +67,13 @@ impl Cells {
         }
     }
 
-    /// The cell of a slot of a file, or [`GENERAL`].
+    /// Returns the cell of a slot of a file, or [`GENERAL`].
     #[inline]
     pub(super) fn of(&self, side: usize, slot: u32) -> u32 {
         self.of_slot[side].get(slot as usize).copied().unwrap_or(GENERAL)
     }
 
-    /// A file's value changes.
+    /// Changes the value of one file.
     #[inline]
     pub(super) fn set(&mut self, side: usize, at: u32, words: Words) {
         let cell = &mut self.cells[at as usize];
@@ -82,7 +82,7 @@ impl Cells {
         cell.of[side] = words;
         let is_equal = cell.of[0] == cell.of[1];
         if was_equal == is_equal {
-            // Both values of an equal cell cannot change at once; of a different one, the difference goes on.
+            // Both values of an equal cell cannot change at once; of a different one, the difference continues.
             return;
         }
         if is_equal {
@@ -99,14 +99,14 @@ impl Cells {
         }
     }
 
-    /// Both files' values change to the same.
+    /// Changes the values of both files to the same.
     pub(super) fn set_both(&mut self, at: u32, words: Words) {
         let cell = &mut self.cells[at as usize];
         self.unequal -= usize::from(cell.of[0] != cell.of[1]);
         cell.of = [words; 2];
     }
 
-    /// Whether nothing has to be looked at: all are equal, and were.
+    /// Returns whether all cells are equal and were equal at the last sample.
     #[inline]
     pub(super) fn all_equal(&self) -> bool {
         self.unequal == 0 && self.different == 0
@@ -117,13 +117,13 @@ impl Cells {
         cell.of[0] == cell.of[1]
     }
 
-    /// The first file's value at the last sample.
+    /// Returns the first file's value at the last sample.
     pub(super) fn before(&self, at: u32) -> Words {
         let noted = self.noted.iter().find(|noted| noted.cell == at);
         noted.map_or(self.cells[at as usize].of[0], |noted| noted.before)
     }
 
-    /// Keeps the first note of each cell: there may be no sample for a long time.
+    /// Keeps only the first note of each cell, since there may be no sample for a long time.
     fn press(&mut self) {
         let mut seen = vec![false; self.cells.len()];
         self.noted

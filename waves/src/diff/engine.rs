@@ -1,7 +1,7 @@
 //! Compares what changed, at the samples or at every change.
 //!
-//! The cost of a sample is the number of signals that changed since the last one: a pair that did not change stays as
-//! equal or as different as it was, and its count is added up when that ends.
+//! The cost of a sample is the number of signals that changed since the previous one: a pair that did not change
+//! stays as equal or as different as it was, and its count is added when that state ends.
 
 use super::alike::Alike;
 use super::cells::{Cells, GENERAL};
@@ -19,14 +19,14 @@ use crate::reader::{Kind, Value, Values, value};
 
 const PROGRESS_SAMPLES: u64 = 1 << 14;
 
-/// How far a comparison has come.
+/// Progress of a comparison.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Progress {
-    /// Samples compared.
+    /// Number of samples compared.
     pub samples: u64,
-    /// Bytes read, of both files.
+    /// Number of bytes read from both files.
     pub bytes: u64,
-    /// Length of both files; `None` where one is a pipe.
+    /// Length of both files in bytes; `None` if one is a pipe.
     pub total_bytes: Option<u64>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct First {
     pub(super) b_number: Option<f64>,
 }
 
-/// What a comparison of words needs, close together.
+/// Data that the comparison of words needs, close together in memory.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hot {
     pub(super) a: Option<u32>,
@@ -53,7 +53,7 @@ pub(super) struct Hot {
 pub(super) struct State {
     pub(super) name: String,
     pub(super) rule: Rule,
-    /// Sample and time since which it differs, with what it then was.
+    /// Sample and time since which the pair differs, and its values then.
     pub(super) since: Option<(u64, First)>,
     pub(super) count: u64,
     pub(super) first: Option<First>,
@@ -68,19 +68,19 @@ pub(super) struct Engine<'a> {
     pub(super) options: &'a DiffOptions,
     pub(super) samples: u64,
     pub(super) total_bytes: Option<u64>,
-    /// A value per pair, as it was when the pair was equal last; until the first difference.
+    /// Values per pair when the pair was last equal; kept until the first difference.
     pub(super) before: Option<(Values, u128)>,
     pub(super) context: Option<Gathering>,
     /// Edges of the clock that the other file does not have.
     pub(super) surplus: Option<Difference>,
-    /// First time at which paired edges lie at different times.
+    /// First time at which paired edges are at different times.
     pub(super) shifted_fs: Option<u128>,
-    /// Samples that one file does not record.
+    /// Number of samples that one file does not record.
     pub(super) unrecorded: u64,
-    /// Differences that did not last as long as the time tolerance.
+    /// Number of differences that did not last longer than the time tolerance.
     pub(super) forgiven: u64,
     pub(super) alike: Alike,
-    /// All signals at the first difference, where they are asked for.
+    /// All signals at the first difference, if they were requested.
     pub(super) state: Vec<SignalState>,
 }
 
@@ -138,7 +138,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// These pairs are not compared before a delayed value has arrived.
+    /// Excludes these pairs from the comparison until a delayed value has arrived.
     pub(super) fn wait_for(&mut self, pairs: impl Iterator<Item = u32>) {
         for pair in pairs {
             self.touched.waiting[pair as usize] = true;
@@ -203,7 +203,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// After a stretch that one file does not record, edges meet by their time, as far apart as they were before.
+    /// After a period that one file does not record, pairs edges by their time, with the same offset as before.
     fn meet_again(
         &mut self,
         mut a: ClockEdge,
@@ -211,7 +211,7 @@ impl<'a> Engine<'a> {
         last: Option<[u128; 2]>,
         period_fs: u128,
     ) -> Result<(Option<ClockEdge>, Option<ClockEdge>), WaveError> {
-        // In a common time: each file's own, plus where the other stood at the last common edge.
+        // The times are compared in a common scale: each file's own time relative to its last common edge.
         let [last_a, last_b] = last.unwrap_or_default();
         loop {
             let (time_a, time_b) = (a.time_fs + last_b, b.time_fs + last_a);
@@ -226,13 +226,14 @@ impl<'a> Engine<'a> {
             };
             match behind.0.next_edge(&mut self.touched)? {
                 Some(edge) => *behind.1 = edge,
-                // The rest of the other file has no partner that could have been recorded.
+                // The remaining edges of the other file have no partner that could have been recorded.
                 None => return Ok((None, None)),
             }
         }
     }
 
-    /// One file has more edges than the other: a difference of the clock, from the first edge that is alone.
+    /// Counts a difference of the clock if one file has more edges than the other, from the first edge without a
+    /// partner.
     fn count_surplus(&mut self, clock: Slots, edge: ClockEdge, of_a: bool) -> Result<(), WaveError> {
         let within = |edge: ClockEdge| self.options.end_fs.is_none_or(|end| edge.time_fs <= end);
         if !within(edge) {
@@ -285,7 +286,7 @@ impl<'a> Engine<'a> {
             }
             let next = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min();
             let Some(time) = next else { return Ok(()) };
-            // With a glitch filter, a value comes into effect when it has lasted; it began before.
+            // With a glitch filter, a value takes effect when it has lasted long enough; it began before.
             let began = time.saturating_sub(glitch_fs);
             if self.options.end_fs.is_some_and(|end| began > end) {
                 return Ok(());
@@ -306,7 +307,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Whether the first difference is found and no other is asked for.
+    /// Returns whether the first difference was found and no other was requested.
     pub(super) fn is_stopped(&self) -> bool {
         self.options.first && self.context.is_some()
     }
@@ -360,7 +361,7 @@ impl<'a> Engine<'a> {
         for at in ended {
             self.end(at as usize, time_fs);
         }
-        // In the order of the file, so that the report does not depend on the order of the changes.
+        // They are in the order of the file, so that the report does not depend on the order of the changes.
         diverged.sort_unstable();
         for at in &diverged {
             self.begin(*at as usize, time_fs);
@@ -389,7 +390,7 @@ impl<'a> Engine<'a> {
         )
     }
 
-    /// The value of a pair at the sample before, when both were equal.
+    /// Returns the value of a pair at the previous sample, when both were equal.
     fn shown_before(&self, at: usize, before: &Values) -> (Shown, Shown) {
         let pair = self.hot[at];
         let words;
@@ -452,7 +453,8 @@ impl<'a> Engine<'a> {
         state.first.get_or_insert(first);
     }
 
-    /// Notes what stands around the first divergence of all: the last equal sample, itself, and some behind it.
+    /// Collects the values around the first divergence of all: the last equal sample, the diverging one, and some
+    /// after it.
     fn gather(&mut self, diverged: &[u32], time_fs: u128) {
         if self.context.is_none() && !diverged.is_empty() {
             let of = |at: usize| (self.states[at].name.clone(), self.states[at].rule.reading());
@@ -479,7 +481,8 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// The cells, and the cell of each pair: of those that are compared word by word, where each slot has one partner.
+/// Returns the cells and the cell of each pair. A pair has a cell if it is compared word by word and each of its slots
+/// has one partner.
 fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u32>) {
     let mut cell_of = vec![GENERAL; pairs.len()];
     if !(a.is_plain() && b.is_plain()) {

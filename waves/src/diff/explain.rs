@@ -1,4 +1,4 @@
-//! Which signals were matched and how, and why the others were not.
+//! Explains which signals were matched and how, and why the others were not.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -14,9 +14,9 @@ use crate::wording::counted;
 pub struct MatchedSignal {
     /// Full name in the first file.
     pub a: String,
-    /// Full name in the second.
+    /// Full name in the second file.
     pub b: String,
-    /// How they met.
+    /// How they were matched.
     pub by: MatchedBy,
 }
 
@@ -34,11 +34,11 @@ pub struct UnmatchedSignal {
 /// The result of the matching: `--explain`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct MatchReport {
-    /// In the order of the first file.
+    /// Matched signals, in the order of the first file.
     pub matched: Vec<MatchedSignal>,
-    /// Those of the first file, then those of the second.
+    /// Signals without a partner: those of the first file, then those of the second.
     pub unmatched: Vec<UnmatchedSignal>,
-    /// Names that `--root-a`, `--root-b`, `--only` and `--ignore` leave out, in both files.
+    /// Number of names in both files that `--root-a`, `--root-b`, `--only` and `--ignore` leave out.
     pub left_out: usize,
 }
 
@@ -69,7 +69,7 @@ impl MatchReport {
     }
 }
 
-/// Full names of the other file, and whether they have a partner, by what all writings of their last part have in common.
+/// Full names of the other file, and whether they have a partner, by the common form of their last part.
 type Others = HashMap<String, Vec<(String, bool)>>;
 
 fn by_last_part(pairs: &[&Pair], name: impl Fn(&Pair) -> String) -> Others {

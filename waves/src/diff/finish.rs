@@ -69,7 +69,7 @@ impl Engine<'_> {
         if !self.state.is_empty() {
             comparison
                 .notes
-                .push("stopped at the first difference: what lies behind it was not compared".to_owned());
+                .push("stopped at the first difference: what comes after it was not compared".to_owned());
             comparison.state = self.state;
         }
         comparison.context = self.context.map(|gathering| gathering.context);

@@ -1,10 +1,10 @@
-//! What stands around the first divergence, gathered as the comparison goes on.
+//! Collects the values around the first divergence while the comparison continues.
 
 use super::result::{Context, ContextRow, seconds};
 use super::rule::View;
 use super::value::Shown;
 
-/// Signals of which the first divergence shows the samples around it, and samples behind it.
+/// Number of signals shown around the first divergence, and of samples after it.
 const CONTEXT_SIGNALS: usize = 8;
 const CONTEXT_SAMPLES: usize = 3;
 
@@ -16,7 +16,7 @@ pub(super) struct Gathering {
 }
 
 impl Gathering {
-    /// Around the divergence of these pairs at a sample; `of` gives the name and the view of a pair.
+    /// Starts the collection for these pairs at a sample; `of` returns the name and the view of a pair.
     pub(super) fn new(sample: u64, diverged: &[u32], of: impl Fn(usize) -> (String, View)) -> Self {
         let pairs: Vec<usize> = diverged.iter().map(|at| *at as usize).take(CONTEXT_SIGNALS).collect();
         let rows = pairs.iter().map(|at| {
@@ -41,12 +41,12 @@ impl Gathering {
         }
     }
 
-    /// Whether samples behind the divergence are still to come.
+    /// Whether samples after the divergence are still missing.
     pub(super) fn is_missing_some(&self) -> bool {
         self.missing > 0
     }
 
-    /// A sample; `shown` gives the values of a pair.
+    /// Adds a sample; `shown` returns the values of a pair.
     pub(super) fn add(&mut self, time_fs: u128, shown: impl Fn(usize) -> (Shown, Shown)) {
         self.context.times.push(seconds(time_fs));
         for (row, at) in self.context.rows.iter_mut().zip(&self.pairs) {
@@ -56,7 +56,7 @@ impl Gathering {
         }
     }
 
-    /// The diverging sample, or one behind it, as long as some are missing.
+    /// Adds the diverging sample, or one after it, as long as some are missing.
     pub(super) fn add_behind(&mut self, time_fs: u128, shown: impl Fn(usize) -> (Shown, Shown)) {
         if self.missing > 0 {
             self.missing -= 1;

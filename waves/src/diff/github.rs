@@ -1,4 +1,4 @@
-//! The result as GitHub Actions shows it: annotations of the run, and the summary of its step.
+//! Writes the result for GitHub Actions: annotations of the run, and the summary of its step.
 
 use std::fmt::Write as _;
 
@@ -6,13 +6,13 @@ use super::human::value_and_digits;
 use super::{Comparison, DiffVerdict, Difference};
 use crate::wording::counted;
 
-/// Annotations that GitHub shows of one step.
+/// Largest number of annotations that GitHub shows for one step.
 const ANNOTATIONS: usize = 10;
-/// Rows of the summary's table.
+/// Largest number of rows of the summary's table.
 const ROWS: usize = 100;
 
-/// Workflow commands, a line each: an error per signal that differs, the earliest first, and a warning for a file that was cut
-/// off. `files` names the two files.
+/// Returns workflow commands, one per line: an error per signal that differs, the earliest first, and a warning for a
+/// file that was cut off. `files` names the two files.
 pub fn annotations(comparison: &Comparison, files: &str) -> String {
     let mut text = String::new();
     let mut command = |kind: &str, title: &str, message: &str| {
@@ -52,7 +52,7 @@ pub fn annotations(comparison: &Comparison, files: &str) -> String {
     text
 }
 
-/// The step's summary in Markdown.
+/// Returns the step's summary in Markdown.
 pub fn step_summary(comparison: &Comparison, files: &str) -> String {
     let verdict = match comparison.result {
         DiffVerdict::Equal => "✅ equal",
@@ -105,17 +105,17 @@ fn one_line(comparison: &Comparison, d: &Difference) -> String {
     )
 }
 
-/// Text of a workflow command.
+/// Escapes the text of a workflow command.
 fn data(text: &str) -> String {
     text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
 }
 
-/// Value of a property of one.
+/// Escapes the value of a property of a workflow command.
 fn property(text: &str) -> String {
     data(text).replace(':', "%3A").replace(',', "%2C")
 }
 
-/// Text in a cell of a table, within backticks or not.
+/// Escapes a text for a cell of a table, within backticks or not.
 fn cell(text: &str) -> String {
     let text: String = text
         .chars()

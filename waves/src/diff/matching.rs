@@ -1,4 +1,4 @@
-//! Which signal of the first file belongs to which of the second.
+//! Matches the signals of the first file with those of the second.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,27 +6,27 @@ use super::names::{Entry, Names, canonical};
 use super::pattern::Pattern;
 use crate::WaveError;
 
-/// Scopes that may be stripped from each file when full names do not meet.
+/// Largest number of scopes that may be stripped from each file if full names do not match.
 const STRIPPED_SCOPES: usize = 4;
 
-/// How two signals were found to belong together.
+/// Why two signals were paired.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MatchedBy {
-    /// A `--map` says so.
+    /// A `--map` names both.
     Map,
     /// They have the same full name.
     Name,
     /// They have the same name below the scopes that all signals of their file share.
     Scopes,
-    /// They have the same name in another writing.
+    /// Their names differ only in how they are written.
     Writing,
 }
 
-/// Two signals that belong together, or one without a partner. Never both `None`.
+/// Two signals that belong together, or one without a partner. They are never both `None`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Pair {
-    /// Full name in the first file, else in the second.
+    /// Full name in the first file, or else in the second.
     pub(super) name: String,
     /// Full name in the second file.
     pub(super) b_name: Option<String>,
@@ -36,7 +36,7 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    /// The names in both files, if both have it.
+    /// Returns the names in both files, if both have the signal.
     pub(super) fn names(&self) -> Option<(String, String)> {
         self.a.and(self.b)?;
         Some((self.name.clone(), self.b_name.clone()?))
@@ -47,7 +47,7 @@ pub(super) struct Matched {
     pub(super) pairs: Vec<Pair>,
     /// Names of events, which have no value to compare.
     pub(super) not_compared: Vec<String>,
-    /// Vectors of each file that were put together from parts and have a partner: places in [`Names::groups`].
+    /// Vectors of each file that were assembled from parts and have a partner: indices in [`Names::groups`].
     pub(super) groups: [Vec<usize>; 2],
 }
 
@@ -76,15 +76,15 @@ impl Matched {
         Ok(partners.finish(a, b))
     }
 
-    /// Moves the events, which have no comparable value, out of the pairs.
+    /// Removes the events, which have no comparable value, from the pairs.
     pub(super) fn leave_out(&mut self, other_a: impl Fn(u32) -> bool, other_b: impl Fn(u32) -> bool) {
         let other = |pair: &Pair| pair.a.is_some_and(&other_a) || pair.b.is_some_and(&other_b);
         self.not_compared = self.pairs.iter().filter(|p| other(p)).map(|p| p.name.clone()).collect();
         self.pairs.retain(|p| !other(p));
     }
 
-    /// The pairs that `name` means: those that the pattern fits, else that of this full name, else all whose name ends
-    /// with it.
+    /// Returns the pairs that `name` means: those that the pattern fits, else the one with this full name, else all
+    /// whose name ends with it.
     pub(super) fn meant(&self, name: &str) -> Result<Vec<usize>, WaveError> {
         let pattern = Pattern::new(name)?;
         let full = !pattern.has_wildcards() && self.pairs.iter().any(|pair| pair.name == name);
@@ -111,8 +111,8 @@ impl Partners<'_> {
         let (tops_a, tops_b) = (tops(self.a), tops(self.b));
         let by_name: HashMap<&str, usize> = (0..).zip(self.b).map(|(at, entry)| (entry.path.as_str(), at)).collect();
         let mut maps: Vec<&(String, String)> = maps.iter().collect();
-        // The longer name is the more special one: a signal's own map comes before that of its scope, and both before
-        // those with wildcards.
+        // The longer name is more specific: a signal's own map comes before that of its scope, and both before those
+        // with wildcards.
         maps.sort_by_key(|(from, _)| (from.contains(['*', '?']), std::cmp::Reverse(from.len())));
         for (from, to) in maps {
             let (from_pattern, to_pattern) = (Pattern::new(from)?, Pattern::new(to)?);
@@ -176,8 +176,8 @@ impl Partners<'_> {
         }
     }
 
-    /// Names that are written in another way on each side, where each has one candidate: with as many of the scopes
-    /// stripped that all share as give the most pairs.
+    /// Matches names that are written differently on each side if each has one candidate. Of the scopes that all
+    /// signals share, as many are stripped as give the most pairs.
     fn meet_by_canonical_name(&mut self) {
         let (free_a, free_b) = self.free();
         if free_a.is_empty() || free_b.is_empty() {
@@ -216,7 +216,7 @@ impl Partners<'_> {
     }
 
     fn finish(mut self, a: &Names, b: &Names) -> Matched {
-        // Two vectors that are both in parts compare part by part.
+        // Two vectors that are in parts in both files are compared part by part.
         for (at, partner) in self.of_a.iter_mut().enumerate() {
             if let Some(other) = *partner
                 && self.a[at].group.is_some()
@@ -272,13 +272,13 @@ impl Partners<'_> {
     }
 }
 
-/// What follows `scope` in `path`: empty if it is the signal itself.
+/// Returns what follows `scope` in `path`: empty if it is the signal itself.
 fn below<'a>(path: &'a str, scope: &str) -> Option<&'a str> {
     let rest = path.strip_prefix(scope)?;
     (rest.is_empty() || rest.starts_with('.')).then_some(rest)
 }
 
-/// The scopes that all signals share: "", "top.", "top.inner.", …
+/// Returns the scopes that all signals share: "", "top.", "top.inner.", …
 fn tops(entries: &[Entry]) -> Vec<String> {
     let mut tops = vec![String::new()];
     let Some(first) = entries.first() else { return tops };
@@ -292,7 +292,7 @@ fn tops(entries: &[Entry]) -> Vec<String> {
     tops
 }
 
-/// The fewest scopes to strip that give the most pairs; none if full names meet at all.
+/// Returns the fewest scopes to strip that give the most pairs; none if any full names match.
 fn best_tops(a: &[Entry], b: &[Entry], free_a: &[usize], free_b: &[usize]) -> (String, String) {
     let (tops_a, tops_b) = (tops(a), tops(b));
     let mut choices: Vec<(usize, usize)> = (0..tops_a.len())

@@ -1,7 +1,7 @@
 //! Compares two waveforms.
 //!
 //! ```text
-//!  A ─► reader thread ─┐  signals paired by name        ┌─ with a clock: k-th edge of A behind reset with the k-th of B,
+//!  A ─► reader thread ─┐  signals paired by name        ┌─ with a clock: k-th edge of A after reset with the k-th of B,
 //!   (VCD, FST)         ├─► (roots, filters, maps) ─► when ┤  values just before the edge
 //!  B ─► reader thread ─┘                                └─ without: at every time at which something changes
 //!                                                           └─► equal? by each signal's rule ─► result, text, JUnit, views
@@ -12,8 +12,8 @@
 //!   are stripped, as few as give the most pairs. Signals still without a partner are matched by their canonical name
 //!   (`a$b`, `a__b`, `A.B`), if there is one candidate. A vector that one file writes bit by bit is matched with the
 //!   whole vector of the other.
-//! - **Partners.** A signal without a partner is listed, never silently left out; with [`DiffOptions::require_all`] it is a
-//!   difference.
+//! - **Partners.** A signal without a partner is listed, never silently left out; with [`DiffOptions::require_all`] it
+//!   is a difference.
 //! - **Clock.** With a clock, values are those just before its edge, so that registers of both sides compare equal
 //!   whether their file shows changes at the edge or after it. Edges are paired by their number after the release of
 //!   the reset, not by their time; different times give a note, different numbers a difference of the clock.
@@ -89,8 +89,8 @@ use crate::wording::{counted, time};
 /// Compares file `a` with file `b`. `progress` is called now and then.
 ///
 /// # Errors
-/// [`WaveError::File`] and [`WaveError::Damaged`] for files that cannot be read to their end; [`WaveError::Option`] for options that do
-/// not fit these files.
+/// [`WaveError::File`] and [`WaveError::Damaged`] for files that cannot be read to their end; [`WaveError::Option`] for
+/// options that do not fit these files.
 pub fn compare(
     a: &Path,
     b: &Path,
@@ -100,7 +100,7 @@ pub fn compare(
     compare_by(a, b, options, progress, false)
 }
 
-/// As [`compare`]; `plainly` reads every change of both files.
+/// As [`compare`]; with `plainly`, every change of both files is read.
 fn compare_by(
     a: &Path,
     b: &Path,

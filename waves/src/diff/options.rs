@@ -83,11 +83,11 @@ pub struct DiffOptions {
     pub unknown: UnknownPolicy,
     /// Whether a signal that only one file has is a difference, instead of being listed.
     pub require_all: bool,
-    /// Stop at the first difference, and note the state of all signals there.
+    /// Whether to stop at the first difference, and note the state of all signals there.
     pub first: bool,
-    /// A VCD that ends in the middle of a line is compared up to its last whole time, instead of being refused.
+    /// Whether a VCD that ends in the middle of a line is compared up to its last complete time, instead of refused.
     pub allow_truncated: bool,
-    /// Note which signals were matched and how, and why the others were not.
+    /// Whether to note which signals were matched and how, and why the others were not.
     pub explain: bool,
 }
 
@@ -95,7 +95,7 @@ impl DiffOptions {
     /// Adds a `--map`.
     ///
     /// # Errors
-    /// [`WaveError::Option`] if it is not `A=B`, or if `A` and `B` have not the same number of wildcards.
+    /// [`WaveError::Option`] if it is not `A=B`, or if the numbers of wildcards of `A` and `B` differ.
     pub fn add_map(&mut self, text: &str) -> Result<(), WaveError> {
         let pair = text
             .split_once('=')
@@ -203,7 +203,8 @@ impl DiffOptions {
         }
     }
 
-    /// Sets the reset from its text: `none`, `NAME`, `NAME=0` or `NAME=1`, where the number is its value while it is on.
+    /// Sets the reset from its text: `none`, `NAME`, `NAME=0` or `NAME=1`, where the number is its value while it is
+    /// on.
     ///
     /// # Errors
     /// [`WaveError::Option`] for anything else.

@@ -1,4 +1,4 @@
-//! One HTML page that needs nothing else: what was compared, which signals differ, and the waves around each difference.
+//! Writes one self-contained HTML page: what was compared, which signals differ, and the waves around each difference.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::{Comparison, DiffVerdict, Difference};
 use crate::WaveError;
 use crate::wording::counted;
 
-/// Differences whose waves are drawn, the earliest first.
+/// Largest number of differences whose waves are drawn, the earliest first.
 const DRAWN: usize = 40;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1220px;padding:0 1em;color:#1b1b1b;\
@@ -19,10 +19,10 @@ const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max
     .7em;border-bottom:1px solid #ddd;vertical-align:top}td{font-family:ui-monospace,monospace;font-size:.9em;\
     overflow-wrap:anywhere}figure{margin:0;overflow-x:auto}figure svg{max-width:none}ul{padding-left:1.2em}";
 
-/// The page. The files must still be what was compared: they are read again.
+/// Returns the page. The files are read again, so they must not have changed since the comparison.
 ///
 /// # Errors
-/// As for reading them.
+/// The errors of reading them.
 pub fn html(a: &Path, b: &Path, comparison: &Comparison) -> Result<String, WaveError> {
     let drawn: Vec<(&Difference, Vec<(String, String)>)> = comparison
         .differences

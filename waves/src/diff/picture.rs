@@ -1,4 +1,4 @@
-//! Shows a difference: both sides in one VCD with their difference, files that open it there, and a drawing.
+//! Shows a difference: both sides in one VCD with their difference, files that open it at that time, and a drawing.
 //!
 //! ```text
 //!  first.vcd    a.…  b.…  difference.…   the signals that differ, the clock, over all of the time
@@ -17,21 +17,22 @@ use crate::files::{OutputSink, write_text};
 use crate::merge::{DifferenceSignal, Focus, MergePart, merge_around};
 use crate::reader::{Kind, Value, Values, Wave};
 
-/// Signals that are shown, the earliest first.
+/// Largest number of signals that are shown, the earliest first.
 const SIGNALS: usize = 8;
-/// Samples before the divergence and behind it.
+/// Number of samples shown before the divergence and after it.
 const BEFORE: u128 = 5;
 const BEHIND: u128 = 6;
-/// Values of a signal that a drawing holds; more could not be told apart.
+/// Largest number of values of a signal in a drawing; more could not be distinguished.
 const VALUES: usize = 200;
 
-/// The files that [`show`] writes.
+/// Returns the files that [`show`] writes.
 pub fn shown_files(base: &Path) -> [PathBuf; 4] {
     ["vcd", "gtkw", "sucl", "svg"].map(|extension| base.with_extension(extension))
 }
 
 /// Writes `base.vcd`, `.gtkw`, `.sucl` and `.svg` for the earliest differences of `comparison`. `base` may have an
-/// extension, which is replaced. Nothing is written if nothing differs in both files; says whether it was.
+/// extension, which is replaced. Nothing is written if no signal of both files differs; returns whether files were
+/// written.
 ///
 /// # Errors
 /// [`WaveError::File`] and [`WaveError::Damaged`] as for reading the files; they must still be what was compared.
@@ -79,7 +80,7 @@ pub fn show(
             b,
         });
     let lanes: Vec<Lane> = lanes.collect();
-    // One signal under several names is drawn once.
+    // A signal with several names is drawn once.
     let mut drawn: Vec<Lane> = Vec::new();
     for lane in &lanes {
         let leaf = |lane: &Lane| lane.signal.rsplit('.').next().map(str::to_owned);
@@ -96,7 +97,7 @@ pub fn show(
     let leaves: Vec<String> = shown.iter().map(|(name, _)| name.replace('.', "_")).collect();
     let numeric = |signal: &str| {
         let d = comparison.differences.iter().find(|d| d.signal == signal);
-        // A vector that is put together from parts has no trace of its own to subtract.
+        // A vector that is assembled from parts has no trace of its own for the difference.
         let traced = |lane: &Lane| lane.signal == signal && !lane.a.values.is_empty() && !lane.b.values.is_empty();
         d.is_some_and(|d| matches!(d.a, Shown::Bits(_) | Shown::Real(_))) && lanes.iter().any(traced)
     };
@@ -123,7 +124,7 @@ pub fn show(
     Ok(true)
 }
 
-/// Some samples around the first divergence, as far apart as they are there.
+/// Returns some samples around the first divergence, with their spacing there.
 pub(super) fn window(comparison: &Comparison, first: f64) -> Window {
     let fs = |seconds: f64| comparison.femtoseconds(seconds);
     let at = fs(first);
@@ -137,14 +138,14 @@ pub(super) fn window(comparison: &Comparison, first: f64) -> Window {
     }
 }
 
-/// Signals, full names, and the stretch of time of which they are wanted.
+/// Full names of signals, and the window of time in which they are drawn.
 pub(super) struct Request {
     pub(super) signals: Vec<String>,
     pub(super) window: Window,
 }
 
-/// Of each request, what its signals do in its window, read in one pass; an empty trace for a signal that the file does not
-/// have by that name.
+/// Returns for each request the traces of its signals in its window, read in one pass; an empty trace for a signal that
+/// the file does not have under that name.
 pub(super) fn traces(path: &Path, requests: &[Request]) -> Result<Vec<Vec<Trace>>, WaveError> {
     let (declarations, mut feed) = Wave::open(path)?.play(None, true)?;
     let by_name: HashMap<&str, u32> = declarations.names.iter().map(|n| (n.path.as_str(), n.slot)).collect();
@@ -172,7 +173,7 @@ pub(super) fn traces(path: &Path, requests: &[Request]) -> Result<Vec<Vec<Trace>
     Ok(drawings.into_iter().map(|drawing| drawing.traces).collect())
 }
 
-/// The traces of a request, as far as they are known.
+/// The traces of a request, as far as they have been read.
 struct Drawing {
     window: Window,
     slots: Vec<Option<u32>>,
@@ -210,7 +211,7 @@ impl Drawing {
     }
 }
 
-/// The files that [`merged`] writes.
+/// Returns the files that [`merged`] writes.
 pub fn merged_files(path: &Path) -> [PathBuf; 3] {
     [
         path.to_owned(),
@@ -219,8 +220,8 @@ pub fn merged_files(path: &Path) -> [PathBuf; 3] {
     ]
 }
 
-/// Writes one VCD with all signals of both files, in the scopes `a` and `b`, and the differences of those that differ and are
-/// numbers, in `difference`; and beside it the files that open it in GTKWave and Surfer.
+/// Writes one VCD with all signals of both files, in the scopes `a` and `b`, and in the scope `difference` the
+/// differences of the numbers that differ; and beside it the files that open it in GTKWave and Surfer.
 ///
 /// # Errors
 /// As [`show`].
@@ -253,13 +254,13 @@ pub fn merged(
     merge_around(sink, path, &parts, &differences, None)
 }
 
-/// The names that a file has; not those of vectors that were put together from parts.
+/// Returns the names in the file, without those of vectors that were assembled from parts.
 fn traced(path: &Path) -> Result<HashSet<String>, WaveError> {
     let names = Wave::open(path)?.declarations.names;
     Ok(names.into_iter().map(|named| named.path).collect())
 }
 
-/// A value in a drawing: a bit, hexadecimal digits, a number, text.
+/// Formats a value for a drawing: a bit, hexadecimal digits, a number, text.
 fn text(value: Value<'_>) -> String {
     match value {
         Value::Bits { width: 1, .. } => value.digits(1, false),

@@ -1,4 +1,4 @@
-//! The result of a comparison, as data (the contract's `diff --json`).
+//! The result of a comparison as data (the document of `diff --json`).
 
 use serde::Serialize;
 
@@ -7,13 +7,13 @@ use super::matching::{Matched, Pair};
 use super::rule::{Rule, View};
 use super::value::{Shown, UnknownPolicy};
 
-/// Equal, different, or nothing to compare.
+/// Verdict of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DiffVerdict {
-    /// Every compared value was equal, and every signal had a partner or was left out on demand.
+    /// Every compared value was equal, and every signal had a partner or was left out on request.
     Equal,
-    /// At least one was not.
+    /// At least one value was not equal.
     Different,
     /// Nothing was compared: exit status 2.
     Incomparable,
@@ -22,22 +22,22 @@ pub enum DiffVerdict {
 /// A signal that differs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Difference {
-    /// Full name in the first file; in the second, if the first does not have it.
+    /// Full name in the first file, or in the second if the first does not have it.
     pub signal: String,
     /// Time of the first difference in seconds, by the first file's clock.
     pub time: f64,
-    /// The first file's value then.
+    /// The first file's value at that time.
     pub a: Shown,
-    /// The second file's.
+    /// The second file's value at that time.
     pub b: Shown,
-    /// Samples at which they differ.
+    /// Number of samples at which they differ.
     pub count: u64,
-    /// Whether they still differ at the end; else it was transient.
+    /// Whether they still differ at the end; otherwise the difference is transient.
     pub persistent: bool,
-    /// `a` as a number, where it is looked at as one.
+    /// `a` as a number, if it is read as one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub a_number: Option<f64>,
-    /// `b` as a number.
+    /// `b` as a number, if it is read as one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_number: Option<f64>,
     /// How the text reads the bits.
@@ -45,14 +45,14 @@ pub struct Difference {
     pub view: View,
 }
 
-/// What stands around the first divergence of all.
+/// Values around the first divergence of all.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Context {
-    /// Number of the diverging sample, from 0.
+    /// Number of the diverging sample, counted from 0.
     pub sample: u64,
-    /// Signals that diverge there too and are not shown.
+    /// Number of signals that diverge there too and are not shown.
     pub others: usize,
-    /// Times of the samples in seconds: the last equal one if there is any, the diverging one, some more.
+    /// Times of the samples in seconds: the last equal one if there is any, the diverging one, and some more.
     pub times: Vec<f64>,
     /// The signals that diverge first.
     pub rows: Vec<ContextRow>,
@@ -72,18 +72,18 @@ pub struct ContextRow {
     pub view: View,
 }
 
-/// A signal's values at the first difference, and at the sample before.
+/// Values of a signal at the first difference and at the previous sample.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SignalState {
     /// Full name.
     pub signal: String,
-    /// The value of both files at the sample before; missing at the first one.
+    /// Value in both files at the previous sample; missing at the first sample.
     pub before: Shown,
-    /// The first file's value at the difference.
+    /// Value in the first file at the difference.
     pub a: Shown,
-    /// The second file's.
+    /// Value in the second file at the difference.
     pub b: Shown,
-    /// How the text reads the bits.
+    /// Notation of the bits in the text.
     #[serde(skip)]
     pub view: View,
 }
@@ -93,52 +93,52 @@ pub struct SignalState {
 pub struct CutFile {
     /// `first` or `second`.
     pub file: &'static str,
-    /// Where it was cut off.
+    /// The place at which it was cut off.
     pub place: String,
 }
 
-/// How a signal is compared, where that is not bit by bit in equal widths.
+/// How a signal is compared, if it is not compared bit by bit in equal widths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Leniency {
     /// Full name.
     pub signal: String,
     /// How its bits are read: `signed`, `uq16` …
     pub view: String,
-    /// What it may be off: `0.5 LSB` …; `None`: nothing.
+    /// Its tolerance, such as `0.5 LSB`; `None` for no tolerance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<String>,
-    /// How much later it is in the second file.
+    /// Time by which it is later in the second file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency: Option<String>,
-    /// Its width in the first file and in the second, where they differ: the narrower is extended.
+    /// Its widths in the first and the second file, if they differ: the narrower value is extended.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub widths: Option<[u32; 2]>,
-    /// Whether it is extended with its sign; else with zeros.
+    /// Whether it is extended with its sign, otherwise with zeros.
     #[serde(skip)]
     pub extends_sign: bool,
 }
 
-/// The whole result. Serialises to `diff --json`.
+/// The whole result. It serialises to the document of `diff --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// The verdict.
     pub result: DiffVerdict,
-    /// Signals compared: those that both files have.
+    /// Number of compared signals, which both files have.
     pub signals: u64,
-    /// Clock edges, or times of change, at which they were compared.
+    /// Number of clock edges, or times of change, at which they were compared.
     pub samples: u64,
     /// One entry per signal that differs, by time.
     pub differences: Vec<Difference>,
-    /// Time of the first difference of all.
+    /// Time of the first difference of all in seconds.
     pub first_time: Option<f64>,
-    /// Whether nothing was forgiven: no tolerance, no latency, equal widths, unknown bits equal to themselves only.
+    /// Whether nothing was tolerated: no tolerance, no latency, equal widths, unknown bits equal only to themselves.
     pub exact: bool,
     /// Signals that are not compared bit by bit at the same time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lenient: Vec<Leniency>,
-    /// What unknown bits equal.
+    /// What unknown bits are equal to.
     pub unknown: UnknownPolicy,
-    /// What stands around the first divergence.
+    /// Values around the first divergence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub context: Option<Context>,
     /// Signals that only the first file has.
@@ -147,7 +147,7 @@ pub struct Comparison {
     /// Signals that only the second file has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub only_in_b: Vec<String>,
-    /// Events: not compared.
+    /// Names of events, which are not compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
     /// With [`DiffOptions::first`](super::DiffOptions::first): all signals at the first difference.
@@ -162,16 +162,16 @@ pub struct Comparison {
     /// Names of all signals that were compared, in the first file and in the second.
     #[serde(skip)]
     pub compared: Vec<(String, String)>,
-    /// Whether widths are all that was forgiven.
+    /// Whether different widths are all that was tolerated.
     #[serde(skip)]
     pub only_widths: bool,
-    /// Femtoseconds per unit of time of the files, the finer of the two.
+    /// Number of femtoseconds per unit of time of the files, the finer of the two.
     #[serde(skip)]
     pub unit_fs: u64,
     /// The clock's names, if there is one.
     #[serde(skip)]
     pub clock: Option<(String, String)>,
-    /// What a reader should know: the clock, edges at different times, why nothing could be compared.
+    /// Notes for the reader: the clock, edges at different times, why nothing could be compared.
     pub notes: Vec<String>,
 }
 
@@ -247,7 +247,7 @@ impl Comparison {
     }
 }
 
-/// Seconds, correctly rounded.
+/// Converts femtoseconds to seconds, correctly rounded.
 pub(super) fn seconds(time_fs: u128) -> f64 {
     time_fs as f64 / 1e15
 }

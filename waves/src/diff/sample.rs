@@ -1,5 +1,5 @@
-//! A recording as values of signals of one's own, the ports of a block, clock by clock: the names, the clock and the reset of a
-//! comparison, with the ports in the place of the second file.
+//! Reads a recording as values of a block's ports, clock by clock. It uses the names, the clock and the reset of a
+//! comparison, with the ports instead of the second file.
 //!
 //! ```
 //! use wavecmp::diff::DiffOptions;
@@ -35,12 +35,12 @@ use crate::wording::{counted, time};
 
 const CLOCK: &str = "clk";
 
-/// A signal that is looked for in a file.
+/// A signal to find in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WantedSignal {
     /// Its name below the scope.
     pub name: String,
-    /// Its bits.
+    /// Its width in bits.
     pub width: u32,
 }
 
@@ -53,11 +53,11 @@ pub struct Recorded {
     pub unknown: u64,
 }
 
-/// Which signals of a file are which ports of a block.
+/// The signals of a file that belong to the ports of a block.
 #[derive(Debug, Clone)]
 pub struct PortMap {
     path: PathBuf,
-    /// Of each port, in the order of the ports: its slot in the file.
+    /// Slot in the file of each port, in the order of the ports.
     slots: Vec<Option<u32>>,
     groups: Vec<Group>,
     clock: Slots,
@@ -65,16 +65,18 @@ pub struct PortMap {
     options: DiffOptions,
     /// How clock and reset were found.
     pub notes: Vec<String>,
-    /// Signals of the file that are no port.
+    /// Number of signals of the file that are not ports.
     pub strangers: usize,
 }
 
 impl PortMap {
-    /// Matches the signals of the file with `clk` and `ports` below the scope `top`; nothing, where no port is in the file.
+    /// Matches the signals of the file with `clk` and `ports` below the scope `top`; `None` if no port is in the
+    /// file.
     ///
     /// # Errors
-    /// [`WaveError::Option`] where there is no clock, an option fits nothing, or a signal has not the width of its port;
-    /// [`WaveError::File`] and [`WaveError::Damaged`] for a file that cannot be read, or is none that can be read again, such as a pipe.
+    /// [`WaveError::Option`] where there is no clock, an option fits nothing, or a signal does not have the width of
+    /// its port; [`WaveError::File`] and [`WaveError::Damaged`] for a file that cannot be read, or cannot be read
+    /// again, such as a pipe.
     pub fn find(
         path: &Path,
         top: &str,
@@ -83,7 +85,7 @@ impl PortMap {
     ) -> Result<Option<Self>, WaveError> {
         let mut wave = Wave::open(path)?;
         if wave.bytes().is_none() {
-            let pipe = std::io::Error::other("it is no regular file, and must be read several times; save it first");
+            let pipe = std::io::Error::other("it is not a regular file, and must be read several times; save it first");
             return Err(WaveError::file(path, "replay")(pipe));
         }
         let mut declared = declarations(top, ports).map_err(WaveError::Option)?;
@@ -116,7 +118,7 @@ impl PortMap {
             let port = &ports[place as usize - 1];
             if kinds[slot as usize] != Kind::Bits(port.width) {
                 return Err(WaveError::Option(format!(
-                    "{}: `{}` is no vector of {}, as the port `{}` is; map another signal to it with --map A=B",
+                    "{}: `{}` is not a vector of {}, as the port `{}` is; map another signal to it with --map A=B",
                     path.display(),
                     pair.name,
                     counted(port.width.into(), "bit"),
@@ -138,12 +140,12 @@ impl PortMap {
         }))
     }
 
-    /// Whether a port, by its place, is in the file.
+    /// Returns whether a port, given by its index, is in the file.
     pub fn has(&self, port: usize) -> bool {
         self.slots.get(port).is_some_and(Option::is_some)
     }
 
-    /// How many ports are.
+    /// Returns the number of ports in the file.
     pub fn found(&self) -> usize {
         self.slots.iter().flatten().count()
     }
@@ -154,7 +156,7 @@ impl PortMap {
     /// As [`PortMap::find`].
     pub fn play(&self) -> Result<Player, WaveError> {
         let mut wave = Wave::open(&self.path)?;
-        // The same again, so that wholes of vectors get the same slots.
+        // The filter is built in the same way, so that assembled vectors get the same slots.
         let filter = Filter::new(&self.options.only, &self.options.ignore)?;
         Names::new(
             &mut wave.declarations,
@@ -184,7 +186,7 @@ impl PortMap {
     }
 }
 
-/// `clk` and the ports as a file would declare them: slot 0 is the clock, slot n + 1 is port n.
+/// Returns `clk` and the ports as a file would declare them: slot 0 is the clock, slot n + 1 is port n.
 fn declarations(top: &str, ports: &[WantedSignal]) -> Result<Declarations, String> {
     let mut declarations = Declarations::default();
     declarations.enter(top)?;
@@ -203,17 +205,19 @@ pub struct Player {
     path: PathBuf,
     touched: Touched,
     slots: Vec<Option<u32>>,
-    /// Until it has been released.
+    /// The reset's slot and active value, until it has been released.
     reset: Option<(u32, bool)>,
     is_first: bool,
 }
 
 impl Player {
-    /// Goes to the next edge of the clock, and fills in what stands just before it: a value per port, none where the port is not
-    /// in the file. Whether there was an edge; the second value says whether the reset, if there is one, has been released.
+    /// Advances to the next edge of the clock, and fills in the values just before it: one per port, `None` if the
+    /// port is not in the file. Returns `None` if there was no edge; the value tells whether the reset, if there is
+    /// one, has been released.
     ///
     /// # Errors
-    /// [`WaveError::Damaged`] where the file is damaged, or does not record some clocks; [`WaveError::File`] where it cannot be read.
+    /// [`WaveError::Damaged`] where the file is damaged, or does not record some clocks; [`WaveError::File`] where it
+    /// cannot be read.
     pub fn next(&mut self, row: &mut [Option<Recorded>]) -> Result<Option<bool>, WaveError> {
         let Some(edge) = self.side.next_edge(&mut self.touched)? else {
             return Ok(None);

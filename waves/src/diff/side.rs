@@ -293,12 +293,12 @@ impl Side {
         });
     }
 
-    /// Whether every value goes straight to the pairs: nothing is put together, delayed or held back.
+    /// Returns whether every value goes directly to the pairs: none is assembled, delayed or held back.
     pub(super) fn is_plain(&self) -> bool {
         self.parts.is_empty() && self.lines.is_empty() && self.settle.is_none()
     }
 
-    /// The step at hand.
+    /// Returns the current step.
     pub(super) fn step(&self) -> Option<Step> {
         self.step
     }
@@ -307,17 +307,18 @@ impl Side {
         &self.feed
     }
 
-    /// Femtoseconds per unit of time.
+    /// Returns the number of femtoseconds per unit of time.
     pub(super) fn unit_fs(&self) -> u128 {
         self.unit_fs
     }
 
-    /// The pairs that look at a slot.
+    /// Returns the pairs that read a slot.
     pub(super) fn pairs_of(&self, slot: u32) -> &[u32] {
         self.pairs.get(slot)
     }
 
-    /// Goes on with another feed of the same file, whose first step is an edge that was returned, or is none.
+    /// Continues with another feed of the same file. Its first step is either an edge that was already returned or not
+    /// an edge.
     pub(super) fn go_on(&mut self, feed: Feed, at_edge: bool) -> Result<(), WaveError> {
         self.feed = feed;
         self.step = self.feed.next_step()?;
@@ -325,7 +326,7 @@ impl Side {
         Ok(())
     }
 
-    /// The slot of the reset, until it has been released.
+    /// Returns the slot of the reset, until it has been released.
     pub(super) fn reset_slot(&self) -> Option<u32> {
         self.reset.map(|(slot, _)| slot)
     }

@@ -1,20 +1,20 @@
-//! Which pairs a change touches, and which were touched.
+//! The pairs that a change affects, and those that were affected.
 
 use super::cells::Cells;
 
-/// Pairs to look at again.
+/// Pairs to compare again.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
     flags: Vec<bool>,
     list: Vec<u32>,
-    /// Pairs that wait for a delayed value to arrive.
+    /// Whether each pair waits for a delayed value to arrive.
     pub(super) waiting: Vec<bool>,
     /// The pairs that are simpler than that.
     pub(super) cells: Cells,
 }
 
 impl Touched {
-    /// So many pairs, all to be looked at.
+    /// Creates a set of this many pairs, all to be compared.
     pub(super) fn new(pairs: usize) -> Self {
         Self {
             flags: vec![true; pairs],
@@ -31,13 +31,13 @@ impl Touched {
         }
     }
 
-    /// These pairs are cells: they are not looked at one by one.
+    /// Leaves the pairs that are cells to `cells`, which compares them together.
     pub(super) fn leave_to(&mut self, cells: Cells, is_cell: impl Fn(u32) -> bool) {
         self.list.retain(|pair| !is_cell(*pair));
         self.cells = cells;
     }
 
-    /// The pairs touched since, which are then untouched.
+    /// Calls `each` for the pairs affected since, and clears the set.
     pub(super) fn drain(&mut self, mut each: impl FnMut(u32)) {
         for pair in self.list.drain(..) {
             self.flags[pair as usize] = false;

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 pub enum Shown {
     /// Binary digits, most significant first, including `x` and `z`.
     Bits(String),
-    /// A real number; in JSON, which has no other word for it, `"NaN"` for an invalid one.
+    /// A real number; in JSON, which has no notation for an invalid one, `"NaN"`.
     Real(#[serde(serialize_with = "number_or_text")] f64),
     /// The first 64 bytes of a text.
     Text(String),

@@ -1,46 +1,47 @@
-//! What a file says in a stretch of time, packed, on its way from the thread that reads to the one that compares.
+//! Packed changes of a period of time, passed from the thread that reads to the one that compares.
 //!
 //! ```text
 //!  steps    time 0, ends at 3 │ time 5, ends at 4, edge │ …        all that happens at one time is one step
 //!  changes  slot, value │ slot, value │ slot, place of its words ║ slot, value ║ …
-//!  words    bits, unknown │ bits, unknown │ …                       as many of each as the slot's kind asks for
+//!  words    bits, unknown │ bits, unknown │ …                       as many of each as the slot's kind needs
 //! ```
 //!
-//! Known values below 2^32 and single digits, nearly all there are, need no words: a third of the memory to write and read.
+//! Known values below 2^32 and single digits, which are nearly all, need no words, and so a third of the memory
+//! traffic.
 
 use super::header::Kind;
 use super::values::words_of;
 
-/// A batch is handed over when it is this full.
+/// A batch is handed over when it has this many changes or words.
 const CHANGES: usize = 1 << 14;
 const WORDS: usize = 1 << 15;
 
-/// Place in a file of a step that has none to which one could return.
+/// Place of a step to which reading cannot return.
 pub(crate) const NOWHERE: u64 = u64::MAX;
 
-/// All that changes at one time.
+/// All changes at one time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Step {
-    /// In the file's unit.
+    /// Time in the file's unit.
     pub(crate) time: u64,
-    /// Byte of the file at which its time stands, or [`NOWHERE`].
+    /// Byte of the file at which its time is written, or [`NOWHERE`].
     pub(crate) place: u64,
-    /// End of its changes; they start at the end of the step before.
+    /// End of its changes; they start at the end of the previous step.
     pub(super) end: u32,
-    /// The watched clock has its edge here.
+    /// Whether the watched clock has its edge here.
     pub(crate) edge: bool,
-    /// From here on nothing is recorded (`$dumpoff`), until a step says otherwise.
+    /// Whether nothing is recorded from here on (`$dumpoff`), until a later step.
     pub(crate) off: bool,
 }
 
-/// What the upper two bits of a change's slot say of its value.
+/// Position of the two bits above a change's slot, which tell how its value is stored.
 const TAG_SHIFT: u32 = 30;
 const IN_WORDS: u32 = 0;
 const KNOWN: u32 = 1;
 const DIGIT: u32 = 2;
 const SLOT: u32 = (1 << TAG_SHIFT) - 1;
 
-/// A slot and its value, or where its words are.
+/// A slot and its value, or the position of its words.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     slot: u32,
@@ -59,7 +60,7 @@ impl Change {
         self.slot & SLOT
     }
 
-    /// The value, if it needs no words: bits, and which of them are unknown.
+    /// Returns the value, if it needs no words: its bits, and a mask of the unknown ones.
     #[inline]
     pub(super) fn small(self) -> Option<[u64; 2]> {
         match self.slot >> TAG_SHIFT {
@@ -69,20 +70,20 @@ impl Change {
         }
     }
 
-    /// Where its words begin.
+    /// Returns the position of its words.
     #[inline]
     pub(super) fn words_at(self) -> usize {
         self.value as usize
     }
 }
 
-/// Steps on their way.
+/// Steps to be handed over.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     pub(super) steps: Vec<Step>,
     pub(super) changes: Vec<Change>,
     pub(super) words: Vec<u64>,
-    /// Bytes of the file that were read up to here.
+    /// Number of bytes of the file that were read up to here.
     pub(super) bytes: u64,
 }
 
@@ -93,7 +94,8 @@ impl Batch {
         self.words.clear();
     }
 
-    /// Slot and words of the changes from `first` to `end`. `lengths` has the words of each slot.
+    /// Calls `each` with slot and words of the changes from `first` to `end`. `lengths` has the number of words of each
+    /// slot.
     #[inline]
     pub(super) fn each(&self, first: usize, end: usize, lengths: &[u32], mut each: impl FnMut(u32, &[u64])) {
         for change in &self.changes[first..end] {
@@ -119,24 +121,24 @@ impl Batch {
 pub(crate) struct Watch {
     /// Slot of a signal of one bit.
     pub(crate) slot: u32,
-    /// Whether the edge is the falling one.
+    /// Whether the falling edge is marked.
     pub(crate) falling: bool,
 }
 
 impl Watch {
-    /// Whether it is an edge when the clock goes from one value to the other: each is a bit and whether it is unknown.
+    /// Whether a change of the clock from `before` to `after` is an edge. Each value is a bit, and 1 if it is unknown.
     pub(super) fn is_edge(self, before: [u64; 2], after: [u64; 2]) -> bool {
         let [from, to] = if self.falling { [1, 0] } else { [0, 1] };
         before == [from, 0] && after == [to, 0]
     }
 
-    /// The clock just before its edge.
+    /// The value of the clock just before its edge.
     pub(super) fn before_edge(self) -> [u64; 2] {
         [u64::from(self.falling), 0]
     }
 }
 
-/// Gathers changes into steps, and steps into a batch.
+/// Collects changes into steps, and steps into a batch.
 pub(super) struct Gatherer {
     pub(super) batch: Batch,
     kinds: Vec<Kind>,
@@ -151,7 +153,7 @@ pub(super) struct Gatherer {
     was_off: bool,
     /// Start of the step in the changes and in the words.
     from: (usize, usize),
-    /// Beyond so many changes or words, the step is pressed together.
+    /// With more changes or words than this, the step is compacted.
     press_at: (usize, usize),
 }
 
@@ -172,7 +174,7 @@ impl Gatherer {
         }
     }
 
-    /// Goes on in the middle of a file, behind a time, with the clock as it is just before its edge.
+    /// Continues in the middle of a file, after a time, with the clock as it is just before its edge.
     pub(super) fn resumed(kinds: Vec<Kind>, watch: Option<Watch>, time: u64) -> Self {
         let mut gatherer = Self::new(kinds, watch);
         gatherer.time = time;
@@ -182,7 +184,7 @@ impl Gatherer {
         gatherer
     }
 
-    /// Words of each slot's values.
+    /// Returns the number of words of each slot's values.
     pub(super) fn lengths(&self) -> Vec<u32> {
         self.kinds.iter().map(|kind| words_of(*kind) as u32).collect()
     }
@@ -192,7 +194,7 @@ impl Gatherer {
         self.kinds[slot as usize]
     }
 
-    /// A known or unknown value of at most 64 bits, or a real number.
+    /// Adds a known or unknown value of at most 64 bits, or a real number.
     #[inline]
     pub(super) fn put_word(&mut self, slot: u32, bits: u64, unknown: u64) {
         let change = if let (Ok(value), 0) = (u32::try_from(bits), unknown) {
@@ -205,7 +207,7 @@ impl Gatherer {
         self.put(change, [bits, unknown]);
     }
 
-    /// A single digit: bit 0 the bit, bit 1 whether it is unknown.
+    /// Adds a single digit: bit 0 is its value, bit 1 tells whether it is unknown.
     #[inline]
     pub(super) fn put_digit(&mut self, slot: u32, digit: u8) {
         let value = [u64::from(digit & 1), u64::from(digit >> 1)];
@@ -223,7 +225,7 @@ impl Gatherer {
         }
     }
 
-    /// Words for a value of the slot's kind, all zero.
+    /// Adds a value of the slot's kind and returns its words, all zero.
     pub(super) fn put_words(&mut self, slot: u32) -> &mut [u64] {
         if self.batch.words.len() > self.press_at.1 {
             self.press();
@@ -235,7 +237,7 @@ impl Gatherer {
         &mut batch.words[from..]
     }
 
-    /// Looks at the value that was put last with [`Gatherer::put_words`], if it is the clock's.
+    /// Checks the value that was added last with [`Gatherer::put_words`], if it is the clock's.
     pub(super) fn watch_last(&mut self, slot: u32) {
         if self.watched == slot
             && let [.., bits, unknown] = self.batch.words.as_slice()
@@ -248,8 +250,8 @@ impl Gatherer {
         self.off = off;
     }
 
-    /// The time goes on, as byte `place` of the file says; it must not go back. Whether the batch is full and must be handed
-    /// over.
+    /// Advances the time, which is written at byte `place` of the file and must not go back. Returns whether the batch
+    /// is full and must be handed over.
     #[inline]
     pub(super) fn advance(&mut self, time: u64, place: u64) -> bool {
         if time == self.time {
@@ -268,7 +270,7 @@ impl Gatherer {
         self.time
     }
 
-    /// Ends the step at hand, if anything happened in it.
+    /// Ends the current step, if anything happened in it.
     pub(super) fn end_step(&mut self) {
         let end = self.batch.changes.len();
         if end == self.from.0 && self.off == self.was_off {
@@ -288,14 +290,14 @@ impl Gatherer {
         self.from = (end, self.batch.words.len());
     }
 
-    /// Forgets the step at hand.
+    /// Discards the current step.
     pub(super) fn drop_step(&mut self) {
         let (changes, words) = self.from;
         self.batch.changes.truncate(changes);
         self.batch.words.truncate(words);
     }
 
-    /// Takes the whole steps out, leaving `empty` in their place. The step at hand must have ended.
+    /// Takes the complete steps out, leaving `empty` in their place. The current step must have ended.
     pub(super) fn take(&mut self, mut empty: Batch) -> Batch {
         empty.clear();
         self.from = (0, 0);
@@ -303,7 +305,8 @@ impl Gatherer {
         std::mem::replace(&mut self.batch, empty)
     }
 
-    /// Keeps only the last change of each slot in the step at hand: a file may say as much as it likes about one time.
+    /// Keeps only the last change of each slot in the current step, since a file may have any number of changes at
+    /// one time.
     fn press(&mut self) {
         let mut seen = vec![false; self.kinds.len()];
         let (first, first_word) = self.from;
@@ -326,7 +329,7 @@ impl Gatherer {
         self.batch.changes.extend(kept);
         self.batch.words.truncate(first_word);
         self.batch.words.extend(words);
-        // At least as much again comes in before the next time: the cost per change stays the same.
+        // At least as much again comes in before the next time, so that the cost per change stays the same.
         let twice = |length: usize, least: usize| (2 * length).max(2 * least);
         self.press_at = (
             twice(self.batch.changes.len(), CHANGES),

@@ -1,8 +1,8 @@
-//! How far a reader has come.
+//! Counts how far a reader has come.
 
 use std::io::{self, Read};
 
-/// A file, or what is unpacked of one, that knows how much of it was read.
+/// A file, or its unpacked contents, that counts the bytes read from it.
 pub(super) struct Counted {
     pub(super) input: Box<dyn Read + Send>,
     pub(super) bytes: u64,

@@ -62,8 +62,8 @@ pub(super) fn known_word(digits: &[u8]) -> Option<u64> {
     Some(word)
 }
 
-/// The known digits at `at`, and the place behind them: their number if there are at most 64, else its last 64 bits. Eight bytes
-/// must follow the last digit, else the run ends too early.
+/// Returns the number that the known digits at `at` make, or its last 64 bits, and the position after them. Eight bytes
+/// must follow the last digit, or the run ends too early.
 #[inline]
 pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
     const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
@@ -76,7 +76,7 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
         bytes.copy_from_slice(eight);
         let digits = u64::from_le_bytes(bytes) ^ ZEROS;
         let other = digits & OTHER;
-        // Byte 0 goes to bit 7, byte 7 to bit 0: no two products meet.
+        // Byte 0 goes to bit 7, byte 7 to bit 0: no two products overlap.
         if other == 0 {
             word = word << 8 | digits.wrapping_mul(0x8040_2010_0804_0201) >> 56;
             end += 8;
@@ -84,7 +84,7 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
         }
         let first = (((other & LOW) + LOW) | other) & HIGH;
         let count = first.trailing_zeros() / 8;
-        // The digits before the other byte, behind zeros.
+        // The digits before the other byte come after zeros.
         let digits = digits.unbounded_shl(64 - 8 * count);
         word = word << count | digits.wrapping_mul(0x8040_2010_0804_0201) >> 56;
         return (word, end + count as usize);
@@ -97,7 +97,7 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
 /// than `width`.
 ///
 /// # Errors
-/// The byte that is no digit.
+/// The first byte that is not a digit.
 pub(super) fn pack(digits: &[u8], width: u32, bits: &mut [u64], unknown: &mut [u64]) -> Result<(), u8> {
     let words = bits.iter_mut().zip(unknown.iter_mut());
     let mut chunks = digits.rchunks(64);

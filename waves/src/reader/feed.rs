@@ -1,4 +1,4 @@
-//! A thread that reads a file ahead, and what it hands over.
+//! A thread that reads a file ahead, and the batches that it hands over.
 //!
 //! ```text
 //!  reading thread ──► full batches (at most 3) ──► comparing thread
@@ -6,7 +6,8 @@
 //!        └──────────────── empty batches ◄──────────────┘
 //! ```
 //!
-//! The batches go round, so that nothing is allocated on the way, and a reader that is faster than the comparison waits.
+//! The batches are reused in a circle, so that nothing is allocated on the way; a reader that is faster than the
+//! comparison waits.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,9 +33,9 @@ pub(crate) struct Feed {
     full: Receiver<Message>,
     empty: SyncSender<Batch>,
     batch: Batch,
-    /// Words of each slot's values.
+    /// Number of words of each slot's values.
     lengths: Vec<u32>,
-    /// The step at hand, and where its changes start.
+    /// The current step, and the start of its changes.
     step: usize,
     first: usize,
     started: bool,
@@ -45,8 +46,8 @@ pub(crate) struct Feed {
 }
 
 impl Feed {
-    /// Starts `read` in a thread of its own; it hands its batches to the function that it is given, which says whether
-    /// somebody still listens.
+    /// Starts `read` in a separate thread. It hands its batches to the function that it gets, which returns whether
+    /// anybody still receives them.
     pub(super) fn start<F>(path: &Path, mut gatherer: Gatherer, read: F) -> Result<Self, WaveError>
     where
         F: FnOnce(&mut Gatherer, &mut dyn FnMut(&mut Gatherer) -> bool) -> Result<Ended, WaveError> + Send + 'static,
@@ -76,7 +77,7 @@ impl Feed {
                 Err(error) => Message::Failed(error),
             };
             if hand_over(&mut gatherer) {
-                // Nobody may listen any more.
+                // The receiver may be gone.
                 let _ = send_full.send(end);
             }
         };
@@ -99,7 +100,7 @@ impl Feed {
         })
     }
 
-    /// With what it takes to read the file again from somewhere in its middle.
+    /// Adds what is needed to read the file again from a place in its middle.
     pub(super) fn with_reopen(mut self, reopen: Arc<Reopen>) -> Self {
         self.reopen = Some(reopen);
         self
@@ -112,7 +113,7 @@ impl Feed {
     /// Goes to the next step and returns it; `None` at the end of the file.
     ///
     /// # Errors
-    /// What the reader ran into behind the steps it has handed over.
+    /// The error that the reader found after the steps that it has handed over.
     #[inline]
     pub(crate) fn next_step(&mut self) -> Result<Option<Step>, WaveError> {
         if self.started
@@ -137,7 +138,8 @@ impl Feed {
         match self.full.recv() {
             Ok(Message::Batch(batch)) => {
                 let used = std::mem::replace(&mut self.batch, batch);
-                // The first one, which never held anything, is one too many; so is one that the reader no longer takes.
+                // The first batch, which never held anything, is one too many; so is one that the reader no longer
+                // takes.
                 let _ = self.empty.try_send(used);
                 (self.step, self.first) = (0, 0);
             }
@@ -148,12 +150,12 @@ impl Feed {
                 self.ended = true;
                 return Err(error);
             }
-            // The thread is gone without a word: the crate that reads FST gave up on a file that it did not expect.
+            // The thread ended without a message: the crate that reads FST panicked on an unexpected file.
             Err(_) => {
                 self.ended = true;
                 return Err(WaveError::Damaged {
                     path: self.path.clone(),
-                    place: format!("behind byte {}", self.batch.bytes),
+                    place: format!("after byte {}", self.batch.bytes),
                     problem: "the file is damaged, or of a kind that cannot be read".to_owned(),
                 });
             }
@@ -161,7 +163,7 @@ impl Feed {
         Ok(())
     }
 
-    /// The changes of the step at hand: slot and words.
+    /// Returns the changes of the current step: slot and words.
     #[inline]
     pub(crate) fn each_change(&self, each: impl FnMut(u32, &[u64])) {
         let end = self
@@ -172,17 +174,18 @@ impl Feed {
         self.batch.each(self.first, end, &self.lengths, each);
     }
 
-    /// Bytes of the file that were read so far.
+    /// Returns the number of bytes of the file that were read so far.
     pub(crate) fn bytes(&self) -> u64 {
         self.batch.bytes
     }
 
-    /// Bytes behind which the file was cut off, once that has been found.
+    /// Returns the number of bytes after which the file was cut off, once that has been found.
     pub(crate) fn cut(&self) -> Option<u64> {
         self.cut
     }
 
-    /// What is wrong with a file that has nothing more to say while another goes on: nothing, unless its last line is cut.
+    /// Returns the error of a file that has ended while another continues; only a file whose last line is cut has
+    /// one.
     pub(crate) fn cut_off(&self) -> Result<(), WaveError> {
         if self.unterminated {
             let inside = "before the other, in a line without line break";

@@ -1,11 +1,11 @@
-//! FST, GTKWave's packed format, through the crate `fst-reader`.
+//! Reads FST, GTKWave's packed format, with the crate `fst-reader`.
 //!
-//! That crate reads block by block and calls back in the order of time, so memory is bounded by the size of a block, which
-//! the writer chooses, and not by the length of the file; but a file that is packed as a whole, as GHDL writes it, is unpacked
-//! in memory first. It is the reader beneath `wellen`, by the same author, with
-//! nothing of what `wellen` keeps in memory on top; it is pinned to its minor version, since its interface still moves.
+//! That crate reads block by block and calls back in the order of time, so memory is bounded by the size of a block,
+//! which the writer chooses, and not by the length of the file; but a file that is packed as a whole, as GHDL writes
+//! it, is unpacked in memory first. It is the reader inside `wellen`, by the same author, without what `wellen` keeps
+//! in memory; it is pinned to its minor version, since its interface still changes.
 //!
-//! What it does not tell: the stretches of `$dumpoff`. It gives up by panic on some damaged files; that is caught here.
+//! It does not report the periods of `$dumpoff`. It panics on some damaged files; that is caught here.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -26,16 +26,16 @@ use crate::WaveError;
 
 type Source = FstReader<BufReader<Whole>>;
 
-/// First byte of a file that begins with a header block, whose length follows.
+/// Beginning of a file with a header block: its first byte and the length.
 const HEADER: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 0x49];
 /// First byte of a file that is packed as a whole.
 const PACKED: u8 = 254;
-/// How long such a file may be when it is unpacked: the crate does that in memory.
+/// Largest length of such a file after unpacking, which the crate does in memory.
 const PACKED_BYTES: u64 = 1 << 28;
-/// Bytes of a block header: kind and length.
+/// Number of bytes of a block header: kind and length.
 const BLOCK_BYTES: u64 = 9;
 
-/// Whether the file begins like an FST.
+/// Returns whether the file begins like an FST.
 pub(super) fn is_fst(beginning: &[u8]) -> bool {
     beginning.starts_with(&HEADER) || beginning.first() == Some(&PACKED)
 }
@@ -47,13 +47,13 @@ pub(super) struct FstValues {
     /// Slot of each handle.
     slots: Vec<Option<u32>>,
     bytes: u64,
-    /// It ends where its writer was ended.
+    /// Whether the file ends where its writer was stopped.
     is_cut: bool,
-    /// The short way to the values, where there is one.
+    /// The blocks, if they can be read directly.
     blocks: Option<Blocks>,
 }
 
-/// The file up to the end of its last whole block.
+/// The file up to the end of its last complete block.
 struct Whole {
     file: File,
     at: u64,
@@ -86,7 +86,7 @@ impl Seek for Whole {
     }
 }
 
-/// What a writer keeps beside its file until it has put it in: `x.fst.hier`.
+/// Path of the file in which a writer keeps the hierarchy until it appends it: `x.fst.hier`.
 fn hierarchy_beside(path: &Path) -> Option<File> {
     let mut name = path.as_os_str().to_owned();
     name.push(".hier");
@@ -112,7 +112,7 @@ pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> 
         }
         Some((_, what)) => Err(damaged(path, what)),
     };
-    // Its writer was ended before it put the hierarchy in.
+    // Its writer was stopped before it appended the hierarchy.
     let (mut source, is_cut) = match (opened, hierarchy_beside(path)) {
         (Ok(source), _) => (source, false),
         (Err(why), None) => return Err(why),
@@ -177,7 +177,7 @@ fn declare(
                 }
                 FstVarType::GenericString => Kind::Text,
                 FstVarType::Event => Kind::Event,
-                // GHDL and nvc write VHDL's texts as variables without a length.
+                // GHDL and nvc write VHDL's strings as variables without a length.
                 _ if length == 0 => Kind::Text,
                 _ => Kind::Bits(length),
             };
@@ -197,7 +197,7 @@ fn declare(
 }
 
 impl FstValues {
-    /// Reads to the end. `hand_over` takes full batches, and says whether to go on.
+    /// Reads to the end. `hand_over` takes full batches, and returns whether to continue.
     pub(super) fn read(
         mut self,
         gatherer: &mut Gatherer,
@@ -260,7 +260,7 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
             }
             let words = gatherer.put_words(slot);
             let (bits, unknown) = words.split_at_mut(words.len() / 2);
-            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is no digit"))?;
+            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is not a digit"))?;
             gatherer.watch_last(slot);
         }
         (Kind::Text, FstSignalValue::String(text)) => pack_text(text, gatherer.put_words(slot)),
@@ -270,10 +270,10 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
     Ok(())
 }
 
-/// Where a block does not lie within its file, and how.
+/// Byte of a block that does not lie within its file, and the reason.
 type Cut = (u64, String);
 
-/// The file's length, and the first block that does not lie within it.
+/// Returns the file's length, and the first block that does not lie within it.
 fn check_blocks(path: &Path, file: &mut File) -> Result<(u64, Option<Cut>), WaveError> {
     let read = WaveError::file(path, "read");
     let mut walk = || -> io::Result<Result<(u64, Option<Cut>), String>> {
@@ -325,7 +325,7 @@ fn unit_fs(exponent: i8) -> Result<u64, String> {
         .ok_or_else(|| format!("a timescale of 10^{exponent} s: 1 fs to 100 s are allowed"))
 }
 
-/// Runs a call into the crate; where that panics, the file is damaged.
+/// Runs a call into the crate; if that panics, the file is damaged.
 fn guarded<T>(path: &Path, call: impl FnOnce() -> T) -> Result<T, WaveError> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|_| damaged(path, "its reader gave up"))
 }

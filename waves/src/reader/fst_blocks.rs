@@ -1,15 +1,16 @@
-//! The value changes of an FST, block by block, straight into words.
+//! Reads the value changes of an FST, block by block, directly into words.
 //!
-//! The crate `fst-reader` hands every value over as text, which for a word costs more than all the rest. It goes on to read the
-//! hierarchy, and the files that are not understood here: those that are packed as a whole, cut off, or packed by FastLZ.
+//! The crate `fst-reader` returns every value as text, which for a word costs more than everything else. It still reads
+//! the hierarchy, and the files that this module does not read: those that are packed as a whole, cut off, or packed by
+//! FastLZ.
 //!
 //! ```text
 //!  block   kind │ length, first time, last time, memory │ values before │ handles, packing, a chain of changes per signal …
 //!               │ … where each chain begins │ the times, as differences
 //! ```
 //!
-//! A chain has the changes of one signal in the block; each begins with how many times it lies behind the one before. All chains
-//! are unpacked, and each waits in the list of the time at which its next change lies.
+//! A chain has the changes of one signal in the block; each begins with the number of times since the previous change.
+//! All chains are unpacked, and each waits in the list of the time of its next change.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -30,18 +31,18 @@ const GEOMETRY: u8 = 3;
 
 /// Bytes of a block of changes before the values: length, first and last time, memory.
 const HEAD: usize = 32;
-/// What the header has for the order of bytes in a real number.
+/// Value in the header that shows the byte order of real numbers.
 const EULER: f64 = std::f64::consts::E;
-/// Where it stands.
+/// Its position in the header.
 const EULER_AT: u64 = 25;
-/// What a signal of one bit may be beside 0 and 1, as digits: `xzhuwl-?`.
+/// Digits of a signal of one bit other than 0 and 1: `xzhuwl-?`.
 const DIGITS: &[u8; 8] = b"xzhuwl-?";
 
 /// A block that holds changes.
 #[derive(Debug, Clone, Copy)]
 struct Block {
     kind: u8,
-    /// Byte behind its kind, and its length from there on.
+    /// Byte after its kind, and its length from there on.
     at: u64,
     length: u64,
 }
@@ -54,18 +55,18 @@ enum Form {
     Text,
 }
 
-/// The blocks of a file that is understood here.
+/// The blocks of a file that this module can read.
 pub(super) struct Blocks {
     file: File,
     blocks: Vec<Block>,
-    /// Of each handle.
+    /// Indexed by handle.
     forms: Vec<Form>,
     little_endian: bool,
 }
 
 /// Why the blocks could not be read.
 pub(super) enum Stop {
-    /// Nobody listens any more.
+    /// The receiver is gone.
     Unheard,
     Damaged(String),
     Io(io::Error),
@@ -82,8 +83,8 @@ fn damaged(what: &str) -> Stop {
 }
 
 impl Blocks {
-    /// The blocks of a file whose blocks all lie within it; `None` if it is for `fst-reader`. `slots` and `kinds` are those of
-    /// the declarations.
+    /// Finds the blocks of a file that contains all of them completely; `None` if only `fst-reader` can read it.
+    /// `slots` and `kinds` are those of the declarations.
     pub(super) fn find(mut file: File, slots: &[Option<u32>], kinds: &[Kind]) -> io::Result<Option<Self>> {
         let length = file.metadata()?.len();
         let mut blocks = Vec::new();
@@ -173,7 +174,7 @@ impl Blocks {
         Ok(packing.is_some_and(|packing| *packing != b'F'))
     }
 
-    /// Reads all blocks. `hand_over` takes full batches, and says whether to go on.
+    /// Reads all blocks. `hand_over` takes full batches, and returns whether to continue.
     pub(super) fn read(
         &mut self,
         slots: &[Option<u32>],
@@ -218,7 +219,7 @@ impl Blocks {
         }
         let chains_at = at;
         let packing = *bytes.get(at).ok_or_else(short)?;
-        // From the end: the times, and where the chains begin.
+        // The times and the beginnings of the chains are at the end of the block.
         let tail = bytes.len().checked_sub(24).ok_or_else(short)?;
         let [times_length, times_packed, times_count] = [0, 8, 16].map(|by| word(bytes, tail + by).unwrap_or(0));
         let times_at = (tail as u64).checked_sub(times_packed).ok_or_else(short)? as usize;
@@ -239,7 +240,7 @@ impl Blocks {
             self.values_before(&values, slots, gatherer)?;
         }
         let mut unpacked_chains: Vec<u8> = Vec::new();
-        // Of each handle: its next change, the end of its chain, and the next handle in the same list, plus one.
+        // For each handle: its next change, the end of its chain, and the next handle in the same list, plus one.
         let mut cursors = vec![Cursor::default(); self.forms.len()];
         let mut known: HashMap<usize, [u32; 2]> = HashMap::new();
         let mut waiting = vec![0u32; times.len()];
@@ -302,7 +303,7 @@ impl Blocks {
         Ok(())
     }
 
-    /// The values that stand before the first change, as text.
+    /// Reads the values before the first change, as text.
     fn values_before(&self, values: &[u8], slots: &[Option<u32>], gatherer: &mut Gatherer) -> Result<(), Stop> {
         let mut at = 0;
         for (handle, form) in self.forms.iter().enumerate() {
@@ -327,7 +328,7 @@ impl Blocks {
         Ok(())
     }
 
-    /// Takes the change at the beginning of a chain; its bytes.
+    /// Takes the change at the beginning of a chain; returns its bytes.
     #[inline]
     fn change(&self, chain: &[u8], form: Form, slot: u32, gatherer: &mut Gatherer) -> Result<usize, Stop> {
         let short = || damaged("the changes of a signal end too early");
@@ -340,7 +341,7 @@ impl Blocks {
                     _ => DIGITS[(head >> 1 & 7) as usize],
                 };
                 if gatherer.kind(slot) == Kind::Bits(1) {
-                    let digit = super::digits::digit(digit).ok_or_else(|| damaged("a bit is no digit"))?;
+                    let digit = super::digits::digit(digit).ok_or_else(|| damaged("a bit is not a digit"))?;
                     gatherer.put_digit(slot, digit);
                 }
             }
@@ -349,7 +350,7 @@ impl Blocks {
                 let value = chain.get(at..at + length).ok_or_else(short)?;
                 at += length;
                 if gatherer.kind(slot) != Kind::Bits(width) {
-                    // An event, which has no value.
+                    // It is an event, which has no value.
                 } else if width <= 64 {
                     let word = value.iter().fold(0u64, |word, byte| word << 8 | u64::from(*byte));
                     gatherer.put_word(slot, word >> (8 * length as u32 - width), 0);
@@ -405,7 +406,7 @@ struct Cursor {
     next: u32,
 }
 
-/// Puts a handle into the list of the time of its next change, which is told from `time_at` on.
+/// Puts a handle into the list of the time of its next change, which is stored relative to `time_at`.
 #[inline]
 fn enqueue(
     chains: &[u8],
@@ -426,7 +427,7 @@ fn enqueue(
     let list = usize::try_from(by)
         .ok()
         .and_then(|by| waiting.get_mut(time_at.checked_add(by)?));
-    let list = list.ok_or_else(|| damaged("a change lies behind the last time"))?;
+    let list = list.ok_or_else(|| damaged("a change is later than the last time"))?;
     cursor.next = std::mem::replace(list, handle as u32 + 1);
     Ok(())
 }
@@ -451,12 +452,12 @@ fn put_digits(gatherer: &mut Gatherer, slot: u32, width: u32, digits: &[u8]) -> 
     }
     let words = gatherer.put_words(slot);
     let (bits, unknown) = words.split_at_mut(words.len() / 2);
-    pack(digits, width, bits, unknown).map_err(|byte| Stop::Damaged(format!("byte {byte} is no digit")))?;
+    pack(digits, width, bits, unknown).map_err(|byte| Stop::Damaged(format!("byte {byte} is not a digit")))?;
     gatherer.watch_last(slot);
     Ok(())
 }
 
-/// How each handle's changes are written.
+/// Returns how the changes of each handle are written.
 fn forms(file: &mut File, block: Block) -> io::Result<Option<Vec<Form>>> {
     let Some(packed) = block
         .length
@@ -506,10 +507,10 @@ fn times(packed: &[u8], length: u64, count: u64) -> Result<Vec<u64>, Stop> {
     Ok(times)
 }
 
-/// Of each handle: from where to where its chain goes, behind the beginning of the chains.
+/// For each handle, the beginning and the end of its chain, counted from the beginning of the chains.
 type Table = Vec<Option<(usize, usize)>>;
 
-/// A table being made: a chain ends where the next one begins.
+/// A table under construction: a chain ends where the next one begins.
 struct Making {
     table: Table,
     aliases: Vec<(usize, usize)>,
@@ -603,7 +604,7 @@ fn table_2(bytes: &[u8], handles: usize, chains: usize) -> Option<Table> {
     making.finish(chains)
 }
 
-/// Unpacks a chain behind what is there.
+/// Unpacks a chain and appends it.
 fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Result<(), Stop> {
     let mut at = 0;
     let length = varint(chain, &mut at).ok_or_else(|| damaged("a chain of changes is empty"))?;
@@ -621,7 +622,7 @@ fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Result<(), Stop
             return Err(damaged("a chain of changes cannot be unpacked"));
         }
     } else {
-        // The length is not skipped when a chain is measured, but its packing begins behind it.
+        // The length of a chain includes this number, but its packed bytes begin after it.
         out.extend(unpacked(&chain[at..], length, false)?);
     }
     if u32::try_from(out.len()).is_err() {
@@ -630,12 +631,12 @@ fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Result<(), Stop
     Ok(())
 }
 
-/// What zlib packed to so many bytes; bytes that are not packed where that may be.
+/// Unpacks `length` bytes that zlib packed; where allowed, they may also be stored without packing.
 fn unpacked(bytes: &[u8], length: u64, may_be_plain: bool) -> Result<Vec<u8>, Stop> {
     if may_be_plain && length == bytes.len() as u64 {
         return Ok(bytes.to_vec());
     }
-    // zlib packs a thousandfold at most.
+    // zlib packs by a factor of 1000 at most.
     let room = usize::try_from(length)
         .ok()
         .filter(|room| *room <= 1100 * (bytes.len() + 64));

@@ -23,7 +23,8 @@ pub(super) fn id_number(data: &[u8], mut at: usize) -> (Option<u64>, usize) {
     (((1..10).contains(&(at - from))).then_some(number), at)
 }
 
-/// As [`id_number`], where eight bytes follow: most id codes have one to four characters, whose number is computed at once.
+/// As [`id_number`], for a position that eight bytes follow: most id codes have one to four characters, whose number is
+/// computed at once.
 #[inline]
 pub(super) fn short_id_number(data: &[u8], at: usize) -> (Option<u64>, usize) {
     let Some(eight) = data.get(at..at + 8) else {
@@ -32,7 +33,8 @@ pub(super) fn short_id_number(data: &[u8], at: usize) -> (Option<u64>, usize) {
     let mut bytes = [0; 8];
     bytes.copy_from_slice(eight);
     let characters = u64::from_le_bytes(bytes);
-    // The upper bit of each byte below `!`, and of each from 0x80 on: the first of them is right, those behind it need not be.
+    // This sets the upper bit of each byte below `!` and of each from 0x80 on. Only the first such bit is sure to be
+    // correct.
     let ends = (characters.wrapping_sub(0x2121_2121_2121_2121) | characters) & 0x8080_8080_8080_8080;
     let length = ends.trailing_zeros() / 8;
     if !(1..=4).contains(&length) || characters >> (8 * length) & 0xff > b' '.into() {

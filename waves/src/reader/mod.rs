@@ -1,4 +1,4 @@
-//! Reads waveforms in steps of time, in bounded memory, whatever the file holds.
+//! Reads waveforms in steps of time, in bounded memory, whatever the file contains.
 //!
 //! ```text
 //!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
@@ -6,12 +6,12 @@
 //!  x.fst ────┴─ declarations: crate `fst-reader` ───────────────┘                                       step by step
 //! ```
 //!
-//! Declarations are read by the crate `vcd`, value changes by [`section`]: the crate makes a string of each, and streams at
-//! a quarter of the speed. Tests hold the two, and `wellen`, against each other on every fixture.
+//! The crate `vcd` reads the declarations, [`section`] the value changes, because the crate makes a string of each
+//! and is four times as slow. Tests compare the two, and `wellen`, on every fixture.
 //!
-//! Limits, so that a hostile file cannot eat the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of names,
-//! scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file that ends in
-//! the middle of something, the answer is an error with the place.
+//! Limits keep a hostile file from using up the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of
+//! names, scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file
+//! that ends in the middle of something, the result is an error with the place.
 
 #[cfg(test)]
 mod agreement;
@@ -51,10 +51,10 @@ pub(crate) use self::twin::{Stretch, Twins};
 pub(crate) use self::values::{Value, Values, value};
 use crate::WaveError;
 
-/// How a GHW begins.
+/// First bytes of a GHW.
 const GHW: &[u8] = b"GHDLwave";
 
-/// Some writers begin a text file with it.
+/// Byte order mark with which some writers begin a text file.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 enum Rest {
@@ -68,12 +68,12 @@ pub(crate) struct Wave {
     pub(crate) declarations: Declarations,
     rest: Rest,
     bytes: Option<u64>,
-    /// To read a VCD from its middle on.
+    /// The file and its id codes, to read a VCD again from its middle.
     again: Option<(File, Arc<Ids>)>,
 }
 
 impl Wave {
-    /// Opens a VCD or an FST, told apart by how it begins, and reads its declarations.
+    /// Opens a VCD or an FST, distinguished by its beginning, and reads its declarations.
     pub(crate) fn open(path: &Path) -> Result<Self, WaveError> {
         let source = unpack::open(path)?;
         let counted = Counted {
@@ -121,13 +121,13 @@ impl Wave {
         })
     }
 
-    /// Length of the file; `None` for a pipe.
+    /// Returns the length of the file; `None` for a pipe.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.bytes
     }
 
-    /// Starts to read the values in a thread of its own, and marks the edges of a clock. A file that is cut off in the middle
-    /// of a line is an error, or is read up to its last whole time.
+    /// Starts to read the values in a separate thread, and marks the edges of a clock. A file that is cut off in the
+    /// middle of a line is an error, or with `allow_truncated` is read up to its last complete time.
     pub(crate) fn play(self, watch: Option<Watch>, allow_truncated: bool) -> Result<(Declarations, Feed), WaveError> {
         let kinds = self.declarations.kinds.clone();
         let gatherer = Gatherer::new(kinds.clone(), watch);
@@ -200,7 +200,7 @@ fn declarations<R: BufRead>(parser: &mut Parser<R>) -> Result<(Declarations, Ids
             Some(Err(cause)) => {
                 let parse: Option<&ParseError> = cause.get_ref().and_then(|e| e.downcast_ref());
                 return Err(Stop::Wrong(match parse {
-                    Some(parse) => format!("{}: this is no VCD, or it is damaged", parse.kind()),
+                    Some(parse) => format!("{}: this is not a VCD, or it is damaged", parse.kind()),
                     None => cause.to_string(),
                 }));
             }

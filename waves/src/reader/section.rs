@@ -1,4 +1,4 @@
-//! The value changes of a VCD, byte by byte: the part where all of the time goes.
+//! Reads the value changes of a VCD, byte by byte; this part takes almost all of the time.
 //!
 //! ```text
 //!  #25              time                          1!   0"   x#      one digit and an id code
@@ -6,8 +6,9 @@
 //!  $dumpoff … $end  blocks around changes         $comment … $end   nothing
 //! ```
 //!
-//! Nothing is allocated per change: digits go into words eight at a time, id codes are numbers that index a table. The
-//! buffer is refilled when a command is not all in it, and grows only for a command that is longer than it.
+//! Nothing is allocated per change: digits are packed into words eight at a time, and id codes are numbers that index
+//! a table. The buffer is refilled when it does not contain a whole command, and grows only for a command that is
+//! longer than the buffer.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -23,27 +24,27 @@ use super::put::{put_digits, put_real, put_text, shown};
 use crate::WaveError;
 
 const BUFFER_BYTES: usize = 1 << 18;
-/// Bytes that one command may have: a vector of 2^24 bits, twice over.
+/// Largest number of bytes of a command: a vector of 2^24 bits, twice over.
 const COMMAND_BYTES: usize = 1 << 25;
 
-/// What the reading ended with.
+/// How the reading ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// The file is at its end; whether its last line lacks the line break, so that it may have been cut off.
+    /// The file is at its end; if its last line lacks the line break, it may have been cut off.
     File { unterminated: bool },
-    /// The file was cut off behind so many bytes, and was read up to its last whole time.
+    /// The file was cut off after this many bytes, and was read up to its last complete time.
     Cut { byte: u64 },
-    /// Nobody listens any more.
+    /// The receiver is gone.
     Unheard,
 }
 
 enum Pause {
-    /// A command goes on behind the buffer.
+    /// A command continues after the buffer.
     More,
     Stop,
 }
 
-/// What is wrong at a place in the buffer.
+/// An error at a place in the buffer.
 struct Fault {
     at: usize,
     what: String,
@@ -55,27 +56,28 @@ pub(super) struct Section {
     input: Counted,
     ids: Arc<Ids>,
     buffer: Vec<u8>,
-    /// The unread part of the buffer, and where the buffer begins in the file.
+    /// The unread part of the buffer, and the position of the buffer in the file.
     from: usize,
     to: usize,
     start: u64,
     last_byte: u8,
     at_end: bool,
-    /// What is packed ends in the middle of its packing.
+    /// Whether a packed file ends in the middle of its packed data.
     broken: bool,
-    /// The bytes are those of the file, so that its lines can be counted.
+    /// Whether the bytes are those of the file itself, so that its lines can be counted.
     is_plain: bool,
     in_dump: bool,
     in_comment: bool,
-    /// A file that is cut off is read up to its last whole time.
+    /// Whether a file that is cut off is read up to its last complete time.
     pub(super) allow_truncated: bool,
-    /// Bytes behind which it was, once that is known; and whether a time begins in what is cut, so that the one before is whole.
+    /// Number of bytes after which it was cut off, once that is known; and whether the cut is in a time, so that the
+    /// time before it is complete.
     cut: Option<u64>,
     cut_in_time: bool,
 }
 
 impl Section {
-    /// Goes on behind the declarations.
+    /// Continues after the declarations.
     pub(super) fn new(path: &Path, input: BufReader<Counted>, ids: Arc<Ids>, is_plain: bool) -> Self {
         let mut buffer = input.buffer().to_vec();
         let to = buffer.len();
@@ -102,7 +104,7 @@ impl Section {
         }
     }
 
-    /// Goes on in the middle of the file, at a byte at which a time stands.
+    /// Continues in the middle of the file, at a byte at which a time begins.
     pub(super) fn resumed(path: &Path, input: Counted, ids: Arc<Ids>) -> Self {
         Self {
             path: path.to_owned(),
@@ -124,7 +126,7 @@ impl Section {
         }
     }
 
-    /// Reads to the end. `hand_over` takes full batches, and says whether to go on.
+    /// Reads to the end. `hand_over` takes full batches, and returns whether to continue.
     pub(super) fn read(
         &mut self,
         gatherer: &mut Gatherer,
@@ -148,7 +150,7 @@ impl Section {
             } else {
                 gatherer.drop_step();
             }
-            // Without a place so far, the line break that was put behind the file is not the file's.
+            // If no place was counted so far, the appended line break does not belong to the file.
             let byte = self.cut.unwrap_or(self.start + self.to as u64 - 1);
             return Ok(Ended::Cut { byte });
         }
@@ -205,20 +207,20 @@ impl Section {
         self.at_end = true;
         let ends_within = self.broken || self.in_dump || self.in_comment || self.last_byte != b'\n';
         if self.allow_truncated && ends_within {
-            // Half a line may read as another one: a time, a value, an id code.
+            // Half a line could be taken for another time, value or id code.
             self.cut = Some(self.start + self.to as u64);
             let unread = &self.buffer[self.from..self.to];
             self.cut_in_time = !self.in_comment && unread.first() == Some(&b'#');
             self.to = self.from + memchr::memrchr(b'\n', unread).map_or(0, |at| at + 1);
             return Ok(());
         }
-        // A last line that is complete but for its line break counts.
+        // A last line that lacks only its line break counts.
         self.buffer[self.to] = b'\n';
         self.to += 1;
         Ok(())
     }
 
-    /// Takes all commands that are whole in the buffer.
+    /// Handles all commands that are completely in the buffer.
     fn parse(
         &mut self,
         gatherer: &mut Gatherer,
@@ -265,7 +267,7 @@ impl Section {
                     };
                     let time = number(&data[at + 1..end]).ok_or_else(|| Fault {
                         at,
-                        what: format!("`{}` is no time", shown(&data[at..end])),
+                        what: format!("`{}` is not a time", shown(&data[at..end])),
                     })?;
                     if time < gatherer.time() {
                         let before = gatherer.time();
@@ -331,12 +333,12 @@ impl Section {
                 byte => {
                     let Some(digit) = digit(byte) else {
                         let what = format!(
-                            "unexpected character `{}`: this is no VCD, or it is damaged",
+                            "unexpected character `{}`: this is not a VCD, or it is damaged",
                             shown(&[byte])
                         );
                         return Err(Fault { at, what });
                     };
-                    // IEEE 1364 has no space between the digit and the id code, some writers do.
+                    // IEEE 1364 has no space between the digit and the id code, but some writers do.
                     let id_at = skip_space(data, at + 1);
                     let (number, end) = short_id_number(data, id_at);
                     if end >= data.len() {
@@ -365,7 +367,7 @@ impl Section {
     }
 
     fn truncated(&self, inside: &str) -> WaveError {
-        // The line break that was put behind the file is not the file's.
+        // The line break that was appended to the file does not belong to it.
         truncated(&self.path, self.start + self.to as u64 - u64::from(self.at_end), inside)
     }
 }
@@ -381,7 +383,7 @@ pub(super) fn truncated(path: &Path, byte: u64, inside: &str) -> WaveError {
     }
 }
 
-/// The line of a byte, counted only now that it is asked for; `None` where the file cannot be read again.
+/// Returns the line of a byte, which is counted only for an error; `None` if the file cannot be read again.
 fn line_of(path: &Path, byte: u64) -> Option<u64> {
     let file = File::open(path).ok()?;
     if !file.metadata().ok()?.is_file() {
@@ -400,14 +402,15 @@ fn line_of(path: &Path, byte: u64) -> Option<u64> {
     }
 }
 
-/// End of the word at `at`; `None` if the data ends in it.
+/// Returns the end of the word at `at`; `None` if the data ends in it.
 #[inline]
 fn word_end(data: &[u8], at: usize) -> Option<usize> {
     let length = data.get(at..)?.iter().position(|byte| *byte <= b' ')?;
     Some(at + length)
 }
 
-/// End of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty for ever.
+/// Returns the end of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty
+/// for ever.
 #[inline]
 fn skip_space(data: &[u8], mut at: usize) -> usize {
     while let Some(0..=b' ') = data.get(at) {
@@ -416,7 +419,8 @@ fn skip_space(data: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// The end of the digits at `at`, and their number if all are known and at most 64; `None` if the data ends in them.
+/// Returns the end of the digits at `at`, and their number if all are known and there are at most 64; `None` if the
+/// data ends in them.
 #[inline]
 fn leading_word(data: &[u8], at: usize) -> Option<(Option<u64>, usize)> {
     let (mut word, mut end) = known_run(data, at);

@@ -1,14 +1,15 @@
-//! Two files that are the same byte for byte over a stretch: one of them is parsed, and the other only compared with it.
+//! Reads stretches in which two files are equal byte for byte: one file is parsed, and the other only compared with it.
 //!
 //! ```text
-//!  file     … #10 … 1! … #20 … │ #30 … 1! … #40 … │ #50 …       pieces end where a time stands; each thread takes the next one
-//!  piece              values just before its last sample │ those behind it │ how many samples, and when
+//!  file     … #10 … 1! … #20 … │ #30 … 1! … #40 … │ #50 …       pieces end where a time begins; each thread takes the next one
+//!  piece              values just before its last sample │ those after it │ number of samples, and their times
 //! ```
 //!
-//! A piece is parsed without what came before it: whether its first change of the clock is an edge is known when the pieces are
-//! put in order. Only what every simulator writes is understood here, a change a line in its plainest form. Anything else, a
-//! piece in which the files differ, the end of the file, and whatever may be an error, ends the stretch before that piece; there
-//! the two files are read one by one again, as in [`super::section`].
+//! A piece is parsed without knowledge of what came before it: whether its first change of the clock is an edge is
+//! decided when the pieces are put in order. Only the plainest form of a VCD is read here, with one change per line, as
+//! every simulator writes it. A stretch ends before a piece that has anything else in it, in which the files differ,
+//! with the end of the file, or with a possible error; from there the two files are read separately again, as in
+//! [`super::section`].
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -30,17 +31,17 @@ use super::put::{put_digits, put_real, put_text};
 use super::section::Section;
 use crate::WaveError;
 
-/// Bytes of a piece. The tests have short files.
+/// Number of bytes of a piece; fewer in tests, whose files are short.
 const PIECE: u64 = if cfg!(test) { 200 } else { 1 << 19 };
-/// Bytes behind a piece within which its last time ends, as a rule; and at most.
+/// Number of bytes after a piece within which its last time usually ends; and the largest such number.
 const SLACK: usize = if cfg!(test) { 50 } else { 1 << 14 };
 const MOST_SLACK: usize = 1 << 23;
-/// Bytes that are looked at before threads are started.
+/// Number of bytes that are compared before threads are started.
 const FIRST_LOOK: usize = if cfg!(test) { 20 } else { 1 << 16 };
 const THREADS: usize = 4;
 const NO_LINE: u32 = u32::MAX;
 
-/// What is needed to read a VCD again from somewhere in its middle.
+/// Everything needed to read a VCD again from a place in its middle.
 pub(crate) struct Reopen {
     pub(super) path: PathBuf,
     pub(super) file: File,
@@ -51,7 +52,7 @@ pub(crate) struct Reopen {
 }
 
 impl Reopen {
-    /// Reads on from a byte at which a time stands, which is behind the time `before`.
+    /// Continues at a byte at which a time begins, which is later than the time `before`.
     pub(crate) fn resume(self: &Arc<Self>, place: u64, before: u64) -> Result<Feed, WaveError> {
         let file = self.file.try_clone().map_err(WaveError::file(&self.path, "open"))?;
         let input = Counted {
@@ -68,7 +69,8 @@ impl Reopen {
     }
 }
 
-/// A file from a place on, with a place of its own: the system's is that of all who have the file open.
+/// A file from a place on. It keeps its own position, because the system's position is shared by all handles of the
+/// file.
 struct Placed {
     file: File,
     place: u64,
@@ -82,42 +84,43 @@ impl Read for Placed {
     }
 }
 
-/// Two files whose declarations are the same.
+/// Two files with equal declarations.
 #[derive(Clone)]
 pub(crate) struct Twins {
     files: [Arc<Reopen>; 2],
     lengths: Vec<u32>,
 }
 
-/// What a stretch does to the comparison, piece by piece.
+/// Effect of a stretch on the comparison, piece by piece.
 #[derive(Default)]
 pub(crate) struct Stretch {
-    /// Where to go on, in each file: at the time of the last sample; without a clock, behind it.
+    /// Where to continue in each file: at the time of the last sample; without a clock, after it.
     pub(crate) places: [u64; 2],
-    /// A time that is before that place.
+    /// A time before that place.
     pub(crate) before: u64,
-    /// Samples so far.
+    /// Number of samples so far.
     pub(crate) samples: u64,
-    /// Times of the last sample and of the one before.
+    /// Times of the last sample and of the previous one.
     pub(crate) times: [Option<u64>; 2],
 }
 
-/// What a piece says.
+/// Contents of a piece.
 #[derive(Default)]
 struct Piece {
-    /// Latest values just before the last sample, and the changes behind that.
+    /// Latest values just before the last sample, and the changes after it.
     settled: Batch,
     rest: Batch,
     samples: u64,
     times: [Option<u64>; 2],
-    /// The clock behind the first step in which it changes, whose edge depends on what was before, and that step's time.
+    /// The clock after the first step in which it changes, and that step's time; whether this is an edge depends on the
+    /// piece before.
     open_edge: Option<([u64; 2], u64)>,
     /// The clock at the end.
     clock: [u64; 2],
     /// First and last time.
     first: u64,
     last: u64,
-    /// Where to go on, as in [`Stretch`].
+    /// Where to continue, as in [`Stretch`].
     place: u64,
 }
 
@@ -125,12 +128,12 @@ enum Found {
     Piece(Box<Piece>),
     /// No time begins here.
     Nothing,
-    /// Not the same, or not plain.
+    /// The files differ, or are not in the plain form.
     End,
 }
 
 impl Twins {
-    /// Both files, if their declarations mean the same and both can be read at any place.
+    /// Returns both files, if their declarations are equivalent and both can be read at any place.
     pub(crate) fn new(a: &Feed, b: &Feed) -> Option<Self> {
         let (a, b) = (a.reopen()?, b.reopen()?);
         let slots = |reopen: &Reopen| reopen.watch.map(|watch| (watch.slot, watch.falling));
@@ -139,17 +142,17 @@ impl Twins {
         same.then(|| Self { files: [a, b], lengths })
     }
 
-    /// Both files read one by one from where a stretch ends.
+    /// Returns both files, to be read separately from the end of a stretch.
     pub(crate) fn resume(&self, stretch: &Stretch) -> Result<[Feed; 2], WaveError> {
         let [a, b] = &self.files;
         let [place_a, place_b] = stretch.places;
         Ok([a.resume(place_a, stretch.before)?, b.resume(place_b, stretch.before)?])
     }
 
-    /// Follows the two files from these places as long as they are the same. With a clock, at each place stands the time of an
-    /// edge that has been sampled. `stop` has, by slot, the signals with whose next change the stretch ends. `apply` is called
-    /// with the latest values before each piece's last sample, and with how far the stretch has come. `None` if it is too
-    /// short.
+    /// Follows the two files from these places as long as they are equal. With a clock, the time at each place is that
+    /// of an edge that has been sampled. `stop` tells by slot whose next change ends the stretch. `apply` is called
+    /// with the latest values before each piece's last sample, and with the progress of the stretch. Returns `None` if
+    /// the stretch is too short.
     pub(crate) fn follow(
         &self,
         places: [u64; 2],
@@ -238,7 +241,7 @@ impl<'a> Joined<'a> {
         }
     }
 
-    /// Adds the next piece; `false` if it does not follow from the one before.
+    /// Adds the next piece; returns `false` if it does not continue the previous one.
     fn join(&mut self, piece: Piece, apply: &mut dyn FnMut(u32, &[u64])) -> bool {
         if self.last.is_some_and(|last| piece.first <= last) {
             return false;
@@ -278,19 +281,19 @@ impl<'a> Joined<'a> {
     }
 }
 
-/// A thread that parses pieces.
+/// Work of a thread that parses pieces.
 struct Worker<'a> {
     twins: &'a Twins,
     places: [u64; 2],
-    /// By slot: its width, 0 for a real number, a text or an event; or [`STOP`].
+    /// Width by slot, 0 for a real number, a text or an event; or [`STOP`].
     widths: Vec<u32>,
     gatherer: Gatherer,
     time_begins: Finder<'static>,
     buffers: [Vec<u8>; 2],
-    /// By slot: where its latest line before the last sample begins; and the slots that have one.
+    /// Beginning of the latest line before the last sample, by slot; and the slots that have one.
     lines: Vec<u32>,
     touched: Vec<u32>,
-    /// Changes behind the last sample: slot and line.
+    /// Changes after the last sample: slot and line.
     open: Vec<(u32, u32)>,
 }
 
@@ -317,10 +320,11 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// Piece `number`: from the first time that stands at or behind its first byte, to the first one at or behind its last.
+    /// Reads piece `number`, from the first time that begins at or after its first byte, to the first one at or after
+    /// its last.
     fn piece(&mut self, number: u64) -> io::Result<Found> {
         let begin = number * PIECE;
-        // The line break before it shows a time that stands at its first byte.
+        // The line break before it shows whether a time begins at its first byte.
         let first = begin.saturating_sub(1);
         let length = (begin + PIECE - first) as usize;
         let mut slack = SLACK;
@@ -342,7 +346,7 @@ impl<'a> Worker<'a> {
             slack *= 8;
         };
         let [a, b] = &self.buffers;
-        // What is behind the end of the second file is what was there before.
+        // After the end of the second file, the buffer has old bytes.
         if count_b <= end || a[..=end] != b[..=end] {
             return Ok(Found::End);
         }
@@ -374,7 +378,7 @@ impl<'a> Worker<'a> {
         self.open.clear();
     }
 
-    /// Reads the lines from `from` to `end`; both are places of times. `None` if any is not plain.
+    /// Reads the lines from `from` to `end`, which are places of times. Returns `None` if any is not plain.
     fn parse(&mut self, data: &[u8], from: usize, end: usize) -> Option<Piece> {
         let twins = self.twins;
         let watch = twins.files[0].watch;
@@ -383,7 +387,7 @@ impl<'a> Worker<'a> {
         let mut piece = Piece::default();
         let mut time: Option<u64> = None;
         let (mut time_at, mut step_from) = (from, 0);
-        // Before the step at hand, where it is known, and now.
+        // The clock before the current step, if it is known, and now.
         let mut clock: [Option<[u64; 2]>; 2] = [None; 2];
         let mut at = from;
         loop {
@@ -426,7 +430,7 @@ impl<'a> Worker<'a> {
                     time = Some(number);
                     time_at = at;
                     if watch.is_none() {
-                        // Every time is a sample: what it finds is settled.
+                        // Every time is a sample, so the changes so far lie before one.
                         let count = self.open.len();
                         self.settle_lines(count);
                     }
@@ -487,14 +491,14 @@ impl<'a> Worker<'a> {
                 self.settle_lines(count);
                 piece.place = end as u64;
             }
-            // Without an edge in it, a piece says nothing about where the samples lie.
+            // A piece without an edge does not tell where the samples are.
             Some(_) if piece.samples == 0 => return None,
             Some(_) => {}
         }
         Some(piece)
     }
 
-    /// The first so many open changes lie before a sample.
+    /// Settles the first `count` open changes, which lie before a sample.
     fn settle_lines(&mut self, count: usize) {
         for (slot, line) in self.open.drain(..count) {
             let known = &mut self.lines[slot as usize];
@@ -505,7 +509,7 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// The values that the lines say.
+    /// Returns the values of the lines.
     fn settle(&mut self, data: &[u8], piece: &mut Piece) -> Option<()> {
         self.gatherer.take(Batch::default());
         for slot in &self.touched {
@@ -520,7 +524,7 @@ impl<'a> Worker<'a> {
     }
 }
 
-/// The value of a line that was found to be plain.
+/// Returns the value of a plain line.
 fn put_line(gatherer: &mut Gatherer, slot: u32, line: &[u8]) -> Option<()> {
     let word = |line: &[u8]| memchr::memchr(b' ', line);
     match *line.first()? {
@@ -532,7 +536,7 @@ fn put_line(gatherer: &mut Gatherer, slot: u32, line: &[u8]) -> Option<()> {
     .ok()
 }
 
-/// The slot of the id code at `at`, which ends the line, and the place behind that.
+/// Returns the slot of the id code at `at`, which ends the line, and the position after the line.
 #[inline]
 fn line_end(ids: &Ids, data: &[u8], at: usize) -> Option<(u32, usize)> {
     let (number, end) = short_id_number(data, at);
@@ -540,7 +544,7 @@ fn line_end(ids: &Ids, data: &[u8], at: usize) -> Option<(u32, usize)> {
     (*data.get(end)? == b'\n').then_some((slot, end + 1))
 }
 
-/// The number at `at`, which ends the line, and the place behind that.
+/// Returns the number at `at`, which ends the line, and the position after the line.
 #[inline]
 fn decimal(data: &[u8], mut at: usize) -> Option<(u64, usize)> {
     let from = at;
@@ -552,7 +556,7 @@ fn decimal(data: &[u8], mut at: usize) -> Option<(u64, usize)> {
     (at > from && *data.get(at)? == b'\n').then_some((number, at + 1))
 }
 
-/// As much as there is, up to the buffer's length; the place of the file's own reader stays.
+/// Reads up to the buffer's length; the position of the file's own reader does not change.
 fn read_at(file: &File, buffer: &mut [u8], place: u64) -> io::Result<usize> {
     let mut count = 0;
     while count < buffer.len() {

@@ -1,4 +1,4 @@
-//! What a file is, by how it begins, and the text of a packed one.
+//! Recognises packed files by their first bytes, and unpacks them.
 
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, Read};
@@ -13,19 +13,20 @@ use crate::WaveError;
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const XZ: &[u8] = &[0xfd, b'7', b'z', b'X', b'Z', 0];
 const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
-/// How much of its own output a packed file may refer back to: `xz -9` has 64 MiB, `zstd --ultra -22` 128.
+/// Largest distance in bytes over which a packed file may refer back to its own output: `xz -9` needs 64 MiB, `zstd
+/// --ultra -22` 128 MiB.
 const WINDOW_KIB: u32 = 1 << 17;
-/// Bytes by which the kinds are told apart.
+/// Number of bytes by which the kinds of files are recognised.
 const HEAD: u64 = 16;
 /// The name of the standard input.
 const DASH: &str = "-";
 
-/// A file, open, and unpacked where it is packed.
+/// An open file, unpacked if it is packed.
 pub(super) struct Source {
     pub(super) input: Box<dyn Read + Send>,
-    /// The file itself, where it is a plain one that can be read at any place.
+    /// The file itself, if it is a plain one that can be read at any place.
     pub(super) file: Option<File>,
-    /// Its length, where it is as long as what is read.
+    /// Its length, if that is the number of bytes that will be read.
     pub(super) bytes: Option<u64>,
 }
 
@@ -61,7 +62,7 @@ pub(super) fn open(path: &Path) -> Result<Source, WaveError> {
     })
 }
 
-/// The frames of a zstd file, one behind the other.
+/// The frames of a zstd file, one after the other.
 struct Frames<R: Read>(Frame<R>);
 
 enum Frame<R: Read> {

@@ -7,7 +7,7 @@ use super::header::Kind;
 /// In `unknown` bits, a zero of `bits` is `x` and a one is `z`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Value<'a> {
-    /// Least significant word first.
+    /// Words of the bits, least significant first.
     Bits {
         width: u32,
         bits: &'a [u64],
@@ -15,16 +15,16 @@ pub(crate) enum Value<'a> {
     },
     /// `None` before the first change.
     Real(Option<f64>),
-    /// Length, a hash of all of it, and its beginning; see [`pack_text`].
+    /// Length, a hash of the whole text, and its beginning; see [`pack_text`].
     Text(&'a [u64]),
-    /// Not comparable.
+    /// An event, which is not comparable.
     Event,
 }
 
-/// Words of a text: length + 1 (0 before the first change), hash, the first 64 bytes.
+/// Number of words of a text: length + 1 (0 before the first change), hash, the first 64 bytes.
 const TEXT_WORDS: usize = 10;
 
-/// Words that a value of this kind takes.
+/// Returns the number of words that a value of this kind takes.
 #[inline]
 pub(super) fn words_of(kind: Kind) -> usize {
     match kind {
@@ -35,7 +35,8 @@ pub(super) fn words_of(kind: Kind) -> usize {
     }
 }
 
-/// A text as words: equal texts give equal words; different ones differ but for an accident of 1 in 2^64.
+/// Packs a text into words: equal texts give equal words; different ones give different words except with a
+/// probability of 1 in 2^64.
 pub(super) fn pack_text(text: &[u8], words: &mut [u64]) {
     let hash = text.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3)
@@ -48,7 +49,7 @@ pub(super) fn pack_text(text: &[u8], words: &mut [u64]) {
 }
 
 impl Value<'_> {
-    /// As a number, the bits signed or not; `None` with unknown bits, or beyond 128 bits.
+    /// Returns the value as a number, with signed bits or not; `None` with unknown bits, or beyond 128 bits.
     pub(crate) fn integer(&self, signed: bool) -> Option<i128> {
         let Value::Bits { width, bits, unknown } = *self else {
             return None;
@@ -65,7 +66,7 @@ impl Value<'_> {
         Some(((raw << shift) as i128) >> shift)
     }
 
-    /// As digits, most significant first, extended to `width` with zeros, or with the sign.
+    /// Returns the value as digits, most significant first, extended to `width` with zeros, or with the sign.
     pub(crate) fn digits(&self, to_width: u32, signed: bool) -> String {
         let Value::Bits { width, bits, unknown } = *self else {
             return String::new();
@@ -84,7 +85,7 @@ impl Value<'_> {
         extended.chain((0..width).rev().map(digit)).collect()
     }
 
-    /// The text, as much of it as is kept; `None` before the first change.
+    /// Returns the text, as much of it as is kept; `None` before the first change.
     pub(crate) fn text(&self) -> Option<String> {
         let Value::Text(words) = self else { return None };
         let length = usize::try_from(words[0].checked_sub(1)?).unwrap_or(usize::MAX);
@@ -106,7 +107,7 @@ pub(crate) struct Values {
 }
 
 impl Values {
-    /// A slot of each kind, all without a value: `x`.
+    /// Creates a slot of each kind, all without a value: `x`.
     pub(crate) fn new(kinds: &[Kind]) -> Self {
         let mut values = Self::default();
         for kind in kinds {
@@ -115,7 +116,7 @@ impl Values {
         values
     }
 
-    /// A slot more.
+    /// Adds a slot.
     pub(crate) fn add(&mut self, kind: Kind) -> u32 {
         let from = self.words.len();
         self.offsets.push(from);
@@ -135,7 +136,7 @@ impl Values {
         self.kinds.len() as u32 - 1
     }
 
-    /// How many slots there are.
+    /// Returns the number of slots.
     pub(crate) fn count(&self) -> usize {
         self.kinds.len()
     }
@@ -144,14 +145,14 @@ impl Values {
         self.kinds[slot as usize]
     }
 
-    /// The words of a slot: the bits, then the mask of the unknown ones.
+    /// Returns the words of a slot: the bits, then the mask of the unknown ones.
     #[inline]
     pub(crate) fn words(&self, slot: u32) -> &[u64] {
         let from = self.offsets[slot as usize];
         &self.words[from..from + words_of(self.kinds[slot as usize])]
     }
 
-    /// Sets a slot's words; whether that changed them.
+    /// Sets a slot's words; returns whether that changed them.
     #[inline]
     pub(crate) fn set(&mut self, slot: u32, words: &[u64]) -> bool {
         let from = self.offsets[slot as usize];
@@ -185,7 +186,7 @@ impl Values {
     }
 }
 
-/// The words of a kind as a value.
+/// Converts the words of a kind to a value.
 pub(crate) fn value(kind: Kind, words: &[u64]) -> Value<'_> {
     let (bits, unknown) = words.split_at(words.len() / 2);
     match kind {

@@ -1,4 +1,4 @@
-//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects.
+//! The proofs of the supervisor of an axis, with one property file per subject.
 
 use posicast_hdl::axis;
 use posicast_model::rtl::axis::{
@@ -9,7 +9,7 @@ use posicast_model::rtl::segments;
 use crate::Error;
 use crate::formal::{Engine, INDUCTION, Task};
 
-/// All of them.
+/// Returns all of these proofs.
 pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     let block = (axis::emit("")?, model::ports());
     let macros = macros();
@@ -32,7 +32,7 @@ pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     ])
 }
 
-/// States, causes and the transition table, all from the model.
+/// Macros for states, causes and the transition table, all from the model.
 pub(in crate::blocks) fn macros() -> Vec<(String, String)> {
     let mut macros: Vec<(String, String)> = SupervisorState::ALL
         .map(|state| (state.name().to_owned(), format!("3'd{}", state as u8)))
@@ -59,14 +59,14 @@ pub(in crate::blocks) fn macros() -> Vec<(String, String)> {
     macros
 }
 
-/// An expression for whether one state may follow another.
+/// Returns an expression for whether one state may follow another.
 fn allowed() -> String {
     let row = |row: &Transition| format!("((from) == 3'd{} & (to) == 3'd{})", row.from as u8, row.to as u8);
     let rows: Vec<String> = TRANSITIONS.iter().map(row).collect();
     format!("({})", rows.join(" | "))
 }
 
-/// An expression for the next state: that of the first row whose conditions hold. Conditions are wires, such as
+/// Returns an expression for the next state: that of the first row whose conditions hold. Conditions are wires, such as
 /// `if_tick` for `Tick`.
 fn next() -> String {
     let rows = TRANSITIONS.iter().map(|row| {

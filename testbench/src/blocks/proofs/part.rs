@@ -1,4 +1,4 @@
-//! The proofs of the small blocks between others.
+//! The proofs of the small blocks that connect others.
 
 use posicast_hdl::{divider_share, group, sample_select, schedule, setting_banks, time_base};
 use posicast_model::rtl::divider::DividerConfig;
@@ -45,7 +45,7 @@ pub(in crate::blocks) fn schedule(clocks: u32) -> Result<Task, Error> {
     )
 }
 
-/// Both counters begin with the same value: as after a reset, or shortly before they come round.
+/// Both counters begin with the same value, as after a reset or shortly before they wrap around.
 pub(in crate::blocks) fn time_base(tick_clocks: u64, begin: &'static str) -> Result<Task, Error> {
     let config = DividerConfig::new(tick_clocks).map_err(refused)?;
     let block = (time_base::emit(&config, "")?, time_model::ports());

@@ -10,7 +10,7 @@ use crate::blocks::registers::pwm_component;
 use crate::blocks::stage::example;
 use crate::formal::{Engine, Task, refused};
 
-/// All of them.
+/// Returns all of these proofs.
 pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     let stage = Component::stage(&example("")?).map_err(refused)?;
     Ok(vec![
@@ -28,7 +28,7 @@ fn bank() -> Result<Task, Error> {
         .properties(&[], include_str!("../../../formal/registers.sv")))
 }
 
-/// Staged registers as the map has them, the first lowest.
+/// Returns the staged registers of the map, the first in the lowest bits.
 fn commit(size: &str, map: &RegisterMap) -> Result<Task, Error> {
     let staged: Vec<&Register> = map
         .registers()
@@ -59,7 +59,7 @@ fn commit(size: &str, map: &RegisterMap) -> Result<Task, Error> {
     Ok(Task::new("commit", size, Engine::Pdr, block).properties(&macros, include_str!("../../../formal/commit.sv")))
 }
 
-/// A register's word from the ports of its fields, 0 between them.
+/// Returns a register's word made of the ports of its fields, with 0 between them.
 fn in_word(register: &Register) -> String {
     let mut fields: Vec<_> = register.fields.iter().collect();
     fields.sort_by_key(|field| field.low);

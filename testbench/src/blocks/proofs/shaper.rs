@@ -10,7 +10,7 @@ use crate::Error;
 use crate::blocks::shaper::tap_table as table;
 use crate::formal::{INDUCTION, Task, part, refused};
 
-/// All of them.
+/// Returns all of these proofs.
 pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     Ok(vec![
         plain()?,
@@ -21,7 +21,7 @@ pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     ])
 }
 
-/// The plain shaper with the smallest memories; delays have 6 bits, the rest of a tap's word is its coefficient.
+/// The plain shaper with the smallest memories. Delays have 6 bits; the other bits of a tap's word are its coefficient.
 fn plain() -> Result<Task, Error> {
     let config = ShaperConfig::new(32, table(16, &[(0, 20_000), (3, 30_000), (7, 15_536)])?).map_err(refused)?;
     let macros = [
@@ -69,7 +69,7 @@ fn motion() -> Result<Task, Error> {
     Ok(of_motion("shaper_motion", size, &config, block, text))
 }
 
-/// The arithmetic of the motion shaper, which is a part of it, by itself.
+/// The part of the motion shaper that computes, alone.
 fn channel_sums(modulo: bool) -> Result<Task, Error> {
     let config = motion_config(modulo)?;
     let block = part(shaper::emit(&config, "")?, "channel_sums")?;

@@ -10,7 +10,7 @@ use crate::Error;
 use crate::blocks::stage::example;
 use crate::formal::{INDUCTION, Task, part, refused};
 
-/// All of the block.
+/// Returns all proofs of the block.
 pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     Ok(vec![
         pass()?,
@@ -24,7 +24,7 @@ pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     ])
 }
 
-/// The controller's Verilog with products that are anything, for nothing drives them; but one times a word is the word.
+/// The controller's Verilog with products of any value, because nothing drives them; only one times a word is the word.
 fn controller_of_any_products() -> Result<Vec<Module>, Error> {
     let mut modules = sliding_mode::emit("")?;
     for module in &mut modules {
@@ -52,7 +52,7 @@ fn pass() -> Result<Task, Error> {
         .properties(&macros, include_str!("../../../formal/sliding_mode.sv")))
 }
 
-/// A part of the controller on its own: a lemma of its arithmetic.
+/// A lemma about the arithmetic, for one part of the controller alone.
 fn lemma(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
     let part = part(controller_of_any_products()?, name)?;
     Ok(Task::new(name, size, INDUCTION, part).properties(&[], properties))

@@ -10,7 +10,8 @@ use crate::Error;
 use crate::blocks::library::stage;
 use crate::formal::{INDUCTION, Task, refused};
 
-/// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
+/// Blocks of an axis that only give commanded and actual position. They are left out, so that their outputs have any
+/// value.
 const LEFT_OUT: [&str; 9] = [
     "segments",
     "motion_shaper",
@@ -23,7 +24,8 @@ const LEFT_OUT: [&str; 9] = [
     "trace",
 ];
 
-/// The axes of the stage that the other rungs of verification take: one with what bring-up needs, one with a linear scale.
+/// The axes of the stage that the other rungs of verification use: one with the blocks for bring-up, one with a linear
+/// scale.
 pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     let stage = stage()?;
     let component = Component::stage(&stage).map_err(refused)?;
