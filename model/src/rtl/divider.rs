@@ -101,9 +101,9 @@ ports! {
         rst: Bit as bool;
         /// One clock: starts the division of `steps` by `elapsed`.
         start: Bit as bool;
-        /// Dividend: the counts.
+        /// Dividend: the change of the count.
         steps: Signed(18) as i32, "counts";
-        /// Divisor: the clocks in which the counts came; 0 stands for one tick.
+        /// Divisor: the time in which the count changed by this; 0 stands for one tick.
         elapsed: Bits(24) as u32, "clocks";
         /// Clears `overrun`.
         clear_flags: Bit as bool;

@@ -66,10 +66,10 @@ fn has_reset(access: &Access) -> bool {
     !matches!(access, Access::Live | Access::Shadow { .. }) && software(access) != Software::Write
 }
 
-/// Meaning of a field, with its unit.
+/// Meaning of a field, with its unit in brackets.
 fn meaning(field: &Field) -> String {
     match field.unit.as_str() {
         "" => field.meaning.clone(),
-        unit => format!("{}, in {unit}", field.meaning),
+        unit => format!("{} [{unit}]", field.meaning),
     }
 }

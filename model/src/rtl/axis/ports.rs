@@ -25,7 +25,7 @@ ports! {
         drive_ready: Bit as bool;
         /// Asynchronous line of the home switch, which is only filtered.
         home: Bit as bool;
-        /// Pulses of up to this many clocks on a line are ignored.
+        /// Longest pulse on a line that is ignored.
         filter_clocks: Bits(6) as u8, "clocks";
         /// High: outputs on. Low: outputs off, after a quick stop and the brake. It must be low once before READY.
         enable: Bit as bool;
@@ -53,7 +53,7 @@ ports! {
         brake_release_ticks: Bits(16) as u16, "ticks";
         /// Ticks from applying the brake until it holds.
         brake_apply_ticks: Bits(16) as u16, "ticks";
-        /// Ticks from the command's standstill to that of the shaped command: the shaper's longest delay.
+        /// Time from the command's standstill to that of the shaped command: the shaper's longest delay.
         settle_ticks: Bits(16) as u16, "ticks";
         /// Upper soft limit. With both limits 0 there are no soft limits.
         soft_limit_plus: Signed(32) as i32, "counts, Q24.8";
@@ -65,16 +65,16 @@ ports! {
         following_error_limit: Bits(32) as u32, "counts, Q16.16";
         /// Largest deviation, in its unit; 0 disables the check.
         deviation_limit: Bits(32) as u32;
-        /// Largest number of consecutive ticks with a clamped command; 0 disables the check.
+        /// Longest time with the command clamped at every tick; 0 disables the check.
         saturation_ticks: Bits(16) as u16, "ticks";
         /// Command above which the position must move.
         lost_command: Bits(32) as u32, "command units, Q20.12";
-        /// Largest number of ticks without motion in the command's direction; 0 disables the check.
+        /// Longest time without motion in the command's direction; 0 disables the check.
         lost_ticks: Bits(16) as u16, "ticks";
         /// Constant; high: a motion against the command does not count as motion, so that a feedback of the wrong
         /// sign is detected.
         watches_direction: Bit as bool;
-        /// Largest number of ticks without a kick; 0 disables the watchdog.
+        /// Longest time without a kick; 0 disables the watchdog.
         watchdog_ticks: Bits(16) as u16, "ticks";
         /// Constant; high: a rotary axis, whose positions wrap, so that no range can be left.
         modulo: Bit as bool;

@@ -30,7 +30,7 @@ ports! {
         rst: Bit as bool;
         /// One clock: the tick.
         tick: Bit as bool;
-        /// `duty` of the controller, in clocks of the PWM.
+        /// `duty` of the controller.
         controller_duty: Signed(18) as i32, "clocks";
         /// One clock: `controller_duty` is new.
         controller_valid: Bit as bool;
@@ -54,9 +54,9 @@ ports! {
         direct_enable: Bit as bool;
         /// One clock: direct mode lasts `direct_hold_ticks` from now on.
         direct_kick: Bit as bool;
-        /// Constant: ticks of direct mode per kick; 0 disables direct mode.
+        /// Constant: duration of direct mode per kick; 0 disables direct mode.
         direct_hold_ticks: Bits(16) as u16, "ticks";
-        /// Manual duty, in clocks of the PWM.
+        /// Manual duty.
         direct_duty: Signed(17) as i32, "clocks";
         /// Constant: largest |manual duty|.
         direct_limit: Bits(16) as u16, "clocks";

@@ -51,7 +51,7 @@ ports! {
         period_ticks: Bits(16) as u16, "ticks";
         /// Rise of a chirp's frequency in every tick, in 65,536ths of the first.
         sweep: Bits(16) as u16;
-        /// Duration of the signal in ticks; with 0 it never starts.
+        /// Duration of the signal; with 0 it never starts.
         duration_ticks: Bits(24) as u32, "ticks";
         /// Constant; high: the position wraps modulo 2^32 LSB (a rotary axis).
         modulo: Bit as bool;

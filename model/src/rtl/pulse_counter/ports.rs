@@ -39,7 +39,7 @@ ports! {
         z_n: Bit as bool;
         /// The lines are differential pairs.
         differential: Bit as bool;
-        /// Pulses of up to this many clocks are ignored.
+        /// Longest pulse that is ignored.
         filter_clocks: Bits(6) as u8, "clocks";
         /// 0 quadrature ×4, 1 ×2, 2 ×1, 3 step and direction, 4 up and down, 5 to 7 nothing counts.
         mode: Bits(3) as u8;
@@ -103,13 +103,13 @@ ports! {
         level_b: Bit as bool;
         /// Filtered level of Z.
         level_z: Bit as bool;
-        /// Dividend for the divider: counts.
+        /// Dividend for the divider.
         steps: Signed(18) as i32, "counts";
-        /// Divisor for the divider: clocks; 0 stands for one tick.
+        /// Divisor for the divider; 0 stands for one tick.
         elapsed: Bits(24) as u32, "clocks";
         /// A tick waits for its quotient.
         velocity_pending: Bit as bool;
-        /// Velocity in counts per tick, Q16.16.
+        /// Measured velocity.
         velocity: Signed(32) as i32, "counts per tick, Q16.16";
         /// One clock: `velocity` is that of the last tick.
         velocity_valid: Bit as bool;

@@ -103,7 +103,7 @@ ports! {
         mode: Bits(2) as u8;
         /// Clocks per period, from 64; 0 stands for 65,536. Taken while off.
         period: Bits(16) as u16, "clocks";
-        /// Duty: clocks of the ideal high time; beyond ±`period` it is full.
+        /// Duty: the ideal high time; beyond ±`period` it is full.
         duty: Signed(17) as i32, "clocks";
         /// Largest |`duty`|; must not change in the 16 clocks before a boundary.
         max_duty: Bits(16) as u16, "clocks";
@@ -115,15 +115,15 @@ ports! {
         minimum_pulse: Bits(10) as u16, "clocks";
         /// One clock: the synchronisation pulse of the time base.
         sync: Bit as bool;
-        /// Phase of the carrier in the clock after `sync`, in clocks after the valley; below `period`.
+        /// Phase of the carrier in the clock after `sync`, counted from the valley; below `period`.
         phase: Bits(16) as u16, "clocks";
-        /// Phase at which `trigger` comes, in clocks after the valley.
+        /// Phase at which `trigger` comes, counted from the valley.
         trigger_phase: Bits(16) as u16, "clocks";
         /// One clock: the controller is alive; it feeds the watchdog at every tick.
         feed: Bit as bool;
         /// Valleys without `feed` that are allowed; the next one trips. 0 disables the watchdog.
         watchdog_periods: Bits(8) as u8, "valleys";
-        /// Clocks for which a filtered fault may last without effect.
+        /// Longest filtered fault without effect.
         filter_clocks: Bits(8) as u8, "clocks";
         /// Raw fault, asynchronous; low, as with a broken wire, is a fault.
         fault_n: Bit as bool;

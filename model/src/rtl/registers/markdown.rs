@@ -1,6 +1,6 @@
 //! A register map as Markdown: the generated part of `docs/registers.md`.
 
-use super::description::{Access, Field, FlagSource, Format, Register};
+use super::description::{Access, Field, Format, Register};
 use super::map::RegisterMap;
 use std::fmt::Write;
 
@@ -128,15 +128,9 @@ fn format(field: &Field) -> String {
 }
 
 fn meaning(field: &Field) -> String {
-    let own = match field.source {
-        FlagSource::Input => "",
-        FlagSource::PartialWrite => "; set by a write of only part of a word",
-        FlagSource::GuardRefused => "; set by a refused write of a guarded register",
-        FlagSource::CommitRejected => "; set by a commit or staged write while a commit waits",
-    };
     let least = match field.minimum {
         0 => String::new(),
         minimum => format!("; at least {minimum}"),
     };
-    format!("{}{own}{least}", field.meaning)
+    format!("{}{least}", field.meaning)
 }

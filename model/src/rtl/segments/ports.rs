@@ -57,7 +57,7 @@ ports! {
         modulo: Bit as bool;
         /// At a tick: a command at rest stays where it is, and the entry being played keeps its ticks.
         feed_hold: Bit as bool;
-        /// So many ticks may pass at the last velocity where entries are missing, before the quick stop; 0: none.
+        /// Longest time at the last velocity if entries are missing, before the quick stop; 0: none.
         extrapolation: Bits(8) as u8, "ticks";
     }
 

@@ -139,7 +139,7 @@ ports! {
         sliding: Signed(32) as i32, "counts per tick, Q16.16";
         /// The command, within ±limit.
         command: Signed(32) as i32, "command units, Q20.12";
-        /// The command in clocks of the PWM period.
+        /// The command as high time of the PWM.
         duty: Signed(18) as i32, "clocks";
         /// One clock: all outputs belong to the last `start`.
         valid: Bit as bool;
@@ -149,7 +149,7 @@ ports! {
         limited_high: Bit as bool;
         /// The last command was clamped at −limit.
         limited_low: Bit as bool;
-        /// Number of consecutive ticks with a clamped command; stops at 65,535. For a trip.
+        /// Time since which the command has been clamped; stops at 65,535. A supervisor can trip on it.
         limited_ticks: Bits(16) as u16, "ticks";
         /// Sticky: values that were clamped at their upper end: bit 0 e, 1 de, 2 s, 3 a, 4 Σe, 5 command, 6 duty. A
         /// flag is set one clock after its value, all of them by `valid`. Setting wins over clearing.

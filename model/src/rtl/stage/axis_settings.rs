@@ -45,7 +45,7 @@ fn parameters(axis: &StageAxis) -> Vec<Register> {
         constant(
             "coefficient_fraction",
             0x04,
-            "fraction bits F of the coefficients",
+            "number of fraction bits F of the coefficients",
             axis.shaper.coefficient_fraction(),
         ),
     ]
@@ -261,7 +261,7 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
                     "watchdog_ticks",
                     0,
                     16,
-                    "ticks allowed without a kick; 0 disables the watchdog",
+                    "longest time without a kick; 0 disables the watchdog",
                 )
                 .with_unit("ticks")
                 .with_reset(watched.watchdog_ticks.into()),
@@ -292,7 +292,7 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
             Access::Configuration,
             "time in which a stop settles: the longest delay of the tables in use",
             vec![
-                Field::new("settle_ticks", 0, 16, "ticks after the command's standstill")
+                Field::new("settle_ticks", 0, 16, "time after the command's standstill")
                     .with_unit("ticks")
                     .with_reset(watched.settle_ticks.into()),
             ],
@@ -317,7 +317,7 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
             0x25,
             Access::Configuration,
             "phase at which the pin `pwm_trigger` is high for a clock, for an ADC for example",
-            vec![Field::new("trigger_phase", 0, 16, "clocks after the valley").with_unit("clocks")],
+            vec![Field::new("trigger_phase", 0, 16, "time after the valley").with_unit("clocks")],
         ),
         register(
             "index",

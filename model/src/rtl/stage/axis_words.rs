@@ -154,7 +154,7 @@ fn states() -> Vec<Register> {
                     7,
                     "clamped at the lower end, in the same order",
                 ),
-                Field::new("limited_ticks", 16, 16, "consecutive ticks with a clamped command").with_unit("ticks"),
+                Field::new("limited_ticks", 16, 16, "time since which the command has been clamped").with_unit("ticks"),
             ],
         ),
         register(
@@ -167,13 +167,7 @@ fn states() -> Vec<Register> {
                 Field::flag("fifo_low", 8, "at most `low_water` entries wait"),
                 Field::flag("segments_empty", 9, "none"),
                 Field::flag("feed_held", 10, "a feed hold keeps the command where it rests"),
-                Field::new(
-                    "late_ticks",
-                    16,
-                    8,
-                    "ticks since reset that were extrapolated, modulo 2^8",
-                )
-                .with_unit("ticks"),
+                Field::new("late_ticks", 16, 8, "time extrapolated since reset, modulo 2^8").with_unit("ticks"),
             ],
         ),
         register(

@@ -72,7 +72,7 @@ fn trace() -> Vec<Register> {
             Access::Configuration,
             "interval of the rows, and rows before the trigger",
             vec![
-                Field::new("trace_decimation", 0, 16, "ticks skipped between rows").with_unit("ticks"),
+                Field::new("trace_decimation", 0, 16, "time skipped between rows").with_unit("ticks"),
                 Field::new("trace_pre_trigger", 16, 11, "rows before the trigger"),
             ],
         ),
@@ -204,7 +204,7 @@ fn generator() -> Vec<Register> {
             "internal encoder, for tests without a machine",
             vec![
                 Field::flag("loop_back", 0, "the counter gets the generator's lines, not the pins"),
-                Field::new("index_every", 16, 16, "counts from index to index; 0: no index").with_unit("counts"),
+                Field::new("index_every", 16, 16, "distance from index to index; 0: no index").with_unit("counts"),
             ],
         ),
         register(

@@ -31,18 +31,18 @@ pub(super) fn stage(config: &StageConfig) -> Description {
     let parameter = |name: &str, bits, meaning: &str, value| Field::new(name, 0, bits, meaning).with_reset(value);
     let parameters = vec![
         parameter("axes", 3, "windows after this one", config.axes.len() as u32),
-        parameter("tick_clocks", 17, "clocks from tick to tick", config.tick.tick_clocks()).with_unit("clocks"),
+        parameter("tick_clocks", 17, "time from tick to tick", config.tick.tick_clocks()).with_unit("clocks"),
         parameter(
             "control_clocks",
             17,
-            "clocks from the tick to the start of the controllers",
+            "time from the tick to the start of the controllers",
             config.timing().control_clocks(),
         )
         .with_unit("clocks"),
         parameter(
             "duty_clocks",
             17,
-            "clocks from the tick to the new duty, which the PWM takes at its next boundary",
+            "time from the tick to the new duty, which the PWM takes at its next boundary",
             config.timing().duty_clocks(),
         )
         .with_unit("clocks"),

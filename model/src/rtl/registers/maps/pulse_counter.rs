@@ -11,7 +11,7 @@ const TIMEOUT: u32 = 76;
 pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) -> Description {
     use Access::{Configuration, Live, Snapshot, Sticky};
     let parameters = vec![
-        Field::new("tick_clocks", 0, 17, "clocks from tick to tick")
+        Field::new("tick_clocks", 0, 17, "time from tick to tick")
             .with_reset(divider.tick_clocks())
             .with_unit("clocks"),
     ];
@@ -154,7 +154,7 @@ fn lines(filter_clocks: u32, invert: bool) -> Vec<Field> {
         (4, "up_down", "rising A up, rising B down"),
     ];
     vec![
-        Field::new("filter_clocks", 0, 6, "pulses of up to this many clocks are ignored")
+        Field::new("filter_clocks", 0, 6, "longest pulse that is ignored")
             .with_reset(filter_clocks)
             .with_unit("clocks"),
         Field::choice("mode", 8, 3, "edges that count", &modes),

@@ -82,7 +82,7 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             guarded(),
             "period of the PWM",
             vec![
-                clocks("period", 0, 16, "clocks per period, from 64; 0 stands for 65536")
+                clocks("period", 0, 16, "length of the period, from 64; 0 stands for 65536")
                     .with_reset(period_clocks & 0xffff),
             ],
         )
@@ -112,7 +112,7 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
             0x1b,
             Configuration,
             "largest magnitude of the duty",
-            vec![clocks("max_duty", 0, 16, "high time in clocks").with_reset(period_clocks.min(0xffff))],
+            vec![clocks("max_duty", 0, 16, "largest high time").with_reset(period_clocks.min(0xffff))],
         )
         .with(
             "phase",
@@ -143,12 +143,7 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
                     watchdog",
                 )
                 .with_unit("periods"),
-                clocks(
-                    "filter_clocks",
-                    8,
-                    8,
-                    "clocks that a filtered fault may last without effect",
-                ),
+                clocks("filter_clocks", 8, 8, "longest filtered fault without effect"),
             ],
         )
         .with(

@@ -125,7 +125,7 @@ fn parameters(config: &ShaperConfig) -> Vec<Field> {
         parameter("machine_taps", "taps of bank 0", config.table().taps().len() as u32),
         parameter(
             "coefficient_fraction",
-            "fraction bits F of the coefficients",
+            "length F of the coefficients' fraction",
             config.coefficient_fraction(),
         )
         .with_unit("bits"),

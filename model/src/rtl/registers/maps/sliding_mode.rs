@@ -197,7 +197,7 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             0x24,
             Live,
             "how long the command has been clamped",
-            vec![Field::new("limited_ticks", 0, 16, "consecutive ticks; stops at 65535").with_unit("ticks")],
+            vec![Field::new("limited_ticks", 0, 16, "time without interruption; stops at 65535").with_unit("ticks")],
         )
         .with_shadowed(
             "duty",
