@@ -1,4 +1,5 @@
-//! The supervisor's Verilog against its bit-exact model, every output in every clock, and what must never happen.
+//! Compares the supervisor's Verilog with its bit-exact model, every output in every clock, and checks what must never
+//! happen.
 
 use crate::support;
 
@@ -9,7 +10,7 @@ use posicast_testbench::lockstep::{self, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{AxisRandom, AxisSafety};
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
 
-/// What makes the Verilog unsafe, and the rule that says so.
+/// Changes that make the Verilog unsafe, each with the rule that it violates.
 const MUTANTS: [(&str, &str, &str); 6] = [
     ("if (goes_quiet | cut)", "if (goes_quiet)", "outputs on a clock after"),
     (
@@ -47,7 +48,7 @@ fn crosssim_icarus_agrees_with_the_model() {
     icarus_agrees(&block());
 }
 
-/// Runs the Verilog, with `from` replaced by `to`, and gives what was violated.
+/// Runs the Verilog, with `from` replaced by `to`, and returns the violated rules.
 fn violations(from: &str, to: &str, cycles: u64) -> Vec<String> {
     let sources = Sources::of_modules(&broken(&block().modules().unwrap(), from, to)).unwrap();
     let mut device = sources.verilated(&block(), 3).unwrap();

@@ -1,4 +1,4 @@
-//! Coverage of a few blocks, as the example `coverage` measures it for all of them; unreached code must be detected.
+//! Measures the coverage of a few blocks, as the example `coverage` does for all; unreached code must be detected.
 
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::Block;
@@ -64,7 +64,7 @@ fn coverage_without_a_hole_for_an_explanation_is_noticed() {
     );
 }
 
-/// Verilator's counts for a module whose behaviour is obvious.
+/// Verilator's counts are correct for a module whose behaviour is obvious.
 #[test]
 fn coverage_counts_what_happens_and_nothing_else() {
     const VERILOG: &str = "module plain(input clk, input go, input stay, output reg [1:0] count);\n\

@@ -1,6 +1,6 @@
-//! Some blocks in two simulators with their waveforms compared, and faults that only this finds.
+//! Compares the waveforms of some blocks in two simulators, and checks faults that only this comparison finds.
 //!
-//! All blocks: the example `second_simulator`, in `scripts/verify-all`.
+//! The example `second_simulator`, which `scripts/verify-all` runs, covers all blocks.
 
 use crate::support::broken;
 use posicast_model::rtl::divider::DividerConfig;
@@ -15,14 +15,14 @@ fn divider() -> DividerBlock {
     DividerBlock::new(DividerConfig::new(5000).unwrap(), "")
 }
 
-/// The outcome with the first `from` in the block's Verilog replaced by `to`.
+/// Returns the outcome with the first `from` in the block's Verilog replaced by `to`.
 fn after(block: &dyn Block, from: &str, to: &str) -> CrosssimOutcome {
     let modules = broken(&block.modules().unwrap(), from, to);
     let folder = tempfile::tempdir().unwrap();
     crosssim::run_modules(block, &modules, CLOCKS, 1, folder.path()).unwrap()
 }
 
-/// Clocked outputs and unclocked ones, a memory, a multiplier, a bus.
+/// The blocks have clocked outputs and combinational ones, a memory, a multiplier and a bus.
 #[test]
 fn crosssim_waveforms_of_both_simulators_are_equal() {
     let names = ["divider", "group", "sample_select", "cascade", "registers"];
@@ -36,7 +36,7 @@ fn crosssim_waveforms_of_both_simulators_are_equal() {
     }
 }
 
-/// The value at power-up hides it from every other run: until the second reset, or for ever.
+/// The value at power-up hides the fault from every other run, until the second reset or for ever.
 #[test]
 fn crosssim_a_register_without_reset_is_x_after_it() {
     let outcome = after(&divider(), "        saturated_q <= 1'd0;\n", "");
@@ -57,7 +57,7 @@ fn crosssim_a_wire_that_nothing_drives_is_found_in_the_waveforms() {
     );
 }
 
-/// What each simulator reads differently: here by a macro, as a bug in one of them would.
+/// The simulators read different Verilog, here because of a macro, as if one of them had a bug.
 #[test]
 fn crosssim_a_simulator_with_a_mind_of_its_own_is_found() {
     let from = "        refused_q <= start & blocked;";

@@ -1,5 +1,5 @@
-//! The error table in the closed loop: a stage on a screw that is not true, with and without the table. The figures of `docs/error_table.md` are
-//! printed by
+//! The error table in the closed loop: a stage on an inaccurate screw, with and without the table. This command prints
+//! the figures of `docs/error_table.md`:
 //!
 //! ```text
 //! cargo nextest run --workspace -E 'test(figure_the_error_of_a_screw)' --no-capture
@@ -20,15 +20,16 @@ use posicast_testbench::stage_bench::StageBench;
 
 /// Counts per metre of the example.
 const COUNTS_PER_M: f64 = 1e6;
-/// Ticks in which a move and its vibration are over.
+/// Number of ticks after which a move and its vibration are over.
 const SETTLED_TICKS: u64 = 400;
 
-/// A screw of 5 mm lead: 80 µm/m too long, and 3 µm to and fro in each turn. True less counted position, in m.
+/// Error of a screw of 5 mm lead in m, as true minus counted position: 80 µm/m too long, and a periodic error of 3 µm
+/// per turn.
 fn screw(position: f64) -> f64 {
     80e-6 * position + 3e-6 * (TAU * position / 5e-3).sin()
 }
 
-/// What an interferometer has measured of it: every half millimetre over the travel and a little beyond.
+/// The error as an interferometer measures it, every half millimetre over the travel and a little beyond.
 fn measured() -> String {
     let rows = (-204..=204).map(|place| f64::from(place) * 0.5e-3);
     let rows = rows.map(|position| format!("{position},{}\n", screw(position)));
@@ -53,7 +54,7 @@ struct Bed {
 }
 
 impl Bed {
-    /// The machine of x and y, on; `with_verilog`: the RTL beside the model.
+    /// Switches on the machine of X and Y; with `with_verilog` the RTL runs beside the model.
     fn new(apply: &str, with_verilog: bool) -> Self {
         let machine = machine(apply);
         let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
@@ -97,7 +98,8 @@ impl Bed {
         assert_eq!(self.bench.read("x_command_position").unwrap() as i32, to);
     }
 
-    /// How far the table is from where it was to be, in m: the screw is true nowhere, and the loop knows its counter alone.
+    /// Returns the distance of the table from its target in m: the screw is inaccurate everywhere, and the loop sees
+    /// only its counter.
     fn off_by(&mut self, position: f64) -> f64 {
         let counted = self.bench.plant(0).motion().position;
         counted + screw(counted) - position
@@ -108,10 +110,10 @@ fn largest(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |largest, error| error.abs().max(largest))
 }
 
-/// Places over the travel, none of them an entry of the table.
+/// Positions over the travel, none of which is an entry of the table.
 const PLACES: [f64; 4] = [0.0371, 0.0628, -0.0214, -0.0907];
 
-/// The largest errors at rest at these places.
+/// Returns the largest errors at rest at these positions.
 fn errors(bed: &mut Bed) -> Vec<f64> {
     let off = |position: &f64| {
         bed.go(*position);
@@ -134,7 +136,8 @@ fn figure_the_error_of_a_screw_with_and_without_its_table() {
             micrometres(without),
             micrometres(with)
         );
-        // 80 µm/m at 91 mm and 3 µm of the turn; what is left is half a count of 1 µm, and what lies between two entries.
+        // Without the table the error is 80 µm/m at 91 mm plus the 3 µm per turn; with it, half a count of 1 µm and the
+        // error between two entries.
         assert!(without > 6e-6, "{without}");
         assert!(with < 0.75e-6, "{apply}: {with}");
     }
@@ -143,7 +146,7 @@ fn figure_the_error_of_a_screw_with_and_without_its_table() {
 #[test]
 fn lockstep_nothing_jumps_when_the_table_comes_and_goes() {
     let mut bed = Bed::new("reference", true);
-    // A quarter of a turn: 3.1 µm.
+    // After a quarter of a turn the error is 3.1 µm.
     bed.go(0.00125);
     let compensated = bed.bench.probe("x_compensated").unwrap();
     let mut last = bed.bench.at(compensated) as u32 as i32;
@@ -157,7 +160,7 @@ fn lockstep_nothing_jumps_when_the_table_comes_and_goes() {
             last = now;
         }
     }
-    // 3.1 µm in 1024 ticks, rounded: never more than a 256th of a count.
+    // These are 3.1 µm in 1024 ticks, rounded: never more than a 256th of a count.
     assert_eq!(largest_step, 1);
     assert_eq!(bed.bench.mismatches(), (0, None));
 }

@@ -1,4 +1,4 @@
-//! An arm whose mode moves with its position, in the closed loop: the figures of `docs/moving-modes.md`.
+//! An arm whose mode depends on its position, in the closed loop; it gives the figures of `docs/moving-modes.md`.
 
 use posicast_model::design::{TableFamily, design_machine};
 use posicast_model::hardware;
@@ -7,7 +7,7 @@ use posicast_model::motion::AxisMove;
 use posicast_testbench::stage_run::{Moved, Shaping, StageRun};
 
 const ARM: &str = include_str!("../../examples/telescope-arm.toml");
-/// m.
+/// In m.
 const DISTANCE: f64 = 0.3;
 
 fn machine(text: &str) -> Machine {

@@ -1,4 +1,4 @@
-//! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
+//! The mutation rung on small blocks: the fate of every mutant is known, and stimuli that find nothing are reported.
 
 use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::blocks::{Block, PartBlock, SmallPart};
@@ -64,7 +64,7 @@ fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
     assert_ne!(few(1), few(2));
 }
 
-/// The rows of a folder's check, on the stage of the example machine, under its default clocks and seed.
+/// The rows that check a folder, on the stage of the example machine, with the default clocks and seed.
 #[test]
 fn mutate_every_named_mutant_inside_the_stage_is_found() {
     let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();

@@ -53,7 +53,7 @@ impl Mapped {
     }
 }
 
-/// The blocks have plain logic; carry chains; a carry into a chain that is a signal; a kept ROM and RAM.
+/// The blocks have plain logic, carry chains, a chain whose carry-in is a signal, and a kept ROM and RAM.
 #[test]
 fn netlist_is_proven_equal_to_the_rtl() {
     for (name, kept) in [("group", 0), ("divider", 0), ("pwm", 0), ("setting_banks", 2)] {
@@ -71,7 +71,7 @@ fn netlist_does_what_the_model_does() {
     assert_eq!((report.result, report.cycles), (report::LockstepVerdict::Match, CLOCKS));
 }
 
-/// One table is inverted, as a fault of a mapper would look.
+/// One look-up table is inverted, like by a fault of a mapper.
 #[test]
 fn netlist_with_a_wrong_table_is_found_by_simulation_and_proof() {
     let mapped = Mapped::new("group");

@@ -1,4 +1,4 @@
-//! The small blocks between others: lockstep of each with its model.
+//! Compares the small blocks that connect others with their models in lock step.
 
 use crate::support;
 

@@ -1,4 +1,4 @@
-//! The PWM's Verilog against its bit-exact model, every output in every clock, with the gates watched.
+//! Compares the PWM's Verilog with its bit-exact model, every output in every clock, and checks the gates' safety.
 
 use crate::support::broken;
 use posicast_hdl::pwm::{emit, name};
@@ -28,7 +28,7 @@ fn plain() -> PwmConfig {
 }
 
 impl Bench {
-    /// With the first `from` in the Verilog replaced by `to`.
+    /// Compiles the PWM with the first `from` in the Verilog replaced by `to`.
     fn new(config: PwmConfig, from: &str, to: &str) -> Self {
         let modules = broken(&emit(&config, "").unwrap(), from, to);
         Self {
@@ -115,7 +115,7 @@ fn crosssim_icarus_agrees_with_the_model() {
     assert_holds(&bench.run(&mut icarus, 4, 20_000));
 }
 
-/// Breaks the Verilog and insists on a mismatch.
+/// Breaks the Verilog and requires a mismatch.
 fn caught(from: &str, to: &str) -> Outcome {
     let bench = Bench::new(plain(), from, to);
     let outcome = bench.run(&mut bench.verilated(1), 1, 600_000);
@@ -154,5 +154,5 @@ fn lockstep_catches_a_pin_that_the_mask_forgets() {
 #[test]
 fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
     let outcome = caught("lasts = dead_time;", "lasts = 10'd1;");
-    assert!(outcome.violation.is_some(), "the gates are not watched");
+    assert!(outcome.violation.is_some(), "the gates' safety is not checked");
 }

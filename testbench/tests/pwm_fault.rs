@@ -1,11 +1,12 @@
-//! The PWM's fault path in an event simulator: pulses shorter than a clock, which a cycle simulation cannot see.
+//! Tests the PWM's fault path in an event simulator, with pulses shorter than a clock, which a cycle simulation cannot
+//! see.
 
 use crate::support::broken;
 use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use std::process::Command;
 
-/// Compiles and runs `pwm_fault.v` with the emitted Verilog, the first `from` in it replaced by `to`.
+/// Compiles and runs `pwm_fault.v` with the emitted Verilog, in which the first `from` is replaced by `to`.
 fn said(from: &str, to: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let config = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();

@@ -1,5 +1,5 @@
-//! The PWM's Verilog against the pin rule alone, over a million periods: every edge on the pins is that of
-//! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not asked.
+//! Compares the PWM's Verilog with the pin rule alone, over a million periods: every edge on the pins is that of
+//! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not used.
 
 use crate::support::broken;
 use posicast_hdl::pwm::{emit, name};
@@ -14,15 +14,15 @@ use posicast_testbench::verilator::{Verilated, VerilogSource};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Periods from one choice of period, dead time and minimum pulse to the next.
+/// Number of PWM periods with the same period, dead time and minimum pulse.
 const STRETCH_PERIODS: u64 = 500;
-/// From the clock of a position to that in which the pins show it.
+/// Number of clocks from a position of the carrier until the pins show it.
 const PIN_CLOCKS: usize = 1;
-/// From reset to the first valley, at which the period is taken.
+/// Number of clocks from reset to the first valley, at which the period is taken.
 const FIRST_VALLEY: i64 = 32;
 const SHORTEST_PERIOD: i64 = SHORTEST_PERIOD_CLOCKS as i64;
 
-/// The PWM under Verilator, with the first `from` in the Verilog replaced by `to`.
+/// Compiles the PWM with Verilator, with the first `from` in the Verilog replaced by `to`.
 fn verilated(from: &str, to: &str) -> Verilated {
     let config = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();
     let sources = Sources::of_modules(&broken(&emit(&config, "").unwrap(), from, to)).unwrap();
@@ -35,7 +35,7 @@ fn verilated(from: &str, to: &str) -> Verilated {
     Verilated::build(&source, 1).unwrap()
 }
 
-/// What one stretch found.
+/// Result of one run with constant times.
 #[derive(Debug, Default)]
 struct Found {
     periods: u64,
@@ -73,7 +73,7 @@ impl Bench {
         }
     }
 
-    /// Mostly the mode before; duties everywhere, often at the ends.
+    /// Chooses mostly the previous mode, and any duty, often one at the ends.
     fn command(&mut self, timing: &Timing, before: &Latched) -> Latched {
         let rng = &mut self.rng;
         let period = timing.period;
@@ -97,7 +97,7 @@ impl Bench {
         }
     }
 
-    /// Reset, start, and so many periods of new values at every boundary.
+    /// Resets, starts, and plays `periods` periods with new values at every boundary.
     fn stretch(&mut self, periods: u64, found: &mut Found) {
         let timing = self.timing();
         let update_at_peak = self.rng.random_range(0..2) == 0;
@@ -132,8 +132,8 @@ impl Bench {
             ..inputs(&latched)
         };
         self.rows.extend(reset.to_raw());
-        // The first valley takes the period. The trip is cleared; the last of four periods enables, and the next one begins to
-        // run.
+        // The first valley takes the period. The trip is cleared; the last of four periods enables the outputs, and the
+        // next one runs.
         let run_in = 1 + FIRST_VALLEY + 4 * timing.period;
         for clock in 1..run_in {
             let waits = Inputs {
@@ -162,7 +162,7 @@ impl Bench {
                     }
                     self.expected
                         .push([gates.a_high, gates.a_low, gates.b_high, gates.b_low]);
-                    // The next boundary reads its command so many clocks before; anything may stand there until then.
+                    // The next boundary reads its command this many clocks before; until then it can have any value.
                     let left = clocks - clock;
                     let row = if left == i64::from(COMMAND_CLOCKS) + 1 {
                         inputs(&next)
@@ -189,7 +189,7 @@ impl Bench {
         found.periods += periods;
     }
 
-    /// `first`: the clock of the first position that runs.
+    /// Checks the edges; `first` is the clock of the first position that runs.
     fn compare(&mut self, first: usize, found: &mut Found) {
         for (clock, shown) in self.shown.chunks_exact(OUTPUT_PORTS).enumerate() {
             self.safety.observe(shown);
@@ -226,7 +226,7 @@ fn lockstep_every_edge_of_a_million_periods_is_that_of_the_pin_rule() {
     assert!(found.edges > 2 * found.periods, "{found:?}");
 }
 
-/// Breaks the Verilog and insists on a wrong edge.
+/// Breaks the Verilog and requires a wrong edge.
 fn caught(from: &str, to: &str) {
     let found = run(verilated(from, to), 1, 20_000);
     assert!(found.wrong.is_some(), "`{to}` is not found");

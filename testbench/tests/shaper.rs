@@ -1,4 +1,4 @@
-//! The shaper's Verilog against its bit-exact model, every output in every clock.
+//! Compares the shaper's Verilog with its bit-exact model, every output in every clock.
 
 use crate::support;
 
@@ -15,7 +15,7 @@ use posicast_testbench::stimuli::{
 use posicast_testbench::verilator::Verilated;
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
 
-/// A ZVD shaper in the manner of the XY stage: three impulses, two taps each.
+/// A ZVD shaper like that of the XY stage: three impulses with two taps each.
 fn zvd(fraction: u32) -> TapTable {
     let taps = [(0, 388), (38, 280), (39, 190), (77, 100), (78, 42)];
     let mut taps = taps.map(|(delay_samples, permille)| Tap {
@@ -27,7 +27,7 @@ fn zvd(fraction: u32) -> TapTable {
     TapTable::new(fraction, taps.to_vec()).unwrap()
 }
 
-/// Negative impulses: swings beyond full scale.
+/// Taps of negative impulses, whose output swings beyond full scale.
 fn negative(fraction: u32) -> TapTable {
     let one = 1 << fraction;
     let taps = [(0, one), (7, -2 * one), (15, 2 * one)].map(|(delay_samples, coefficient)| Tap {
@@ -58,7 +58,7 @@ impl Bench {
         Self::broken(config, "", "")
     }
 
-    /// With the first `from` in the Verilog replaced by `to`.
+    /// Compiles the shaper with the first `from` in the Verilog replaced by `to`.
     fn broken(config: ShaperConfig, from: &str, to: &str) -> Self {
         let block = ShaperBlock::new(config, "", "alone").unwrap();
         let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
@@ -90,7 +90,7 @@ impl Bench {
     }
 }
 
-/// A lock step whose coverage is looked at by name.
+/// A lock step with its coverage by name.
 fn run(
     block: &dyn Block,
     layout: &Layout,
@@ -313,7 +313,7 @@ fn lockstep_catches_a_history_that_ages_a_sample_late() {
 #[test]
 fn lockstep_catches_a_read_back_that_goes_wrong() {
     let motion = || for_motion(standard(), 3, false);
-    // The other bank, a tap that is not loaded, a read in a pass, one beside a write.
+    // The reads are of the other bank, of a tap that is not loaded, in a pass, and at the same time as a write.
     caught_in(
         standard(),
         "read_address = write_address;",
@@ -324,7 +324,7 @@ fn lockstep_catches_a_read_back_that_goes_wrong() {
     caught_in(motion(), "& !tap_write", "");
 }
 
-/// Faults that ten million random clocks did not show, each with the corner that shows it.
+/// Faults that ten million random clocks did not reveal, each with the directed case that does.
 #[test]
 fn crosssim_corners_catch_what_random_stimuli_miss() {
     for (corner, from, to) in [

@@ -16,16 +16,16 @@ const TORQUE: &str = include_str!("../../examples/xy-stage-torque.toml");
 const SEED: u64 = 11;
 /// Time of the supervision: 300 ticks.
 const LOST_S: f64 = 0.03;
-/// Most ticks until the supervision has tripped on a wrong sign: its own ticks, and those until the command is above
-/// half of full scale.
+/// Largest number of ticks until the supervision has tripped on a wrong sign: its own ticks, and those until the
+/// command is above half of full scale.
 const MOST_TICKS: u64 = 300 + 300;
-/// Most counts in that time: full speed of 0.5 m/s for 30 ms, or 20.2 m/s² (2.73 A on 64 kg) for 40 ms.
+/// Largest number of counts in that time: full speed of 0.5 m/s for 30 ms, or 20.2 m/s² (2.73 A on 64 kg) for 40 ms.
 const MOST_COUNTS: i64 = 16_000;
 /// The same for a following error of 1000 counts, plus the overshoot until the gates are off.
 const MOST_COUNTS_BY_ERROR: i64 = 1200;
-/// Most ticks until an axis that runs away is off.
+/// Largest number of ticks until an axis that runs away is off.
 const PATIENCE_TICKS: u64 = 3000;
-/// Most clocks until an axis is on.
+/// Largest number of clocks until an axis is on.
 const PATIENCE_CLOCKS: u64 = 1_000_000;
 /// Number of clocks in which the brake releases and everything comes to rest.
 const REST_CLOCKS: u64 = 300_000;
@@ -113,7 +113,7 @@ fn of_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: When) -> 
             limits.following_error = None;
         }
         if when == When::Hold {
-            // Friction would hold an axis that is so little away.
+            // Friction would hold an axis with so small a deviation.
             axis.drive.as_mut().unwrap().coulomb = 0.0;
         }
     });

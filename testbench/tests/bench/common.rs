@@ -90,7 +90,7 @@ pub(crate) fn memory_ports() -> Vec<Port> {
     ]
 }
 
-/// Verilog in a folder of its own, with a cache beside it.
+/// Verilog in a separate folder, with a cache beside it.
 pub(crate) struct Files {
     pub(crate) folder: TempDir,
     pub(crate) files: Vec<PathBuf>,

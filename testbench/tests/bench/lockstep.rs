@@ -1,4 +1,4 @@
-//! Lockstep runs on hand-written Verilog: the errors that they must find, and their reports.
+//! Tests lockstep runs on hand-written Verilog: the errors that they must find, and their reports.
 
 use crate::bench::common::{COUNTER, Counter, Files, counter_ports};
 use posicast_model::rtl::{ClockedBlock, Port};

@@ -1,4 +1,4 @@
-//! The bench itself, tried on small hand-written Verilog and waveforms.
+//! Tests the bench itself on small hand-written Verilog and waveforms.
 
 mod common;
 mod lockstep;

@@ -1,4 +1,4 @@
-//! A recorded move: the machine's own clock, true times, and nothing missing where clocks are left out.
+//! Tests a recorded move: it has the machine's own clock and true times, and loses no change where clocks are left out.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::bench::waves::{read, times_of_ones};
 
 const SAMPLE_HZ: f64 = 10e3;
 const SAMPLES: usize = 40;
-/// Nanoseconds of the two clocks of reset.
+/// Duration of the two clocks of reset in nanoseconds.
 const RESET_NS: u64 = 40;
 
 fn machine() -> MachineShapers {
@@ -31,7 +31,7 @@ fn machine() -> MachineShapers {
     MachineShapers::new("stage", shapers.into(), vec![words.clone(), words]).unwrap()
 }
 
-/// The move with the passes recorded, or with all clocks.
+/// Records the move, either only the clocks of the passes or all of them.
 fn record(top: &MachineShapers, path: &Path, all_clocks: bool) -> RecordedMove {
     let command = Move {
         layout: top.layout(),
@@ -59,7 +59,7 @@ fn unit_a_recorded_move_shows_the_machines_clock_and_true_times() {
     let strobes = times_of_ones(&changes["stage.strobe"]);
     let expected: Vec<u64> = (0..SAMPLES as u64).map(|n| RESET_NS + n * 100_000).collect();
     assert_eq!(strobes, expected);
-    // The first tap's product is out so many clocks of 20 ns later, in each sample.
+    // In each sample, the product of the first tap appears this many clocks of 20 ns later.
     let pass_ns = (trace.valid_clocks[0][0] - 2) * 20;
     let valid: Vec<u64> = expected.iter().map(|strobe| strobe + pass_ns).collect();
     assert_eq!(times_of_ones(&changes["stage.x_valid"]), valid);
@@ -123,7 +123,7 @@ fn unit_a_difference_between_recorded_moves_is_found_wherever_it_is() {
     let clock = text.lines().find(|line| line.contains(" clk $end")).unwrap();
     let clock = clock.split_whitespace().nth(3).unwrap().to_owned();
     let mut planted = 0;
-    // Every rise of a bit that is not the clock's, taken out one at a time; the first is in $dumpvars.
+    // Every rise of a bit other than the clock is removed, one at a time; the first is in $dumpvars.
     for change in changes {
         let line = text[change..].lines().next().unwrap();
         if line[1..] == clock {

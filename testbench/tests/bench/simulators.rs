@@ -1,4 +1,4 @@
-//! The two simulators on hand-written Verilog: values, ports, errors, cache.
+//! Tests the two simulators on hand-written Verilog: values, ports, errors, cache.
 
 use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
@@ -187,7 +187,7 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
             scope.spawn(move || same_as_model(&mut Verilated::build_in(&files.cache(), source, seed).unwrap(), 100));
         }
     });
-    // A file that was built again would be another one under the same name.
+    // A rebuilt file would be a new file with the same name.
     let kept = |extension: &str| -> Vec<(PathBuf, u64)> {
         let entries = std::fs::read_dir(files.cache()).unwrap().map(Result::unwrap);
         let entries = entries.map(|entry| (entry.path(), entry.metadata().unwrap().ino()));

@@ -1,4 +1,4 @@
-//! Waveforms: what is written is what was recorded, and the merged view holds all of it.
+//! Tests waveforms: the file has what was recorded, and the merged view has all of it.
 
 use std::path::Path;
 
@@ -67,10 +67,10 @@ fn golden_clocks_that_are_left_out_are_named() {
          #99990\n0!\n1\"\n#100000\n1!\nb0011 #\n#100010\n0!\n#100020\n1!\n#100030\n0!\n#100040\n1!\n"
     );
     let mut plain = Recorder::create(&path, 50e6, &["t"], &[]).unwrap();
-    assert!(plain.skip_to(1).is_err(), "without `recording` nothing is left out");
+    assert!(plain.skip_to(1).is_err(), "without `recording` no clock can be left out");
 }
 
-/// Clocks whose half period is a whole number of each unit, of 10 and 100 of them, and of none.
+/// Clocks whose half period is a whole number of each unit, of 10 or 100 units, or of none.
 const CLOCKS_HZ: [f64; 12] = [
     0.5, 5.0, 50.0, 10e3, 37.5e3, 180e3, 3e6, 40e6, 50e6, 66.666e6, 125e6, 2.5e9,
 ];
@@ -97,7 +97,7 @@ fn unit_every_file_has_a_unit_of_a_power_of_1000_and_readers_see_the_true_times(
     }
 }
 
-/// The numbers that GTKWave takes as times, and the zoom: [begin of the view, zoom, marker].
+/// Returns the numbers that GTKWave takes as times, and the zoom: [begin of the view, zoom, marker].
 fn gtkwave_times(session: &str) -> [f64; 3] {
     let start = session.lines().find_map(|line| line.strip_prefix("[timestart] "));
     let zoom = session.lines().find_map(|line| line.strip_prefix('*')).unwrap();
@@ -105,7 +105,7 @@ fn gtkwave_times(session: &str) -> [f64; 3] {
     [start.unwrap_or("0"), zoom, marker].map(|number| number.parse().unwrap())
 }
 
-/// Pixels of GTKWave's waves in a window of 1400 pixels, and pixels per unit of time of a zoom.
+/// Number of pixels of GTKWave's waves in a window of 1400 pixels, and pixels per unit of time of a zoom.
 const GTKWAVE_PIXELS: f64 = 920.0;
 fn pixels_per_unit(zoom: f64) -> f64 {
     200.0 * zoom.exp2()
@@ -115,7 +115,7 @@ fn pixels_per_unit(zoom: f64) -> f64 {
 fn unit_sessions_name_times_in_the_unit_of_their_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    // Files of other tools, with the same times in three units, two of which viewers disagree on.
+    // These are files of other tools, with the same times in three units; viewers disagree on two of them.
     for (timescale, unit_fs) in [
         ("10 fs", 10u64),
         ("100 ps", 100_000),
@@ -205,7 +205,7 @@ fn unit_a_divergence_at_either_end_of_a_file_is_in_view() {
             start <= marker && marker <= start + 220.0,
             "{time_ns} ns: from {start} ns on"
         );
-        // GTKWave ignores a beginning behind which the file does not fill its window, here without the list of scopes.
+        // GTKWave ignores a beginning after which the file does not fill its window, here without the list of scopes.
         assert!(start + 1.4 * 220.0 <= end, "{time_ns} ns: from {start} to {end} ns");
     }
 }

@@ -1,4 +1,4 @@
-//! What independent readers, the crates `vcd` and `wellen`, see in a written file.
+//! Reads a written file with independent readers, the crates `vcd` and `wellen`.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use vcd::{Command, IdCode, Parser, ScopeItem, TimescaleUnit};
 
-/// Of each signal, by its full name, times and values.
+/// Times and values of each signal, by its full name.
 pub(crate) type Changes = BTreeMap<String, Vec<(u64, String)>>;
 
 fn names(items: &[ScopeItem], scope: &str, found: &mut Vec<(IdCode, String)>) {
@@ -20,7 +20,7 @@ fn names(items: &[ScopeItem], scope: &str, found: &mut Vec<(IdCode, String)>) {
     }
 }
 
-/// The unit of time, and all changes of single bits and vectors, by the crate `vcd`.
+/// Returns the unit of time and all changes of single bits and vectors, as the crate `vcd` reads them.
 pub(crate) fn read(path: &Path) -> (String, Changes) {
     let mut parser = Parser::new(BufReader::new(File::open(path).unwrap()));
     let header = parser.parse_header().unwrap();
@@ -43,7 +43,7 @@ pub(crate) fn read(path: &Path) -> (String, Changes) {
     (format!("{number} {unit}"), changes.collect())
 }
 
-/// The times at which a bit becomes 1.
+/// Returns the times at which a bit becomes 1.
 pub(crate) fn times_of_ones(changes: &[(u64, String)]) -> Vec<u64> {
     changes
         .iter()
@@ -52,8 +52,8 @@ pub(crate) fn times_of_ones(changes: &[(u64, String)]) -> Vec<u64> {
         .collect()
 }
 
-/// Femtoseconds per unit of time, by the crate `wellen`, which must be a second divided by a power of 1000; and the times of
-/// the file in these units.
+/// Returns the femtoseconds per unit of time as the crate `wellen` reads it, which must be a second divided by a power
+/// of 1000, and the times of the file in these units.
 pub(crate) fn unit_and_times(path: &Path) -> (u64, Vec<u64>) {
     let wave = wellen::simple::read(path).unwrap();
     let timescale = wave.hierarchy().timescale().unwrap();

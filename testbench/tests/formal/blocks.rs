@@ -1,4 +1,4 @@
-//! Encoder, time, PWM, segments, scale, trace and test signals.
+//! Proofs of encoder, time base, PWM, segments, scale, trace and test signals.
 
 use crate::formal::{fails, is_no_longer_proven, proven};
 

@@ -1,4 +1,4 @@
-//! The blocks that the bus writes: registers, commits, settings.
+//! Proofs of the blocks that the bus writes: registers, commits, settings.
 
 use crate::formal::{fails, proven};
 

@@ -1,4 +1,4 @@
-//! The controller and its arithmetic.
+//! Proofs of the controller and its arithmetic.
 
 use crate::formal::{fails, proven};
 

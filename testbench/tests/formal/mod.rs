@@ -1,4 +1,4 @@
-//! The proofs that are quick, and each property file seen to fail on a block that was broken on purpose.
+//! Runs the quick proofs, and checks that each property file fails on a block with a deliberate fault.
 
 mod blocks;
 mod bus;
@@ -22,7 +22,8 @@ pub(crate) fn proven(name: &str, size: usize) {
     assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
 }
 
-/// Replaces the first `from` in the block's Verilog by `to`, and insists on a counterexample to a property that begins so.
+/// Replaces the first `from` in the block's Verilog by `to`, and requires a counterexample to a property whose name
+/// begins with `property`.
 #[track_caller]
 pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
     let task = broken(name, from, to);
@@ -36,8 +37,8 @@ pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
     }
 }
 
-/// As [`fails`], where a counterexample begins further from the reset than is searched: the proof of the block that was broken
-/// does not succeed, as that of the block itself does.
+/// As [`fails`], for a counterexample that is further from the reset than the search goes: the proof of the broken
+/// block must not succeed, whereas that of the block does.
 #[track_caller]
 pub(crate) fn is_no_longer_proven(name: &str, from: &str, to: &str) {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The shapers.
+//! Proofs of the shapers.
 
 use crate::formal::{fails, proven};
 

@@ -1,4 +1,4 @@
-//! The supervisor of an axis, its command to the drive, and the group.
+//! Proofs of the supervisor of an axis, its command to the drive, and the group.
 
 use crate::formal::{fails, proven};
 

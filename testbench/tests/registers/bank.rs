@@ -1,4 +1,4 @@
-//! The bank alone: every kind of access in one map.
+//! Tests the register bank alone, with every kind of access in one map.
 
 use crate::registers::everything::everything;
 use crate::registers::support::{Bench, assert_match};
@@ -40,7 +40,7 @@ fn crosssim_icarus_agrees_with_the_model() {
     assert_match(&report);
 }
 
-/// Breaks the Verilog and insists on a mismatch.
+/// Breaks the Verilog and requires a mismatch.
 fn caught(from: &str, to: &str) {
     let (map, bench) = (everything(), bench(from, to));
     let report = bench.run(

@@ -1,4 +1,4 @@
-//! The six classic register tests: bank and components, model and Verilog. And each catches a bank that is wrong.
+//! Runs the six classic register tests on bank and components, model and Verilog; each must detect a faulty bank.
 
 use crate::registers::components::{pulse_counter, pwm, shaper, sliding_mode};
 use crate::registers::everything::everything;
@@ -9,7 +9,7 @@ use posicast_model::rtl::component::Component;
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
 use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
 
-/// The names of the tests that find something.
+/// Returns the names of the tests that fail.
 fn failing(map: &RegisterMap, block: &mut dyn ClockedBlock, hardware: RegisterHardware) -> Vec<String> {
     let mut failing = Vec::new();
     for (name, test) in TESTS {

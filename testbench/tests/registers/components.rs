@@ -1,4 +1,4 @@
-//! The components: registers and blocks together, through the bus and the pins.
+//! Tests the components, that is registers and blocks together, through the bus and the pins.
 
 use crate::registers::support::{Bench, assert_match};
 use posicast_hdl::component::emit;
@@ -69,7 +69,7 @@ fn lockstep(component: &Component, cycles: u64) {
     assert!(changed.least() > 100, "{:?}", changed.counts);
 }
 
-/// How often each output changed.
+/// Number of changes of each output.
 #[derive(Default)]
 struct Changes {
     before: Vec<u64>,
@@ -103,7 +103,7 @@ fn crosssim(component: &Component) {
     assert_match(&report);
 }
 
-/// Breaks the Verilog and insists on a mismatch.
+/// Breaks the Verilog and requires a mismatch.
 fn caught(component: &Component, from: &str, to: &str) {
     let bench = bench(component, from, to);
     let report = bench.run(

@@ -1,4 +1,4 @@
-//! A register map with every kind of access, and fields at every kind of place.
+//! A register map with every kind of access, and fields at every kind of position.
 
 use posicast_model::rtl::registers::{Access, Description, Field, FlagSource, RegisterMap};
 

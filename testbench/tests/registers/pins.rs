@@ -1,4 +1,4 @@
-//! What must hold at the pins of a PWM or of a stage's axis in every clock, whatever the traffic is.
+//! Checks what must hold at the pins of a PWM or of a stage's axis in every clock, whatever the traffic is.
 //!
 //! Both sides of a leg are never on, and the dead time is between them; no gate is on in a clock of a raw fault; with
 //! the drive disabled no gate is on, and the brake is applied.

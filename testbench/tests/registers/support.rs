@@ -1,4 +1,4 @@
-//! Verilog on disk, perhaps broken on purpose, and a run of it beside a model.
+//! Writes Verilog to disk, with or without a deliberate fault, and runs it beside a model.
 
 use crate::support::broken;
 use posicast_hdl::emit::Module;
@@ -18,7 +18,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// `modules`, the top last, with the first `from` replaced by `to`.
+    /// Writes `modules`, the top last, with the first `from` replaced by `to`.
     pub(crate) fn new(name: &str, modules: &[Module], from: &str, to: &str) -> Self {
         let modules = broken(modules, from, to);
         let top = modules.last().unwrap();

@@ -1,7 +1,7 @@
-//! Any traffic on the bus, legal or not, over whatever else a bench does: model and RTL stay equal, every read shows what its
-//! description promises, and the pins stay safe.
+//! Adds any traffic on the bus, legal or not, to what a bench does: model and RTL stay equal, every read returns what
+//! the register map promises, and the pins stay safe.
 //!
-//! Proptest writes the traffic, so that a failure comes with a short one. `PROPTEST_CASES` asks for more cases.
+//! Proptest makes the traffic and shortens it after a failure. `PROPTEST_CASES` sets the number of cases.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -23,17 +23,17 @@ use crate::registers::components;
 use crate::registers::everything::everything;
 use crate::registers::pins::Pins;
 
-/// Places of address, read, write, byte enable and data among the inputs of every component.
+/// Positions of address, read, write, byte enable and data among the inputs of every component.
 const BUS: [usize; 5] = [1, 2, 3, 4, 5];
 
-/// What the bus does for some clocks.
+/// Activity of the bus for some clocks.
 #[derive(Debug, Clone)]
 enum Access {
-    /// What the bench's own driver does.
+    /// The bench's own driver uses the bus.
     Driver(usize),
-    /// Nothing.
+    /// The bus is idle.
     Idle(usize),
-    /// So many clocks of the same access, one after the other.
+    /// The same access in this many consecutive clocks.
     Register {
         at: Index,
         read: bool,
@@ -42,7 +42,7 @@ enum Access {
         bytes: u8,
         clocks: usize,
     },
-    /// The same at any address.
+    /// Returns the same access at any address.
     Anywhere {
         address: u16,
         write: bool,
@@ -76,7 +76,7 @@ fn access() -> impl Strategy<Value = Access> {
     ]
 }
 
-/// The traffic, put over the bench's own inputs.
+/// Traffic that replaces the bench's own inputs of the bus.
 struct Traffic<'a> {
     base: Box<dyn Stimuli + 'a>,
     map: &'a RegisterMap,
@@ -151,7 +151,7 @@ struct Bed {
     dead_time: u64,
 }
 
-/// What a run was: clocks with a gate on, and reads.
+/// Counts of a run: clocks with a gate on, and reads.
 #[derive(Debug, Default)]
 struct Reached {
     on: u64,
@@ -230,7 +230,7 @@ fn config(ordinary: u32) -> ProptestConfig {
     }
 }
 
-/// Runs the cases, and says what they reached.
+/// Runs the cases and returns what they reached.
 #[track_caller]
 fn holds(bed: &Bed, cases: u32, cycles: u64) -> Reached {
     let reached = RefCell::new(Reached::default());
@@ -266,8 +266,8 @@ fn prop_traffic_on_the_components_breaks_nothing() {
     }
 }
 
-/// Mode 0 is left out: a change to it while a bridge is on is the finding of docs/verification.md, and the stage has its mode
-/// fixed. What the PWM's component does with modes is in the proofs of `pwm`.
+/// Mode 0 is left out: a change to it while a bridge is on is a finding in docs/verification.md, and the mode of a
+/// stage is fixed. The proofs of `pwm` cover the modes of the PWM's component.
 #[test]
 fn prop_traffic_on_the_pwm_leaves_the_pins_safe() {
     let config = PwmConfig::new(ActiveLow::default(), 4, 3).unwrap();
@@ -302,7 +302,7 @@ fn prop_traffic_on_the_stage_leaves_the_pins_safe() {
     assert!(reached.on > 100 && reached.reads > 10_000, "{reached:?}");
 }
 
-/// What the traffic finds in a bank that forgets a byte enable; in a PWM, and in a stage, whose pins are not safe.
+/// The traffic detects a bank that ignores a byte enable, and a PWM and a stage whose pins are not safe.
 #[test]
 fn prop_traffic_finds_what_is_broken() {
     let broken = |bed: Bed, from: &str, to: &str| {
@@ -329,7 +329,8 @@ fn prop_traffic_finds_what_is_broken() {
     broken(pwm, "lasts = dead_time;", "lasts = 10'd1;");
 }
 
-/// The oracle of reads alone, without a model beside: a word of another register, a bit of no field, a word that changes.
+/// The check of reads alone, without a model, detects a word of another register, a bit outside all fields, and a word
+/// that changes.
 #[test]
 fn unit_reads_that_break_a_promise_are_noticed() {
     let map = everything();

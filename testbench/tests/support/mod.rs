@@ -1,11 +1,12 @@
-//! What the lock-step tests of the blocks share: a bench from `posicast_testbench::blocks`, run and judged.
+//! Functions that the lock-step tests of the blocks share: they run a bench of `posicast_testbench::blocks` and check
+//! the result.
 
 use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::mutation::NamedMutant;
 
-/// Insists on a match, and shows the first mismatch.
+/// Requires a match, and shows the first mismatch.
 #[track_caller]
 pub(crate) fn assert_match(report: &LockstepReport, what: &str) {
     for block in &report.blocks {
@@ -16,7 +17,8 @@ pub(crate) fn assert_match(report: &LockstepReport, what: &str) {
     assert_eq!(report.result, LockstepVerdict::Match, "{what}");
 }
 
-/// Lint clean; a million random clocks equal; every bin hit `least` times and more.
+/// Checks that lint has no warnings, that a million random clocks are equal, and that every bin was hit at least
+/// `least` times.
 #[track_caller]
 pub(crate) fn million_random_clocks(block: &dyn Block, seed: u64, least: u64) -> Run {
     let sources = Sources::write(block).unwrap();
@@ -28,7 +30,7 @@ pub(crate) fn million_random_clocks(block: &dyn Block, seed: u64, least: u64) ->
     run
 }
 
-/// The second simulator agrees, and shows no `x`.
+/// Checks that the second simulator agrees, and shows no `x`.
 #[track_caller]
 pub(crate) fn icarus_agrees(block: &dyn Block) {
     let mut device = Sources::write(block).unwrap().icarus(block).unwrap();
@@ -36,7 +38,7 @@ pub(crate) fn icarus_agrees(block: &dyn Block) {
     assert_match(&report, "Icarus");
 }
 
-/// Puts a mutant into the block's Verilog, the first `from` replaced by `to`, and insists on a mismatch within so many clocks.
+/// Replaces the first `from` in the block's Verilog by `to`, and requires a mismatch within this number of clocks.
 #[track_caller]
 pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
@@ -53,7 +55,7 @@ pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     );
 }
 
-/// The Verilog with a mutant in it, which has the name of the test: the first `from` replaced by `to`.
+/// Returns the Verilog with a mutant that has the name of the test: the first `from` is replaced by `to`.
 #[track_caller]
 pub(crate) fn broken(modules: &[Module], from: &str, to: &str) -> Vec<Module> {
     let test = std::thread::current();
