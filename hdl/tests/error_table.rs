@@ -1,4 +1,4 @@
-//! The error table in RustHDL's simulator against its model.
+//! The error table in RustHDL's simulator compared with its model.
 
 use crate::random;
 

@@ -49,7 +49,7 @@ fn lockstep_everything_at_random() {
     assert!(moved > 3000, "{moved} clocks in a move");
 }
 
-/// A cubic of two ticks, and nothing after it: three ticks more at its velocity, then the stop.
+/// A cubic of two ticks with nothing after it: three more ticks at its velocity, then the stop.
 #[test]
 fn lockstep_an_entry_that_is_missing() {
     let mut model = Segments::new(5);
@@ -69,7 +69,7 @@ fn lockstep_an_entry_that_is_missing() {
         rusthdl.step(&inputs, &mut actual).unwrap();
         assert_eq!(actual, expected, "clock {clock}");
     }
-    // Stopped, by an underrun.
+    // It has stopped because of an underrun.
     assert_eq!([expected[18], expected[4], expected[10]], [3, 3, 1]);
 }
 

@@ -78,7 +78,7 @@ fn inputs_of(block: &dyn ClockedBlock, hints: Hints) -> (RandomInputs, usize) {
     (RandomInputs::new(block.ports(), hints), outputs.count())
 }
 
-/// Compares them under random inputs that are held; the fast one uses `step` or `hold`. Returns the number of clocks
+/// Compares them with random inputs that are held; the fast one uses `step` or `hold`. Returns the number of clocks
 /// per call, or the first difference.
 fn compare(fast: &mut Composed, plain: &mut Plain, hints: Hints, seed: u64) -> Result<f64, String> {
     let mut random = Random(seed);

@@ -47,8 +47,9 @@ fn stage(kind: &str, matched: bool) -> Machine {
     }
 }
 
-/// Section 6 of the notes on the XY stage: a circle of 10 mm at 100 mm/s. The unshaped stage leaves 9.17 um, ZV 37.97, ZVD 71.06; with the
-/// delays of the axes equal ZV leaves 0.69 and ZVD 4.2. The notes' shapers are exact and their command has no samples.
+/// Section 6 of the notes on the XY stage has a circle of 10 mm at 100 mm/s. The unshaped stage leaves 9.17 um, ZV
+/// 37.97, ZVD 71.06; with equal delays of the axes ZV leaves 0.69 and ZVD 4.2. The notes' shapers are exact, and their
+/// command is not sampled.
 #[test]
 fn golden_a_circle_of_the_xy_stage_has_the_errors_of_the_notes() {
     let circle = contour(&shapes::circle(0.01, 0.1).unwrap());

@@ -1,4 +1,5 @@
-//! `optimal` from the machine file to the integer table, and its certificates, against the residual by its definition.
+//! Compares `optimal`, from the machine file to the integer table and its certificates, with the definition of the
+//! residual.
 
 use crate::support::machine;
 use posicast_model::analysis::{residual_vibration, tap_impulses};
@@ -23,7 +24,7 @@ fn designed(machine: &Machine) -> (MachineDesign, AxisTables) {
     (design, tables)
 }
 
-/// Largest residual of a table by the definition, on a grid over a band.
+/// Returns the largest residual of a table by the definition, on a grid over a band.
 fn largest_on_grid(tables: &AxisTables, sample_hz: f64, band: &ModeBand) -> f64 {
     let taps = tap_impulses(&tables.table, sample_hz);
     let mut largest = 0.0f64;
@@ -123,8 +124,8 @@ fn unit_a_proof_that_was_tampered_with_is_refused() {
     assert!((plain - scaled).abs() < 1e-12);
 }
 
-/// Amplitudes `a_0, a_1, a_2, a_1, a_0` of the undamped multi-EI at half periods, from its response `V·T₂(z)`: of equal ripple round the mode at
-/// `θ = π`, and 1 at `θ = 0`, where nothing moves.
+/// Returns the amplitudes `a_0, a_1, a_2, a_1, a_0` of the undamped multi-EI at half periods, from its response
+/// `V·T₂(z)`, which has equal ripple around the mode at `θ = π`, and is 1 at `θ = 0`, at standstill.
 fn multi_ei(tolerance: f64) -> [f64; 5] {
     let x = ((1.0 / tolerance).acosh() / 2.0).cosh();
     let edge = (3.0 - x) / (1.0 + x);

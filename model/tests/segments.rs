@@ -121,7 +121,7 @@ fn without_an_entry_while_moving_it_stops_by_itself_and_says_so() {
     assert_eq!(segments.outputs(2).level, 1);
 }
 
-/// Every cubic begins where the one before has ended, and plays as its closed form says.
+/// Every cubic begins where the previous one ended, and plays as its closed form says.
 #[test]
 fn cubics_go_on_from_the_present_position() {
     let entries = [
@@ -249,7 +249,7 @@ fn a_batch_is_taken_whole_or_not_at_all() {
     assert_eq!((segments.outputs(2).level, segments.outputs(2).refused), (63, true));
 }
 
-/// Rests at so many counts; then what the ticks show while `entry` plays.
+/// Rests at this number of counts; returns the states at the ticks while `entry` plays.
 fn from(counts: i32, entry: &Entry, inputs: &Inputs, ticks: usize) -> Vec<Outputs> {
     let mut segments = Segments::new(3);
     segments.step(&Inputs {

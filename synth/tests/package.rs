@@ -324,7 +324,7 @@ fn write_with_evidence(
 
 const EVIDENCE: [(&str, &str); 2] = [("report.json", "{\"result\": \"pass\"}\n"), ("wave/rtl.vcd", "$end\n")];
 
-/// Returns [`FILES`] with a file that evidence may have the name of, and another machine file.
+/// Returns [`FILES`] with another machine file, and a file whose name evidence may also have.
 fn generated(machine: &'static str) -> Vec<(&'static str, &'static str)> {
     let mut files = FILES.to_vec();
     files[0].1 = machine;

@@ -1,5 +1,5 @@
-// The fault path of the PWM in an event simulator: pulses between two edges of the clock, and a clock that stands still.
-// Prints `passed`, or what went wrong.
+// Tests the fault path of the PWM in an event simulator: pulses between two edges of the clock, and a clock that stops.
+// Prints `passed`, or what failed.
 `timescale 1ns/1ns
 
 module pwm_fault;
@@ -39,7 +39,7 @@ module pwm_fault;
         end
     endtask
 
-    // From any state: never both, and the dead time between them.
+    // In any state both sides are never on, and the dead time is between them.
     always @(a_high or a_low) if ($time > 0) check(!(a_high & a_low), "one side only");
     always @(negedge a_high) high_off = $time;
     always @(negedge a_low) low_off = $time;
@@ -50,7 +50,7 @@ module pwm_fault;
     always @(posedge a_low) if (high_off != 0) check($time - high_off >= DEAD_TIME * CLOCK, "dead time before low");
     always @(posedge valley) valley_time = $time;
 
-    // A side that comes on again after a trip does so a dead time after a valley.
+    // After a trip, a side turns on a dead time after a valley.
     task wait_return;
         begin
             @(posedge a_low or posedge a_high);
@@ -72,7 +72,7 @@ module pwm_fault;
         end
     endtask
 
-    // A pulse of 1 to 3 ns, so many ns after a rising edge while the high side is on.
+    // Makes a pulse of 1 to 3 ns at this number of ns after a rising edge while the high side is on.
     task pulse_on(input integer which, input integer after, input integer width);
         begin
             @(posedge a_high);
@@ -99,7 +99,7 @@ module pwm_fault;
         clear;
         wait_return;
 
-        // Anywhere in the clock, the edge itself included.
+        // The pulse comes anywhere in the clock period, including at the edge itself.
         for (length = 1; length <= 3; length = length + 1) begin
             pulse_on(0, 1, length);
             pulse_on(0, 9, length);
@@ -107,7 +107,7 @@ module pwm_fault;
             pulse_on(1, 12, length);
         end
 
-        // A clear during the fault does nothing, nor one together with its end.
+        // A clear during the fault has no effect, and neither has one at its end.
         @(posedge a_high) #7 fault_n = 0;
         repeat (5) begin
             clear;
@@ -132,7 +132,7 @@ module pwm_fault;
         clear;
         wait_return;
 
-        // The clock stands still while a side is on.
+        // The clock stops while a side is on.
         @(posedge a_high) #2 clock_runs = 0;
         #500 check(a_high, "high while the clock stands");
         pll_locked = 0;

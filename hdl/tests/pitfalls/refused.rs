@@ -239,7 +239,7 @@ fn unit_expressions() {
     refused::<LongLoop>("-", EmitCause::Loop { from: 0, to: 2000 });
 }
 
-// Leaves and what is none.
+// Leaves, and blocks that are invalid as leaves.
 #[derive(LogicBlock, Default)]
 struct Leaf<const TEXT: usize> {
     a: Signal<In, Bits<8>>,

@@ -1,4 +1,5 @@
-//! The shaper's Verilog: lint, Yosys, and its model's answers to random stimuli in Icarus, Verilator and after Yosys.
+//! Tests the shaper's Verilog: lint, Yosys, and its model's answers to random stimuli in Icarus, Verilator and after
+//! Yosys.
 
 use crate::pitfalls::support::Row;
 use crate::pitfalls::tools;

@@ -3,7 +3,7 @@
 use crate::machine_file::files::{SMALL, breaks, right, wrong};
 use posicast_model::machine_file::{Controller, DriveMode, Encoder, PwmMode};
 
-/// Every block of a torque axis, one key per line; its tables stand after those of [`SMALL`].
+/// Every block of a torque axis, one key per line; its tables follow those of [`SMALL`].
 const BLOCKS: &str = r#"[axis.encoder]
 filter_clocks = 8
 index = true

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use super::files::XY_STAGE;
 
-/// The example, whose x has a table of this file.
+/// Returns the example, whose axis X has a table with this file.
 fn with_table(keys: &str, csv: &str) -> Result<Machine, SpecError> {
     let table = format!("[axis.error_table]\n{keys}\n\n[axis.limits]");
     let text = XY_STAGE.replacen("[axis.limits]", &table, 1);
@@ -157,7 +157,7 @@ fn unit_axes_that_cannot_have_one_say_so() {
 }
 
 proptest! {
-    /// Whatever was measured, the table of the hardware is one that it takes, and has the errors where its entries are.
+    /// For any measurement, the hardware accepts the table, which has the measured errors at its entries.
     #[test]
     fn prop_every_file_that_is_read_can_be_built(
         steps in proptest::collection::vec((1e-5f64..0.02, -0.05f64..0.05), 20..200),

@@ -1,4 +1,4 @@
-/* The program without an operating system, its accesses over the pipe: half a tick passes at each read. */
+/* The program without an operating system; its accesses go over the pipe, and half a tick passes at each read. */
 #define posicast_read read_at_once
 #include "pipe.h"
 #undef posicast_read

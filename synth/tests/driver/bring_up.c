@@ -1,4 +1,4 @@
-/* A program that brings an axis up: homing, its trace memory, a test signal. */
+/* A program that brings up an axis with homing, trace memory and a test signal. */
 #include "pipe.h"
 #include "posicast_bring_up.h"
 #include "posicast_homing.h"
@@ -33,14 +33,14 @@ static void homing(posicast_stage *stage)
     origin = posicast_origin(stage, X);
     result("origin_by_index", origin);
     result("index_setup", IORD_POSICAST_AXIS_INDEX(stage->base, X));
-    /* The index once more, which must not count. */
+    /* The index comes once more and must have no effect. */
     move_to(stage, COUNTS(-10));
     move_to(stage, COUNTS(45));
     result("origin_moves", posicast_origin(stage, X) - origin);
     result("homed_before", posicast_is_homed(stage, X));
     need("limits the wrong way round", posicast_limit_travel(stage, X, COUNTS(10), COUNTS(-10)), POSICAST_BAD_ARGUMENT);
     need("limits too far away", posicast_limit_travel(stage, X, INT32_MIN, INT32_MAX), POSICAST_BAD_ARGUMENT);
-    /* The index is position 1000, and the axis a few counts beside it. */
+    /* The index is position 1000, and the axis is a few counts from it. */
     need("limits of the travel", posicast_limit_travel(stage, X, COUNTS(800), COUNTS(1200)), POSICAST_OK);
     result("homed_after", posicast_is_homed(stage, X));
     result("limit_minus", (int32_t)IORD_POSICAST_AXIS_SOFT_LIMIT_MINUS(stage->base, X) - COUNTS(origin));

@@ -1,4 +1,4 @@
-/* A program that homes an axis on a screw that is not true, and loads another error table. */
+/* A program that homes an axis with an inaccurate screw, and loads another error table. */
 #include "pipe.h"
 #include "posicast_error_table.h"
 #include "posicast_homing.h"
@@ -37,7 +37,7 @@ int main(void)
     posicast_take_snapshot(&stage, &at);
     result("counted_before", at.position[X]);
 
-    /* The machine file's: 20 counts too far at 100,000. */
+    /* The machine file's table corrects 20 counts at 100,000. */
     need("homed", posicast_limit_travel(&stage, X, COUNTS(-90000), COUNTS(90000)), POSICAST_OK);
     need("comes in force", posicast_wait_ticks(&stage, LONG), POSICAST_OK);
     result("weight", posicast_error_weight(&stage, X));
@@ -45,7 +45,7 @@ int main(void)
     posicast_take_snapshot(&stage, &at);
     result("counted", at.position[X]);
 
-    /* Another one: 50 counts. */
+    /* Another table corrects 50 counts. */
     need("two at one place", posicast_error_entries(&format, wrong, 2, entries), POSICAST_BAD_ARGUMENT);
     need("more than an entry holds", posicast_error_entries(&format, large, 2, entries), POSICAST_BAD_ARGUMENT);
     need("entries", posicast_error_entries(&format, points, 3, entries), POSICAST_OK);
@@ -63,7 +63,7 @@ int main(void)
     result("machine_first", back[0]);
     result("machine_last", back[format.entries - 1]);
 
-    /* A step of more than a sixteenth of the distance: refused, while the machine's table counts. */
+    /* A step of more than a sixteenth of the distance is refused, and the machine's table stays in use. */
     entries[3] = entries[2] + (int32_t)(format.spacing << format.fraction_bits) / 16 + 1;
     need("too steep", posicast_load_error_table(&stage, X, entries, format.entries, LONG), POSICAST_REFUSED);
     need("machine's again", posicast_wait_ticks(&stage, LONG), POSICAST_OK);

@@ -1,10 +1,11 @@
-//! The driver's error tables on the stage: in force once homed, another one loaded, read back, refused, and off.
+//! The driver's error tables on the stage: one takes effect after homing; another is loaded, read back, refused, and
+//! switched off.
 
 use crate::driver::bridge::Bridge;
 use crate::driver::support::Driver;
 use posicast_model::machine_file::{self, Machine};
 
-/// The example, with a screw of x that is 20 µm too long over 100 mm.
+/// Returns the example, in which the screw of X is 20 µm too long over 100 mm.
 fn machine() -> Machine {
     let text = include_str!("../../../examples/xy-stage.toml");
     let table = "[axis.error_table]\nfile = \"x.csv\"\n\n[axis.limits]";
@@ -23,15 +24,15 @@ fn lockstep_the_driver_loads_uses_and_reads_error_tables() {
         (197, 1024, -100_000),
         "{said:?}"
     );
-    // Nothing before homing.
+    // Nothing is corrected before homing.
     assert_eq!((said["not_homed"], said["counted_before"]), (0, 10_000), "{said:?}");
-    // 2 counts at 10,000: the axis goes back by them, to be true.
+    // The error is 2 counts at 10,000: the axis goes back by them to the true position.
     assert_eq!(
         (said["weight"], said["error"], said["counted"]),
         (1024, 512, 9998),
         "{said:?}"
     );
-    // 5 counts by the loaded one; between two entries, of which one is at a corner, a little more.
+    // The loaded table has 5 counts; between two entries, one of which is at a corner, the error is a little larger.
     assert!((said["error_loaded"] - 5 * 256).abs() <= 40, "{said:?}");
     assert_eq!(said["same"], 1, "{said:?}");
     assert_eq!((said["machine_first"], said["machine_last"]), (-5120, 5120), "{said:?}");

@@ -1,4 +1,4 @@
-/* A program that measures an axis through its own loop: it shakes the motor, traces motor and scale, and writes the log. */
+/* A program that measures an axis through its own loop: it excites the motor, traces motor and scale, and writes the log. */
 #include "pipe.h"
 #include "posicast_bring_up.h"
 
@@ -6,9 +6,9 @@
 
 int main(void)
 {
-    /* Every second tick, two signals. */
+    /* It traces two signals at every second tick. */
     const posicast_trace trace = {2, {TRACED(CAPTURED_POSITION), TRACED(DEVIATION), 0, 0}, 1, 0, 0, 0, 0};
-    /* 60 counts, a bit every 1.5 ms. */
+    /* The amplitude is 60 counts, with a bit every 1.5 ms. */
     const posicast_excitation shake = {POSICAST_AXIS_EXCITATION_EXCITATION_KIND_PRBS, 60u << 8, 15, 0, 1500};
     posicast_stage stage;
     uint32_t rows, trigger_row, row;

@@ -1,9 +1,9 @@
 /*
- * The arithmetic of the driver, without registers. From standard input:
- *   m start end velocity acceleration jerk   plans a move: prints the result, the entries, and where they lead
- *   e w0 w1 w2 w3 ticks                      plays an entry: prints where that leads, tick by tick
- *   p position velocity ticks order          a point of a stream: prints the result, the entry, and where it leads
- *   s deceleration ticks                     the same of a stop
+ * Tests the arithmetic of the driver, without registers. Commands on standard input:
+ *   m start end velocity acceleration jerk   plans a move; prints the result, the entries, and the state after them
+ *   e w0 w1 w2 w3 ticks                      plays an entry; prints the state at each tick
+ *   p position velocity ticks order          adds a point of a stream; prints the result, the entry, and the state after it
+ *   s deceleration ticks                     the same for a stop
  *   0 position                               rests there
  */
 #include <inttypes.h>
@@ -12,7 +12,7 @@
 #include "posicast_plan.h"
 #include "posicast_stream.h"
 
-/* The stream's arithmetic stands beside what does touch registers. */
+/* The arithmetic of streams is in the same file as their accesses to registers. */
 uint32_t posicast_read(uintptr_t base, uint32_t word)
 {
     (void)base;

@@ -196,8 +196,8 @@ fn prop_a_plan_in_c_ends_at_rest_on_target_within_its_limits() {
     assert!(too_long < 10, "{too_long}");
 }
 
-/// Points of a path that a controller computes, through entries that the model plays: each is met, with its velocity where that was asked
-/// for, and a cubic begins as the one before has ended.
+/// Points of a path that a controller computes become entries that the model plays: each point is reached, with its
+/// velocity if one was requested, and a cubic begins where the previous one ended.
 #[test]
 fn prop_a_stream_meets_its_points_and_a_cubic_does_not_jump() {
     let period = 10;
@@ -240,22 +240,24 @@ fn prop_a_stream_meets_its_points_and_a_cubic_does_not_jump() {
             assert_eq!(said[2], shown(true, &at));
             let missed = at.position - (i64::from(*position) << 24);
             assert!(missed.abs() <= i64::from(period) << 15, "{order}: {missed}");
-            // The last velocity, within what rounding the first one and the acceleration adds: 2^-16 counts per tick.
+            // This is the last velocity, with the rounding of the first one and of the acceleration: 2^-16 counts per
+            // tick.
             let slower = at.velocity - (i64::from(*velocity) << 16);
             assert!(order == 0 || slower.abs() <= 1 << 16, "{order}: {slower}");
-            // From the end of one entry to the beginning of the next, beyond what the acceleration says.
+            // This is the jump from the end of an entry to the beginning of the next, beyond the acceleration.
             let jump = (i64::from(first) << 16) - before.velocity - (i64::from(acceleration) << 8);
             largest_jump = largest_jump.max(jump.abs());
         }
         assert_eq!(at.velocity, 0, "{order}: at rest at the end");
-        // A line jumps by what the path's velocity changes in a period; a cubic by its rounding.
+        // A line jumps by the change of the path's velocity in a period, a cubic by its rounding.
         assert_eq!(order == 2, largest_jump <= 1 << 16, "{order}: {largest_jump}");
     }
 }
 
 #[test]
 fn unit_points_that_no_entry_reaches_are_refused() {
-    // No ticks, too many; farther than a velocity's word, more than an acceleration's. Across the end of the word it is not far.
+    // Refused are no ticks and too many, and points that need a larger velocity or acceleration than the words hold.
+    // Across the end of the position's word, a point is near.
     let input = "p 0 0 0 0\np 0 0 257 0\np 2000000000 0 1 0\np 0 2147483647 2 2\n0 -2147482648\np 2147482647 0 2 0\n";
     let found = answers(&Driver::write(), input);
     let results: Vec<&[i64]> = found[..5].iter().map(Vec::as_slice).collect();

@@ -192,15 +192,17 @@ fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
     assert_eq!(bridge.bench.mismatches(), (0, None));
 }
 
-/// A circle of a point per millisecond, three of them ahead; once the program is late, once it does not come back.
+/// Streams a circle with a point per millisecond, three points ahead; once the program is late, and once it does not
+/// return.
 #[test]
 fn unit_a_stream_is_worth_its_bus() {
     let driver = Driver::write();
     let mut bridge = Bridge::new(&driver, "stream.c", false);
     let said = bridge.talk(&[]);
-    // Two axes: at most 16 accesses each per millisecond were to be; it is 4 writes and 2 reads.
+    // At most 16 accesses per axis and millisecond are allowed; there are 4 writes and 2 reads.
     assert_eq!(said["most_accesses"], 2 * 6 + 1, "{said:?}");
-    // Late by all that was not ahead: both axes by the same, and then back on the path to its end, to the last bit.
+    // Both axes are late by the same time, which is what was not ahead; then they are on the path to its end, to the
+    // last bit.
     assert!(
         (5..=20).contains(&said["late_x"]) && said["late_x"] == said["late_y"],
         "{said:?}"
@@ -211,9 +213,10 @@ fn unit_a_stream_is_worth_its_bus() {
         "{said:?}"
     );
     assert_eq!(said["went_on_to_x"], 256, "{said:?}");
-    // Points too early: what the FIFO holds. A point that one axis cannot reach is written for none.
+    // Points that come too early are refused when the FIFO is full. A point that one axis cannot reach is written for
+    // no axis.
     assert_eq!((said["written_early"], said["level_after_far"]), (63, 0), "{said:?}");
-    // 25 ticks at 0.18 counts each, and a stop of less than a count: the cause is that of the segments.
+    // The axis extrapolates 25 ticks at 0.18 counts each and stops within a count; the cause is that of the segments.
     assert_eq!(
         (said["missing_causes"] & 1 << 12, said["named"], said["causes_after"]),
         (1 << 12, 1, 0),

@@ -1,6 +1,6 @@
 /*
- * Register accesses on standard output and input: r, w, p (time passes), s (a line of the machine changes), = (a result). The test at
- * the other end has the stage.
+ * Register accesses over standard output and input: r, w, p (time passes), s (a line of the machine changes), = (a result). The
+ * test at the other end simulates the stage.
  */
 #ifndef PIPE_H
 #define PIPE_H
@@ -19,7 +19,7 @@
 #define COUNTS(n) ((int32_t)(n) * 256)
 #define TICKS 2000u
 
-/* So many so far. */
+/* Number of them so far. */
 static uint32_t accesses;
 
 uint32_t posicast_read(uintptr_t base, uint32_t word)

@@ -4,7 +4,7 @@
 #include "pipe.h"
 #include "posicast_settings.h"
 
-/* From reset to a move of both axes. */
+/* Goes from reset to a move of both axes. */
 static void first_move(posicast_stage *stage)
 {
     posicast_snapshot at;
@@ -35,7 +35,7 @@ static void queue_from(posicast_stage *stage, uint32_t axis, int32_t start, int3
         need("an entry", posicast_write_entry(stage, axis, &entries[entry]), POSICAST_OK);
 }
 
-/* X to and fro: held at the far end, with the way back in its FIFO. */
+/* X moves there and back: a feed hold stops it at the far end, with the way back in its FIFO. */
 static void feed_hold(posicast_stage *stage)
 {
     need("no such axis", posicast_feed_hold(stage, 1u << 2), POSICAST_BAD_ARGUMENT);
@@ -43,7 +43,7 @@ static void feed_hold(posicast_stage *stage)
     queue_from(stage, X, COUNTS(40), COUNTS(60));
     queue_from(stage, X, COUNTS(60), COUNTS(40));
     need("start to and fro", posicast_start(stage, 1u << X), POSICAST_OK);
-    /* Into the first way; at rest it would be held before it. */
+    /* The hold comes during the first move; at rest it would act before it. */
     need("a while", posicast_wait_ticks(stage, 20), POSICAST_OK);
     need("hold", posicast_feed_hold(stage, BOTH), POSICAST_OK);
     need("held", posicast_wait_held(stage, 1u << X, TICKS), POSICAST_OK);
@@ -56,7 +56,7 @@ static void feed_hold(posicast_stage *stage)
     result("held_causes", posicast_causes(stage, X));
 }
 
-/* The drive of X fails in a move: both stop, the fault is read, forgotten, and the move begun again. */
+/* The drive of X fails in a move: both axes stop, the fault is read and cleared, and the move starts again. */
 static void fault(posicast_stage *stage)
 {
     const posicast_entry nothing = posicast_segment(0, 0, 0), rest = posicast_segment(0, 1, 0);
@@ -90,7 +90,7 @@ static void fault(posicast_stage *stage)
     result("after_fault_x", posicast_command_position(stage, X));
 }
 
-/* Whether the bank of X holds just these taps. */
+/* Returns whether the bank of X has exactly these taps. */
 static int holds(posicast_stage *stage, uint32_t bank, const posicast_tap *taps, uint32_t count)
 {
     posicast_tap back[8];
@@ -103,7 +103,7 @@ static int holds(posicast_stage *stage, uint32_t bank, const posicast_tap *taps,
     return found == count;
 }
 
-/* Another table while the axis moves, what is refused, and off. */
+/* Loads another table while the axis moves, tries what is refused, and switches off. */
 static void tables(posicast_stage *stage)
 {
     static const posicast_tap one[] = {{0, 65536}};
@@ -142,7 +142,7 @@ static void tables(posicast_stage *stage)
     result("off", posicast_state(stage, X));
 }
 
-/* A controller whose command is 0, while the reference moves on; then the machine's again, with another gain. */
+/* Uses a controller whose command is 0 while the reference moves; then the machine's again, with another gain. */
 static void settings(posicast_stage *stage)
 {
     const posicast_settings *machine = &machine_xy_stage.axis[X].settings;
@@ -183,7 +183,7 @@ static void settings(posicast_stage *stage)
     result("causes", posicast_causes(stage, X));
 }
 
-/* The PWM of Y by itself, in READY. */
+/* Tests the PWM of Y alone, in READY. */
 static void self_test(posicast_stage *stage)
 {
     posicast_self_test_clocks counted;

@@ -1,4 +1,4 @@
-/* A program that computes its path as it goes: a point per axis and millisecond, early ones, late ones, and one that never comes. */
+/* A program that computes its path while it moves, a point per axis and millisecond: some early, some late, one never. */
 #include <string.h>
 
 #include "pipe.h"
@@ -26,7 +26,7 @@ static int32_t rounded(double value)
     return (int32_t)(value + (value < 0 ? -0.5 : 0.5));
 }
 
-/* On along a circle that begins and ends at 0, 0. */
+/* Continues along a circle that begins and ends at 0, 0. */
 static void next(posicast_stream_point *point)
 {
     const double before = cosine, speed = RADIUS * 0.031415926535897932 / PERIOD;
@@ -79,7 +79,7 @@ static void turn(const posicast_stage *stage)
     need("too patient", posicast_stream_open(&stream, stage, BOTH, POSICAST_STREAM_CUBIC, 256), POSICAST_BAD_ARGUMENT);
     begin(stage);
     while (periods < TURN) {
-        /* Three periods late, in the middle: more than is ahead. */
+        /* In the middle, the program is three periods late, which is more than it was ahead. */
         if (periods == TURN / 2)
             while (now(stage) - first_tick < PERIOD * (periods + AHEAD + 1) + 4)
                 pause_here(NULL);
@@ -89,7 +89,7 @@ static void turn(const posicast_stage *stage)
         most = accesses - before > most ? accesses - before : most;
     }
     result("most_accesses", most);
-    /* Where the circle began, and a rest there. */
+    /* Returns to the beginning of the circle and rests there. */
     need("the end", posicast_stream_write(&stream, rest, PERIOD), POSICAST_OK);
     need("a rest", posicast_stream_write(&stream, rest, PERIOD), POSICAST_OK);
     need("rest", posicast_wait_at_rest(stage, BOTH, TICKS), POSICAST_OK);
@@ -98,7 +98,7 @@ static void turn(const posicast_stage *stage)
     result("turned_to_x", posicast_command_position(stage, X));
     result("turned_to_y", posicast_command_position(stage, Y));
     result("turn_causes", posicast_causes(stage, X) | posicast_causes(stage, Y));
-    /* Where it has held it goes on by itself. */
+    /* It continues by itself from where it was held. */
     rest[X].position = COUNTS(1);
     need("on from a rest", posicast_stream_write(&stream, rest, PERIOD), POSICAST_OK);
     need("a rest", posicast_stream_write(&stream, rest, PERIOD), POSICAST_OK);

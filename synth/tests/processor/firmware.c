@@ -15,13 +15,13 @@
 #define OF_X(interrupt) POSICAST_AXIS_INTERRUPT(X, POSICAST_INTERRUPT_##interrupt)
 #define OF_Y(interrupt) POSICAST_AXIS_INTERRUPT(Y, POSICAST_INTERRUPT_##interrupt)
 #define WATCHED (OF_X(MOVE_DONE) | OF_Y(MOVE_DONE) | OF_X(INDEX_SEEN) | OF_X(FAULTED) | OF_Y(STOPPING))
-/* The line of the stage at the core. */
+/* The stage's interrupt at the core. */
 #define STAGE_IRQ 3u
 
 #define CONSOLE ((volatile uint32_t *)0x10000000u)
 
 static posicast_stage stage;
-/* What interrupts brought since it was last cleared, and how many there were of each kind. */
+/* Events from interrupts since they were last cleared, and the number of each kind. */
 static volatile uint32_t happened, ticks_seen, events_seen, nothing_seen;
 
 void interrupt(void);
@@ -100,7 +100,7 @@ static void need(const char *what, posicast_result got, posicast_result wanted)
 #define STACK_WORDS 1024u
 extern uint32_t __stack_top[];
 
-/* Below the stack's present end the memory is marked; what is overwritten later was used. */
+/* The memory below the current end of the stack is marked; what is overwritten later was used. */
 static void mark_stack(void)
 {
     uint32_t *word = __stack_top - STACK_WORDS;
@@ -177,7 +177,7 @@ static void fault(void)
     result("fault_causes_x", (int32_t)posicast_causes(&stage, X));
     result("fault_causes_y", (int32_t)posicast_causes(&stage, Y));
     result("stopped_at", posicast_command_position(&stage, X));
-    /* The drive is mended at this step. */
+    /* The drive is repaired at this step. */
     step("mend");
     need("on again", posicast_switch_on(&stage, BOTH, TICKS), POSICAST_OK);
     queue_both(COUNTS(-60), COUNTS(40));
@@ -188,7 +188,7 @@ static void fault(void)
     positions("x_again", "y_again");
 }
 
-/* Faster for so many periods, and slower for as many; each of so many ticks, and one that stands. */
+/* Number of periods of acceleration, and of deceleration, and their length in ticks; then one period at rest. */
 #define RAMP 5
 #define PERIOD 100
 #define AHEAD 2

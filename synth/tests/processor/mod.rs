@@ -1,4 +1,5 @@
-//! The driver on a RISC-V beside the stage: a core executes the unmodified C, takes the stage's interrupts, and moves the machine.
+//! Runs the driver on a RISC-V beside the stage: a core executes the unmodified C, takes the stage's interrupts, and
+//! moves the machine.
 
 mod system;
 
@@ -6,14 +7,15 @@ use crate::driver::support::Driver;
 use posicast_model::machine_file;
 use system::{Firmware, HOME_FROM, INDEX_AT, Outcome, Step, System};
 
-/// Enough for the slowest bridge; the program takes about two thirds of it.
+/// Largest number of clocks of a run, enough for the slowest bridge; the program takes about two thirds of it.
 const MOST_CLOCKS: u64 = 4_000_000;
 
 fn driver() -> Driver {
     Driver::of(machine_file::parse("machine.toml", include_str!("machine.toml")).unwrap())
 }
 
-/// The home switch of X is pressed from a count on. In the step "fault" its drive fails half way, and is mended later.
+/// The home switch of X is pressed from a count on. In the step "fault" the drive of X fails half way, and is repaired
+/// later.
 fn run(system: &mut System, firmware: &Firmware, seed: u16) -> Outcome {
     system.run(firmware, seed, MOST_CLOCKS, &mut |system, step| {
         let count = system.count(0);
@@ -28,29 +30,29 @@ fn run(system: &mut System, firmware: &Firmware, seed: u16) -> Outcome {
 
 fn check(system: &System, outcome: &Outcome) {
     let said = |name: &str| outcome.results[name];
-    // Homed by the index, to the count: it is position 1000.
+    // The axis is homed by the index, which is exactly position 1000.
     assert_eq!(said("origin"), INDEX_AT - 1000, "{outcome:#?}");
     assert_eq!(said("home_events"), 1 << 6);
     // The shaped command ends on the commanded count, and the machine within one of it.
     let near = |name: &str, wanted: i64| assert!((said(name) - wanted).abs() <= 1, "{name}: {outcome:#?}");
     near("x_moved", 90 - said("origin"));
     near("y_moved", -70);
-    // Each axis tells the core once that it is there.
+    // Each axis reports to the core once that it has arrived.
     assert_eq!(said("move_events"), 1 << 1 | 1 << 8);
-    // X has a fault: PWM tripped. Y is stopped with it: group stop.
+    // X has a fault, because its PWM tripped; Y is stopped with it by the group stop.
     assert_eq!((said("fault_causes_x"), said("fault_causes_y")), (1 << 1, 1 << 14));
-    // Each says so to the core; the stop of Y is over before that of X is forgotten.
+    // Each reports this to the core; the stop of Y is over before the fault of X is cleared.
     assert_eq!(said("fault_events"), 1 << 5 | 1 << 8 | 1 << 11);
     let stopped_at = said("stopped_at") / 256;
     assert!((-60..90).contains(&stopped_at), "{stopped_at}");
-    // Forgotten, and the move taken up again.
+    // The fault is cleared, and the move continues.
     assert_eq!(said("left_causes"), 0);
-    // The core was woken at every tick, and never for nothing. Once it is asked it comes within an instruction and a bus access.
+    // The core was woken at every tick, and never without a reason. It responds within an instruction and a bus access.
     assert!(said("ticks") > 500 && said("nothing") == 0, "{outcome:#?}");
     assert!((1..100).contains(&outcome.longest_latency), "{outcome:#?}");
     near("x_again", -60 - said("origin"));
     near("y_again", 40);
-    // Points of a path, met to the last bit, none of them late: 50 counts there, 50 back.
+    // The points of the path are reached to the last bit, and none is late: 50 counts there, 50 back.
     assert_eq!(
         (said("path_x"), said("path_y"), said("late")),
         (0, 0, 0),
@@ -71,7 +73,7 @@ fn check(system: &System, outcome: &Outcome) {
     }
 }
 
-/// Seeds of the bridge's waits: one, or with `PROPTEST_CASES` one for each of so many cases, 0 (no waits) among them.
+/// Returns the seeds of the bridge's waits: one, or one per case of `PROPTEST_CASES`, including 0 (no waits).
 fn seeds() -> impl Iterator<Item = u16> {
     let wanted = std::env::var("PROPTEST_CASES")
         .ok()
@@ -83,10 +85,10 @@ fn seeds() -> impl Iterator<Item = u16> {
     without_waits.into_iter().chain(drawn).take(cases as usize)
 }
 
-/// With `PROPTEST_CASES` that many other cases cost about as much as a run.
+/// With `PROPTEST_CASES`, each further case takes about as long as one run.
 const CASES_PER_RUN: u32 = 100;
 
-/// The tables of `docs/driver.md`, from this run.
+/// Returns the tables of `docs/driver.md` from this run.
 fn show(firmware: &Firmware, outcome: &Outcome) {
     println!(
         "{} bytes of program, {} of variables, {} of stack",
@@ -117,7 +119,7 @@ fn show(firmware: &Firmware, outcome: &Outcome) {
 fn prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
     let driver = driver();
     let firmware = Firmware::build(&driver);
-    // What a small memory has room for; the compiler's version decides about some hundred bytes.
+    // This fits a small memory; the compiler's version changes it by some hundred bytes.
     assert!(
         firmware.text < 20_000 && firmware.data < 256,
         "{} {}",

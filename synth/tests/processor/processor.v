@@ -4,8 +4,8 @@
 //                        ├─ 0x1…    console: word 0 takes a byte, word 1 the exit status
 //                        └─ STAGE   bridge ─► Avalon-MM host
 //
-// The bridge stands for an interconnect. It posts one write, so that the core goes on before the agent has it; a read waits until
-// that write is through. Each way takes 0 to 7 clocks, at random by `seed`; with seed 0 none.
+// The bridge models an interconnect. It posts one write, so that the core continues before the agent has it; a read waits until
+// that write is done. Each direction takes 0 to 7 random clocks from `seed`, or none with seed 0.
 `default_nettype none
 module processor #(
     parameter [31:0] STAGE = 32'h4000_0000,
@@ -13,7 +13,7 @@ module processor #(
 ) (
     input  wire                    clk,
     input  wire                    rst,
-    // The program, a word each clock while `rst` is high.
+    // The program, one word per clock while `rst` is high.
     input  wire                    load,
     input  wire [12:0]             load_word,
     input  wire [31:0]             load_data,
@@ -44,7 +44,7 @@ module processor #(
     picorv32 #(
         .BARREL_SHIFTER(1), .ENABLE_FAST_MUL(1), .ENABLE_DIV(1),
         .ENABLE_IRQ(1), .ENABLE_IRQ_TIMER(0),
-        // The stage's line is a level: it stays until it is cleared there.
+        // The stage's interrupt is a level: it stays until it is cleared in the stage.
         .LATCHED_IRQ(32'hffff_fff7),
         .PROGADDR_RESET(32'h0000_0000), .PROGADDR_IRQ(32'h0000_0010)
     ) core (
@@ -112,11 +112,11 @@ module processor #(
 
     assign avs_read = arrives && !is_write;
     assign avs_write = arrives && is_write;
-    // A write is taken at once; a read is over when its word is back.
+    // A write is accepted at once; a read ends when its word has come back.
     assign bridge_ready = (state == IDLE && writes) || (state == BACK && wait_left == 3'd0);
 
     always @(posedge clk) begin
-        // Galois, x^16 + x^14 + x^13 + x^11 + 1: with 0 it stands.
+        // Galois LFSR, x^16 + x^14 + x^13 + x^11 + 1; with 0 it does not change.
         random <= {1'b0, random[15:1]} ^ (random[0] ? 16'hb400 : 16'd0);
         if (wait_left != 3'd0) wait_left <= wait_left - 3'd1;
         case (state)
@@ -129,7 +129,7 @@ module processor #(
                 state <= THERE;
             end
             THERE: if (wait_left == 3'd0) state <= is_write ? IDLE : TAKEN;
-            // The agent shows the word in the clock after avs_read, and not longer.
+            // The agent shows the word only in the clock after avs_read.
             TAKEN: begin
                 word <= avs_readdata;
                 wait_left <= random[5:3];

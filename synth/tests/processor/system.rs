@@ -1,4 +1,4 @@
-//! The stage with a core on its bus and a machine at its pins, and the model of the stage beside it.
+//! Simulates the stage with a core on its bus and a machine at its pins, and the model of the stage beside it.
 //!
 //! ```text
 //!  picorv32 ─► bridge ─► avs_* ─┬─► stage (Verilog) ─┬─► gates, drive_enable, brake_release ─► plants ─┐
@@ -21,11 +21,11 @@ use std::process::Command;
 
 /// Name of the stage's top module.
 const STAGE: &str = "slide_stage";
-/// Where the core sees it.
+/// Its address for the core.
 const STAGE_BASE: &str = "0x40000000u";
-/// Bytes of the core's memory.
+/// Size of the core's memory in bytes.
 const RAM_BYTES: u32 = 32_768;
-/// Where the simulated encoders have their index, and from where on the home switch of X is pressed.
+/// Counts at which the simulated encoders have their index, and from which on the home switch of X is pressed.
 pub(super) const INDEX_AT: i64 = 22;
 pub(super) const HOME_FROM: i64 = 30;
 const ENCODER: [&str; 3] = ["a", "b", "z"];
@@ -46,14 +46,14 @@ const CORE_PORTS: [(&str, Direction, u32); 9] = [
 /// A program for the core.
 pub(super) struct Firmware {
     words: Vec<u32>,
-    /// Bytes of code and constants, and of variables.
+    /// Number of bytes of code and constants, and of variables.
     pub(super) text: u32,
     pub(super) data: u32,
-    /// Bytes of code and constants of each of the driver's files, by its name, before anything unused is left out.
+    /// Number of bytes of code and constants of each of the driver's files, by its name, before unused code is removed.
     pub(super) files: Vec<(String, u32)>,
 }
 
-/// Bytes of `.text`, `.data` and `.bss` of a file.
+/// Returns the number of bytes of `.text`, `.data` and `.bss` of a file.
 fn sizes(file: &Path) -> [u32; 3] {
     let said = run(Command::new("riscv64-unknown-elf-size").arg(file));
     let mut numbers = said.lines().nth(1).unwrap().split_whitespace();
@@ -61,7 +61,7 @@ fn sizes(file: &Path) -> [u32; 3] {
 }
 
 impl Firmware {
-    /// The driver as it is generated, with its start and its linker script, and the program of this test.
+    /// Compiles the generated driver with its start code and linker script, and the program of this test.
     pub(super) fn build(driver: &Driver) -> Self {
         let bare_metal = driver.path().join("bare_metal");
         let program = driver.path().join("firmware.elf");
@@ -75,7 +75,7 @@ impl Firmware {
                 "-ffreestanding",
                 "-ffunction-sections",
             ])
-            // As the Makefile says for memory.c.
+            // These are the Makefile's options for memory.c.
             .args(["-Wall", "-Wextra", "-Werror", "-fno-tree-loop-distribute-patterns"])
             .arg(format!("-DSTAGE_BASE={STAGE_BASE}"))
             .arg("-I")
@@ -129,7 +129,7 @@ fn here(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/processor").join(name)
 }
 
-/// The core's Verilog, from the Python package of the tests.
+/// Returns the core's Verilog, from the Python package of the tests.
 fn core_file() -> PathBuf {
     let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/python");
     assert!(
@@ -144,7 +144,8 @@ fn core_file() -> PathBuf {
     Path::new(said.trim()).join("picorv32.v")
 }
 
-/// The module that joins processor and stage: the stage's pins, its bus to look at, and the test's side of the processor.
+/// Returns the module that connects processor and stage. Its ports are the stage's pins, its bus to observe, and the
+/// test's side of the processor.
 fn joined(ports: &[Port]) -> (String, Vec<Port>) {
     let port = |name: &str, direction, width| Port {
         name: name.to_owned(),
@@ -194,7 +195,7 @@ fn joined(ports: &[Port]) -> (String, Vec<Port>) {
     (text, seen)
 }
 
-/// What the bus did in a step of the program.
+/// Accesses of the bus in a step of the program.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Step {
     pub(super) name: String,
@@ -202,25 +203,25 @@ pub(super) struct Step {
     pub(super) ticks: u64,
     pub(super) reads: u64,
     pub(super) writes: u64,
-    /// Those of them that interrupts made.
+    /// Number of these that interrupt handlers made.
     pub(super) in_interrupt: u64,
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Debug, Default)]
 pub(super) struct Outcome {
     pub(super) results: BTreeMap<String, i64>,
     pub(super) steps: Vec<Step>,
     pub(super) clocks: u64,
-    /// Outputs of the stage that were compared, over all clocks.
+    /// Number of outputs of the stage that were compared, over all clocks.
     pub(super) compared: u64,
-    /// Clocks from the stage's line to the core's first instruction for it, at most.
+    /// Largest number of clocks from the stage's interrupt to the core's first instruction for it.
     pub(super) longest_latency: u64,
-    /// What the program says against the driver.
+    /// Complaints of the program about the driver.
     complaint: String,
 }
 
-/// Core, stage, model and machine.
+/// The core, the stage, its model and the machine.
 pub(super) struct System {
     device: Verilated,
     model: Composed,
@@ -230,14 +231,14 @@ pub(super) struct System {
     outputs: Vec<u64>,
 }
 
-/// Places among the system's inputs and outputs.
+/// Positions in the system's lists of inputs and outputs.
 struct Places {
     input: BTreeMap<String, usize>,
     output: BTreeMap<String, usize>,
-    /// Of each axis: A, B and index; the pins that its plant feels.
+    /// For each axis, the inputs A, B and index, and the pins that act on its plant.
     encoder: Vec<[usize; 3]>,
     drive: Vec<[usize; 6]>,
-    /// For each of the model's inputs: of the system's outputs, where the core drives it, or else of its inputs.
+    /// For each of the model's inputs, the system's output if the core drives it, or else the system's input.
     model_input: Vec<Result<usize, usize>>,
     model_output: Vec<usize>,
 }
@@ -270,7 +271,7 @@ impl Places {
 }
 
 impl System {
-    /// The driver's machine with a core, all lines healthy.
+    /// Builds the driver's machine with a core, with all lines at their healthy levels.
     pub(super) fn new(driver: &Driver) -> Self {
         let machine = &driver.machine;
         let component = Component::stage(&stage(machine).config).unwrap();
@@ -292,7 +293,7 @@ impl System {
         };
         let plant = |axis| AxisPlant::new(axis, &machine.clock, &options).unwrap();
         let places = Places::new(machine, &seen, ports);
-        // High is the healthy level of every line but the reset, the encoders' and the home switches.
+        // High is the healthy level of every line except reset, encoders and home switches.
         let is_healthy = |name: &str| name.ends_with("_n") || name.ends_with("ready") || name.ends_with("locked");
         let mut inputs = vec![0; places.input.len()];
         for (_, place) in places.input.iter().filter(|(name, _)| is_healthy(name)) {
@@ -313,12 +314,12 @@ impl System {
         self.inputs[self.places.input[line]] = level.into();
     }
 
-    /// Where an axis is.
+    /// Returns the position of an axis.
     pub(super) fn count(&self, axis: usize) -> i64 {
         self.plants[axis].count()
     }
 
-    /// One clock of everything; panics at the first output that the model does not show.
+    /// Advances everything by a clock; panics at the first output that differs from the model's.
     fn clock(&mut self, now: u64) {
         for (plant, places) in self.plants.iter().zip(&self.places.encoder) {
             let pins = plant.encoder();
@@ -364,8 +365,8 @@ impl System {
         }
     }
 
-    /// Loads the program under reset and runs it until it ends, at most so many clocks. `seed` is that of the bridge's waits.
-    /// `surroundings` sets lines in every clock; it is told in which step the program is.
+    /// Loads the program under reset and runs it until it ends, for at most this number of clocks. `seed` is that of
+    /// the bridge's waits. `surroundings` sets lines in every clock; its argument is the step of the program.
     pub(super) fn run(
         &mut self,
         firmware: &Firmware,
@@ -395,11 +396,11 @@ impl System {
     }
 }
 
-/// What is read off the system's outputs while the program runs.
+/// Observes the system's outputs while the program runs.
 struct Watch {
     outcome: Outcome,
     line: String,
-    /// Places of outputs.
+    /// Positions of outputs.
     stopped: usize,
     console_valid: usize,
     end_valid: usize,
@@ -409,7 +410,7 @@ struct Watch {
     tick: usize,
     avs_read: usize,
     avs_write: usize,
-    /// The clock since which the stage's line waits for the core.
+    /// Clock since which the stage's interrupt waits for the core.
     asked_at: Option<u64>,
 }
 
@@ -439,7 +440,7 @@ impl Watch {
         self.outcome.steps.last().map_or("", |step| step.name.as_str())
     }
 
-    /// The outputs after a clock; the outcome, if the program has ended.
+    /// Reads the outputs after a clock; returns the result if the program has ended.
     fn look(&mut self, system: &System, now: u64) -> Option<Outcome> {
         let is_high = |place: usize| system.outputs[place] != 0;
         assert!(
@@ -475,7 +476,7 @@ impl Watch {
         Some(std::mem::take(&mut self.outcome))
     }
 
-    /// `> step`, `= name value`, or what went wrong.
+    /// Reads a line of the console: `> step`, `= name value`, or a complaint.
     fn character(&mut self, character: char) {
         if character != '\n' {
             self.line.push(character);
