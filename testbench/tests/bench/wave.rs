@@ -67,7 +67,10 @@ fn golden_clocks_that_are_left_out_are_named() {
          #99990\n0!\n1\"\n#100000\n1!\nb0011 #\n#100010\n0!\n#100020\n1!\n#100030\n0!\n#100040\n1!\n"
     );
     let mut plain = Recorder::create(&path, 50e6, &["t"], &[]).unwrap();
-    assert!(plain.skip_to(1).is_err(), "without `recording` no clock can be left out");
+    assert!(
+        plain.skip_to(1).is_err(),
+        "without `recording` no clock can be left out"
+    );
 }
 
 /// Clocks whose half period is a whole number of each unit, of 10 or 100 units, or of none.
