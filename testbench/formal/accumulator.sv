@@ -1,6 +1,6 @@
 // accumulator: sums are exact but for one rounding of each product, half up, and never overflow; words are cut at their ends.
 //
-// Proven for all inputs in every clock, resets included, with all 52 bits. Claimed of sums whose terms are at most 2^49, half
+// The properties are proven for all inputs in every clock, including resets, with all 52 bits. Claimed of sums whose terms are at most 2^49, half
 // LSBs, as those of 32 x 18 bits are, and of at most six terms: the sequencer's proof has that none has more. After others,
 // nothing until a sum begins anew.
 //

@@ -1,9 +1,9 @@
 // axis: the supervisor reaches only its transition table, and its outputs obey its state.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. ALLOWED(from, to) is written by the runner
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. ALLOWED(from, to) is written by the runner
 // from `posicast_model::rtl::axis::TRANSITIONS`: there is one table.
 //
-//   known_state          none but the six states
+//   known_state          only the six states occur
 //   in_table             a state follows another only as the table says
 //   reset_is_off         OFF after a reset
 //   same_outputs         drive and PWM are enabled together

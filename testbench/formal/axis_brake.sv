@@ -1,6 +1,6 @@
 // axis, its outputs and brake: when they go on and off, and how many ticks lie between.
 //
-// Proven for all inputs in every clock, resets included. Nothing is assumed, but `in_time`: not_longer holds as long as ticks
+// The properties are proven for all inputs in every clock, including resets. Nothing is assumed, but `in_time`: not_longer holds as long as ticks
 // have come at least three clocks apart, as the datasheet asks. The delays may change in any clock: each is the one of the clock
 // in which what it belongs to shows at the pins. A cut is a cause that switches off: axis_causes proves which.
 //
@@ -33,7 +33,7 @@ module axis_brake_properties (
     wire against = drive_enable & !brake_release;
     wire stopped = segments_state == `SEGMENTS_STOPPED;
 
-    // What the clock before was.
+    // Values of the previous clock.
     reg       past_reset = 1'b1;
     reg       past_cut = 1'b0;
     reg       past_tick = 1'b0;
@@ -121,7 +121,7 @@ module axis_brake_properties (
         exact_elapsed: assert (!drive_enable | elapsed == (enough & !begins));
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     wire        harmful = |(causes & ~`HARMLESS);
     wire [15:0] rest = seen >= needed ? 16'd0 : needed - seen;
     always @(*) begin

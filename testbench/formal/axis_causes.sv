@@ -1,6 +1,6 @@
 // axis, its causes: which are latched, when they are forgotten, and what they do, and when.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. All is said of pins; only what the monitors have
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. All is said of pins; only what the monitors have
 // found comes from inside, and axis_monitors proves that. The bits of causes, and which of them always switch off or are
 // harmless, are macros from `posicast_model::rtl::axis::Cause`.
 //
@@ -120,7 +120,7 @@ module axis_causes_properties (
         not_by_itself: assert (past_reset | !past_wants | (causes & ~past_causes & `GROUP_STOP) == 16'd0);
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     wire [16:0] of_pins = `EMERGENCY_STOP | `PWM_TRIPPED | `DRIVE_LOST | `ENCODER_ERROR | `SEGMENTS | `GROUP_STOP | `SCHEDULE;
     wire [3:0] left = cleared[0] ? 4'd8 : cleared[1] ? 4'd7 : cleared[2] ? 4'd6 : cleared[3] ? 4'd5 :
         cleared[4] ? 4'd4 : cleared[5] ? 4'd3 : cleared[6] ? 4'd2 : cleared[7] ? 4'd1 : 4'd0;

@@ -1,6 +1,6 @@
 // axis, its lines: what the filter lets through, and how soon the outputs are off after the emergency stop's line went low.
 //
-// Proven for all inputs in every clock, resets included. A line is as its synchroniser sees it: pin by pin, in clocks. Stated
+// The properties are proven for all inputs in every clock, including resets. A line is as its synchroniser sees it: pin by pin, in clocks. Stated
 // of emergency stop and drive ready; the other three lines are of the same module.
 //
 //   passes_*       a filtered level changes exactly after the line has differed from it for so many clocks in a row, and one, as
@@ -95,7 +95,7 @@ module axis_lines_properties (
         drive_lost_is_off: assert (!past_lost_off | !drive_enable);
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     always @(*) begin
         off_before_lines: assert (awake[3] | (state == `OFF & !drive_enable & !brake_release));
         stop_begins: assert (stop_low != 7'd0 | once[0] | (!twice[0] & !levels[0]));

@@ -1,6 +1,6 @@
 // axis, what it watches at ticks: each cause is found eleven clocks after a tick that shows it, and by nothing else.
 //
-// Proven for all inputs in every clock, resets included. Nothing is assumed, but `in_time`: all holds as long as ticks have come
+// The properties are proven for all inputs in every clock, including resets. Nothing is assumed, but `in_time`: all holds as long as ticks have come
 // at least ten clocks apart, as the datasheet asks. All is said of pins. Levels, velocities and the position are those of the
 // tick. Numbers and limits are taken by bytes, those of 16 bits by nibbles, in the four clocks from the tick on, and once more
 // five clocks later; what both rounds show is found. |x| is as in the datasheet: x, or -x - 1 below 0.
@@ -17,7 +17,7 @@
 //                        3 forwards; with watches_direction the other way is as none, but distances count from there on); so many
 //                        since the last kick
 //
-// Left open: that levels are those of the switches (single_line), and where e comes from.
+// Not proven here: that levels are those of the switches (single_line), and where e comes from.
 module axis_monitors_properties (
     `PORTS,
     (* peek = "u_monitors.found" *) input wire [16:0] found,
@@ -206,7 +206,7 @@ module axis_monitors_properties (
         known_apart: assert (apart_kept == apart_at_tick);
     end
 
-    // What registers hold, for the induction. So many bytes have been compared; the next is in its register.
+    // Invariants of the registers, for the induction. So many bytes have been compared; the next is in its register.
     wire [2:0]  done = clocks == 4'd0 ? 3'd0 : clocks <= 4'd5 ? clocks[2:0] - 3'd1 : later[2:0] - 3'd1;
     wire        all = done[2];
     wire [31:0] low = ~(32'hffffffff << {done, 3'd0});

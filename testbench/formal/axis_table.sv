@@ -1,12 +1,12 @@
 // axis, its transitions: in every state the row is taken whose conditions hold, the first of several; without one it stays.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. NEXT(from) is written by the runner from
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. NEXT(from) is written by the runner from
 // `posicast_model::rtl::axis::TRANSITIONS`, row by row in its order, with the conditions by their names in the model: if_tick
 // and so on, which are stated here. All of them are pins but these: that causes stand, which axis_causes proves, and that the
 // time of brake or shaper is over, which axis_brake proves.
 //
 //   exact_state          the state is the one that the table says, for the state and the conditions of the clock before
-//   known_state          none but the six states
+//   known_state          only the six states occur
 //   start_waits          a start is kept up to the next tick, and forgotten at a stop
 //   exact_can_start      can_start: with a start and a tick the table would have led to RUN in the clock before
 //   starts_as_shown      RUN begins at a tick only, with a start since the tick before, after a clock that could
@@ -108,7 +108,7 @@ module axis_table_properties (
         integral_restarts: assert (clear_integral == shaper_start);
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     wire [3:0] left = cleared[0] ? 4'd8 : cleared[1] ? 4'd7 : cleared[2] ? 4'd6 : cleared[3] ? 4'd5 :
         cleared[4] ? 4'd4 : cleared[5] ? 4'd3 : cleared[6] ? 4'd2 : cleared[7] ? 4'd1 : 4'd0;
     always @(*) begin

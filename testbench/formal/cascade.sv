@@ -1,7 +1,7 @@
 // cascade: half sums, stage by stage, over rings that share one memory.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. Rings and delays are memories and left out: what is
-// read from either is anything, in every clock. WORD bits, STAGES stages, rings of 2^ADDRESS samples.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. Rings and delays are memories and left out: any value
+// can be read from them in every clock. WORD bits, STAGES stages, rings of 2^ADDRESS samples.
 //
 //   pass_...           a pass takes 2 STAGES + 2 clocks from the strobe that is taken to valid; busy between; a result per pass,
 //                      and valid at no other time; the stages come in order, two clocks each: write and read, then add
@@ -39,7 +39,7 @@ module cascade_properties (
     localparam signed [`SUM:0] ONE = 1;
     localparam signed [`SUM:0] HALF = ONE <<< (`STAGES - 1);
 
-    // Clocks since the strobe that was taken: 0, none runs.
+    // Clocks since the strobe that was taken: 0 if none runs.
     reg  [5:0] pass = 6'd0;
     wire       runs = pass != 6'd0 & pass != PASS;
     wire       taken = strobe & (start | !runs);
@@ -69,7 +69,7 @@ module cascade_properties (
         else if (start) began_at <= x;
     end
 
-    // What the clock before was.
+    // Values of the previous clock.
     reg                    past_reset = 1'b1;
     reg                    past_taken = 1'b0;
     reg                    past_refused = 1'b0;

@@ -1,7 +1,7 @@
 // channel_sums, of the shaper for motion: its arithmetic, with the product left open; rounding, saturation and width of the
 // accumulator as lemmas. A part on its own: all its inputs are free. When the control sets them is in shaper_motion.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. What the multipliers give is anything.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers give any value.
 //
 //   operands_*  the multipliers take the sample of sample_channel, or 0 where it was blank a clock before, and the coefficient
 //               that came a clock before the sample; of a position that wraps, the sample's difference to the newest one; their
@@ -12,7 +12,7 @@
 //   result_*    lemma: each channel's word is its sum >> F, clamped, or modulo 2^W where it wraps; all are shown in one clock,
 //               after the last channel's, and only by a pass that ended, or by a start; flags stay
 //
-// Left open: that the two partial products make coefficient times sample.
+// Not proven here: that the two partial products make coefficient times sample.
 module channel_sums_properties (
     `PORTS,
     (* peek = "u_product.u_lower.a_q" *) input wire signed [17:0] lower_sample,
@@ -38,7 +38,7 @@ module channel_sums_properties (
 );
     localparam signed [48:0] HALF = 49'sd1 << (`FRACTION - 1);
 
-    // What the clock before was.
+    // Values of the previous clock.
     reg               runs = 1'b0;
     reg               past_reset = 1'b1;
     reg               past_boundary = 1'b0;

@@ -1,6 +1,6 @@
 // commit: the staged registers of a bank, as docs/registers.md promises them to the one who writes them one after the other.
 //
-// Proven for all traffic, addresses and byte enables, ticks and resets; nothing is assumed: a read and a write in one clock too.
+// The properties are proven for all traffic, addresses and byte enables, ticks and resets; nothing is assumed: a read and a write in one clock too.
 // Which registers are staged, their fields and what they are after reset comes from the bank's register map.
 //
 //   all_at_once        what is in force is what was there at the last commit: all registers of it, in one clock

@@ -1,6 +1,6 @@
 // divider: quotient = trunc(steps * T * 2^16 / elapsed), always in the same time.
 //
-// Proven for all inputs in every clock, resets included, at full size; nothing is assumed. T is TICK_CLOCKS.
+// The properties are proven for all inputs in every clock, including resets, at full size; nothing is assumed. T is TICK_CLOCKS.
 //
 //   done_after_all     done comes exactly DIVISION_CLOCKS clocks after a start that is taken, and at no other time
 //   busy_between       busy from the clock after that start to the one before done; a start is taken unless busy
@@ -28,7 +28,7 @@ module divider_properties (
     (* peek = "fits" *) input wire fits,
     (* peek = "subtracts" *) input wire subtracts
 );
-    // Clocks since the start that was taken; 0: none runs, DIVISION_CLOCKS: done.
+    // Clocks since the start that was taken; 0 if none runs, DIVISION_CLOCKS: done.
     reg  [6:0] since = 7'd0;
     wire       runs = since != 7'd0 & since != `DIVISION_CLOCKS;
     wire       taken = start & !runs;
@@ -72,7 +72,7 @@ module divider_properties (
         end
     end
 
-    // The registers.
+    // Invariants of the registers.
     wire [17:0] raw = is_negative ? -size : size;
     wire [17:0] below_k = (18'd1 << k) - 18'd1;
     wire [50:0] dividend = {number, 16'd0};

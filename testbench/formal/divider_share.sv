@@ -1,6 +1,6 @@
 // divider_share: one quotient_valid per division, in the order of the channels.
 //
-// Proven for all inputs but one, resets included. Assumed, as docs/divider.md says of the divider: `done` comes only while a
+// The properties are proven for all inputs but one, including resets. Assumed, as docs/divider.md says of the divider: `done` comes only while a
 // division is on its way, and not in the clock of its start.
 //
 //   one_at_a_time     at most one channel gets a quotient

@@ -1,6 +1,6 @@
 // drive_command: nothing is told to PWM, drive and brake that neither the supervisor nor direct mode wants.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed, but that in duty_steps direct_limit has not changed
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed, but that in duty_steps direct_limit has not changed
 // since direct mode began (a stage ties it). "Direct mode" is the port direct_active; what a clock asks for shows in the next.
 //
 //   exact_direct         direct mode: from a kick on with READY and direct_enable, in which all stay; fewer than the kick's
@@ -30,7 +30,7 @@ module drive_command_properties (
     (* peek = "high_sum" *) input wire [15:0] high_sum,
     (* peek = "low_sum" *) input wire [15:0] low_sum
 );
-    // What the clock before was.
+    // Values of the previous clock.
     reg               past_reset = 1'b1;
     reg               past_tick = 1'b0, past_valid = 1'b0, past_kick = 1'b0, past_permits = 1'b0, past_in_time = 1'b0;
     reg               past_pwm_wanted = 1'b0, past_drive_wanted = 1'b0, past_brake_wanted = 1'b0;
@@ -122,7 +122,7 @@ module drive_command_properties (
             self_test_low == (past_valley & past_mask ? past_low : past_result_low));
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     always @(*) begin
         time_since: assert (ticks_counted == ticks + 16'd1 & hold_kept == hold);
         sign_wanted: assert (backward == negative);

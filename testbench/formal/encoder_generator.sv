@@ -16,7 +16,7 @@
 //   not_looped         without, they are the pins of the clock before
 //   known_...          invariants
 //
-// Left open: where the index goes when index_every changes.
+// Not proven here: where the index goes when index_every changes.
 module encoder_generator_properties (
     `PORTS,
     (* peek = "sum" *) input wire signed [63:0] sum,

@@ -1,7 +1,7 @@
 // error_lookup, of error_table: the entries of a place, and the error there times the weight, a bit per clock.
 //
 // Proven for FRACTION bits below the index and LAST as the index of the last entry, for all places and all entries, resets included.
-// What a memory gives is anything, in every clock. Assumed, as error_table does it: the weight stays from the clock after `valid` on
+// A memory gives any value in every clock. Assumed, as error_table does it: the weight stays from the clock after `valid` on
 // until the next `valid`; where it does not, nothing is claimed of that pass.
 //
 //   address_is         first E_n, then for each bit of the fraction E_n+1 if it is set, else E_n; n is the index of the place, 0 below the
@@ -133,7 +133,7 @@ module error_lookup_properties (
         busy_is: assert (busy == (!past_reset & (past_valid | (past_busy & !past_ends))));
     end
 
-    // The registers.
+    // Invariants of the registers.
     wire        [6:0]  turned = step <= 7'd41 ? step - 7'd1 : step <= 7'd43 ? 7'd40 : step - 7'd3;
     wire        [79:0] round = {place, place} >> turned;
     wire        [79:0] round_again = {place, place} >> (step - 7'd43);

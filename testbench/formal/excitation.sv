@@ -18,7 +18,7 @@
 //                      that are kept
 //   known_...          invariants
 //
-// Left open: angle, frequency and bits of the signals.
+// Not proven here: angle, frequency and bits of the signals.
 module excitation_properties (
     `PORTS,
     (* peek = "ticks" *) input wire [23:0] ticks,

@@ -1,6 +1,6 @@
 // group: all chosen axes start in one clock, or none.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. The runner writes the lists of ports per axis.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The runner writes the lists of ports per axis.
 //
 //   starts           a start of axes that are there and can start: exactly those start, one clock later
 //   refused          any other start: none starts, and it is refused

@@ -1,6 +1,6 @@
 // law_and_bank: the component of the controller, as its blocks are wired: law, modulo and bank of settings of a pass.
 //
-// Proven for all traffic on the bus, all pins and resets; nothing is assumed. Left out, so that it says anything: the controller's
+// The properties are proven for all traffic on the bus, all pins and resets; nothing is assumed. Left out, so that it says anything: the controller's
 // arithmetic, and what the banks hold.
 //
 //   one_law_and_bank   law, modulo and bank of settings are, in every clock of a pass, what they were in the clock of its start

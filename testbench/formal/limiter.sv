@@ -1,6 +1,6 @@
 // limiter: the command is the sum, cut at the limit on the side it passes; and the word that is kept.
 //
-// Proven for all inputs in every clock, resets included, with all 32 bits. Claimed for a `take` that comes at least six clocks
+// The properties are proven for all inputs in every clock, including resets, with all 32 bits. Claimed for a `take` that comes at least six clocks
 // after the one before it, with the word kept and held still, a limit that holds still, and no `keep`, for these clocks. The
 // word is as the accumulator gives it: of its sign, and if cut at the end of it. The sequencer's proof has the former, the
 // accumulator's the latter; after another `take`, nothing until the next.

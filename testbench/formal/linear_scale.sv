@@ -1,6 +1,6 @@
 // linear_scale: when deviation and velocity are there and how long they stay, what they are made of, and what align does.
 //
-// Proven for all inputs in every clock, resets included. Assumed, as docs/linear_scale.md says: `use_scale` and `ratio_shift`
+// The properties are proven for all inputs in every clock, including resets. Assumed, as docs/linear_scale.md says: `use_scale` and `ratio_shift`
 // change in reset only; from another change on nothing is claimed until the next reset. Ticks and velocities come as they like.
 //
 //   position_is        position is that of the counter that the loop runs on, a clock late

@@ -1,6 +1,6 @@
 // pulse_counter: the count of a closed loop never jumps.
 //
-// Proven for all inputs in every clock, resets included, with 32-bit counts; nothing is assumed. A and B are taken behind
+// The properties are proven for all inputs in every clock, including resets, with 32-bit counts; nothing is assumed. A and B are taken behind
 // synchroniser and filter, as the ports level_a and level_b show them.
 //
 //   count_by_one         the count moves by one or stays; only a reset makes it 0
@@ -29,7 +29,7 @@ module pulse_counter_properties (
     reg               past_clear = 1'b0;
     reg               past_preset = 1'b0;
     reg               past_index = 1'b0;
-    // A clock earlier still.
+    // Values of the clock before that.
     reg               last_preset = 1'b0;
     reg               past_illegal = 1'b0;
     reg               past_disagreement = 1'b0;

@@ -1,6 +1,6 @@
 // pwm: what its pins never do, whatever the inputs are.
 //
-// Proven for every input in every clock, resets included, with 16-bit periods, 10-bit times and all modes. Assumed: mask_pins
+// The properties are proven for every input in every clock, including resets, with 16-bit periods, 10-bit times and all modes. Assumed: mask_pins
 // is low; while it is high all pins are off, whatever the gates do. The raw fault lines count as in a cycle simulation: as they are in this clock.
 //
 //   never_both_*        a leg's two sides are never on together
@@ -78,7 +78,7 @@ module pwm_properties (
 
     always @(*) assume (!mask_pins);
 
-    // The clock before.
+    // Values of the previous clock.
     reg       past_running = 1'b0;
     reg       past_reset = 1'b1;
     reg       past_enable = 1'b0;

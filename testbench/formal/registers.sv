@@ -1,6 +1,6 @@
 // registers: the bank of the PWM's component, as the Avalon-MM agent that a host sees.
 //
-// Proven for all traffic, addresses and byte enables, inputs of the block, and resets; nothing is assumed: a read and a write
+// The properties are proven for all traffic, addresses and byte enables, inputs of the block, and resets; nothing is assumed: a read and a write
 // in one clock too.
 //
 //   reads_what_was_    a configuration register reads what was written to it, a clock after the read, byte by byte:

@@ -1,6 +1,6 @@
 // sample_select: strobe, start and words come from one source together, a clock later.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. from_pins may change in any clock.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. from_pins may change in any clock.
 //
 //   exact          all outputs are what the source that from_pins chose showed in the clock before: never words of one source
 //                  with the strobe of the other

@@ -1,7 +1,7 @@
 // scaled_product: after 31 clocks of `shift` the product is shifted by the gain's distance, whatever that is, and rounds half up.
 //
-// Proven for all inputs in every clock, resets included, with all 51 bits. The multipliers are left out: a product is
-// anything. Claimed from a `read` on, with a `load` before the first `shift`, until the next `read` or `load`: the
+// The properties are proven for all inputs in every clock, including resets, with all 51 bits. The multipliers are left out: a product has
+// any value. Claimed from a `read` on, with a `load` before the first `shift`, until the next `read` or `load`: the
 // sequencer's proof has that each step is so.
 //
 //   shifted           scaled = the doubled product, shifted right with its sign, by what has been done of the distance

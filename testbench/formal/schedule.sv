@@ -1,6 +1,6 @@
 // schedule: `control` comes exactly CONTROL_CLOCKS after a tick, and at no other time.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. A tick that comes before the one before it has
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. A tick that comes before the one before it has
 // led to `control` takes its place, as the stage's registers make impossible: the last one counts.
 module schedule_properties (
     `PORTS,

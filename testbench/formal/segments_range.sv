@@ -1,7 +1,7 @@
 // segments: a command that is not modulo does not run on past the ends of its position's word.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed of position, velocity or acceleration. What is read from
-// the memory is anything.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed of position, velocity or acceleration. Any value can be
+// read from the memory.
 //
 //   phases        a tick is waited for in phase 0 alone, and the last phase is 51
 //   range_stops   a move that goes on outwards beyond 2^23 - 2^18 counts: the state stop at once, the entries dropped, and

@@ -99,7 +99,7 @@ module serial_ratio_properties (
         last_is: assert (last == (runs & phase == 6'd63));
     end
 
-    // The registers.
+    // Invariants of the registers.
     wire        [31:0] below_operand = phase[5] ? 32'hffffffff : (32'd1 << phase[4:0]) - 32'd1;
     wire        [31:0] below_other = !is_begun ? 32'd0 : place >= 7'd32 ? 32'hffffffff : (32'd1 << place[4:0]) - 32'd1;
     wire signed [63:0] done = product >>> phase;

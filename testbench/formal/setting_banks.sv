@@ -1,7 +1,7 @@
 // setting_banks: the settings of a controller, in three banks.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. Memory and ROM are left out: what is read
-// from them is anything, in every clock.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. Memory and ROM are left out: any value
+// can be read from them in every clock.
 //
 //   from_memory        a row that was written since the reset reads as the memory's word at its own place
 //   not_written        one that was not reads as 0, whatever the memory holds; so does bank 3

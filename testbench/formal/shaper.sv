@@ -1,7 +1,7 @@
 // shaper: its control with the product left open, and rounding, saturation and width of the accumulator as lemmas.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. What the multipliers and the memories give is
-// anything, in every clock. `pass` is the clock of the pass, 0 where none runs; n the taps of the active table.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers and the memories give
+// any value in every clock. `pass` is the clock of the pass, 0 if none runs; n the taps of the active table.
 //
 //   pass_*          running, tap, stages, done, valid and busy are those of this clock: tap i is read in clock i + 1 and no
 //                   other, its product added in clock i + 7 and no other, the result shown in clock n + 8 and no other
@@ -92,7 +92,7 @@ module shaper_properties (
         pass_busy: assert (busy == (pass >= 8'd1 & pass <= n + 8'd7));
     end
 
-    // What the clock before was.
+    // Values of the previous clock.
     reg               past_reset = 1'b1;
     reg               past_strobe = 1'b0;
     reg               past_start = 1'b0;

@@ -1,7 +1,7 @@
 // shaper_motion: the control of the shaper for motion, three channels. Its arithmetic is in channel_sums.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. What the multipliers and the memories give is
-// anything, in every clock. `pass` is the clock of the pass, 0 where none runs; N its products, end_0 to end_2 the last of
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers and the memories give
+// any value in every clock. `pass` is the clock of the pass, 0 if none runs; N its products, end_0 to end_2 the last of
 // each channel. A handover's products are, channel by channel, those of the old table, of the active one, and, of the
 // position, one more.
 //
@@ -22,7 +22,7 @@
 //               the while
 //   table_*     the tables of a pass, and one that waits, sum to 2^F by their own count, and none of them is written
 //
-// Left open: that memories keep what is written; other numbers of channels.
+// Not proven here: that memories keep what is written; other numbers of channels.
 module shaper_motion_properties (
     `PORTS,
     (* peek = "tap" *) input wire [5:0] tap,
@@ -144,7 +144,7 @@ module shaper_motion_properties (
         pass_sum: assert (pass == 10'd0 | sum_channel == sum_channel_now);
     end
 
-    // What the clock before was.
+    // Values of the previous clock.
     reg               past_reset = 1'b1;
     reg               past_strobe = 1'b0;
     reg               past_start = 1'b0;

@@ -1,7 +1,7 @@
 // shaper_small: all of the plain shaper's arithmetic, memories and multiplier included, at sizes that no machine gets: words of
 // 6 bits, a ring of 4 samples, tables of 4 taps; coefficients have their 18 bits.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. The kernel is that of every plain shaper, with
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The kernel is that of every plain shaper, with
 // other sizes. What it should give is computed here from the ports alone: an own history, own tables, own products.
 //
 //   result          y = sum >> F, clamped; the sum is 2^(F-1) and, for each tap of the active table, its coefficient times the
@@ -15,7 +15,7 @@
 //   read_*          lemmas: it takes the tables only where no pass does
 //   total_*         lemmas: the accumulator is the own sum, in the clock in which it has come so far
 //
-// Left open: other sizes; and for loaded tables the step from result and weights to constant, which is the distributive law.
+// Not proven here: other sizes; and for loaded tables the step from result and weights to constant, which is the distributive law.
 module shaper_small_properties (
     `PORTS,
     (* peek = "u_banks.serves" *) input wire serves,
@@ -167,7 +167,7 @@ module shaper_small_properties (
         table_to_come: assert (!swap_pending | ((upcoming != 2'd1 | sum_1 == UNITY) & (upcoming != 2'd2 | sum_2 == UNITY)));
     end
 
-    // The clock of the pass, 0 where none runs.
+    // The clock of the pass, 0 if none runs.
     wire [3:0] last = {1'b0, n} + 4'd8;
     reg  [3:0] pass = 4'd0;
     always @(posedge clk) begin

@@ -1,7 +1,7 @@
 // sliding_mode: the control of a pass, with products left uninterpreted: what the multipliers say is anything, in every clock,
 // but for a mantissa of one, whose product is the operand.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. A pass has 17 steps of 39, 16 or 8 clocks; its
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. A pass has 17 steps of 39, 16 or 8 clocks; its
 // clocks are counted here on their own, from 1 in the clock after `start` on.
 //
 //   latency_exact     valid comes PASS_CLOCKS after a start that was taken, and at no other time; busy in between
@@ -33,7 +33,7 @@
 //   known_*           invariants
 //
 // With accumulator.sv, scaled_product.sv and limiter.sv: a pass is the sums of the datasheet of rounded products, cut once.
-// Left open: that the multipliers multiply, the meaning of the gains, e itself (lock step).
+// Not proven here: that the multipliers multiply, the meaning of the gains, e itself (lock step).
 module sliding_mode_properties (
     `PORTS,
     (* peek = "u_sequencer.step_q" *) input wire [4:0] step,

@@ -1,6 +1,6 @@
 // An axis of a stage, as its blocks are wired: what the machine's pins do at an emergency stop, and what has them on at all.
 //
-// Proven for all inputs in every clock, resets included: whatever a host, the other axes, encoder and switches do, and whatever
+// The properties are proven for all inputs in every clock, including resets: whatever a host, the other axes, encoder and switches do, and whatever
 // the controller says. Nothing is assumed. Memories and products are left out. FILTER_CLOCKS is what the stage ties.
 //
 //   stop_*            drive off and brake applied once the emergency stop's line has been low for FILTER_CLOCKS + 5 clocks, and
@@ -40,7 +40,7 @@ module stage_axis_properties (
     end
     localparam [6:0] FILTER = `FILTER_CLOCKS;
 
-    // What the clocks before were, the last one in bit 0.
+    // Values of the previous clocks, the last one in bit 0.
     reg [2:0] group = 3'd0;
     reg [1:0] off = 2'd3;
     reg       ready = 1'b0;
@@ -68,7 +68,7 @@ module stage_axis_properties (
         ready_by_direct: assert (!ready | direct_active | (!drive_enable & !brake_release & !pwm_enable));
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     wire axis_is_off = !axis_on & (state == `OFF | state == `FAULT);
     wire harmful = |(causes & ~`HARMLESS);
     always @(*) begin

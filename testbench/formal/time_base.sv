@@ -1,6 +1,6 @@
 // time_base: counters of clocks and of ticks, and a tick every TICK_CLOCKS clocks.
 //
-// Proven for all inputs in every clock, resets included; nothing is assumed. The counters begin with BEGIN: 0, as after a reset,
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The counters begin with BEGIN: 0, as after a reset,
 // or a few clocks before they come round, where no search would get to from 0.
 //
 //   tick_after_all     a tick comes TICK_CLOCKS clocks after the one before or a reset, and at no other time

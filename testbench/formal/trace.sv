@@ -1,7 +1,7 @@
 // trace: which rows are taken, where their words lie, where the trigger's is, and what is shown of them.
 //
-// Proven for all inputs in every clock, resets and arm at any time included; nothing is assumed. The memory is left out: what
-// is read from it is anything. `row` is the clock of the row that is being taken, 0 where none is, as in the datasheet;
+// Proven for all inputs in every clock, resets and arm at any time included; nothing is assumed. The memory is left out: any
+// value can be read from it. `row` is the clock of the row that is being taken, 0 where none is, as in the datasheet;
 // n the signals of a row.
 //
 //   exact_state        the states of the datasheet: filling until the rows before the trigger are there, waiting until it comes
@@ -100,7 +100,7 @@ module trace_properties (
         if (rst) {selected, taken, above_before} <= 37'd0;
     end
 
-    // What the clock before was.
+    // Values of the previous clock.
     reg         past_reset = 1'b1, past_arm = 1'b0, past_done = 1'b0, past_idle = 1'b0, past_more = 1'b0, past_come = 1'b0;
     reg         past_write = 1'b0, past_missed = 1'b0, past_drops = 1'b0;
     reg  [11:0] past_rows = 12'd0;
@@ -152,7 +152,7 @@ module trace_properties (
         shown_word: assert (data == (past_idle & !past_reset & {3'd0, past_read} < past_words ? ram_data : 32'd0));
     end
 
-    // What registers hold, for the induction.
+    // Invariants of the registers, for the induction.
     always @(*) begin
         known_row: assert (phase == row & active == armed & halting == halts & signals_q == code);
         strobes_left: assert (skip == (fresh ? 16'd0 : leaves_out - left_out) & (fresh | left_out <= leaves_out));
