@@ -1,8 +1,9 @@
-// accumulator: sums are exact but for one rounding of each product, half up, and never overflow; words are cut at their ends.
+// accumulator: sums are exact except for one rounding of each product, half up, and never overflow; words are clamped at their
+// ends.
 //
-// The properties are proven for all inputs in every clock, including resets, with all 52 bits. Claimed of sums whose terms are at most 2^49, half
-// LSBs, as those of 32 x 18 bits are, and of at most six terms: the sequencer's proof has that none has more. After others,
-// nothing until a sum begins anew.
+// The properties are proven for all inputs in every clock, including resets, with all 52 bits. They are claimed for sums whose
+// terms are at most 2^49, half LSBs, as those of 32 x 18 bits are, and of at most six terms: the sequencer's proof has that none
+// has more. After other inputs, nothing is claimed until a new sum begins.
 //
 //   exact_sum     the register is the terms so far and round(term), as numbers of 64 bits say
 //   bounded       its size is at most terms * 2^48: 52 bits hold 2^51
@@ -22,7 +23,7 @@ module accumulator_properties (
     reg               claimed = 1'b1;
 
     wire signed [63:0] wide_term = {{13{scaled[50]}}, scaled};
-    // Half up, of half LSBs.
+    // This rounds half up; terms are in half LSBs.
     wire signed [63:0] rounded = (wide_term + 64'sd1) >>> 1;
     wire               fits = wide_term <= LARGEST_TERM & wide_term >= -LARGEST_TERM;
     always @(posedge clk) begin
@@ -47,7 +48,7 @@ module accumulator_properties (
     wire signed [63:0] end_below = -end_above - 64'sd1;
     wire signed [63:0] wanted = wide_sum > end_above ? end_above : wide_sum < end_below ? end_below : wide_sum;
     wire signed [63:0] wide_word = {{32{word[31]}}, word};
-    // What the last check found.
+    // Result of the last check.
     reg signed [63:0]  due_word = 64'sd0;
     reg                is_above = 1'b0;
     reg                is_below = 1'b0;

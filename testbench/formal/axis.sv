@@ -1,7 +1,7 @@
 // axis: the supervisor reaches only its transition table, and its outputs obey its state.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. ALLOWED(from, to) is written by the runner
-// from `posicast_model::rtl::axis::TRANSITIONS`: there is one table.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. ALLOWED(from, to) is written by
+// the runner from `posicast_model::rtl::axis::TRANSITIONS`: there is one table.
 //
 //   known_state          only the six states occur
 //   in_table             a state follows another only as the table says
@@ -16,14 +16,15 @@
 //   shaper_restarts      the shaper is held at the position while they are off
 //   causes_held          causes stay until clear_faults
 //
-// That it is the right row for its conditions: axis_table. Causes: axis_causes, axis_monitors, axis_lines. Times: axis_brake.
+// axis_table proves that the row is the right one for its conditions. axis_causes, axis_monitors and axis_lines are about causes,
+// axis_brake about times.
 module axis_properties (
     `PORTS
 );
     reg        past_reset = 1'b1;
     reg [2:0]  past_state = `OFF;
     reg [16:0] past_causes = 16'd0;
-    // Causes are forgotten in the eighth clock after clear_faults, or a ninth or tenth.
+    // Causes are cleared in the eighth, ninth or tenth clock after clear_faults.
     reg [11:0] cleared = 12'd0;
     always @(posedge clk) begin
         past_reset <= rst;

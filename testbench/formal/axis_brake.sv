@@ -1,8 +1,8 @@
 // axis, its outputs and brake: when they go on and off, and how many ticks lie between.
 //
-// The properties are proven for all inputs in every clock, including resets. Nothing is assumed, but `in_time`: not_longer holds as long as ticks
-// have come at least three clocks apart, as the datasheet asks. The delays may change in any clock: each is the one of the clock
-// in which what it belongs to shows at the pins. A cut is a cause that switches off: axis_causes proves which.
+// The properties are proven for all inputs in every clock, including resets. Nothing is assumed, but `in_time`: not_longer holds as
+// long as ticks have come at least three clocks apart, as the datasheet asks. The delays may change in any clock: each is the one
+// of the clock in which what it belongs to shows at the pins. A cut is a cause that switches off: axis_causes proves which.
 //
 //   exact_outputs       on at READY to HOLD; off at a cut, at a reset, or at a tick with the brake applied and its time over;
 //                       at no other time. PWM and drive together
@@ -56,16 +56,16 @@ module axis_brake_properties (
     end
     wire past_against = past_on & !past_released;
 
-    // What begins at the pins in this clock; the brake is applied last.
+    // Events at the pins in this clock; the brake is applied last.
     wire applied = against & past_released;
     wire settling = (past_state == `RUN & !past_reset) | stopping;
     wire begins = enabled | settling | applied;
-    // Ticks since it began, and how many it asks for. In QUICK_STOP those with stopped segments.
+    // Ticks since then, and the number required; in QUICK_STOP only ticks with stopped segments count.
     reg  [15:0] seen = 16'd0;
     reg  [15:0] needed = 16'd0;
-    // All have come, a clock ago or earlier.
+    // All these ticks have come, a clock ago or earlier.
     reg         enough = 1'b0;
-    // The same of seen and needed for the clock before.
+    // seen and needed of the previous clock.
     reg  [15:0] past_seen = 16'd0;
     reg  [15:0] past_needed = 16'd0;
     reg         past_begins = 1'b0;
@@ -82,7 +82,7 @@ module axis_brake_properties (
         end else if (counts & seen != 16'hffff) seen <= seen + 16'd1;
     end
 
-    // Ticks since the brake was released, and how many that takes.
+    // Ticks since the brake was released, and the number required.
     reg [15:0] open_seen = 16'd0;
     reg [15:0] open_needed = 16'd0;
     wire       opens = brake_release & !past_released;
@@ -93,7 +93,7 @@ module axis_brake_properties (
     end
     wire is_open = !opens & open_seen >= open_needed;
 
-    // So far ticks have come at least three clocks apart.
+    // All ticks so far were at least three clocks apart.
     reg in_time = 1'b1;
     reg past_tick_2 = 1'b0;
     always @(posedge clk) begin

@@ -1,12 +1,12 @@
-// axis, its causes: which are latched, when they are forgotten, and what they do, and when.
+// axis, its causes: which are latched, when they are cleared, what they do, and when.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. All is said of pins; only what the monitors have
-// found comes from inside, and axis_monitors proves that. The bits of causes, and which of them always switch off or are
-// harmless, are macros from `posicast_model::rtl::axis::Cause`.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The properties are about pins;
+// only what the monitors have found comes from inside, and axis_monitors proves that. The bits of causes, and which of them always
+// switch off or are harmless, are macros from `posicast_model::rtl::axis::Cause`.
 //
 //   exact_causes         each cause has its own line, flag or monitor: it is set in the clock in which that is active, by nothing
-//                        else, and stays until it is forgotten; several at once are all kept
-//   forgets_*            forgotten eight clocks after the last clear_faults, not in QUICK_STOP, not in FAULT with outputs on, and
+//                        else, and stays until it is cleared; several at once are all kept
+//   forgets_*            cleared eight clocks after the last clear_faults, not in QUICK_STOP, not in FAULT with outputs on, and
 //                        elsewhere not before what follows; set wins
 //   known_lines          own emergency stop: the filtered line is low, four clocks after a reset or later
 //   trips_pwm            pwm_trip_n is low in the clock after an emergency stop, of this axis or of another
@@ -39,9 +39,9 @@ module axis_causes_properties (
     (* peek = "u_states.fault" *) input wire states_fault,
     (* peek = "u_states.cut" *) input wire states_cut
 );
-    // Lines count from the fifth clock after a reset on.
+    // Lines are used from the fifth clock after a reset on.
     reg [3:0] awake = 4'd0;
-    // As of the clock before: the count, the shaped command or e is beyond its word, or as good as.
+    // In the previous clock, the count, the shaped command or e was beyond its word, or nearly so.
     reg       left_range = 1'b0;
     // clear_faults of the eight clocks before, the last one in bit 0.
     reg [7:0] cleared = 8'd0;

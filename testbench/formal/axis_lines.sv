@@ -1,7 +1,7 @@
 // axis, its lines: what the filter lets through, and how soon the outputs are off after the emergency stop's line went low.
 //
-// The properties are proven for all inputs in every clock, including resets. A line is as its synchroniser sees it: pin by pin, in clocks. Stated
-// of emergency stop and drive ready; the other three lines are of the same module.
+// The properties are proven for all inputs in every clock, including resets. A line is as its synchroniser sees it: pin by pin, in
+// clocks. Stated of emergency stop and drive ready; the other three lines are of the same module.
 //
 //   passes_*       a filtered level changes exactly after the line has differed from it for so many clocks in a row, and one, as
 //                  filter_clocks had when it last did not differ: shorter pulses leave nothing; the synchroniser's two clocks later.
@@ -21,7 +21,7 @@ module axis_lines_properties (
     (* peek = "u_drive_line.u_synchroniser.synchroniser_second" *) input wire drive_second,
     (* peek = "u_drive_line.u_filter.left" *) input wire [5:0] drive_left
 );
-    // Levels follow their lines until the fifth clock after a reset.
+    // Levels follow their lines directly until the fifth clock after a reset.
     reg [3:0] awake = 4'd0;
     always @(posedge clk) awake <= rst ? 4'd0 : {awake[2:0], 1'b1};
 

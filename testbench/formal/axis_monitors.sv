@@ -1,9 +1,9 @@
-// axis, what it watches at ticks: each cause is found eleven clocks after a tick that shows it, and by nothing else.
+// axis, its monitors at ticks: each cause is found eleven clocks after a tick that shows it, and by nothing else.
 //
-// The properties are proven for all inputs in every clock, including resets. Nothing is assumed, but `in_time`: all holds as long as ticks have come
-// at least ten clocks apart, as the datasheet asks. All is said of pins. Levels, velocities and the position are those of the
-// tick. Numbers and limits are taken by bytes, those of 16 bits by nibbles, in the four clocks from the tick on, and once more
-// five clocks later; what both rounds show is found. |x| is as in the datasheet: x, or -x - 1 below 0.
+// The properties are proven for all inputs in every clock, including resets. Nothing is assumed, but `in_time`: all holds as long
+// as ticks have come at least ten clocks apart, as the datasheet asks. The properties are about pins. Levels, velocities and the
+// position are those of the tick. Numbers and limits are taken by bytes, those of 16 bits by nibbles, in the four clocks from the
+// tick on, and once more five clocks later; what both rounds show is found. |x| is as in the datasheet: x, or -x - 1 below 0.
 //
 //   only_at_ticks        causes are found eleven clocks after a tick with the outputs on, and in no other clock
 //   only_monitored       none but those below
@@ -94,23 +94,24 @@ module axis_monitors_properties (
     wire       [31:0] byte_mask = 32'hff << {part, 3'd0};
     wire       [15:0] nibble_mask = 16'hf << {part, 2'd0};
 
-    // What the last tick showed, and the one before it.
+    // Values at the last tick, and at the tick before it.
     reg               shown_on = 1'b0;
     reg               at_plus = 1'b0, at_minus = 1'b0, was_at_plus = 1'b0, was_at_minus = 1'b0;
     reg               was_beyond_plus = 1'b0, was_beyond_minus = 1'b0;
     reg signed [31:0] velocity = 32'sd0, shaped = 32'sd0, place = 32'sd0;
-    // Where the position was last seen to move, either way, or the command to change sides; how far it is from there, a clock later each.
+    // Where the position was last seen to move, either way, or the command to change sides; how far it is from there, a clock later
+    // each.
     reg signed [31:0] since = 32'sd0, moved = 32'sd0;
     reg               since_below = 1'b0, up_little = 1'b0, down_little = 1'b0;
     wire signed [31:0] distance = place - since;
     reg               e_below = 1'b0, apart_below = 1'b0, drive_below = 1'b0;
-    // What the rounds have taken so far.
+    // Bytes that the rounds have taken so far.
     reg signed [31:0] reference = 32'sd0, plus = 32'sd0, minus = 32'sd0;
     reg        [31:0] apart_at_tick = 32'd0;
     wire       [31:0] apart_now = tick ? deviation : apart_at_tick;
     reg        [31:0] e = 32'd0, e_most = 32'd0, apart = 32'd0, apart_most = 32'd0, drive = 32'd0, drive_most = 32'd0;
     reg        [15:0] cut = 16'd0, cut_most = 16'd0, still_most = 16'd0, unkicked_most = 16'd0;
-    // Ticks; one bit more once there are more than any limit.
+    // Number of ticks, with one more bit for numbers above any limit.
     reg        [15:0] still_for = 16'd0, unkicked_for = 16'd0;
     reg               still_long = 1'b0, unkicked_long = 1'b0, waiting = 1'b0;
     wire              kicked = (kick & kick_word == `KICK) | waiting;
@@ -206,7 +207,7 @@ module axis_monitors_properties (
         known_apart: assert (apart_kept == apart_at_tick);
     end
 
-    // Invariants of the registers, for the induction. So many bytes have been compared; the next is in its register.
+    // Invariants of the registers, for the induction: the bytes compared so far, and the next one in its register.
     wire [2:0]  done = clocks == 4'd0 ? 3'd0 : clocks <= 4'd5 ? clocks[2:0] - 3'd1 : later[2:0] - 3'd1;
     wire        all = done[2];
     wire [31:0] low = ~(32'hffffffff << {done, 3'd0});
@@ -221,7 +222,7 @@ module axis_monitors_properties (
     wire [31:0] drive_next = drive >> byte_at, drive_most_next = drive_most >> byte_at;
     wire [15:0] cut_next = cut >> nibble_at, cut_most_next = cut_most >> nibble_at;
     wire [15:0] still_most_next = still_most >> nibble_at, unkicked_most_next = unkicked_most >> nibble_at;
-    // Counts go round: below, nibbles that are still to come; above, those that have the tick.
+    // Counts rotate: the lower nibbles are still to come, the upper ones include the tick.
     wire        counting = clocks >= 4'd1 & clocks <= 4'd5;
     wire [15:0] still_after = still_for + {15'd0, counting}, unkicked_after = unkicked_for + {15'd0, counting};
     wire [31:0] still_round = {still_after, still_for} >> {done, 2'd0};

@@ -1,9 +1,9 @@
 // axis, its transitions: in every state the row is taken whose conditions hold, the first of several; without one it stays.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. NEXT(from) is written by the runner from
-// `posicast_model::rtl::axis::TRANSITIONS`, row by row in its order, with the conditions by their names in the model: if_tick
-// and so on, which are stated here. All of them are pins but these: that causes stand, which axis_causes proves, and that the
-// time of brake or shaper is over, which axis_brake proves.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. NEXT(from) is written by the
+// runner from `posicast_model::rtl::axis::TRANSITIONS`, row by row in its order, with the conditions by their names in the model:
+// if_tick and so on, which are stated here. All of them are pins but these: that causes stand, which axis_causes proves, and that
+// the time of brake or shaper is over, which axis_brake proves.
 //
 //   exact_state          the state is the one that the table says, for the state and the conditions of the clock before
 //   known_state          only the six states occur
@@ -32,13 +32,13 @@ module axis_table_properties (
     (* peek = "u_states.cleared" *) input wire forgotten,
     (* peek = "clear_due" *) input wire clear_due
 );
-    // Lines count from the fifth clock after a reset on.
+    // Lines are used from the fifth clock after a reset on.
     reg [3:0] awake = 4'd0;
     // clear_faults of the eight clocks before, the last one in bit 0.
     reg [7:0] cleared = 8'd0;
     // A start since the last tick, and no stop since.
     reg       waits = 1'b0;
-    // In HOLD without a break since READY: the brake may still be opening.
+    // The axis has been in HOLD since READY, so the brake may still be opening.
     reg       since_ready = 1'b0;
     wire      wants_start = (start | waits) & !stop;
     wire      just_on = state == `HOLD & (enabled | since_ready);

@@ -1,11 +1,11 @@
 // cascade: half sums, stage by stage, over rings that share one memory.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. Rings and delays are memories and left out: any value
-// can be read from them in every clock. WORD bits, STAGES stages, rings of 2^ADDRESS samples.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. Rings and delays are memories and
+// left out: any value can be read from them in every clock. WORD bits, STAGES stages, rings of 2^ADDRESS samples.
 //
 //   pass_...           a pass takes 2 STAGES + 2 clocks from the strobe that is taken to valid; busy between; a result per pass,
 //                      and valid at no other time; the stages come in order, two clocks each: write and read, then add
-//   taken              a strobe is taken unless a pass runs, or with a start; else overrun, and the pass goes on
+//   taken              a strobe is taken unless a pass runs, or with a start; else overrun is set, and the pass continues
 //   writes_...         in its first clock a stage writes its input, whole, to its own ring at the head; nothing else is written
 //   reads_...          it reads what is its own delay before the head, never the word that is being written (a delay is not 0)
 //   before_start       what lies before the start, by delay and samples since, is the start value, doubled from stage to stage;
@@ -14,7 +14,7 @@
 //                      changes it
 //   fits               if the words of the rings lie within 2^k times the ends of x's word in stage k, so does each sum; as these
 //                      are what is written to the rings, all of them always do: nothing overflows
-//   result_...         y is the sum plus 2^(STAGES - 1), shifted down by STAGES, exact; x after a start; and holds else
+//   result_...         y is the sum plus 2^(STAGES - 1), shifted down by STAGES, exact; x after a start; and is constant otherwise
 module cascade_properties (
     `PORTS,
     (* peek = "running" *) input wire running,
@@ -54,7 +54,7 @@ module cascade_properties (
         else pass <= pass + 6'd1;
     end
 
-    // Samples since the start, as far as a delay can reach; the value before it.
+    // Samples since the start, up to the longest delay; and the value before it.
     reg        [`ADDRESS-1:0] samples = 0;
     reg signed [`WORD-1:0]    began_at = 0;
     reg        [`ADDRESS-1:0] past_head = 0;
@@ -122,7 +122,7 @@ module cascade_properties (
         sum_adds: assert (past_reset | past_taken | past_start | sum == (past_second ? past_sum + past_added : past_sum));
     end
 
-    // Within 2^k times the ends of a word: what the rings give in this pass is, and so is the sum.
+    // The words that the rings give in this pass are within 2^k times the ends of a word, and so is the sum.
     localparam signed [`SUM:0] LARGEST = (ONE <<< (`WORD - 1)) - ONE;
     localparam signed [`SUM:0] SMALLEST = -(ONE <<< (`WORD - 1));
     reg                  within = 1'b1;

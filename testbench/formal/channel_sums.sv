@@ -1,5 +1,5 @@
 // channel_sums, of the shaper for motion: its arithmetic, with the product left open; rounding, saturation and width of the
-// accumulator as lemmas. A part on its own: all its inputs are free. When the control sets them is in shaper_motion.
+// accumulator as lemmas. This part is proven alone, so all its inputs are free; shaper_motion proves when the control sets them.
 //
 // The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers give any value.
 //
@@ -95,7 +95,7 @@ module channel_sums_properties (
         sum_adds: assert (past_reset | past_boundary | accumulator == past_accumulator + added);
     end
 
-    // Their width: at most 129 products of at most 2^40 in size.
+    // The width of the sums is enough for 129 products of at most 2^40 in size.
     reg        within = 1'b0;
     reg  [7:0] so_far = 8'd0;
     wire       small = product <= (42'sd1 << 40) & product >= -(42'sd1 << 40);

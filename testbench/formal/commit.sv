@@ -1,14 +1,14 @@
-// commit: the staged registers of a bank, as docs/registers.md promises them to the one who writes them one after the other.
+// commit: the staged registers of a bank, as docs/registers.md promises to a host that writes them one after the other.
 //
-// The properties are proven for all traffic, addresses and byte enables, ticks and resets; nothing is assumed: a read and a write in one clock too.
-// Which registers are staged, their fields and what they are after reset comes from the bank's register map.
+// The properties are proven for all traffic, addresses and byte enables, ticks and resets; nothing is assumed: a read and a write
+// in one clock too. Which registers are staged, their fields and what they are after reset comes from the bank's register map.
 //
-//   all_at_once        what is in force is what was there at the last commit: all registers of it, in one clock
+//   all_at_once        all registers in effect are those of the last commit, applied in one clock
 //   only_by_commit     no staged register changes in a clock that no commit was applied in, or a reset
-//   last_written       a commit puts into force what was last written, byte by byte, before it was
-//   reads_what_was_    a staged register reads what was last written, in force or not, a clock after the read
+//   last_written       a commit applies what was last written, byte by byte, before it
+//   reads_what_was_    a staged register reads what was last written, applied or not, a clock after the read
 //     written
-//   reads_waiting      COMMIT reads 1 from its write to its tick, and 0 else
+//   reads_waiting      COMMIT reads 1 from its write to its tick, and 0 otherwise
 //   refused_is_flagged a write of a staged register, or a whole one of COMMIT, while a commit waits sets `commit_rejected`;
 //   flagged_is_refused nothing else does. That it changes nothing is in last_written
 //
@@ -85,7 +85,7 @@ module commit_properties (
         flagged_is_refused: assert (!rejected | past_rejected | past_refused);
     end
 
-    // All registers of the group differ from what they are after reset.
+    // All registers of the group differ from their reset values.
     wire [`REGISTERS-1:0] differs;
     generate
         for (n = 0; n < `REGISTERS; n = n + 1) begin : change

@@ -39,7 +39,7 @@ module divider_properties (
     wire [6:0] d = since - 7'd19;
     wire [6:0] j = since - 7'd70;
 
-    // What was asked for, and what has been made of it.
+    // Operands of the division, and its progress.
     reg  [17:0] size = 18'd0;
     reg         is_negative = 1'b0;
     reg  [23:0] by = 24'd1;
@@ -106,7 +106,7 @@ module divider_properties (
         known_turn: assert (!signs | turns_over == ((clamped & below_j) != 31'd0));
     end
 
-    // At the ports.
+    // Properties of the ports.
     reg  [23:0] left = 24'd0;
     reg         past_reset = 1'b1;
     reg         past_start = 1'b0;

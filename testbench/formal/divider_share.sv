@@ -1,7 +1,7 @@
 // divider_share: one quotient_valid per division, in the order of the channels.
 //
-// The properties are proven for all inputs but one, including resets. Assumed, as docs/divider.md says of the divider: `done` comes only while a
-// division is on its way, and not in the clock of its start.
+// The properties are proven for all inputs but one, including resets. Assumed, as docs/divider.md says of the divider: `done` comes
+// only while a division is on its way, and not in the clock of its start.
 //
 //   one_at_a_time     at most one channel gets a quotient
 //   one_per_division  a quotient comes one clock after each `done`, and at no other time
@@ -30,7 +30,7 @@ module divider_share_properties (
         else if (|valid) expected <= is_last ? 4'd0 : expected + 4'd1;
     end
 
-    // From a `done` out of turn on, nothing is claimed.
+    // After an unexpected `done`, nothing is claimed.
     reg  out_of_turn = 1'b0;
     wire fair = !out_of_turn & (!done | in_flight);
     always @(posedge clk) out_of_turn <= !rst & !fair;

@@ -1,19 +1,20 @@
-// drive_command: nothing is told to PWM, drive and brake that neither the supervisor nor direct mode wants.
+// drive_command: PWM, drive and brake get only what the supervisor or direct mode requests.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed, but that in duty_steps direct_limit has not changed
-// since direct mode began (a stage ties it). "Direct mode" is the port direct_active; what a clock asks for shows in the next.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed, except that in duty_steps
+// direct_limit has not changed since direct mode began (a stage ties it). "Direct mode" is the port direct_active; a request shows
+// in the next clock.
 //
 //   exact_direct         direct mode: from a kick on with READY and direct_enable, in which all stay; fewer than the kick's
 //                        direct_hold_ticks ticks since the last one; self_test unchanged. It begins with a kick only
 //   never_longer         so many ticks have not come since the last kick
 //   exact_expired        direct_expired: one clock, where the time alone ended it
 //   exact_enables        PWM, drive and brake: the supervisor's, or on by direct mode; drive and brake off in a self-test;
-//                        PWM off for a clock after it; nothing else has them on
+//                        PWM off for a clock after it; nothing else switches them on
 //   mask_*               pins masked in all of a self-test, in no other direct mode, and in the clock after it, not longer;
 //                        never off in the clock after one with the PWM on; a change of self_test ends direct mode
 //   zero_when_off        duty 0 while the PWM is off, after a reset, and in the first clock of direct mode and after it
 //   exact_controller     without direct mode the controller's duty, saturated to 17 bits, when it is valid, and held in between
-//   exact_manual         in direct mode direct_duty at ticks, cut to direct_limit in size, and held in between
+//   exact_manual         in direct mode direct_duty at ticks, limited to direct_limit in size, and held in between
 //   manual_limit         never above the direct_limit of the last tick, in either direction
 //   no_way_to_switch     never towards a limit switch that the clock before showed
 //   turns_through_zero   no duty has the other sign than the one before it
@@ -41,14 +42,14 @@ module drive_command_properties (
     reg signed [17:0] past_controller = 18'sd0;
     reg        [15:0] past_limit = 16'd0, past_high = 16'd0, past_low = 16'd0, past_result_high = 16'd0, past_result_low = 16'd0;
 
-    // Ticks since the last kick, and the time that it gave.
+    // Ticks since the last kick, and its direct_hold_ticks.
     reg        [15:0] ticks = 16'd0, hold = 16'd0;
-    // Of the last tick: the sign wanted, and the limit.
+    // Requested sign and limit of the last tick.
     reg               negative = 1'b0;
     reg        [15:0] limit_then = 16'd0;
-    // direct_limit has been the same since direct mode began.
+    // direct_limit has been constant since direct mode began.
     reg               steady = 1'b1;
-    // Clocks that the gates were on since the last valley, or the mask.
+    // Clocks in which the gates were on since the last valley, or since the mask.
     reg        [15:0] high = 16'd0, low = 16'd0;
     wire              ready = axis_state == `READY & direct_enable;
     wire              permits = ready & !(direct_active & self_test != mask_pins);
@@ -82,7 +83,7 @@ module drive_command_properties (
         steady <= !direct_active | (steady & direct_limit == past_limit);
     end
 
-    // In numbers wide enough for the largest of both signs.
+    // These numbers are wide enough for the largest of both signs.
     wire signed [17:0] limit = $signed({2'b0, past_limit}), limit_of_tick = $signed({2'b0, limit_then});
     wire signed [17:0] wanted = past_wanted, shown = duty, before = past_duty;
     wire signed [17:0] manual = wanted > limit ? limit : wanted < -limit ? -limit : wanted;

@@ -1,4 +1,4 @@
-// encoder_generator: lines of an encoder that a pulse counter can follow, whatever the rate does.
+// encoder_generator: a pulse counter can follow the lines at any rate.
 //
 // Proven for all inputs in every clock, resets and changes of `rate` included; nothing is assumed. Lines are those inside,
 // a clock before the outputs; a count of the lines is one step of Gray code, up or down.
@@ -16,7 +16,7 @@
 //   not_looped         without, they are the pins of the clock before
 //   known_...          invariants
 //
-// Not proven here: where the index goes when index_every changes.
+// Not proven here: the position of the index after a change of index_every.
 module encoder_generator_properties (
     `PORTS,
     (* peek = "sum" *) input wire signed [63:0] sum,
@@ -40,7 +40,7 @@ module encoder_generator_properties (
         down <= rst ? 3'd0 : {down[1:0], rate < 32'sd0};
     end
 
-    // The lines, and what they have counted. Their code: 00, 01, 11, 10 for 0 to 3.
+    // The lines, and their count. Their code is 00, 01, 11, 10 for 0 to 3.
     reg         past_a = 1'b0;
     reg         past_b = 1'b0;
     reg         past_z = 1'b0;
@@ -83,7 +83,7 @@ module encoder_generator_properties (
             : count_1 - count_2 == 32'hffffffff & down[1]));
     end
 
-    // The index: counts since the last one, in periods of four, while index_every stays.
+    // Counts since the last index, in periods of four, while index_every is constant.
     reg                stays = 1'b1;
     reg         [15:0] every = 16'd0;
     reg                begun = 1'b0;

@@ -1,12 +1,12 @@
-// error_lookup, of error_table: the entries of a place, and the error there times the weight, a bit per clock.
+// error_lookup, of error_table: the entries of a position, and its error times the weight, a bit per clock.
 //
-// Proven for FRACTION bits below the index and LAST as the index of the last entry, for all places and all entries, resets included.
-// A memory gives any value in every clock. Assumed, as error_table does it: the weight stays from the clock after `valid` on
-// until the next `valid`; where it does not, nothing is claimed of that pass.
+// Proven for FRACTION bits below the index and LAST as the index of the last entry, for all places and all entries, resets
+// included. A memory gives any value in every clock. Assumed, as error_table does it: the weight stays from the clock after `valid`
+// on until the next `valid`; where it does not, nothing is claimed of that pass.
 //
-//   address_is         first E_n, then for each bit of the fraction E_n+1 if it is set, else E_n; n is the index of the place, 0 below the
-//                      first entry and LAST behind the last one, where the bits count as 0
-//   in_table           none of these is behind the last entry
+//   address_is         first E_n, then for each bit of the fraction E_n+1 if it is set, else E_n; n is the index of the position, 0 below the
+//                      first entry and LAST above the last one, where the bits count as 0
+//   in_table           none of these is above the last entry
 //   exact_whole        with `total` = E_n plus what was read for bit k times 2^k, for all bits of the fraction: the error is
 //                      total / 2^FRACTION, rounded half up. So it is E_n + (E_n+1 - E_n) * fraction, and a place further by one part of
 //                      2^FRACTION changes it by (E_n+1 - E_n) / 2^FRACTION, with at most one unit by the rounding
@@ -35,7 +35,7 @@ module error_lookup_properties (
     localparam [6:0] found = k + 7'd44;
     localparam [6:0] over = k + 7'd55;
 
-    // The weight of the pass, and whether it has stayed.
+    // The weight of the pass, and whether it has been constant.
     reg         [10:0] kept_weight = 11'd0;
     reg                was_fair = 1'b1;
     wire               begins = step == 7'd0;
@@ -45,7 +45,7 @@ module error_lookup_properties (
         was_fair <= rst | !busy | (fair & weight <= 11'd1024);
     end
 
-    // The place, its index and its fraction.
+    // The position, its index and its fraction.
     reg         [39:0] place = 40'd0;
     always @(posedge clk) begin
         if (rst) place <= 40'd0;
@@ -57,7 +57,7 @@ module error_lookup_properties (
     wire               is_inside = !is_below & !is_behind;
     wire        [7:0]  n = is_below ? 8'd0 : is_behind ? `LAST : entries[7:0];
 
-    // What is read in a pass: its sum, its smallest, its largest.
+    // Sum, smallest and largest of the entries read in a pass.
     wire               reads = step >= 7'd43 & step < found;
     wire               fades = step > found & step < over;
     wire        [6:0]  bit_read = step - 7'd44;
@@ -96,7 +96,7 @@ module error_lookup_properties (
     wire signed [17:0] no_less = whole < 18'sd0 ? whole : 18'sd0;
     wire signed [17:0] no_more = whole > 18'sd0 ? whole : 18'sd0;
 
-    // What the pass has found, at its end.
+    // Results at the end of the pass.
     reg  signed [51:0] exact = 52'sd0;
     reg  signed [51:0] exact_part = 52'sd0;
     reg                part_is_fair = 1'b0;

@@ -1,7 +1,7 @@
-// error_table: which table counts and how much, what a host can load, and the sum.
+// error_table: the table in use and its weight, what a host can load, and the sum.
 //
 // Proven for entries that differ by at most MOST_STEP and LAST as the index of the last one, for all inputs in every clock, resets
-// included; nothing is assumed. What a memory gives is anything, in every clock; what becomes of it is proven of error_lookup.
+// included; nothing is assumed. What a memory gives is anything, in every clock; error_lookup proves the use of these values.
 //
 //   weight_changes     the weight changes with `valid` only: by one, or to 0 with the drive off; it is never above 1024
 //   weight_rises       it goes up only with the drive on, homed, enabled, and the wanted bank in use; from 0 with bank 1 only if all its
@@ -9,17 +9,17 @@
 //   weight_falls       with `valid` and one of these missing it is not 0 but one less
 //   taken_at_0         bank and count of the first entry change with `valid` only, where the weight was 0: to what the host wants, and to
 //                      origin + FIRST
-//   loads_in_turn      a word is written to bank 1 only: while it is not in use, entry 0 or the one behind those that are loaded, never one
-//                      behind the last
+//   loads_in_turn      a word is written to bank 1 only: while it is not in use, entry 0 or the one after those that are loaded, never one
+//                      after the last
 //   neighbours         and none that differs from the one before it by more than MOST_STEP. So all neighbours of a complete table do not
-//   complete_is        all entries were written in turn since entry 0 was last; a reset forgets them
+//   complete_is        all entries were written in turn since entry 0 was last; a reset clears them
 //   used_is_complete   a weight above 0 with bank 1 means that it is complete
 //   stays_while_used   while it is in use no word of it is written
 //   refused_is_flagged any other write changes nothing, and sets `error_refused` for the clock after it
 //   not_while_written  no pass and no host reads a word of bank 1 in use in the clock in which one is written
 //   serves_idle        a host's read takes the memories only while no pass runs and nothing is written
 //   found_is, waits_is the word that a host reads back is that of its bank and index, 0 where none is loaded; it waits until it is there
-//   sum_is             `compensated` changes with `compensated_valid` only: to the reference less the error, cut at the ends of its word
+//   sum_is             `compensated` changes with `compensated_valid` only: to the reference minus the error, clamped at the ends of its word
 //   error_is           the error is that of error_lookup, times 16 with `coarse`
 module error_table_properties (
     `PORTS,
@@ -48,7 +48,7 @@ module error_table_properties (
     localparam [8:0]         entries = 9'd1 + `LAST;
     localparam signed [19:0] most = `MOST_STEP;
 
-    // What a host has loaded: how many in turn, and the last of them.
+    // Number of entries that a host has loaded in order, and the last of them.
     reg         [8:0]  count = 9'd0;
     reg  signed [17:0] last_entry = 18'sd0;
     wire               in_use = error_bank_used & error_weight != 11'd0;
@@ -65,7 +65,7 @@ module error_table_properties (
     reg         [10:0] past_weight = 11'd0;
     reg  signed [31:0] past_base = 32'sd0, past_place = 32'sd0, past_compensated = 32'sd0;
     reg  signed [33:0] past_sum = 34'sd0;
-    // A host's read: it waits; its word is read; the word is there.
+    // The states of a host's read: it waits; its word is read; the word is ready.
     reg                waits = 1'b0, has_word = 1'b0, past_has_word = 1'b0, is_loaded = 1'b0, of_bank_1 = 1'b0;
     reg         [17:0] past_word = 18'd0;
     reg  signed [17:0] past_found = 18'sd0;

@@ -1,7 +1,7 @@
-// excitation: a test signal that stays within its amplitude, and is there only while it may be.
+// excitation: a test signal stays within its amplitude, and is added only while it is allowed.
 //
-// Proven for all inputs in every clock, resets and changes of settings included; nothing is assumed. The limit of a signal is the
-// largest min(amplitude, amplitude_limit) that there was while it ran: with settings that are kept, that of its start.
+// Proven for all inputs in every clock, resets and changes of settings included; nothing is assumed. The limit of a signal is
+// the largest min(amplitude, amplitude_limit) while it ran; with constant settings, that of its start.
 //
 //   never_beyond       neither excitation_value nor what is added to the position is larger in size than that limit
 //   added_at_a_tick    a clock after each valid position_reference is y_0 plus excitation_value, at the end of its word where the
@@ -33,7 +33,7 @@ module excitation_properties (
     localparam [1:0] SCALES = 2'd3;
     wire wanted = enable & allowed & kind != 2'd0;
 
-    // What is allowed now, and the most of it while the signal has run.
+    // The limit now, and its largest value while the signal has run.
     wire [15:0] bounded = amplitude > amplitude_limit ? amplitude_limit : amplitude;
     reg  [15:0] most = 16'd0;
     reg  [15:0] most_shown = 16'd0;
@@ -74,7 +74,7 @@ module excitation_properties (
         past_may_start <= !rst & may_start;
         past_ended <= references == duration_ticks;
         past_rests <= rst | !excitation_active;
-        // Enable was low since the reset and since the last start.
+        // Enable was low after the reset and after the last start.
         rested <= !rst & (!enable | (rested & !may_start));
         references <= rst | !excitation_active ? 24'd0 : references + {23'd0, valid};
         past_references <= references;
@@ -116,7 +116,7 @@ module excitation_properties (
         known_armed: assert (armed == rested);
     end
 
-    // A square or a PRBS, with settings that are kept from the start of a value: the amplitude less what is still missing.
+    // For a square or a PRBS with constant settings since the start of a value: the amplitude minus what is still missing.
     reg         exact = 1'b0;
     reg  [15:0] of = 16'd0;
     reg         is_negative = 1'b0;

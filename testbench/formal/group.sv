@@ -1,13 +1,14 @@
-// group: all chosen axes start in one clock, or none.
+// group: all selected axes start in one clock, or none does.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The runner writes the lists of ports per axis.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The runner writes the lists of
+// ports per axis.
 //
 //   starts           a start of axes that are there and can start: exactly those start, one clock later
 //   refused          any other start: none starts, and it is refused
-//   all_or_none      so what starts is either nothing or all that were asked for
+//   all_or_none      so either no axis starts or all that were requested
 //   stops_others     an axis is stopped exactly if another one wants all to stop
-//   holds            a feed hold: all that are to hold are held a clock after all of them rest; else none is
-//   emergency        an emergency stop of one is one of all
+//   holds            a feed hold: all axes to be held are held a clock after all of them rest; otherwise none is
+//   emergency        an emergency stop of one axis stops all
 module group_properties (
     `PORTS
 );

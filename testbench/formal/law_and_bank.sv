@@ -1,7 +1,7 @@
 // law_and_bank: the component of the controller, as its blocks are wired: law, modulo and bank of settings of a pass.
 //
-// The properties are proven for all traffic on the bus, all pins and resets; nothing is assumed. Left out, so that it says anything: the controller's
-// arithmetic, and what the banks hold.
+// The properties are proven for all traffic on the bus, all pins and resets; nothing is assumed. The controller's
+// arithmetic and the contents of the banks are left out, so they have any value.
 //
 //   one_law_and_bank   law, modulo and bank of settings are, in every clock of a pass, what they were in the clock of its start
 //   law_of_pass        the law that the pass computes is the one of that clock
@@ -26,7 +26,7 @@ module law_and_bank_properties (
 
     reg        past_reset = 1'b1;
     reg  [4:0] past_in_force = 5'd0;
-    // What was in force at the start of the pass.
+    // Values at the start of the pass.
     reg        runs = 1'b0;
     reg  [4:0] of_pass = 5'd0;
     always @(posedge clk) begin

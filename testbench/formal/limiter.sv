@@ -1,9 +1,9 @@
-// limiter: the command is the sum, cut at the limit on the side it passes; and the word that is kept.
+// limiter: the command is the sum, clamped at the limit that it exceeds; and the kept word is the command.
 //
-// The properties are proven for all inputs in every clock, including resets, with all 32 bits. Claimed for a `take` that comes at least six clocks
-// after the one before it, with the word kept and held still, a limit that holds still, and no `keep`, for these clocks. The
-// word is as the accumulator gives it: of its sign, and if cut at the end of it. The sequencer's proof has the former, the
-// accumulator's the latter; after another `take`, nothing until the next.
+// The properties are proven for all inputs in every clock, including resets, with all 32 bits. They are claimed for a `take` that
+// comes at least six clocks after the one before it, with the word kept and held still, a limit that holds still, and no `keep`,
+// for these clocks. The word is as the accumulator gives it: of its sign, and if cut at the end of it. The sequencer's proof has
+// the former, the accumulator's the latter; after another `take`, nothing until the next.
 //
 //   command_is_cut    six clocks after `take`: the word, or the limit with its sign
 //   held_is_command   so is what is kept
@@ -23,7 +23,7 @@ module limiter_properties (
     (* peek = "decides" *) input wire decides,
     (* peek = "over" *) input wire over
 );
-    // Clocks since the last `take`, 0 from the sixth on; and whether it is one that something is claimed of.
+    // Clocks since the last `take`, 0 from the sixth on; and whether the properties apply to it.
     reg [2:0]         age = 3'd0;
     reg               claimed = 1'b0;
     reg [30:0]        bound = 31'd0;
@@ -80,7 +80,7 @@ module limiter_properties (
     wire               is_below = (was_cut & was_negative) | wide_sum < -wide_limit;
     wire               passes = is_above | is_below;
     wire signed [32:0] wanted = is_above ? wide_limit : is_below ? -wide_limit : wide_sum;
-    // What is kept on the way: the limit less the sum, and an LSB; the size; nothing or the sum again.
+    // Intermediate values: the limit minus the sum, and an LSB; the size; nothing, or the sum again.
     wire signed [31:0] between = {1'b0, bound} - sum - 32'd1;
     wire signed [31:0] size = sum ^ {32{was_negative}};
     always @(*) begin

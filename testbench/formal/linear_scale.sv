@@ -1,7 +1,8 @@
-// linear_scale: when deviation and velocity are there and how long they stay, what they are made of, and what align does.
+// linear_scale: when deviation and velocity are ready, how long they stay, how they are computed, and the effect of align.
 //
-// The properties are proven for all inputs in every clock, including resets. Assumed, as docs/linear_scale.md says: `use_scale` and `ratio_shift`
-// change in reset only; from another change on nothing is claimed until the next reset. Ticks and velocities come as they like.
+// The properties are proven for all inputs in every clock, including resets. Assumed, as docs/linear_scale.md says: `use_scale` and
+// `ratio_shift` change in reset only; from another change on nothing is claimed until the next reset. Ticks and velocities come at
+// any time.
 //
 //   position_is        position is that of the counter that the loop runs on, a clock late
 //   valid_in_time      a tick is taken unless one waits or is being computed; deviation_valid comes 65 clocks after it, or later
@@ -21,7 +22,7 @@
 //                      end of the word is
 //   known_...          invariants
 //
-// What the multiplier makes of the bits is in serial_ratio.sv.
+// serial_ratio.sv proves what the multiplier computes from the bits.
 module linear_scale_properties (
     `PORTS,
     (* peek = "positions_wait" *) input wire positions_wait,
@@ -44,7 +45,7 @@ module linear_scale_properties (
     (* peek = "u_serial.overflows" *) input wire overflows,
     (* peek = "u_serial.negative" *) input wire negative
 );
-    // The inputs that are tied: as in the clock before, or that was a reset.
+    // The tied inputs are as in the previous clock, unless that was a reset.
     reg        first = 1'b1;
     reg        past_reset = 1'b1;
     reg        was_tied = 1'b1;
@@ -52,7 +53,7 @@ module linear_scale_properties (
     reg  [4:0] tied_shift = 5'd0;
     wire       tied = was_tied & (first | past_reset | (use_scale == tied_use & ratio_shift == tied_shift));
 
-    // Clocks to the result of a tick, and of a velocity: 0, none is under way.
+    // Clocks until the result of a tick, and of a velocity; 0 if none is being computed.
     reg  [7:0] left = 8'd0;
     reg  [7:0] velocity_left = 8'd0;
     wire       takes = tick & left == 8'd0;
@@ -63,7 +64,7 @@ module linear_scale_properties (
     wire       works = left != 8'd0 & left <= 8'd64;
     wire       starts = left == 8'd65 | (takes & velocity_runs == 8'd0);
 
-    // Align: since the last valid or with it; before the start of this pass.
+    // Align has come since the last valid or with it; and before the start of this pass.
     reg        since_valid = 1'b0;
     reg        before_start = 1'b0;
     reg        in_pass = 1'b0;
@@ -93,7 +94,7 @@ module linear_scale_properties (
         left <= rst ? 8'd0 : position_runs;
         velocity_left <= rst ? 8'd0 : takes_velocity ? 8'd64 + position_runs
             : velocity_left == 8'd0 ? 8'd0 : velocity_left - 8'd1;
-        // What was asked for before a pass is for it; what is asked for in it, for it and the next one.
+        // A request before a pass is for this pass; one during a pass is for it and the next one.
         if (rst) begin
             before_start <= 1'b0;
             in_pass <= 1'b0;
@@ -149,7 +150,7 @@ module linear_scale_properties (
         known_since: assert (!tied | !since_valid | in_pass | (works & before_start));
     end
 
-    // The references turn round in the pass, the operand's in its first 32 clocks, the other one's in 32 from ratio_shift on.
+    // The references rotate in the pass, the operand's in its first 32 clocks, the other one's in 32 clocks from ratio_shift on.
     wire [5:0]  turned = done[5] ? 6'd32 : done[5:0];
     wire [5:0]  from_shift = done[5:0] - {1'b0, ratio_shift};
     wire [5:0]  other_turned = done < {3'd0, ratio_shift} ? 6'd0 : from_shift[5] ? 6'd32 : from_shift;
@@ -167,7 +168,7 @@ module linear_scale_properties (
         known_ended: assert (!tied | !runs | ended == ({1'b0, phase} > 7'd32 + {2'd0, ratio_shift}));
     end
 
-    // What the multiplier is shown, and what becomes of its bits.
+    // Inputs of the multiplier, and the use of its output bits.
     reg  [31:0] bits = 32'd0;
     reg  [31:0] of_velocity = 32'd0;
     reg         past_velocity_ends = 1'b0;

@@ -1,7 +1,7 @@
 // pulse_counter: the count of a closed loop never jumps.
 //
-// The properties are proven for all inputs in every clock, including resets, with 32-bit counts; nothing is assumed. A and B are taken behind
-// synchroniser and filter, as the ports level_a and level_b show them.
+// The properties are proven for all inputs in every clock, including resets, with 32-bit counts; nothing is assumed. A and B are
+// taken after synchroniser and filter, as the ports level_a and level_b show them.
 //
 //   count_by_one         the count moves by one or stays; only a reset makes it 0
 //   position             position = count - origin, modulo 2^32
@@ -40,7 +40,7 @@ module pulse_counter_properties (
     reg signed [31:0] past_plus_one = 32'sd1;
     reg signed [31:0] past_minus_one = -32'sd1;
     reg signed [31:0] past_origin = 32'sd0;
-    // The levels of a clock earlier still, and what changed since.
+    // The levels of the clock before that, and what has changed since.
     reg               last_a = 1'b0;
     reg               last_b = 1'b0;
     reg               moved_a = 1'b0;
@@ -64,7 +64,7 @@ module pulse_counter_properties (
         last_b <= level_b & !rst;
         moved_a <= level_a != last_a;
         moved_b <= level_b != last_b;
-        // A leads: A now differs from B before; exchanged, B now from A before.
+        // A leads if A now differs from B before; with swapped lines, if B now differs from A before.
         past_up <= (swap ? level_b != last_a : level_a != last_b) != invert;
     end
 

@@ -1,7 +1,8 @@
 // pwm: what its pins never do, whatever the inputs are.
 //
-// The properties are proven for every input in every clock, including resets, with 16-bit periods, 10-bit times and all modes. Assumed: mask_pins
-// is low; while it is high all pins are off, whatever the gates do. The raw fault lines count as in a cycle simulation: as they are in this clock.
+// The properties are proven for every input in every clock, including resets, with 16-bit periods, 10-bit times and all modes.
+// Assumed: mask_pins is low; while it is high all pins are off, whatever the gates do. The raw fault lines count as in a cycle
+// simulation: as they are in this clock.
 //
 //   never_both_*        a leg's two sides are never on together
 //   dead_time_*         a side comes on only after the other has been off for dead_time_used clocks, in every mode
@@ -96,7 +97,7 @@ module pwm_properties (
         past_wanted <= wanted & !rst;
         past_negative <= negative_used;
         past_mode <= mode_used;
-        // A latch of our own: set by any raw fault or a reset, and by nothing less than clear_trip forgotten.
+        // A latch of the properties, set by any raw fault or a reset, and cleared only by clear_trip.
         latched <= raw_fault | rst | (latched & !clear_trip);
     end
 
@@ -121,7 +122,7 @@ module pwm_properties (
     end
 
     // In phase: the last sync found the carrier at its phase, or it waited there for this sync; and the period is still the same.
-    // `timed_for`: there has been a time base for a clock, for two.
+    // `timed_for`: a time base has been present for one clock, or for two.
     reg        has_time_base = `ON_TIME_BASE;
     reg  [1:0] timed_for = {2{`ON_TIME_BASE}};
     reg        found = 1'b0;
@@ -139,7 +140,7 @@ module pwm_properties (
         past_period <= period_used;
     end
 
-    // A pulse that ends by itself.
+    // A pulse ends by itself.
     wire [3:0] ended = was_on & ~on;
     wire       by_itself = running & past_wanted & !raw_fault & latch_armed;
     always @(*) begin
@@ -149,7 +150,8 @@ module pwm_properties (
         minimum_pulse_b_low: assert (!(ended[3] & by_itself) | pulse_left[3] == 10'd0);
     end
 
-    // What ties pins and monitors to the leg's registers: the gates are the leg's, as mode and direction were a clock ago.
+    // Invariants between pins, monitors and the leg's registers: the gates are the leg's, by mode and direction of the previous
+    // clock.
     wire a_leads = past_mode != 2'd2 | !past_negative;
     wire b_leads = past_mode == 2'd2 & past_negative;
     wire b_holds = past_mode == 2'd2 & !past_negative;
@@ -170,7 +172,7 @@ module pwm_properties (
         known_latched: assert (!latched | !latch_armed);
     end
 
-    // The leg counts up to what its state lasts: what is left of it.
+    // The leg counts up to the duration of its state; this is the remaining time.
     wire [9:0] leg_lasts = leg_lit ? minimum_pulse_used : dead_time_used;
     wire [9:0] leg_timer = leg_lasts - leg_count;
     always @(*) begin
@@ -178,7 +180,7 @@ module pwm_properties (
         known_timer_rests: assert (past_wanted | leg_count == 10'd0);
     end
 
-    // A side that may come next: by then the other one will have been off for the dead time.
+    // When a side can come on next, the other one will have been off for the dead time.
     wire [3:0] ready;
     wire [3:0] long_enough;
     wire [3:0] in_range;
@@ -203,7 +205,7 @@ module pwm_properties (
         known_pause_opposed: assert (!(pauses & opposed) | ready[next_high ? 2 : 3]);
     end
 
-    // A side that is on: it stays on for the minimum pulse.
+    // A side that is on stays on for the minimum pulse.
     always @(*) begin
         known_a_high_time: assert (!(latch_armed & gate_a_high) | long_enough[0]);
         known_a_low_time: assert (!(latch_armed & gate_a_low) | (leg_lit ? long_enough[1] : (was_on[1] & pulse_left[1] == 10'd0)));
@@ -211,7 +213,7 @@ module pwm_properties (
         known_b_low_time: assert (!(latch_armed & gate_b_low) | (leg_lit ? long_enough[3] : (was_on[3] & pulse_left[3] == 10'd0)));
     end
 
-    // None of the above holds for want of pulses: each side comes on, and ends by itself.
+    // The properties are not empty: each side comes on, and its pulse ends by itself.
     always @(*) begin
         reach_a_high: cover (on[0] & past_mode == 2'd1);
         reach_a_low: cover (on[1] & past_mode == 2'd1);

@@ -1,14 +1,14 @@
 // registers: the bank of the PWM's component, as the Avalon-MM agent that a host sees.
 //
-// The properties are proven for all traffic, addresses and byte enables, inputs of the block, and resets; nothing is assumed: a read and a write
-// in one clock too.
+// The properties are proven for all traffic, addresses and byte enables, inputs of the block, and resets; nothing is assumed: a
+// read and a write in one clock too.
 //
 //   reads_what_was_    a configuration register reads what was written to it, a clock after the read, byte by byte:
 //     written          only the enabled bytes of the addressed register change
 //   holds_what_was_    and so do the ports to the block
 //     written
-//   reads_unmapped     what is not mapped reads 0
-//   read_has_no_effect data stay until the next read; nothing else of a read shows (no port depends on it)
+//   reads_unmapped     words that are not mapped read 0
+//   read_has_no_effect data stay until the next read; a read has no other effect (no port depends on it)
 //   period_guarded     the period changes in no clock in which the PWM runs
 //   times_guarded      nor do dead time and minimum pulse; they never are below their floors
 //   events             an event sets its interrupt state, also in the clock in which it is cleared
@@ -38,7 +38,7 @@ module registers_properties (
     localparam [7:0] INTERRUPT_TEST = 8'h16;
     localparam [7:0] LAST_WORD = 8'h20;
 
-    // What was written, byte by byte: our own copy of each configuration register, with the bits that it has.
+    // A copy of each configuration register, with its existing bits, written byte by byte.
     function [31:0] merged(input [31:0] old, input [31:0] bits);
         merged = {
             avs_byteenable[3] ? avs_writedata[31:24] : old[31:24],

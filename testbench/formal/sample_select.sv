@@ -4,8 +4,8 @@
 //
 //   exact          all outputs are what the source that from_pins chose showed in the clock before: never words of one source
 //                  with the strobe of the other
-//   other_unheard  a strobe or start that the other source gives does nothing
-//   reset_is_quiet 0 after a reset, words too
+//   other_unheard  a strobe or start of the other source has no effect
+//   reset_is_quiet all outputs are 0 after a reset, including words
 module sample_select_properties (
     `PORTS
 );

@@ -1,8 +1,8 @@
-// scaled_product: after 31 clocks of `shift` the product is shifted by the gain's distance, whatever that is, and rounds half up.
+// scaled_product: after 31 clocks of `shift` the product is shifted by any distance of the gain, and rounds half up.
 //
-// The properties are proven for all inputs in every clock, including resets, with all 51 bits. The multipliers are left out: a product has
-// any value. Claimed from a `read` on, with a `load` before the first `shift`, until the next `read` or `load`: the
-// sequencer's proof has that each step is so.
+// The properties are proven for all inputs in every clock, including resets, with all 51 bits. The multipliers are left out: a
+// product has any value. They are claimed from a `read` on, with a `load` before the first `shift`, until the next `read` or
+// `load`: the sequencer's proof has that each step is so.
 //
 //   shifted           scaled = the doubled product, shifted right with its sign, by what has been done of the distance
 //   one_a_clock       a clock of `shift` does one bit of it, until all is done; and then it stays: in 31 clocks any distance
@@ -32,7 +32,7 @@ module scaled_product_properties (
         end else if (read) begin
             is_read <= 1'b1;
             is_loaded <= 1'b0;
-            // What is added as it is has a shift of its own.
+            // A word that is added unchanged has its own shift.
             distance <= unit ? 5'd8 : gain[22:18];
             moved <= 5'd0;
         end else if (load) begin

@@ -1,13 +1,13 @@
 // schedule: `control` comes exactly CONTROL_CLOCKS after a tick, and at no other time.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. A tick that comes before the one before it has
-// led to `control` takes its place, as the stage's registers make impossible: the last one counts.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. If a tick comes before the
+// previous one has led to `control`, only the last one counts; a stage's registers make this impossible.
 module schedule_properties (
     `PORTS,
     (* peek = "since" *) input wire [16:0] since,
     (* peek = "waits" *) input wire waits
 );
-    // Clocks since the last tick; 0: none, or its control is over.
+    // Clocks since the last tick; 0 if there was none, or if its control is over.
     reg [16:0] age = 17'd0;
     reg        due = 1'b0;
     always @(posedge clk) begin

@@ -1,8 +1,9 @@
 // segments: the command FIFO loses nothing, repeats nothing, and never holds more than 64 entries.
 //
-// The properties are proven for all inputs in every clock, including resets, with all 64 slots; nothing is assumed. Contents are left out: an
-// entry is its slot. The entry that plays, or did so last, is in the slot at the head, those that wait in the slots after it, those of
-// a batch that is being written in the slots after these. An entry's words lie in the first slot after all of them until it is committed.
+// The properties are proven for all inputs in every clock, including resets, with all 64 slots; nothing is assumed. Contents are
+// left out: an entry is its slot. The entry that plays, or did so last, is in the slot at the head, those that wait in the slots
+// after it, those of a batch that is being written in the slots after these. An entry's words lie in the first slot after all of
+// them until it is committed.
 //
 //   level_bound       0 to 64 entries, with the one that plays
 //   pointers          words go into the slot after the last that waits or is staged, modulo 64

@@ -1,7 +1,7 @@
 // segments: a command that is not modulo does not run on past the ends of its position's word.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed of position, velocity or acceleration. Any value can be
-// read from the memory.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed of position, velocity or
+// acceleration. Any value can be read from the memory.
 //
 //   phases        a tick is waited for in phase 0 alone, and the last phase is 51
 //   range_stops   a move that goes on outwards beyond 2^23 - 2^18 counts: the state stop at once, the entries dropped, and
@@ -10,8 +10,8 @@
 //   stands        a stop that is beyond 2^23 - 2^17 counts outwards at its tick begins with an acceleration of 0
 //
 // A tick adds less than 2^15 counts: so a move that crosses the first line is a stop before it reaches the second, and a stop that
-// crosses the second is 2^17 - 2^15 counts before the end of the word. Not proven here: the sums themselves, and that such a stop has
-// a velocity of 0 after its tick: lock step.
+// crosses the second is 2^17 - 2^15 counts before the end of the word. Not proven here: the sums themselves, and that such a stop
+// has a velocity of 0 after its tick: lock step.
 module segments_range_properties (
     `PORTS,
     (* peek = "idle" *) input wire idle,
@@ -24,7 +24,7 @@ module segments_range_properties (
     (* peek = "u_integrator.exact_velocity" *) input wire [47:0] exact_velocity,
     (* peek = "u_integrator.exact_acceleration" *) input wire [39:0] exact_acceleration
 );
-    // Counts, and where the command goes: docs/segments.md, "End of the position".
+    // Counts, and the direction of the command; see docs/segments.md, "End of the position".
     wire signed [23:0] counts = exact_position[55:32];
     wire               outwards = !modulo & (counts < 0) == exact_velocity[47];
     wire               past_reach = outwards & (counts >= `REACH_COUNTS | counts < -`REACH_COUNTS);

@@ -1,4 +1,4 @@
-// serial_ratio, of linear_scale: ratio times one difference, rounded, less the other one, a bit per clock, lowest first.
+// serial_ratio, of linear_scale: ratio times one difference, rounded, minus the other one, a bit per clock, lowest first.
 //
 // Proven for ratio_shift SHIFT, all mantissas and all bits that come in, resets included. Assumed, as linear_scale does it:
 // `runs` stays for a pass of 64 clocks, and with it use_scale, of_position, mantissa and shift; where they do not, nothing is
@@ -27,7 +27,7 @@ module serial_ratio_properties (
     (* peek = "overflow" *) input wire overflow,
     (* peek = "highest" *) input wire highest
 );
-    // A pass is fair as long as what has to stay does.
+    // The properties apply to a pass in which the inputs that must be constant are constant.
     reg               was_fair = 1'b1;
     reg               kept_use = 1'b0;
     reg               kept_position = 1'b0;
@@ -43,7 +43,7 @@ module serial_ratio_properties (
         mantissa <= ratio_mantissa;
     end
 
-    // What has come in, and the product so far; before this clock, and with its bits.
+    // The bits so far, and the product so far; before this clock, and including its bits.
     reg         [31:0] operand = 32'd0;
     reg         [31:0] operand_reference = 32'd0;
     reg         [31:0] other = 32'd0;
@@ -72,7 +72,7 @@ module serial_ratio_properties (
         product <= goes_on ? product_now : 64'sd0;
     end
 
-    // The result: of what was there before this clock, the lowest `place` bits; with this clock's one more.
+    // The result has the lowest `place` bits before this clock, and one more with this clock's bit.
     wire signed [63:0] halved = s == 5'd0 ? 64'sd0 : product >>> (s - 5'd1);
     wire signed [63:0] halved_now = s == 5'd0 ? 64'sd0 : product_now >>> (s - 5'd1);
     wire signed [63:0] shifted = product >>> s;

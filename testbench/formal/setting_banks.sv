@@ -1,7 +1,7 @@
 // setting_banks: the settings of a controller, in three banks.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. Memory and ROM are left out: any value
-// can be read from them in every clock.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. Memory and ROM are left out: any
+// value can be read from them in every clock.
 //
 //   from_memory        a row that was written since the reset reads as the memory's word at its own place
 //   not_written        one that was not reads as 0, whatever the memory holds; so does bank 3
@@ -10,7 +10,7 @@
 //   active_stays       no word of the bank in use is written
 //   not_while_written  no word is read in the clock in which it is written
 //   refused_is_flagged a write to the bank in use, to bank 0 or 3 changes nothing, and sets `setting_refused` for the clock
-//   taken_else         after it; any other one is taken, and is not flagged
+//   taken_else         after it; any other write is taken, and is not flagged
 //   serves_idle        a host's read takes the place of the controller's only while that is not busy, and nothing is written
 //   undisturbed        in every other clock bank and row that are read are the controller's
 //   waits_...          a host's read waits from its strobe until its word is there, and no longer
@@ -29,7 +29,7 @@ module setting_banks_properties (
     (* peek = "u_machine_settings.data" *) input wire [31:0] machine_word,
     (* peek = "written" *) input wire [31:0] written
 );
-    // Which rows of banks 1 and 2 were written since the reset.
+    // Rows of banks 1 and 2 that were written since the reset.
     reg  [31:0] rows = 32'd0;
     wire [1:0]  bank_read = serves ? setting_bank : bank;
     wire [3:0]  row_read = serves ? setting_row : row;
@@ -42,7 +42,7 @@ module setting_banks_properties (
     reg        past_loaded = 1'b0;
     reg        past_written = 1'b0;
     reg        past_machine = 1'b0;
-    // A host's read: asked for, and its word in `setting`.
+    // A host's read has been requested; its word is in `setting`.
     reg        waits = 1'b0;
     reg        has_word = 1'b0;
     reg        past_has_word = 1'b0;

@@ -1,7 +1,7 @@
 // shaper: its control with the product left open, and rounding, saturation and width of the accumulator as lemmas.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers and the memories give
-// any value in every clock. `pass` is the clock of the pass, 0 if none runs; n the taps of the active table.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers and the memories
+// give any value in every clock. `pass` is the clock of the pass, 0 if none runs; n the taps of the active table.
 //
 //   pass_*          running, tap, stages, done, valid and busy are those of this clock: tap i is read in clock i + 1 and no
 //                   other, its product added in clock i + 7 and no other, the result shown in clock n + 8 and no other
@@ -145,7 +145,7 @@ module shaper_properties (
         past_upper <= upper_product;
     end
 
-    // The tables.
+    // Properties of the tables.
     always @(*) begin
         read_in_order: assert (!running | read_address == {bank != 2'd1, tap_now[5:0]});
         word_of_table: assert (past_reset | past_served | word == (past_bank == 2'd0 ? past_machine : past_loaded));
@@ -162,7 +162,7 @@ module shaper_properties (
         table_stays: assert (past_reset | past_strobe | bank == past_bank);
     end
 
-    // The samples.
+    // Properties of the samples.
     reg [5:0] samples = 6'd0;
     reg       own_started = 1'b0;
     reg       own_begun = 1'b0;
@@ -202,14 +202,14 @@ module shaper_properties (
         operands_products: assert (clocks_of_product == 2'd0 | product == parts);
     end
 
-    // The sum.
+    // Properties of the sum.
     wire signed [55:0] added = past_adds ? {{6{past_product[49]}}, past_product} : 56'sd0;
     always @(*) begin
         sum_begins: assert (past_reset | !past_strobe | accumulator == HALF);
         sum_adds: assert (past_reset | past_strobe | accumulator == past_accumulator + added);
     end
 
-    // Its width: 64 products of at most 2^48 in size.
+    // The width of the sum is enough for 64 products of at most 2^48 in size.
     reg within = 1'b1;
     wire signed [49:0] signed_product = product;
     wire small = signed_product <= (50'sd1 << 48) & signed_product >= -(50'sd1 << 48);
@@ -221,7 +221,7 @@ module shaper_properties (
         fits: assert (pass == 8'd0 | !within | (distance <= bound & distance >= -bound));
     end
 
-    // The result.
+    // Properties of the result.
     wire signed [55:0] shifted = past_accumulator >>> `FRACTION;
     wire               above = shifted > 56'sd2147483647;
     wire               below = shifted < -56'sd2147483648;

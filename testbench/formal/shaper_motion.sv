@@ -1,9 +1,9 @@
 // shaper_motion: the control of the shaper for motion, three channels. Its arithmetic is in channel_sums.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers and the memories give
-// any value in every clock. `pass` is the clock of the pass, 0 if none runs; N its products, end_0 to end_2 the last of
-// each channel. A handover's products are, channel by channel, those of the old table, of the active one, and, of the
-// position, one more.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The multipliers and the memories
+// give any value in every clock. `pass` is the clock of the pass, 0 if none runs; N its products, end_0 to end_2 the last of each
+// channel. A handover's products are, channel by channel, those of the old table, of the active one, and, of the position, one
+// more.
 //
 //   pass_*      channel, table, tap, boundaries, valid and busy are those of this clock: a product is asked for in each clock
 //               from 1 on, but in one between two channels. Of a product that is asked for in clock i the sample is of its
@@ -80,7 +80,7 @@ module shaper_motion_properties (
     localparam signed [23:0] UNITY = 24'sd1 << `FRACTION;
     localparam signed [17:0] MINUS_UNITY = -(18'sd1 << `FRACTION);
 
-    // The tables: how long those of a pass are, kept from when they were taken.
+    // Lengths of the tables of a pass, stored when the tables were taken.
     wire       takes = strobe & pending & (how != 2'd2 | start | still >= reach);
     function [6:0] count(input [1:0] of);
         count = of == 2'd0 ? `MACHINE_TAPS : of == 2'd1 ? taps_1 : taps_2;
@@ -215,7 +215,7 @@ module shaper_motion_properties (
         table_not_written: assert (!write_taken | (bank != written_bank & !pending & !active));
     end
 
-    // A loaded tap like any other: one that was written while x_2 was odd, and that is still in its table.
+    // An arbitrary loaded tap: one that was written while x_2 was odd, and that is still in its table.
     reg       watches = 1'b0;
     reg [1:0] watched_bank = 2'd0;
     reg [5:0] watched_delay = 6'd0;
@@ -234,7 +234,7 @@ module shaper_motion_properties (
         table_reach: assert (!(pending | active) | reach == (reach_active > reach_other ? reach_active : reach_other));
     end
 
-    // When a swap takes effect.
+    // The time at which a swap takes effect.
     reg        [1:0]  wanted_how = 2'd0;
     reg        [5:0]  stood = 6'd63;
     reg signed [23:0] position = 24'sd0;
@@ -272,7 +272,7 @@ module shaper_motion_properties (
         handover_alone: assert (past_reset | past_active | !active | past_takes_over);
     end
 
-    // What a handover makes of a tap.
+    // The effect of a handover on a tap.
     wire        [5:0]  d = past_word[23:18];
     wire signed [17:0] c = past_word[17:0];
     wire        [5:0]  farther = d > past_since ? d : past_since;
@@ -292,7 +292,7 @@ module shaper_motion_properties (
             (past_active & made_delay == past_since & made_coefficient == MINUS_UNITY));
     end
 
-    // The samples: behind the start's word stands one for each strobe.
+    // After the start's word there is a sample for each strobe.
     reg         [5:0] samples = 6'd0;
     reg               own_started = 1'b0;
     reg               own_begun = 1'b0;
@@ -317,7 +317,7 @@ module shaper_motion_properties (
         ring_blank: assert (blank == (from_start & !own_started));
     end
 
-    // The results are shown by the sums; what is the control's is whether a strobe came too early.
+    // The sums show the results; the control decides whether a strobe came too early.
     always @(*) begin
         pass_overrun: assert (past_reset |
             overrun == ((past_strobe & past_busy & !past_start) | (past_overrun & !past_clear)));

@@ -1,8 +1,9 @@
 // shaper_small: all of the plain shaper's arithmetic, memories and multiplier included, at sizes that no machine gets: words of
 // 6 bits, a ring of 4 samples, tables of 4 taps; coefficients have their 18 bits.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The kernel is that of every plain shaper, with
-// other sizes. What it should give is computed here from the ports alone: an own history, own tables, own products.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The kernel is that of every plain
+// shaper, with other sizes. What it should give is computed here from the ports alone: a separate history, separate tables and
+// products.
 //
 //   result          y = sum >> F, clamped; the sum is 2^(F-1) and, for each tap of the active table, its coefficient times the
 //                   own history's sample at its delay, at each valid; a sum that is clamped sets saturated
@@ -63,7 +64,7 @@ module shaper_small_properties (
     localparam signed [25:0] HALF = 26'sd1 << (`FRACTION - 1);
     localparam signed [19:0] UNITY = 20'sd1 << `FRACTION;
 
-    // The history: the newest sample first, of each delay that a tap can have.
+    // The history has the newest sample first, one per delay that a tap can have.
     reg signed [5:0] history_0 = 6'sd0;
     reg signed [5:0] history_1 = 6'sd0;
     reg signed [5:0] history_2 = 6'sd0;
@@ -190,7 +191,7 @@ module shaper_small_properties (
         pass_busy: assert (busy == (pass != 4'd0 & pass != last));
     end
 
-    // A host's read: asked for, served, and the tap that it is for.
+    // A host's read has been requested, or served; and the tap that it reads.
     reg         waits = 1'b0;
     reg         has_word = 1'b0;
     reg  [19:0] host_word = 20'd0;
@@ -212,7 +213,7 @@ module shaper_small_properties (
         read_back: assert ({loaded_delay, loaded_coefficient} == found & tap_read_waits == waits);
     end
 
-    // What the registers of the pass hold: of tap k, in the clock of its stage.
+    // Contents of the pass's registers for tap k, in the clock of its stage.
     wire [3:0] read, words, samples_read, coefficients, operands;
     generate
         for (k = 0; k < 4; k = k + 1) begin : of_stage
@@ -221,7 +222,7 @@ module shaper_small_properties (
             wire signed [5:0]  own_sample = own[19:18] == 2'd0 ? history_0 : own[19:18] == 2'd1 ? history_1 : history_2;
             assign read[k] = pass != k + 2 | (bank == 2'd0 ? machine_word : loaded_word) == own;
             assign words[k] = pass != k + 3 | word == own;
-            // From before the first strobe after a reset, without a start: another word, but a coefficient of 0.
+            // For a sample before the first strobe after a reset, without a start, the word differs, but the coefficient is 0.
             wire               blank = !own_started & own[19:18] > samples;
             wire signed [17:0] factor = blank ? 18'sd0 : own_coefficient;
             assign samples_read[k] = pass != k + 4 | blank | sample == own_sample;
@@ -243,8 +244,8 @@ module shaper_small_properties (
     wire [19:0]        own_word = own_table[20 * place[1:0] +: 20];
     wire signed [17:0] own_b = own_word[17:0];
     wire signed [17:0] own_a = own_word[19:18] == 2'd0 ? history_0 : own_word[19:18] == 2'd1 ? history_1 : history_2;
-    // Each way the product of the own words: from before the first strobe they are 0, and equal words have equal products, so
-    // that no two multipliers need be compared.
+    // In both cases this is the product of the separate words: samples before the first strobe are 0, and equal words have equal
+    // products, so no two multipliers need to be compared.
     wire               own_blank = !own_started & own_word[19:18] > samples;
     wire signed [35:0] own_ab = own_blank ? 36'sd0 : own_a == a_q & own_b == b_q ? a_q * b_q : own_a * own_b;
     reg         [23:0] own_product = 24'd0;
@@ -292,7 +293,7 @@ module shaper_small_properties (
         result_flag: assert (!(valid & (above | below)) | saturated);
     end
 
-    // The coefficients so far, and a history that stands still.
+    // The coefficients so far, and a constant history.
     wire        [2:0]  taken = pass <= 4'd5 ? 3'd0 : pass - 4'd5 >= n ? n : pass - 4'd5;
     wire signed [19:0] weights_so_far = sum_of(own_table, taken);
     wire               still = history_0 == history_1 & history_0 == history_2;

@@ -1,8 +1,8 @@
-// sliding_mode: the control of a pass, with products left uninterpreted: what the multipliers say is anything, in every clock,
-// but for a mantissa of one, whose product is the operand.
+// sliding_mode: the control of a pass, with products left uninterpreted: the multipliers give any value in every clock,
+// except for a mantissa of one, whose product is the operand.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. A pass has 17 steps of 39, 16 or 8 clocks; its
-// clocks are counted here on their own, from 1 in the clock after `start` on.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. A pass has 17 steps of 39, 16 or 8
+// clocks; its clocks are counted here separately, from 1 in the clock after `start` on.
 //
 //   latency_exact     valid comes PASS_CLOCKS after a start that was taken, and at no other time; busy in between
 //   ends_before_valid ends comes in the clock before valid, the last of a pass, and at no other time: what changes with it changes
@@ -85,7 +85,7 @@ module sliding_mode_properties (
 );
     localparam [9:0] LAST_CLOCK = `PASS_CLOCKS - 10'd1;
 
-    // Clock of the pass, 0: none; the step, and the clock of the step.
+    // Clock of the pass, 0 if none runs; the step, and the clock of the step.
     reg [9:0] clock = 10'd0;
     reg [4:0] now = 5'd0;
     reg [5:0] at = 6'd0;
@@ -122,7 +122,7 @@ module sliding_mode_properties (
     wire [9:0] before = now < 5'd3 ? wide_now * 10'd8 : now <= 5'd14 ? wide_now * 10'd39 - 10'd93 : is_sum ? 10'd461 : 10'd477;
     wire [5:0] phase_of = at < shifting + 6'd4 ? at : at + (6'd31 - shifting);
 
-    // What has been done of a step.
+    // Progress of a step.
     reg       added = 1'b0;
     reg [4:0] products = 5'd0;
     reg [2:0] terms = 3'd0;
@@ -173,7 +173,7 @@ module sliding_mode_properties (
         now == 5'd11 ? 4'd7 : now == 5'd12 ? 4'd8 : now == 5'd13 ? 4'd9 : now == 5'd14 ? 4'd11 : now == 5'd16 ? 4'd12 : 4'd0;
     wire       is_unit = is_plain | is_sum;
 
-    // The registers a clock earlier.
+    // Values of the registers in the previous clock.
     reg signed [31:0] past_error = 32'sd0;
     reg signed [31:0] past_sliding = 32'sd0;
     reg signed [31:0] past_command = 32'sd0;
@@ -184,7 +184,7 @@ module sliding_mode_properties (
     reg signed [51:0] past_sum = 52'sd0;
     reg               past_cut = 1'b0;
     reg               past_negative = 1'b0;
-    // The step that settled in it, 31 for none; and whether it was the limit's.
+    // The step that ended in that clock, 31 for none; and whether it was the limit's.
     reg [4:0]         past_settled = 5'd31;
     reg               past_limits = 1'b0;
     reg               past_taken = 1'b0;
@@ -224,13 +224,13 @@ module sliding_mode_properties (
         past_frozen <= !is_pid | was_cleared | (lowers ? limited_low : limited_high);
         past_saturated_high <= saturated_high;
         past_saturated_low <= saturated_low;
-        // The sign of the integral's gain, and of the feedback's after it.
+        // The sign of the integral's gain, and then that of the feedback.
         if (rst) against <= 1'b0;
         else if (now == 5'd5 & at == 6'd1) against <= setting[17];
         else if (now == 5'd10 & at == 6'd1) against <= against ^ setting[17];
     end
 
-    // The integral's sum: both its terms, from the operand to the sum.
+    // Both terms of the integral's sum, from the operand to the sum.
     wire signed [32:0] wide_error = {{9{error[31]}}, error[31:8]};
     wire signed [32:0] wide_integral = {integral[31], integral};
     wire signed [32:0] integrated = wide_integral + wide_error;
@@ -238,7 +238,7 @@ module sliding_mode_properties (
     wire signed [31:0] integrated_word = integrated > 33'sd2147483647 ? 32'sh7fffffff :
         integrated < -33'sd2147483648 ? 32'sh80000000 : integrated[31:0];
     wire               integrated_cut = integrated[32] != integrated[31];
-    // The integral was cleared since its sum began.
+    // The integral has been cleared since its sum began.
     reg                was_cleared = 1'b0;
     always @(posedge clk) was_cleared <= !rst & (now == 5'd14 | is_sum) & (was_cleared | clear_integral);
     wire               sums = (now == 5'd14 | is_sum) & !cleared;
@@ -247,7 +247,7 @@ module sliding_mode_properties (
     wire [5:0]         moved = at - 6'd4;
     wire signed [50:0] moved_term = wide_term >>> (is_sum & !is_added ? moved : shifting);
     wire signed [51:0] sum_before = is_added ? wide_integrated : {{20{integral[31]}}, integral};
-    // What a word that was taken a clock ago sets, a clock later.
+    // Flags that a word of the previous clock sets, a clock later.
     wire [6:0] flag_of = past_settled == 5'd1 ? 7'h02 : past_settled == 5'd3 ? 7'h04 : past_settled == 5'd7 ? 7'h08 :
         past_settled == 5'd15 & !past_frozen & !past_clear_integral ? 7'h10 : past_settled == 5'd14 ? 7'h20 :
         past_settled == 5'd16 ? 7'h40 : 7'h00;

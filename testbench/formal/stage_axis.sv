@@ -1,7 +1,8 @@
-// An axis of a stage, as its blocks are wired: what the machine's pins do at an emergency stop, and what has them on at all.
+// An axis of a stage, as its blocks are wired: the machine's pins at an emergency stop, and the conditions under which they are on.
 //
-// The properties are proven for all inputs in every clock, including resets: whatever a host, the other axes, encoder and switches do, and whatever
-// the controller says. Nothing is assumed. Memories and products are left out. FILTER_CLOCKS is what the stage ties.
+// The properties are proven for all inputs in every clock, including resets: whatever a host, the other axes, encoder and switches
+// do, and whatever the controller says. Nothing is assumed. Memories and products are left out. FILTER_CLOCKS is what the stage
+// ties.
 //
 //   stop_*            drive off and brake applied once the emergency stop's line has been low for FILTER_CLOCKS + 5 clocks, and
 //                     as long as it stays low; all four pins of the bridge off a clock later: in direct mode, in a self-test,
@@ -13,7 +14,7 @@
 //   off_is_off        a clock after one in OFF drive and brake are off, two after it the bridge
 //   ready_by_direct   a clock after one in READY they are on by direct mode alone
 //
-// That never both sides of a leg are on is proven of the PWM alone.
+// pwm.sv proves that both sides of a leg are never on together.
 module stage_axis_properties (
     `PORTS,
     (* peek = "u_axis.primed" *) input wire [3:0] primed,
@@ -30,7 +31,7 @@ module stage_axis_properties (
     (* peek = "u_pwm.u_pin_gates.masked" *) input wire gates_masked,
     (* peek = "u_pwm.gates" *) input wire [3:0] gates
 );
-    // Lines count from the fifth clock after a reset on.
+    // Lines are used from the fifth clock after a reset on.
     reg [3:0] awake = 4'd0;
     // Clocks for which the line has been low.
     reg [6:0] low = 7'd0;

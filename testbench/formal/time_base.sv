@@ -1,7 +1,7 @@
 // time_base: counters of clocks and of ticks, and a tick every TICK_CLOCKS clocks.
 //
-// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The counters begin with BEGIN: 0, as after a reset,
-// or a few clocks before they come round, where no search would get to from 0.
+// The properties are proven for all inputs in every clock, including resets; nothing is assumed. The counters begin with BEGIN: 0,
+// as after a reset, or a few clocks before they wrap, which no search would reach from 0.
 //
 //   tick_after_all     a tick comes TICK_CLOCKS clocks after the one before or a reset, and at no other time
 //   divide_follows     divide is the tick, a clock later

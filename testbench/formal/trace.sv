@@ -1,4 +1,4 @@
-// trace: which rows are taken, where their words lie, where the trigger's is, and what is shown of them.
+// trace: which rows are taken, where their words are stored, which is the trigger's row, and which words can be read.
 //
 // Proven for all inputs in every clock, resets and arm at any time included; nothing is assumed. The memory is left out: any
 // value can be read from it. `row` is the clock of the row that is being taken, 0 where none is, as in the datasheet;
@@ -44,7 +44,7 @@ module trace_properties (
 );
     localparam [1:0] IDLE = 2'd0, FILLING = 2'd1, WAITING = 2'd2, TAKING = 2'd3;
 
-    // As they were at arm: signals in a row, and rows before the trigger.
+    // Values at arm: signals in a row, and rows before the trigger.
     reg  [1:0]  code = 2'd0;
     reg  [11:0] before = 12'd0;
     function [1:0] shift(input [1:0] of);
@@ -64,7 +64,7 @@ module trace_properties (
     wire        last_clock = row == 3'd2 + n;
     wire        waits = armed & !come & rows == before;
 
-    // What each clock takes of the signals, and what it compares.
+    // Signal that each clock samples, and the comparison.
     wire [511:0] all = `ALL_SIGNALS;
     reg  [3:0]  selected = 4'd0;
     reg  signed [31:0] taken = 32'sd0;
