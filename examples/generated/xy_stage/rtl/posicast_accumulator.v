@@ -45,14 +45,10 @@ module posicast_accumulator (
     wire               lower_differs;
     wire               passes;
     reg  [31:0]        largest;
-    reg  signed [51:0] sum_q;
-    reg  signed [51:0] sum_q_next;
-    reg  signed [31:0] word_q;
-    reg  signed [31:0] word_q_next;
-    reg                cut_q;
-    reg                cut_q_next;
-    reg                negative_q;
-    reg                negative_q_next;
+    reg  signed [51:0] sum_q, sum_q_next;
+    reg  signed [31:0] word_q, word_q_next;
+    reg                cut_q, cut_q_next;
+    reg                negative_q, negative_q_next;
 
     // Add; a one below the base rounds half up
     assign product = $signed({{2{scaled[50]}}, scaled});

@@ -26,8 +26,8 @@ module posicast_axis (
     input  wire               drive_ready,             // Asynchronous line
     input  wire               home,                    // Asynchronous line of the home switch,
                                                        // which is only filtered
-    input  wire [5:0]         filter_clocks,           // Pulses of up to this many clocks on a line
-                                                       // are ignored
+    input  wire [5:0]         filter_clocks,           // Longest pulse on a line that is ignored
+                                                       // [clocks]
     input  wire               enable,                  // High: outputs on
     input  wire               start,                   // One clock: go from HOLD to RUN at the next
                                                        // tick
@@ -49,22 +49,22 @@ module posicast_axis (
                                                        // is open
     input  wire [15:0]        brake_apply_ticks,       // Ticks from applying the brake until it
                                                        // holds
-    input  wire [15:0]        settle_ticks,            // Ticks from the command's standstill to
-                                                       // that of the shaped command: the shaper's
-                                                       // longest delay
+    input  wire [15:0]        settle_ticks,            // Time from the command's standstill to that
+                                                       // of the shaped command: the shaper's
+                                                       // longest delay [ticks]
     input  wire signed [31:0] soft_limit_plus,         // Upper soft limit [counts, Q24.8]
     input  wire signed [31:0] soft_limit_minus,        // Lower soft limit [counts, Q24.8]
     input  wire               limits_after_homing,     // Constant
     input  wire [31:0]        following_error_limit,   // Largest following error [counts, Q16.16]
     input  wire [31:0]        deviation_limit,         // Largest deviation, in its unit
-    input  wire [15:0]        saturation_ticks,        // Largest number of consecutive ticks with a
-                                                       // clamped command
+    input  wire [15:0]        saturation_ticks,        // Longest time with the command clamped at
+                                                       // every tick [ticks]
     input  wire [31:0]        lost_command,            // Command above which the position must move
                                                        // [command units, Q20.12]
-    input  wire [15:0]        lost_ticks,              // Largest number of ticks without motion in
-                                                       // the command's direction
+    input  wire [15:0]        lost_ticks,              // Longest time without motion in the
+                                                       // command's direction [ticks]
     input  wire               watches_direction,       // Constant
-    input  wire [15:0]        watchdog_ticks,          // Largest number of ticks without a kick
+    input  wire [15:0]        watchdog_ticks,          // Longest time without a kick [ticks]
     input  wire               modulo,                  // Constant
     input  wire signed [31:0] position,                // Measured position, changing at any time
                                                        // [counts]
@@ -188,8 +188,7 @@ module posicast_axis (
     wire               states_faulted;
     wire               states_refused;
     reg  [3:0]         primed;
-    reg  [3:0]         clear_left;
-    reg  [3:0]         clear_left_next;
+    reg  [3:0]         clear_left, clear_left_next;
     reg                clear_due;
     reg                clear_sources_q;
     reg                tripping;

@@ -14,8 +14,7 @@ module posicast_axis_bytes (
 );
     reg  [7:0] low;
     reg  [7:0] high;
-    reg  [7:0] part_q;
-    reg  [7:0] part_q_next;
+    reg  [7:0] part_q, part_q_next;
 
     assign part = part_q;
 

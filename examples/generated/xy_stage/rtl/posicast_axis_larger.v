@@ -28,8 +28,7 @@ module posicast_axis_larger (
     wire       above_6;
     reg        higher;
     reg        not_lower;
-    reg        larger_q;
-    reg        larger_q_next;
+    reg        larger_q, larger_q_next;
 
     // Bits that are larger, and bits not smaller
     assign above = one & ~other;

@@ -22,10 +22,8 @@ module posicast_axis_lasts (
     wire       under_2;
     wire       under_3;
     wire [3:0] limit_nibbles_part;
-    reg        fewer;
-    reg        fewer_next;
-    reg        limited;
-    reg        limited_next;
+    reg        fewer, fewer_next;
+    reg        limited, limited_next;
 
     posicast_axis_nibbles u_limit_nibbles (
         .clk  (clk),

@@ -14,8 +14,7 @@ module posicast_axis_nibbles (
 );
     reg  [3:0] low;
     reg  [3:0] high;
-    reg  [3:0] part_q;
-    reg  [3:0] part_q_next;
+    reg  [3:0] part_q, part_q_next;
 
     assign part = part_q;
 

@@ -12,8 +12,7 @@ module posicast_axis_nonzero (
     input  wire [7:0] part,
     output wire       nonzero
 );
-    reg  nonzero_q;
-    reg  nonzero_q_next;
+    reg  nonzero_q, nonzero_q_next;
 
     assign nonzero = nonzero_q;
 

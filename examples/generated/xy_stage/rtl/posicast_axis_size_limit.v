@@ -22,8 +22,7 @@ module posicast_axis_size_limit (
     wire [7:0]  limit_bytes_part;
     wire        larger_larger;
     wire        limited_nonzero;
-    reg         negative;
-    reg         negative_next;
+    reg         negative, negative_next;
 
     posicast_axis_bytes u_number_bytes (
         .clk  (clk),

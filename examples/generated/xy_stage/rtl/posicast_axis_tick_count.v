@@ -18,12 +18,9 @@ module posicast_axis_tick_count (
     wire [3:0]  nibble;
     wire [4:0]  counted;
     wire        against_lasts;
-    reg  [15:0] count;
-    reg  [15:0] count_next;
-    reg         carry;
-    reg         carry_next;
-    reg         endless;
-    reg         endless_next;
+    reg  [15:0] count, count_next;
+    reg         carry, carry_next;
+    reg         endless, endless_next;
 
     posicast_axis_lasts u_against (
         .clk      (clk),

@@ -30,8 +30,7 @@ module posicast_axis_timer (
     reg  [15:0] less_one;
     wire [15:0] addend;
     wire [16:0] sum;
-    reg  [15:0] left;
-    reg  [15:0] left_next;
+    reg  [15:0] left, left_next;
     reg         over;
 
     assign loads = load_release | load_settle | load_apply;

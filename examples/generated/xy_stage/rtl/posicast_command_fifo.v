@@ -61,18 +61,12 @@ module posicast_command_fifo (
     wire        released;
     reg         spoils;
     wire [31:0] memory_read_data;
-    reg  [5:0]  head;
-    reg  [5:0]  head_next;
-    reg  [6:0]  level_q;
-    reg  [6:0]  level_q_next;
-    reg  [6:0]  staged;
-    reg  [6:0]  staged_next;
-    reg         spoilt;
-    reg         spoilt_next;
-    reg  [2:0]  written;
-    reg  [2:0]  written_next;
-    reg         too_wide;
-    reg         too_wide_next;
+    reg  [5:0]  head, head_next;
+    reg  [6:0]  level_q, level_q_next;
+    reg  [6:0]  staged, staged_next;
+    reg         spoilt, spoilt_next;
+    reg  [2:0]  written, written_next;
+    reg         too_wide, too_wide_next;
 
     // The entry being played, a word at a time
     posicast_ram_256x32 u_memory (

@@ -29,8 +29,9 @@ module posicast_divider_5000 (
     input  wire               rst,          // Synchronous reset, active high
     input  wire               start,        // One clock: starts the division of `steps` by
                                             // `elapsed`
-    input  wire signed [17:0] steps,        // Dividend: the counts
-    input  wire [23:0]        elapsed,      // Divisor: the clocks in which the counts came
+    input  wire signed [17:0] steps,        // Dividend: the change of the count [counts]
+    input  wire [23:0]        elapsed,      // Divisor: the time in which the count changed by this
+                                            // [clocks]
     input  wire               clear_flags,  // Clears `overrun`
     output wire signed [31:0] quotient,     // Counts per tick, Q16.16 [counts per tick, Q16.16]
     output wire               done,         // One clock: `quotient` is new
@@ -58,28 +59,17 @@ module posicast_divider_5000 (
     wire [31:0]        result;
     reg  [23:0]        one_tick;
     reg  [6:0]         phase;
-    reg  [34:0]        product;
-    reg  [34:0]        product_next;
-    reg  [23:0]        remainder;
-    reg  [23:0]        remainder_next;
-    reg  [23:0]        divisor;
-    reg  [23:0]        divisor_next;
-    reg                negative;
-    reg                negative_next;
-    reg                turns_over;
-    reg                turns_over_next;
-    reg                too_large;
-    reg                too_large_next;
-    reg                busy_q;
-    reg                busy_q_next;
-    reg  signed [31:0] quotient_q;
-    reg  signed [31:0] quotient_q_next;
-    reg                done_q;
-    reg                done_q_next;
-    reg                saturated_q;
-    reg                saturated_q_next;
-    reg                overrun_q;
-    reg                overrun_q_next;
+    reg  [34:0]        product, product_next;
+    reg  [23:0]        remainder, remainder_next;
+    reg  [23:0]        divisor, divisor_next;
+    reg                negative, negative_next;
+    reg                turns_over, turns_over_next;
+    reg                too_large, too_large_next;
+    reg                busy_q, busy_q_next;
+    reg  signed [31:0] quotient_q, quotient_q_next;
+    reg                done_q, done_q_next;
+    reg                saturated_q, saturated_q_next;
+    reg                overrun_q, overrun_q_next;
     reg                downward;
     reg                last_pass;
     reg                fits;

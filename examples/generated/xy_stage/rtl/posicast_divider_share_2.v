@@ -38,13 +38,10 @@ module posicast_divider_share_2 (
     wire               is_idle;
     reg                begins;
     reg  [3:0]         next_turn;
-    reg  [3:0]         turn;
-    reg  [3:0]         turn_next;
+    reg  [3:0]         turn, turn_next;
     reg                start_q;
-    reg  signed [17:0] steps_q;
-    reg  signed [17:0] steps_q_next;
-    reg  [23:0]        elapsed_q;
-    reg  [23:0]        elapsed_q_next;
+    reg  signed [17:0] steps_q, steps_q_next;
+    reg  [23:0]        elapsed_q, elapsed_q_next;
     reg                valid_q_0;
     reg                valid_q_1;
 

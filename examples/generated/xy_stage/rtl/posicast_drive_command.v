@@ -13,7 +13,7 @@ module posicast_drive_command (
     input  wire               clk,
     input  wire               rst,                 // Synchronous reset
     input  wire               tick,                // One clock: the tick
-    input  wire signed [17:0] controller_duty,     // `duty` of the controller, in clocks of the PWM
+    input  wire signed [17:0] controller_duty,     // `duty` of the controller [clocks]
     input  wire               controller_valid,    // One clock: `controller_duty` is new
     input  wire [2:0]         axis_state,          // `state` of the supervisor
     input  wire               axis_pwm_enable,     // `pwm_enable` of the supervisor
@@ -26,8 +26,9 @@ module posicast_drive_command (
     input  wire               direct_enable,       // Requests direct mode
     input  wire               direct_kick,         // One clock: direct mode lasts
                                                    // `direct_hold_ticks` from now on
-    input  wire [15:0]        direct_hold_ticks,   // Constant: ticks of direct mode per kick
-    input  wire signed [16:0] direct_duty,         // Manual duty, in clocks of the PWM
+    input  wire [15:0]        direct_hold_ticks,   // Constant: duration of direct mode per kick
+                                                   // [ticks]
+    input  wire signed [16:0] direct_duty,         // Manual duty [clocks]
     input  wire [15:0]        direct_limit,        // Constant: largest |manual duty| [clocks]
     input  wire               self_test,           // Direct mode is a self-test
     input  wire [3:0]         gates,               // `gates` of the PWM: bit 0 `a_high`, bit 1
@@ -85,8 +86,7 @@ module posicast_drive_command (
     reg         low_more;
     wire [15:0] high_sum;
     wire [15:0] low_sum;
-    reg  [16:0] duty_q;
-    reg  [16:0] duty_q_next;
+    reg  [16:0] duty_q, duty_q_next;
     reg         feed_q;
     reg         pwm_enable_q;
     reg         drive_enable_q;
@@ -94,27 +94,17 @@ module posicast_drive_command (
     reg         axis_trip_n_q;
     wire        drive_fault_pin_level;
     reg         active;
-    reg         expired;
-    reg         expired_next;
-    reg  [15:0] ticks;
-    reg  [15:0] ticks_next;
-    reg  [15:0] hold_ticks;
-    reg  [15:0] hold_ticks_next;
-    reg         backward;
-    reg         backward_next;
+    reg         expired, expired_next;
+    reg  [15:0] ticks, ticks_next;
+    reg  [15:0] hold_ticks, hold_ticks_next;
+    reg         backward, backward_next;
     reg         masked;
-    reg         high_was_on;
-    reg         high_was_on_next;
-    reg         low_was_on;
-    reg         low_was_on_next;
-    reg  [15:0] high_clocks;
-    reg  [15:0] high_clocks_next;
-    reg  [15:0] low_clocks;
-    reg  [15:0] low_clocks_next;
-    reg  [15:0] high_result;
-    reg  [15:0] high_result_next;
-    reg  [15:0] low_result;
-    reg  [15:0] low_result_next;
+    reg         high_was_on, high_was_on_next;
+    reg         low_was_on, low_was_on_next;
+    reg  [15:0] high_clocks, high_clocks_next;
+    reg  [15:0] low_clocks, low_clocks_next;
+    reg  [15:0] high_result, high_result_next;
+    reg  [15:0] low_result, low_result_next;
 
     // Faults: bit 0 the supervisor, bit 1 the drive
     posicast_pin_register u_drive_fault_pin (

@@ -15,8 +15,7 @@ module posicast_filtered_fault (
 );
     wire       long;
     wire       synchroniser_level;
-    reg  [7:0] lasted;
-    reg  [7:0] lasted_next;
+    reg  [7:0] lasted, lasted_next;
 
     posicast_synchroniser u_synchroniser (
         .clk   (clk),

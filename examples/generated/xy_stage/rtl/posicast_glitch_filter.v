@@ -17,10 +17,8 @@ module posicast_glitch_filter (
     input  wire [5:0] filter_clocks,
     output wire       level
 );
-    reg        level_q;
-    reg        level_q_next;
-    reg  [5:0] left;
-    reg  [5:0] left_next;
+    reg        level_q, level_q_next;
+    reg  [5:0] left, left_next;
 
     assign level = level_q;
 

@@ -43,14 +43,11 @@ module posicast_group_2 (
     reg  moving;
     reg  start_q_0;
     reg  start_q_1;
-    reg  stop_q_0;
-    reg  stop_q_0_next;
-    reg  stop_q_1;
-    reg  stop_q_1_next;
+    reg  stop_q_0, stop_q_0_next;
+    reg  stop_q_1, stop_q_1_next;
     reg  hold_q_0;
     reg  hold_q_1;
-    reg  emergency_q;
-    reg  emergency_q_next;
+    reg  emergency_q, emergency_q_next;
     reg  refused_q;
 
     assign axis_start_0 = start_q_0;

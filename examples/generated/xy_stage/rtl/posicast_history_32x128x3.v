@@ -44,16 +44,11 @@ module posicast_history_32x128x3 (
     wire [31:0] ring_1_read_data;
     wire [31:0] ring_2_write_data;
     wire [31:0] ring_2_read_data;
-    reg  [6:0]  head;
-    reg  [6:0]  head_next;
-    reg  [6:0]  age;
-    reg  [6:0]  age_next;
-    reg  [6:0]  origin;
-    reg  [6:0]  origin_next;
-    reg         begun;
-    reg         begun_next;
-    reg         started;
-    reg         started_next;
+    reg  [6:0]  head, head_next;
+    reg  [6:0]  age, age_next;
+    reg  [6:0]  origin, origin_next;
+    reg         begun, begun_next;
+    reg         started, started_next;
 
     posicast_ram_128x32 u_ring_0 (
         .clk           (clk),

@@ -26,10 +26,8 @@ module posicast_integral (
 );
     wire               lowers;
     reg                grows;
-    reg  signed [31:0] integral_q;
-    reg  signed [31:0] integral_q_next;
-    reg                cleared;
-    reg                cleared_next;
+    reg  signed [31:0] integral_q, integral_q_next;
+    reg                cleared, cleared_next;
 
     // Frozen where e pushes against a limit
     assign lowers = falls ^ opposes;

@@ -46,18 +46,12 @@ module posicast_limiter (
     reg                returns;
     reg                cuts;
     reg                decides;
-    reg  signed [31:0] held_q;
-    reg  signed [31:0] held_q_next;
-    reg                over;
-    reg                over_next;
-    reg  signed [31:0] command_q;
-    reg  signed [31:0] command_q_next;
-    reg                high_q;
-    reg                high_q_next;
-    reg                low_q;
-    reg                low_q_next;
-    reg  [15:0]        ticks;
-    reg  [15:0]        ticks_next;
+    reg  signed [31:0] held_q, held_q_next;
+    reg                over, over_next;
+    reg  signed [31:0] command_q, command_q_next;
+    reg                high_q, high_q_next;
+    reg                low_q, low_q_next;
+    reg  [15:0]        ticks, ticks_next;
 
     // held - limit, minus one for a positive word
     assign minuend = $unsigned(held_q);

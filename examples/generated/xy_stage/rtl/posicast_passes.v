@@ -94,8 +94,7 @@ module posicast_passes (
     reg  from_odd_q;
     reg  add_acceleration_q;
     reg  add_velocity_q;
-    reg  invert_q;
-    reg  invert_q_next;
+    reg  invert_q, invert_q_next;
 
     assign later = phase[5];
     assign middle = phase[4];

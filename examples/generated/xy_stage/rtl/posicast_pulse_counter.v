@@ -21,7 +21,7 @@ module posicast_pulse_counter (
     input  wire               b_n,               // Complement of B, used if `differential`
     input  wire               z_n,               // Complement of Z, used if `differential`
     input  wire               differential,      // The lines are differential pairs
-    input  wire [5:0]         filter_clocks,     // Pulses of up to this many clocks are ignored
+    input  wire [5:0]         filter_clocks,     // Longest pulse that is ignored [clocks]
     input  wire [2:0]         mode,              // 0 quadrature x4, 1 x2, 2 x1, 3 step and
                                                  // direction, 4 up and down, 5 to 7 nothing counts
     input  wire               swap,              // Exchanges A and B
@@ -62,11 +62,10 @@ module posicast_pulse_counter (
     output wire               level_a,           // Filtered level of A
     output wire               level_b,           // Filtered level of B
     output wire               level_z,           // Filtered level of Z
-    output wire signed [17:0] steps,             // Dividend for the divider: counts
-    output wire [23:0]        elapsed,           // Divisor for the divider: clocks
+    output wire signed [17:0] steps,             // Dividend for the divider [counts]
+    output wire [23:0]        elapsed,           // Divisor for the divider [clocks]
     output wire               velocity_pending,  // A tick waits for its quotient
-    output wire signed [31:0] velocity,          // Velocity in counts per tick, Q16.16 [counts per
-                                                 // tick, Q16.16]
+    output wire signed [31:0] velocity,          // Measured velocity [counts per tick, Q16.16]
     output wire               velocity_valid,    // One clock: `velocity` is that of the last tick
     output wire               velocity_missed    // Sticky: a tick came while another one waited for
                                                  // its quotient
@@ -103,24 +102,17 @@ module posicast_pulse_counter (
     wire               speed_velocity_missed;
     wire signed [31:0] speed_velocity;
     reg  [1:0]         priming;
-    reg                ready_q;
-    reg                ready_q_next;
+    reg                ready_q, ready_q_next;
     reg  signed [31:0] count_q;
-    reg  signed [31:0] origin_q;
-    reg  signed [31:0] origin_q_next;
+    reg  signed [31:0] origin_q, origin_q_next;
     reg                presets;
-    reg  signed [31:0] index_count_q;
-    reg  signed [31:0] index_count_q_next;
+    reg  signed [31:0] index_count_q, index_count_q_next;
     reg                index_before;
     reg                index_seen_q;
-    reg                index_armed_q;
-    reg                index_armed_q_next;
-    reg  [3:0]         illegal_low;
-    reg  [3:0]         illegal_low_next;
-    reg  [3:0]         illegal_high;
-    reg  [3:0]         illegal_high_next;
-    reg                disagreement_q;
-    reg                disagreement_q_next;
+    reg                index_armed_q, index_armed_q_next;
+    reg  [3:0]         illegal_low, illegal_low_next;
+    reg  [3:0]         illegal_high, illegal_high_next;
+    reg                disagreement_q, disagreement_q_next;
 
     // Lines, all with the same delay
     posicast_line_receiver u_line_a (

@@ -23,7 +23,7 @@ module posicast_pwm_25x50_0000 (
     input  wire [1:0]         mode,                // 0 direction, 1 half bridge, 2 full bridge
                                                    // unipolar, 3 full bridge locked antiphase
     input  wire [15:0]        period,              // Clocks per period, from 64
-    input  wire signed [16:0] duty,                // Duty: clocks of the ideal high time
+    input  wire signed [16:0] duty,                // Duty: the ideal high time [clocks]
     input  wire [15:0]        max_duty,            // Largest |`duty`|
     input  wire               update_at_peak,      // Duty and mode are taken at the peak too
     input  wire [9:0]         dead_time,           // Dead time from one side's off to the other's
@@ -33,13 +33,12 @@ module posicast_pwm_25x50_0000 (
     input  wire               sync,                // One clock: the synchronisation pulse of the
                                                    // time base
     input  wire [15:0]        phase,               // Phase of the carrier in the clock after
-                                                   // `sync`, in clocks after the valley
-    input  wire [15:0]        trigger_phase,       // Phase at which `trigger` comes, in clocks
-                                                   // after the valley
+                                                   // `sync`, counted from the valley [clocks]
+    input  wire [15:0]        trigger_phase,       // Phase at which `trigger` comes, counted from
+                                                   // the valley [clocks]
     input  wire               feed,                // One clock: the controller is alive
     input  wire [7:0]         watchdog_periods,    // Valleys without `feed` that are allowed
-    input  wire [7:0]         filter_clocks,       // Clocks for which a filtered fault may last
-                                                   // without effect
+    input  wire [7:0]         filter_clocks,       // Longest filtered fault without effect [clocks]
     input  wire               fault_n,             // Raw fault, asynchronous
     input  wire               pll_locked,          // Asynchronous; low trips as `fault_n` does
     input  wire [1:0]         filtered_fault_n,    // Two faults with synchroniser and filter,
@@ -121,25 +120,16 @@ module posicast_pwm_25x50_0000 (
     wire        pin_gates_b_low;
     wire [3:0]  pin_gates_gates;
     reg         running_q;
-    reg  [1:0]  mode_q;
-    reg  [1:0]  mode_q_next;
-    reg         negative_q;
-    reg         negative_q_next;
-    reg         low_q;
-    reg         low_q_next;
-    reg         high_q;
-    reg         high_q_next;
-    reg         off_q;
-    reg         off_q_next;
+    reg  [1:0]  mode_q, mode_q_next;
+    reg         negative_q, negative_q_next;
+    reg         low_q, low_q_next;
+    reg         high_q, high_q_next;
+    reg         off_q, off_q_next;
     reg         stable;
-    reg         saturated_q;
-    reg         saturated_q_next;
-    reg         refused_q;
-    reg         refused_q_next;
-    reg         below_floor_q;
-    reg         below_floor_q_next;
-    reg         unaligned_q;
-    reg         unaligned_q_next;
+    reg         saturated_q, saturated_q_next;
+    reg         refused_q, refused_q_next;
+    reg         below_floor_q, below_floor_q_next;
+    reg         unaligned_q, unaligned_q_next;
 
     posicast_pwm_carrier u_carrier (
         .clk           (clk),

@@ -31,14 +31,10 @@ module posicast_pwm_gates_0000 (
     wire [3:0] leg_a_high;
     wire [3:0] leg_a;
     wire [3:0] leg_b_high;
-    reg        a_high_gate;
-    reg        a_high_gate_next;
-    reg        a_low_gate;
-    reg        a_low_gate_next;
-    reg        b_high_gate;
-    reg        b_high_gate_next;
-    reg        b_low_gate;
-    reg        b_low_gate_next;
+    reg        a_high_gate, a_high_gate_next;
+    reg        a_low_gate, a_low_gate_next;
+    reg        b_high_gate, b_high_gate_next;
+    reg        b_low_gate, b_low_gate_next;
     reg        masked;
 
     assign on = armed & !masked;

@@ -30,8 +30,7 @@ module posicast_pwm_leg (
     reg        awake_q;
     reg        lit_q;
     reg        high_q;
-    reg  [9:0] timer;
-    reg  [9:0] timer_next;
+    reg  [9:0] timer, timer_next;
 
     assign awake = awake_next;
     assign high_side = lit_next & high_next;

@@ -26,10 +26,8 @@ module posicast_pwm_timing_25x50 (
     reg        pulse_below;
     reg  [9:0] dead_wanted;
     reg  [9:0] pulse_wanted;
-    reg  [9:0] dead_time_q;
-    reg  [9:0] dead_time_q_next;
-    reg  [9:0] minimum_pulse_q;
-    reg  [9:0] minimum_pulse_q_next;
+    reg  [9:0] dead_time_q, dead_time_q_next;
+    reg  [9:0] minimum_pulse_q, minimum_pulse_q_next;
 
     assign dead_time_used = dead_time_q;
     assign minimum_pulse_used = minimum_pulse_q;

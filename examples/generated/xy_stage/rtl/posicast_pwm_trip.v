@@ -42,8 +42,7 @@ module posicast_pwm_trip (
     reg        filtered_1;
     reg        pll;
     reg        watchdog;
-    reg  [7:0] unfed;
-    reg  [7:0] unfed_next;
+    reg  [7:0] unfed, unfed_next;
 
     posicast_fault_latch u_fault_latch (
         .clk    (clk),

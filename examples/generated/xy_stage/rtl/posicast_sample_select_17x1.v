@@ -22,12 +22,9 @@ module posicast_sample_select_17x1 (
     output wire               start,        // The sample is the first of a motion
     output wire signed [16:0] x_0           // A word per channel
 );
-    reg                strobe_q;
-    reg                strobe_q_next;
-    reg                start_q;
-    reg                start_q_next;
-    reg  signed [16:0] x_q_0;
-    reg  signed [16:0] x_q_0_next;
+    reg                strobe_q, strobe_q_next;
+    reg                start_q, start_q_next;
+    reg  signed [16:0] x_q_0, x_q_0_next;
 
     assign strobe = strobe_q;
     assign start = start_q;

@@ -28,16 +28,11 @@ module posicast_sample_select_32x3 (
     output wire signed [31:0] x_1,
     output wire signed [31:0] x_2
 );
-    reg                strobe_q;
-    reg                strobe_q_next;
-    reg                start_q;
-    reg                start_q_next;
-    reg  signed [31:0] x_q_0;
-    reg  signed [31:0] x_q_0_next;
-    reg  signed [31:0] x_q_1;
-    reg  signed [31:0] x_q_1_next;
-    reg  signed [31:0] x_q_2;
-    reg  signed [31:0] x_q_2_next;
+    reg                strobe_q, strobe_q_next;
+    reg                start_q, start_q_next;
+    reg  signed [31:0] x_q_0, x_q_0_next;
+    reg  signed [31:0] x_q_1, x_q_1_next;
+    reg  signed [31:0] x_q_2, x_q_2_next;
 
     assign strobe = strobe_q;
     assign start = start_q;

@@ -56,10 +56,8 @@ module posicast_scaled_product (
     wire signed [17:0] lower_a;
     wire signed [17:0] lower_b;
     wire signed [35:0] lower_product;
-    reg  signed [50:0] shifter;
-    reg  signed [50:0] shifter_next;
-    reg  [4:0]         left;
-    reg  [4:0]         left_next;
+    reg  signed [50:0] shifter, shifter_next;
+    reg  [4:0]         left, left_next;
 
     posicast_smul_15x18 u_upper (
         .clk     (clk),

@@ -23,10 +23,8 @@ module posicast_schedule_210 (
     localparam [16:0] USED = 17'd255;
 
     wire        ends;
-    reg  [16:0] since;
-    reg  [16:0] since_next;
-    reg         waits;
-    reg         waits_next;
+    reg  [16:0] since, since_next;
+    reg         waits, waits_next;
     reg         control_q;
 
     assign ends = waits & (since == LAST);

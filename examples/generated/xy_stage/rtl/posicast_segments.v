@@ -42,9 +42,8 @@ module posicast_segments (
     input  wire               modulo,             // Constant
     input  wire               feed_hold,          // At a tick: a command at rest stays where it is,
                                                   // and the entry being played keeps its ticks
-    input  wire [7:0]         extrapolation,      // So many ticks may pass at the last velocity
-                                                  // where entries are missing, before the quick
-                                                  // stop
+    input  wire [7:0]         extrapolation,      // Longest time at the last velocity if entries
+                                                  // are missing, before the quick stop [ticks]
     output wire signed [31:0] position,           // Position of the command [counts, Q24.8]
     output wire signed [31:0] velocity,           // Velocity of the command [counts per tick,
                                                   // Q16.16]
@@ -120,60 +119,33 @@ module posicast_segments (
     wire               integrator_decides;
     wire               integrator_reads_flags;
     wire               integrator_ends;
-    reg  [5:0]         phase;
-    reg  [5:0]         phase_next;
-    reg                idle;
-    reg                idle_next;
-    reg  [1:0]         state_q;
-    reg  [1:0]         state_q_next;
-    reg                wants_flush;
-    reg                wants_flush_next;
-    reg                wants_quick_stop;
-    reg                wants_quick_stop_next;
-    reg                wants_restart;
-    reg                wants_restart_next;
-    reg                wants_preset;
-    reg                wants_preset_next;
-    reg                enabled;
-    reg                enabled_next;
-    reg                point;
-    reg                point_next;
-    reg                cubic;
-    reg                cubic_next;
-    reg                first;
-    reg                first_next;
-    reg                extrapolates;
-    reg                extrapolates_next;
-    reg  [7:0]         late_q;
-    reg  [7:0]         late_q_next;
-    reg                notifies;
-    reg                notifies_next;
-    reg  signed [31:0] position_q;
-    reg  signed [31:0] position_q_next;
-    reg  signed [31:0] velocity_q;
-    reg  signed [31:0] velocity_q_next;
-    reg  signed [31:0] acceleration_q;
-    reg  signed [31:0] acceleration_q_next;
-    reg                valid_q;
-    reg                valid_q_next;
-    reg                notify_q;
-    reg                notify_q_next;
-    reg                done_q;
-    reg                done_q_next;
-    reg                underrun_q;
-    reg                underrun_q_next;
-    reg                overflow_q;
-    reg                overflow_q_next;
-    reg                refused_q;
-    reg                refused_q_next;
-    reg                malformed_q;
-    reg                malformed_q_next;
-    reg                tick_missed_q;
-    reg                tick_missed_q_next;
-    reg                out_of_range_q;
-    reg                out_of_range_q_next;
-    reg                rests_q;
-    reg                rests_q_next;
+    reg  [5:0]         phase, phase_next;
+    reg                idle, idle_next;
+    reg  [1:0]         state_q, state_q_next;
+    reg                wants_flush, wants_flush_next;
+    reg                wants_quick_stop, wants_quick_stop_next;
+    reg                wants_restart, wants_restart_next;
+    reg                wants_preset, wants_preset_next;
+    reg                enabled, enabled_next;
+    reg                point, point_next;
+    reg                cubic, cubic_next;
+    reg                first, first_next;
+    reg                extrapolates, extrapolates_next;
+    reg  [7:0]         late_q, late_q_next;
+    reg                notifies, notifies_next;
+    reg  signed [31:0] position_q, position_q_next;
+    reg  signed [31:0] velocity_q, velocity_q_next;
+    reg  signed [31:0] acceleration_q, acceleration_q_next;
+    reg                valid_q, valid_q_next;
+    reg                notify_q, notify_q_next;
+    reg                done_q, done_q_next;
+    reg                underrun_q, underrun_q_next;
+    reg                overflow_q, overflow_q_next;
+    reg                refused_q, refused_q_next;
+    reg                malformed_q, malformed_q_next;
+    reg                tick_missed_q, tick_missed_q_next;
+    reg                out_of_range_q, out_of_range_q_next;
+    reg                rests_q, rests_q_next;
     reg                held_q;
 
     // Words written by the host

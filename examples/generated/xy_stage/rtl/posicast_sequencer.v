@@ -85,20 +85,13 @@ module posicast_sequencer (
     wire       last_step;
     wire       is_short;
     reg        moves_enough;
-    reg        busy_q;
-    reg        busy_q_next;
-    reg  [4:0] step_q;
-    reg  [4:0] step_q_next;
-    reg  [5:0] phase;
-    reg  [5:0] phase_next;
-    reg        valid_q;
-    reg        valid_q_next;
-    reg        overrun_q;
-    reg        overrun_q_next;
-    reg        linear_q;
-    reg        linear_q_next;
-    reg        integrates_q;
-    reg        integrates_q_next;
+    reg        busy_q, busy_q_next;
+    reg  [4:0] step_q, step_q_next;
+    reg  [5:0] phase, phase_next;
+    reg        valid_q, valid_q_next;
+    reg        overrun_q, overrun_q_next;
+    reg        linear_q, linear_q_next;
+    reg        integrates_q, integrates_q_next;
 
     // A product with one is not shifted, except e
     assign begins_pass = start & !busy_q;

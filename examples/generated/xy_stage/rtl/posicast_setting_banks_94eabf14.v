@@ -45,15 +45,13 @@ module posicast_setting_banks_94eabf14 (
     reg  [3:0]  read_row;
     wire [31:0] machine_settings_data;
     wire [31:0] loaded_settings_read_data;
-    reg  [31:0] written;
-    reg  [31:0] written_next;
+    reg  [31:0] written, written_next;
     reg         known;
     reg         from_machine;
     reg         refused_q;
     reg         read_waits;
     reg         served;
-    reg  [31:0] read_back;
-    reg  [31:0] read_back_next;
+    reg  [31:0] read_back, read_back_next;
 
     posicast_machine_settings_94eabf14 u_machine_settings (
         .clk     (clk),

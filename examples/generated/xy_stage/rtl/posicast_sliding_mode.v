@@ -58,14 +58,15 @@ module posicast_sliding_mode (
                                                        // per tick, Q16.16]
     output wire signed [31:0] command,                 // The command, within +/-limit [command
                                                        // units, Q20.12]
-    output wire signed [17:0] duty,                    // The command in clocks of the PWM period
+    output wire signed [17:0] duty,                    // The command as high time of the PWM
+                                                       // [clocks]
     output wire               valid,                   // One clock: all outputs belong to the last
                                                        // `start`
     output wire               busy,                    // A computation is running
     output wire               limited_high,            // The last command was clamped at +limit
     output wire               limited_low,             // The last command was clamped at -limit
-    output wire [15:0]        limited_ticks,           // Number of consecutive ticks with a clamped
-                                                       // command
+    output wire [15:0]        limited_ticks,           // Time since which the command has been
+                                                       // clamped [ticks]
     output wire [6:0]         saturated_high,          // Sticky: values that were clamped at their
                                                        // upper end: bit 0 e, 1 de, 2 s, 3 a, 4 sum
                                                        // ofe, 5 command, 6 duty
@@ -144,12 +145,9 @@ module posicast_sliding_mode (
     wire               integral_takes;
     wire [6:0]         cut_high_flags;
     wire [6:0]         cut_low_flags;
-    reg  signed [31:0] sliding_q;
-    reg  signed [31:0] sliding_q_next;
-    reg  signed [17:0] duty_q;
-    reg  signed [17:0] duty_q_next;
-    reg                opposes;
-    reg                opposes_next;
+    reg  signed [31:0] sliding_q, sliding_q_next;
+    reg  signed [17:0] duty_q, duty_q_next;
+    reg                opposes, opposes_next;
 
     posicast_sequencer u_sequencer (
         .clk             (clk),

@@ -6,19 +6,19 @@
 //
 // parameter               value  meaning
 // axes                    2      windows after this one
-// tick_clocks             5000   clocks from tick to tick
-// control_clocks          210    clocks from the tick to the start of the controllers
-// duty_clocks             729    clocks from the tick to the new duty, which the PWM takes at its next boundary
+// tick_clocks             5000   time from tick to tick
+// control_clocks          210    time from the tick to the start of the controllers
+// duty_clocks             729    time from the tick to the new duty, which the PWM takes at its next boundary
 // x_pwm_period_clocks     2500   clocks of the PWM's period, which is full duty
 // x_ring_samples          128    size of the ring buffer: delays of a table reach up to this minus 2
 // x_most_taps             64     taps per bank
 // x_machine_taps          5      number of taps of bank 0
-// x_coefficient_fraction  16     fraction bits F of the coefficients
+// x_coefficient_fraction  16     number of fraction bits F of the coefficients
 // y_pwm_period_clocks     2500   clocks of the PWM's period, which is full duty
 // y_ring_samples          128    size of the ring buffer: delays of a table reach up to this minus 2
 // y_most_taps             64     taps per bank
 // y_machine_taps          5      number of taps of bank 0
-// y_coefficient_fraction  16     fraction bits F of the coefficients
+// y_coefficient_fraction  16     number of fraction bits F of the coefficients
 
 `default_nettype none
 

@@ -24,14 +24,11 @@ module posicast_time_base_5000 (
     localparam [16:0] LAST_PHASE = 17'd4999;
     localparam [16:0] USED_PHASE = 17'd8191;
 
-    reg  [16:0] phase;
-    reg  [16:0] phase_next;
-    reg         tick_q;
-    reg         tick_q_next;
+    reg  [16:0] phase, phase_next;
+    reg         tick_q, tick_q_next;
     reg         divide_q;
     reg  [31:0] time_stamp_q;
-    reg  [31:0] tick_count_q;
-    reg  [31:0] tick_count_q_next;
+    reg  [31:0] tick_count_q, tick_count_q_next;
 
     assign tick = tick_q;
     assign divide = divide_q;

@@ -32,8 +32,7 @@ module posicast_tracking (
     wire               rotary_fits;
     wire               fits;
     wire               negative;
-    reg  signed [23:0] error_q;
-    reg  signed [23:0] error_q_next;
+    reg  signed [23:0] error_q, error_q_next;
     reg                high_q;
     reg                low_q;
 

@@ -41,14 +41,10 @@ module posicast_weighted_sum_32x56_f16 (
     wire signed [55:0] wide_product;
     wire [55:0]        sign_bits;
     wire signed [49:0] product_product;
-    reg  signed [17:0] coefficient_q;
-    reg  signed [17:0] coefficient_q_next;
-    reg  signed [55:0] accumulator;
-    reg  signed [55:0] accumulator_next;
-    reg  signed [31:0] y_q;
-    reg  signed [31:0] y_q_next;
-    reg                saturated_q;
-    reg                saturated_q_next;
+    reg  signed [17:0] coefficient_q, coefficient_q_next;
+    reg  signed [55:0] accumulator, accumulator_next;
+    reg  signed [31:0] y_q, y_q_next;
+    reg                saturated_q, saturated_q_next;
 
     posicast_product_32 u_product (
         .clk         (clk),

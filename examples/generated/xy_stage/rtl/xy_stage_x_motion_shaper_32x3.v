@@ -107,22 +107,14 @@ module xy_stage_x_motion_shaper_32x3 (
     wire               sums_valid;
     wire               sums_busy;
     wire               sums_saturated;
-    reg  [5:0]         tap;
-    reg  [5:0]         tap_next;
-    reg                running;
-    reg                running_next;
-    reg  [1:0]         channel;
-    reg  [1:0]         channel_next;
-    reg                second;
-    reg                second_next;
-    reg                correcting;
-    reg                correcting_next;
-    reg  [8:0]         lasts;
-    reg  [8:0]         lasts_next;
-    reg  [1:0]         sample_channel;
-    reg  [1:0]         sample_channel_next;
-    reg                overrun_q;
-    reg                overrun_q_next;
+    reg  [5:0]         tap, tap_next;
+    reg                running, running_next;
+    reg  [1:0]         channel, channel_next;
+    reg                second, second_next;
+    reg                correcting, correcting_next;
+    reg  [8:0]         lasts, lasts_next;
+    reg  [1:0]         sample_channel, sample_channel_next;
+    reg                overrun_q, overrun_q_next;
 
     xy_stage_x_tap_banks u_banks (
         .clk                (clk),

@@ -75,19 +75,13 @@ module xy_stage_x_shaper (
     wire               history_blank;
     wire signed [31:0] sum_y;
     wire               sum_saturated;
-    reg  [5:0]         tap;
-    reg  [5:0]         tap_next;
-    reg                running;
-    reg                running_next;
-    reg  [5:0]         stages;
-    reg  [5:0]         stages_next;
-    reg                done;
-    reg                done_next;
+    reg  [5:0]         tap, tap_next;
+    reg                running, running_next;
+    reg  [5:0]         stages, stages_next;
+    reg                done, done_next;
     reg                valid_q;
-    reg                busy_q;
-    reg                busy_q_next;
-    reg                overrun_q;
-    reg                overrun_q_next;
+    reg                busy_q, busy_q_next;
+    reg                overrun_q, overrun_q_next;
 
     // Tables: the word of tap comes two clocks later
     // A swap takes effect at the next strobe

@@ -10,7 +10,7 @@
 // ring_samples          128    size of the ring buffer: delays reach up to this minus 2
 // most_taps             64     taps per bank
 // machine_taps          5      taps of bank 0
-// coefficient_fraction  16     fraction bits F of the coefficients
+// coefficient_fraction  16     length F of the coefficients' fraction
 // modulo                0      1: the position wraps
 
 `default_nettype none

@@ -120,19 +120,19 @@ set_parameter_property AXES ALLOWED_RANGES 2:2
 set_parameter_property AXES ENABLED false
 set_parameter_property AXES HDL_PARAMETER false
 
-add_parameter TICK_CLOCKS INTEGER 5000 {clocks from tick to tick}
+add_parameter TICK_CLOCKS INTEGER 5000 {time from tick to tick}
 set_parameter_property TICK_CLOCKS DISPLAY_NAME tick_clocks
 set_parameter_property TICK_CLOCKS ALLOWED_RANGES 5000:5000
 set_parameter_property TICK_CLOCKS ENABLED false
 set_parameter_property TICK_CLOCKS HDL_PARAMETER false
 
-add_parameter CONTROL_CLOCKS INTEGER 210 {clocks from the tick to the start of the controllers}
+add_parameter CONTROL_CLOCKS INTEGER 210 {time from the tick to the start of the controllers}
 set_parameter_property CONTROL_CLOCKS DISPLAY_NAME control_clocks
 set_parameter_property CONTROL_CLOCKS ALLOWED_RANGES 210:210
 set_parameter_property CONTROL_CLOCKS ENABLED false
 set_parameter_property CONTROL_CLOCKS HDL_PARAMETER false
 
-add_parameter DUTY_CLOCKS INTEGER 729 {clocks from the tick to the new duty, which the PWM takes at its next boundary}
+add_parameter DUTY_CLOCKS INTEGER 729 {time from the tick to the new duty, which the PWM takes at its next boundary}
 set_parameter_property DUTY_CLOCKS DISPLAY_NAME duty_clocks
 set_parameter_property DUTY_CLOCKS ALLOWED_RANGES 729:729
 set_parameter_property DUTY_CLOCKS ENABLED false
@@ -162,7 +162,7 @@ set_parameter_property X_MACHINE_TAPS ALLOWED_RANGES 5:5
 set_parameter_property X_MACHINE_TAPS ENABLED false
 set_parameter_property X_MACHINE_TAPS HDL_PARAMETER false
 
-add_parameter X_COEFFICIENT_FRACTION INTEGER 16 {fraction bits F of the coefficients}
+add_parameter X_COEFFICIENT_FRACTION INTEGER 16 {number of fraction bits F of the coefficients}
 set_parameter_property X_COEFFICIENT_FRACTION DISPLAY_NAME x_coefficient_fraction
 set_parameter_property X_COEFFICIENT_FRACTION ALLOWED_RANGES 16:16
 set_parameter_property X_COEFFICIENT_FRACTION ENABLED false
@@ -192,7 +192,7 @@ set_parameter_property Y_MACHINE_TAPS ALLOWED_RANGES 5:5
 set_parameter_property Y_MACHINE_TAPS ENABLED false
 set_parameter_property Y_MACHINE_TAPS HDL_PARAMETER false
 
-add_parameter Y_COEFFICIENT_FRACTION INTEGER 16 {fraction bits F of the coefficients}
+add_parameter Y_COEFFICIENT_FRACTION INTEGER 16 {number of fraction bits F of the coefficients}
 set_parameter_property Y_COEFFICIENT_FRACTION DISPLAY_NAME y_coefficient_fraction
 set_parameter_property Y_COEFFICIENT_FRACTION ALLOWED_RANGES 16:16
 set_parameter_property Y_COEFFICIENT_FRACTION ENABLED false

@@ -39,7 +39,7 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_y_pulse_counter_avalon.v VERILOG PATH ../rtl/xy_stage_y_pulse_counter_avalon.v
 }
 
-add_parameter TICK_CLOCKS INTEGER 5000 {clocks from tick to tick}
+add_parameter TICK_CLOCKS INTEGER 5000 {time from tick to tick}
 set_parameter_property TICK_CLOCKS DISPLAY_NAME tick_clocks
 set_parameter_property TICK_CLOCKS ALLOWED_RANGES 5000:5000
 set_parameter_property TICK_CLOCKS ENABLED false

@@ -79,7 +79,7 @@ set_parameter_property MACHINE_TAPS ALLOWED_RANGES 5:5
 set_parameter_property MACHINE_TAPS ENABLED false
 set_parameter_property MACHINE_TAPS HDL_PARAMETER false
 
-add_parameter COEFFICIENT_FRACTION INTEGER 16 {fraction bits F of the coefficients}
+add_parameter COEFFICIENT_FRACTION INTEGER 16 {length F of the coefficients' fraction}
 set_parameter_property COEFFICIENT_FRACTION DISPLAY_NAME coefficient_fraction
 set_parameter_property COEFFICIENT_FRACTION ALLOWED_RANGES 16:16
 set_parameter_property COEFFICIENT_FRACTION ENABLED false
