@@ -281,8 +281,8 @@ impl StageRandom {
     fn pins(&mut self, seen: &[u64]) {
         for at in 0..self.axes.len() {
             let axis = &self.axes[at];
-            let released = seen.get(axis.shown[3]).is_some_and(|value| value & 1 != 0);
-            for pins in self.driver.sees(at, axis.count, released) {
+            let [on, released] = [2, 3].map(|pin| seen.get(axis.shown[pin]).is_some_and(|value| value & 1 != 0));
+            for pins in self.driver.sees(at, axis.count, on, released) {
                 match pins {
                     Pins::Encoder(moves) => self.axes[at].moves = moves,
                     Pins::Slip => self.axes[at].slips = true,

@@ -47,6 +47,8 @@ enum Do {
     Switch(u32),
     /// Waits until the brake is released, for at most this many clocks.
     Released(u32),
+    /// Waits until the drive is disabled, for at most this many clocks.
+    Disabled(u32),
     /// Like the same event of [`Pins`].
     Low(&'static str, u32),
     Encoder(Moves),
@@ -64,6 +66,8 @@ struct Plan {
     switches: u32,
     /// Whether the brake is released.
     released: bool,
+    /// Whether the drive is enabled.
+    on: bool,
     /// Pending events at its pins.
     pins: Vec<Pins>,
 }
@@ -89,6 +93,7 @@ impl Driver {
             here: 0,
             switches: 0,
             released: false,
+            on: false,
             pins: Vec::new(),
         };
         Self {
@@ -131,6 +136,10 @@ impl Driver {
                     axis.script.pop_front();
                 }
                 Some(Do::Released(clocks)) => *clocks -= 1,
+                Some(Do::Disabled(clocks)) if !axis.on || *clocks == 0 => {
+                    axis.script.pop_front();
+                }
+                Some(Do::Disabled(clocks)) => *clocks -= 1,
                 Some(Do::Switch(which)) => {
                     axis.switches = *which;
                     axis.script.pop_front();
@@ -163,11 +172,11 @@ impl Driver {
         }
     }
 
-    /// Takes the approximate position of an axis in counts and whether its brake is released. Returns the events for
-    /// its pins.
-    pub(super) fn sees(&mut self, axis: usize, here: i32, released: bool) -> Vec<Pins> {
+    /// Takes the approximate position of an axis in counts, and whether its drive is enabled and its brake released.
+    /// Returns the events for its pins.
+    pub(super) fn sees(&mut self, axis: usize, here: i32, on: bool, released: bool) -> Vec<Pins> {
         let plan = &mut self.axes[axis];
-        (plan.here, plan.released) = (here, released);
+        (plan.here, plan.on, plan.released) = (here, on, released);
         std::mem::take(&mut plan.pins)
     }
 

@@ -11,7 +11,7 @@ use rand::Rng;
 use super::{Do, Driver, Moves};
 
 /// All scenes. Those that drive the most wires between the blocks in the fewest ticks come first.
-pub(in super::super) const SCENES: [fn(&mut Driver, usize); 22] = [
+pub(in super::super) const SCENES: [fn(&mut Driver, usize); 23] = [
     Driver::follows_badly,
     Driver::slips,
     Driver::runs_dry,
@@ -34,6 +34,7 @@ pub(in super::super) const SCENES: [fn(&mut Driver, usize); 22] = [
     Driver::clock_unlocked,
     Driver::leaves_the_range,
     Driver::by_hand,
+    Driver::saturates,
 ];
 
 /// Largest jerk of an entry, which has 40 bits.
@@ -98,6 +99,8 @@ impl Driver {
         self.write(axis, "feed_hold", 0);
         self.tell(axis, "flush", 0);
         self.ticks(axis, 1);
+        // An axis that held its position is off once its brake has closed.
+        self.act(axis, Do::Disabled(4 * self.tick_clocks));
         self.tell(axis, "clear_faults", 0);
         self.wait(axis, 24);
         self.tell(axis, "control", 1);
@@ -201,6 +204,18 @@ impl Driver {
         self.act(axis, Do::Encoder(Moves::Still));
         let back = self.one_in(2);
         self.goes(axis, FAST, back);
+        self.set_off(axis);
+        self.ticks(axis, 14);
+    }
+
+    /// Accelerates to a velocity whose command is beyond the limit, whatever the law is. The encoder follows the motor,
+    /// so that it does not count as lost before the time limit of saturation is over.
+    fn saturates(&mut self, axis: usize) {
+        let some = self.rng_jerk(FAST);
+        let jerk = if self.is_odd(axis) { -some } else { some };
+        for (ticks, jerk) in [(1, jerk), (3, 0), (1, -jerk), (40, 0)] {
+            self.entry(axis, ticks, EntryMotion::Jerk(jerk), false);
+        }
         self.set_off(axis);
         self.ticks(axis, 14);
     }
