@@ -1,5 +1,8 @@
-//! Inputs for the error table, seeded: an axis that creeps over the table, beyond both of its ends and to those of its word; bank 1
-//! loaded as it should be and otherwise, also while it is in use; enabled and not, homed and not; passes that begin before one is over.
+//! Seeded inputs for the error table.
+//!
+//! A run begins with directed scenes, which reach every event three times, whatever the seed is. Then a random mixture follows: an axis
+//! that creeps over the table, beyond both of its ends and to those of its word; bank 1 loaded as it should be and otherwise, also while
+//! it is in use; enabled and not, homed and not; passes that begin before the previous one is over.
 
 use posicast_model::rtl::error_table::{ErrorTableConfig, FULL_WEIGHT, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs};
 use rand::{Rng, RngExt, SeedableRng};
@@ -16,7 +19,34 @@ enum Where {
     Table,
     Ends,
     Word,
+    /// Both ends of the position's word in turn, so that the sum is cut at each.
+    BothCuts,
 }
+
+/// A directed period of a run. Each begins with weight 0 and, except for [`Scene::Full`], ends with the drive off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scene {
+    /// After a reset, a host loads bank 1 completely, after an entry out of turn, which is refused.
+    Load,
+    /// Bank 1 in sixteenths at the reference, at both ends of the word. While the weight is not 0, the origin changes,
+    /// the axis is not homed for two passes, and an entry of the bank in use is written, which is refused.
+    LoadedBank,
+    /// The machine's bank at the measured position, in and around the table.
+    MachineBank,
+    /// Each pass begins one clock before the previous one is over.
+    TooEarly,
+    /// So many passes that the whole error counts.
+    Full,
+}
+
+/// A run begins with this many rounds of these scenes, and then [`Scene::Full`].
+const ROUNDS: usize = 3;
+const ROUND: [Scene; 4] = [Scene::Load, Scene::LoadedBank, Scene::MachineBank, Scene::TooEarly];
+
+/// Number of passes of a directed period.
+const SCENE_PASSES: u32 = 24;
+/// A host writes an entry of [`Scene::Load`] once in this many clocks.
+const LOAD_CLOCKS: u32 = 3;
 
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -30,6 +60,7 @@ struct Life {
     /// Something is off once in so many clocks.
     off_pace: u32,
     write_pace: u32,
+    scene: Option<Scene>,
 }
 
 /// A mixture of everything, without end.
@@ -38,7 +69,9 @@ pub struct ErrorTableRandom {
     rng: Xoshiro256PlusPlus,
     config: ErrorTableConfig,
     clock: u64,
-    lives: u32,
+    lives: usize,
+    /// Number of passes begun so far.
+    passes: u64,
     life: Life,
     inputs: Inputs,
     /// Next entry to be loaded, and the one before.
@@ -54,6 +87,7 @@ impl ErrorTableRandom {
             config: config.clone(),
             clock: 0,
             lives: 0,
+            passes: 0,
             life: Life::default(),
             inputs: Inputs::default(),
             next: 0,
@@ -77,6 +111,7 @@ impl ErrorTableRandom {
             positions: *pick(rng, &[Where::Table, Where::Table, Where::Ends, Where::Word]),
             off_pace: *pick(rng, &[1000, 30_000, 1 << 30, 1 << 30]),
             write_pace: *pick(rng, &[3, 40, 1 << 30]),
+            scene: None,
         };
         self.inputs = Inputs {
             on_measured: self.life.on_measured,
@@ -88,16 +123,80 @@ impl ErrorTableRandom {
             error_select: rng.random_range(0..2) == 0,
             ..Inputs::default()
         };
-        // At first bank 1 is loaded, then used, so that a short run sees both.
-        self.lives += 1;
-        if self.lives <= 2 {
-            self.life.clocks = 12 * (u32::from(self.config.last()) + 1) + 40 * latency;
-            self.life.off_pace = 1 << 30;
-            self.life.pace = latency;
-            self.life.write_pace = if self.lives == 1 { 3 } else { 1 << 30 };
-            self.inputs.error_enable = self.lives == 2;
-            self.inputs.error_select = self.lives == 2;
+        match self.lives {
+            rounds if rounds < ROUNDS * ROUND.len() => self.direct(ROUND[rounds % ROUND.len()]),
+            last if last == ROUNDS * ROUND.len() => self.direct(Scene::Full),
+            _ => {}
         }
+        self.lives += 1;
+    }
+
+    /// Replaces what was drawn for a period by what its scene requires.
+    fn direct(&mut self, scene: Scene) {
+        let latency = self.config.latency_clocks();
+        let entries = u32::from(self.config.last()) + 1;
+        let loaded = scene == Scene::LoadedBank;
+        let clocks = match scene {
+            Scene::Load => LOAD_CLOCKS * (entries + 1),
+            Scene::Full => (u32::from(FULL_WEIGHT) + SCENE_PASSES) * latency,
+            _ => SCENE_PASSES * latency,
+        };
+        self.life = Life {
+            clocks,
+            pace: if scene == Scene::TooEarly { latency - 1 } else { latency },
+            on_measured: scene == Scene::MachineBank,
+            coarse: loaded,
+            origin: 0,
+            positions: if loaded { Where::BothCuts } else { Where::Table },
+            off_pace: 1 << 30,
+            write_pace: 1 << 30,
+            scene: Some(scene),
+        };
+        self.inputs = Inputs {
+            on_measured: self.life.on_measured,
+            coarse: loaded,
+            drive_enable: true,
+            homed: true,
+            error_enable: scene != Scene::Load,
+            error_select: loaded,
+            ..Inputs::default()
+        };
+    }
+
+    /// Changes the inputs in the course of a scene.
+    fn go_on_with(&mut self, scene: Scene) {
+        let (left, latency) = (self.life.clocks, self.config.latency_clocks());
+        if scene == Scene::LoadedBank {
+            match left {
+                _ if left == 12 * latency => self.inputs.origin = 100,
+                _ if left == 8 * latency => self.inputs.homed = false,
+                _ if left == 6 * latency => self.inputs.homed = true,
+                _ if left == 5 * latency => self.loads(self.config.last().into()),
+                _ => {}
+            }
+        }
+        if scene != Scene::Full && left <= 2 * latency {
+            self.inputs.drive_enable = false;
+        }
+        if scene == Scene::Load && left.is_multiple_of(LOAD_CLOCKS) {
+            self.loads(left / LOAD_CLOCKS);
+        }
+    }
+
+    /// Writes an entry of bank 1, after which so many are left. The first entry is positive and the last one is negative, and none differs
+    /// too much from another. Before the first one, entry 1 is written, which is out of turn.
+    fn loads(&mut self, left: u32) {
+        let half = self.config.format().most_step() / 2;
+        let any = self.rng.random_range(-half..=half);
+        let last = self.config.last();
+        self.inputs.error_write = true;
+        self.inputs.error_bank = true;
+        self.inputs.error_index = u32::from(last).checked_sub(left).map_or(1, |index| index as u8);
+        self.inputs.error_entry = match self.inputs.error_index {
+            0 => half,
+            index if index == last => -half,
+            _ => any,
+        };
     }
 
     /// A position near the table, in 256ths of a count.
@@ -112,6 +211,8 @@ impl ErrorTableRandom {
                 let end = *pick(rng, &[0, length, entry]);
                 end + rng.random_range(-300..=300)
             }
+            Where::BothCuts if self.passes.is_multiple_of(2) => return i32::MAX.into(),
+            Where::BothCuts => return i32::MIN.into(),
             Where::Word => return *pick(rng, &[i32::MAX.into(), i32::MIN.into(), 0]) + rng.random_range(-5000..=5000),
         };
         from_first + (i64::from(self.life.origin) + i64::from(format.first_counts)) * 256
@@ -153,10 +254,17 @@ impl Stimuli for ErrorTableRandom {
             self.new_life();
         }
         self.life.clocks -= 1;
-        self.inputs.rst = self.clock < 2 || ends && self.lives > 2 && self.rng.random_range(0..3) == 0;
+        let mixes = self.life.scene.is_none();
+        let begins = match self.life.scene {
+            Some(scene) => scene == Scene::Load,
+            None => self.rng.random_range(0..3) == 0,
+        };
+        self.inputs.rst = self.clock < 2 || ends && begins;
         let life = self.life;
         let once_in = |rng: &mut Xoshiro256PlusPlus, pace: u32| rng.random_range(0..pace) == 0;
-        self.inputs.valid = self.clock.is_multiple_of(life.pace.into()) || once_in(&mut self.rng, 50 * life.pace);
+        let early = mixes && once_in(&mut self.rng, 50 * life.pace);
+        self.inputs.valid = self.clock.is_multiple_of(life.pace.into()) || early;
+        self.passes += u64::from(self.inputs.valid);
         if self.inputs.valid || once_in(&mut self.rng, 2000) {
             self.inputs.position_reference = self.position().clamp(i32::MIN.into(), i32::MAX.into()) as i32;
             self.inputs.measured = (self.position() >> 8) as i32;
@@ -178,7 +286,8 @@ impl Stimuli for ErrorTableRandom {
         if once_in(&mut self.rng, life.write_pace) {
             self.writes();
         }
-        self.inputs.error_read = once_in(&mut self.rng, 60);
+        life.scene.into_iter().for_each(|scene| self.go_on_with(scene));
+        self.inputs.error_read = !self.inputs.error_write && once_in(&mut self.rng, 60);
         if self.inputs.error_read {
             self.inputs.error_bank = self.rng.random_range(0..3) != 0;
             self.inputs.error_index =
@@ -243,7 +352,7 @@ impl ErrorTableCoverage {
         ) else {
             return;
         };
-        let Some((_, outputs)) = self.before.replace((inputs, shown)) else {
+        let Some((earlier, outputs)) = self.before.replace((inputs, shown)) else {
             return;
         };
         let origin = inputs.origin.wrapping_add(self.first_counts);
@@ -255,6 +364,8 @@ impl ErrorTableCoverage {
         };
         let place = i64::from(counts.wrapping_sub(self.base)) * 256 + i64::from(inputs.position_reference & 0xff);
         let of_table = new && is_on;
+        // The sum before it is cut.
+        let sum = i64::from(earlier.position_reference) - i64::from(shown.table_error);
         let seen = [
             inputs.rst,
             new && !is_on,
@@ -266,8 +377,8 @@ impl ErrorTableCoverage {
             of_table && place >= self.length,
             of_table && (0..self.length).contains(&place),
             of_table && inputs.coarse && shown.table_error != 0,
-            of_table && shown.compensated == i32::MAX,
-            of_table && shown.compensated == i32::MIN,
+            of_table && sum > i64::from(i32::MAX),
+            of_table && sum < i64::from(i32::MIN),
             inputs.valid && self.runs && !shown.compensated_valid,
             of_table && shown.error_bank_used,
             shown.error_bank_used != outputs.error_bank_used,
