@@ -99,12 +99,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let simulator = Simulator::choose(args.simulator)?;
     if built.stage.is_some() {
         closed_loop::announce(simulator, command.is_some());
-        for axis in machine.axes.iter().filter(|axis| axis.error_table.is_some()) {
-            output::say(&format!(
-                "note: axis {}: its error table counts once a host has homed the axis; the closed loop of this run is not homed",
-                axis.name
-            ));
-        }
     }
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &built.shapers, &words)?;

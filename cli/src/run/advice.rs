@@ -7,7 +7,7 @@ pub(crate) struct Advice {
 }
 
 /// Advice by the beginning of a check's name.
-const ADVICE: [(&str, Advice); 14] = [
+const ADVICE: [(&str, Advice); 15] = [
     (
         "the command moves every axis",
         Advice {
@@ -136,6 +136,16 @@ const ADVICE: [(&str, Advice); 14] = [
             remedies: [
                 "look at plots/stage-move.svg, and lower acceleration or the gains",
                 "check frequency_hz and damping, and the mode's participation",
+            ],
+        },
+    ),
+    (
+        "the error tables lead",
+        Advice {
+            cause: "the axis does not come to rest, or friction keeps it from its target",
+            remedies: [
+                "look at plots/stage-error-table.svg, and raise the gains as far as the margins of `design` allow",
+                "compare the rows of the CSV file with `posicast design`, which says how far the table departs from them",
             ],
         },
     ),

@@ -5,6 +5,7 @@
 
 use super::advice;
 use super::checks::Check;
+use super::closed_loop::ClosedLoop;
 use super::report::RunReport;
 use crate::bench::Simulator;
 use crate::generate;
@@ -23,6 +24,7 @@ impl RunReport<'_> {
         if let Some(estimate) = self.estimate {
             text += &area(estimate);
         }
+        text += &self.closed_loop.map_or_else(String::new, ClosedLoop::error_tables_text);
         text += &self.checks_text(|check| !check.passed || check.is_open());
         let count = |verdict: fn(&Check) -> bool| self.checks.iter().filter(|check| verdict(check)).count();
         let (failed, open) = (count(|check| !check.passed), count(Check::is_open));

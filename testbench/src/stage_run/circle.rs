@@ -315,7 +315,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, circle: &Circle) -
     if trouble.is_none() {
         trouble = host.rest(moves::settle_ticks(run))?;
     }
-    let samples = host.bench.recorded();
+    let samples = run.recorded(&mut host);
     let points = match samples.as_slice() {
         [x, y, ..] => places(run, circle, x, y),
         _ => Vec::new(),

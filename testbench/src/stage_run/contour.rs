@@ -56,7 +56,7 @@ pub(super) fn measure(
     if trouble.is_none() {
         trouble = host.rest(moves::settle_ticks(run))?;
     }
-    let recorded = host.bench.recorded();
+    let recorded = run.recorded(&mut host);
     let followed = match recorded.as_slice() {
         [x, y, ..] if trouble.is_none() => {
             let (at, load) = aligned(run, &samples, x, y);

@@ -1,6 +1,7 @@
 //! The host program that operates the stage's registers.
 
 use posicast_model::rtl::axis::{Cause, SupervisorState};
+use posicast_model::rtl::error_table::FULL_WEIGHT;
 use posicast_model::rtl::stage::StageConfig;
 use std::fmt;
 
@@ -80,10 +81,12 @@ pub(super) struct Host<'a> {
     tables: Vec<AxisTables>,
     /// Number of handovers from table to table.
     pub(super) handovers: u64,
+    /// Whether the host homes the axes that have an error table.
+    homes: bool,
 }
 
 impl<'a> Host<'a> {
-    pub(super) fn new(bench: StageBench, config: &'a StageConfig, tables: Vec<AxisTables>) -> Self {
+    pub(super) fn new(bench: StageBench, config: &'a StageConfig, tables: Vec<AxisTables>, homes: bool) -> Self {
         let tick = u64::from(config.tick.tick_clocks());
         let ticks = config
             .axes
@@ -97,6 +100,7 @@ impl<'a> Host<'a> {
             kicked: 0,
             tables,
             handovers: 0,
+            homes,
         }
     }
 
@@ -206,8 +210,29 @@ impl<'a> Host<'a> {
         for axis in &self.config.axes {
             self.bench.write(&format!("{}_control", axis.name), 1)?;
         }
-        self.wait("come to hold its position", PATIENCE_TICKS, |host, axis| {
+        let trouble = self.wait("come to hold its position", PATIENCE_TICKS, |host, axis| {
             Ok(host.state(axis)? == state::HOLD)
+        })?;
+        match trouble {
+            None if self.homes => self.home(),
+            trouble => Ok(trouble),
+        }
+    }
+
+    /// Declares the axes that have an error table homed, at the origin where their counters began at reset, and waits
+    /// until the whole error counts.
+    fn home(&mut self) -> Result<Option<Trouble>, Error> {
+        let config = self.config;
+        for axis in config.axes.iter().filter(|axis| axis.error_table.is_some()) {
+            self.bench.write(&format!("{}_homed", axis.name), 1)?;
+        }
+        let most_ticks = u64::from(FULL_WEIGHT) + PATIENCE_TICKS;
+        self.wait("taken its error table into account", most_ticks, |host, axis| {
+            let axis = &host.config.axes[axis];
+            match axis.error_table {
+                None => Ok(true),
+                Some(_) => Ok(host.bench.net(&format!("{}_error_weight", axis.name))? == u64::from(FULL_WEIGHT)),
+            }
         })
     }
 

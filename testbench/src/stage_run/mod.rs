@@ -7,11 +7,13 @@
 //!            └─ circle ───────► the model alone: points through the FIFOs      ─► Circled: contour error
 //! ```
 //!
-//! A host on the bus does what a program would: it clears the first trip, enables, waits for the brakes, writes
-//! segments, sets one bit, kicks the watchdogs, and refills the FIFOs at their low marks. If a stage does not do what
-//! it should, this is a result with its [`Trouble`]; an error is a run that was not possible.
+//! A host on the bus does what a program would: it clears the first trip, enables, homes the axes that have an error
+//! table, waits for the brakes, writes segments, sets one bit, kicks the watchdogs, and refills the FIFOs at their low
+//! marks. If a stage does not do what it should, this is a result with its [`Trouble`]; an error is a run that was not
+//! possible.
 
 mod circle;
+mod compensated;
 mod contour;
 mod expected;
 mod figures;
@@ -32,9 +34,10 @@ use posicast_model::rtl::stage::{StageConfig, StageError};
 use crate::Error;
 use crate::lockstep::Device;
 use crate::lockstep::report::Mismatch;
-use crate::stage_bench::StageBench;
+use crate::stage_bench::{AxisSample, StageBench};
 
 pub use circle::{Circle, Circled, NoCircle};
+pub use compensated::Compensated;
 pub use contour::Contoured;
 pub use expected::Expected;
 pub use figures::AxisFigures;
@@ -104,6 +107,8 @@ pub struct StageRun<'a> {
     families: Vec<TableFamily>,
     /// Whether, for each axis, the move has no jerk limit, because a smoother one would not exercise its shaper.
     harsh: Vec<bool>,
+    /// Whether the host homes the axes that have an error table, so that the table is in force.
+    homes: bool,
 }
 
 impl<'a> StageRun<'a> {
@@ -154,6 +159,7 @@ impl<'a> StageRun<'a> {
             moves: moves.collect(),
             families,
             harsh: vec![false; machine.axes.len()],
+            homes: true,
         };
         // For a machine without expected figures the error is reported when it is moved.
         if let Ok(harsh) = expected::too_smooth(&run) {
@@ -166,6 +172,13 @@ impl<'a> StageRun<'a> {
     #[must_use]
     pub fn with_one_table(mut self) -> Self {
         self.families.clear();
+        self
+    }
+
+    /// The run with a host that homes no axis, so that no error table is in force.
+    #[must_use]
+    pub fn without_error_tables(mut self) -> Self {
+        self.homes = false;
         self
     }
 
@@ -271,7 +284,22 @@ impl<'a> StageRun<'a> {
             let axis = self.machine.axes.get(family.axis)?;
             AxisTables::new(axis, family)
         });
-        Ok(Host::new(bench, &self.config, tables.collect()))
+        Ok(Host::new(bench, &self.config, tables.collect(), self.homes))
+    }
+
+    /// The samples of a run. The load of an axis with an error table is where it truly is: beyond what the counter
+    /// says by the measured error of the machine file.
+    fn recorded(&self, host: &mut Host<'_>) -> Vec<Vec<AxisSample>> {
+        let mut samples = host.bench.recorded();
+        for (samples, axis) in samples.iter_mut().zip(&self.machine.axes) {
+            let Some(table) = &axis.error_table else {
+                continue;
+            };
+            for sample in samples {
+                sample.load += table.at(sample.load);
+            }
+        }
+        samples
     }
 }
 

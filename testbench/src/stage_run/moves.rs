@@ -157,7 +157,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) 
     if trouble.is_none() {
         trouble = host.rest(settle_ticks(run))?;
     }
-    let samples = host.bench.recorded();
+    let samples = run.recorded(&mut host);
     let axes = samples.iter().zip(&run.machine.axes);
     Ok(Moved {
         axes: axes

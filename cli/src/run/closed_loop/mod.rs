@@ -15,7 +15,7 @@ use posicast_model::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_run::{
-    Circle, Circled, Compared, Contoured, Expected, Moved, Shaping, StageRun, StageRunError,
+    Circle, Circled, Compared, Compensated, Contoured, Expected, Moved, Shaping, StageRun, StageRunError,
 };
 use std::path::Path;
 use std::sync::Mutex;
@@ -50,6 +50,8 @@ pub(crate) struct ClosedLoop<'a> {
     unshaped: Moved,
     slower: Moved,
     faster: Moved,
+    /// The shaped move without the error tables; `None` if no axis has one.
+    uncompensated: Option<Moved>,
     /// Expected figures of these four moves, by axis.
     expected: [Vec<Expected>; 4],
     /// By axis, whether its move has no jerk limit, so that its acceleration changes from tick to tick.
@@ -74,6 +76,7 @@ struct Circles {
 enum Task<'a> {
     Compare,
     Move(Shaping, f64),
+    MoveUncompensated,
     Circle(&'a StageRun<'a>),
     Contour(&'a StageRun<'a>),
     CompareContour,
@@ -83,6 +86,7 @@ enum Task<'a> {
 enum Done {
     Compared(Compared),
     Moved(Moved),
+    MovedUncompensated(Moved),
     Circled(Circled),
     Contoured(Contoured),
     ContourCompared(Compared),
@@ -138,14 +142,18 @@ impl<'a> Job<'a> {
             *expected = own.expected(shaping, factor).map_err(refused)?;
         }
         tasks.extend(MOVES.map(|(shaping, factor)| Task::Move(shaping, factor)));
+        if self.machine.axes.iter().any(|axis| axis.error_table.is_some()) {
+            tasks.push(Task::MoveUncompensated);
+        }
         let done = self.all(&own, circle.as_ref().ok().copied(), &tasks).map_err(refused)?;
 
         let (mut compared, mut moves, mut circles) = (None, Vec::new(), Vec::new());
-        let (mut contours, mut contour_compared) = (Vec::new(), None);
+        let (mut contours, mut contour_compared, mut uncompensated) = (Vec::new(), None, None);
         for done in done {
             match done {
                 Done::Compared(result) => compared = Some(result),
                 Done::Moved(result) => moves.push(result),
+                Done::MovedUncompensated(result) => uncompensated = Some(result),
                 Done::Circled(result) => circles.push(result),
                 Done::Contoured(result) => contours.push(result),
                 Done::ContourCompared(result) => contour_compared = Some(result),
@@ -188,6 +196,7 @@ impl<'a> Job<'a> {
             unshaped,
             slower,
             faster,
+            uncompensated,
             expected,
             harsh: (0..self.machine.axes.len()).map(|axis| own.is_harsh(axis)).collect(),
             circles,
@@ -236,6 +245,10 @@ impl<'a> Job<'a> {
         Ok(match task {
             Task::Compare => Some(Done::Compared(own.side_by_side(self.device()?)?)),
             Task::Move(shaping, factor) => Some(Done::Moved(own.moved(shaping, factor)?)),
+            Task::MoveUncompensated => {
+                let uncompensated = own.clone().without_error_tables();
+                Some(Done::MovedUncompensated(uncompensated.moved(Shaping::Shaped, 1.0)?))
+            }
             Task::Contour(run) => match self.contour {
                 Some(path) => Some(Done::Contoured(run.contour(&path.contour)?)),
                 None => None,
@@ -275,6 +288,21 @@ pub(crate) fn circle(
             circle.map(Ok).map_err(|reason| refused(reason.to_string()))
         }
         _ => Ok(Circle::of_machine(machine).map_err(|reason| reason.to_string())),
+    }
+}
+
+impl ClosedLoop<'_> {
+    /// Where the load of each axis that has an error table rests after the move: index of the axis, and figures.
+    fn compensated(&self) -> impl Iterator<Item = (usize, Compensated)> {
+        let without = self.uncompensated.iter();
+        let built = &self.stage.of_machine.config.axes;
+        without.flat_map(move |without| {
+            let axes = self.machine.axes.iter().zip(built).zip(&self.expected[0]).enumerate();
+            axes.filter_map(move |(index, ((axis, built), expected))| {
+                let figures = Compensated::of_axis(axis, built, index, [&self.shaped, without], expected);
+                figures.map(|figures| (index, figures))
+            })
+        })
     }
 }
 

@@ -23,6 +23,10 @@ impl ClosedLoop<'_> {
                 axes().map(|axis| self.vibration(axis)).collect(),
             ),
         ];
+        let compensated: Vec<_> = self.compensated().map(|(axis, _)| self.at_rest(axis)).collect();
+        if !compensated.is_empty() {
+            pictures.push(("plots/stage-error-table.svg", compensated));
+        }
         if let Some(panel) = self.contours.as_ref().and_then(|contours| contours.panel(self.machine)) {
             pictures.push(("plots/stage-contour.svg", vec![panel]));
         }
@@ -181,6 +185,39 @@ impl ClosedLoop<'_> {
             y_label: label("from its place of rest", unit),
             curves: curves.collect(),
             band: Some(band),
+            ..Panel::default()
+        }
+    }
+
+    /// The distance of an axis's load from its target after the move, with the error table and without it.
+    fn at_rest(&self, axis: usize) -> Panel {
+        let of_axis = &self.machine.axes[axis];
+        let count = 1.0 / of_axis.loop_counts_per_unit();
+        let distances = |moved: &Moved| -> Vec<f64> {
+            let samples = self.samples(moved, axis);
+            let target = samples.last().map_or(0.0, |last| last.shaped * count);
+            let moving = samples.iter().rposition(|sample| sample.shaped * count != target);
+            let rest = samples.get(moving.map_or(0, |last| last + 1)..).unwrap_or_default();
+            rest.iter().map(|sample| sample.load - target).collect()
+        };
+        let without = self.uncompensated.as_ref().map(distances).unwrap_or_default();
+        let with = distances(&self.shaped);
+        let unit = of_axis.unit.for_largest(without.iter().chain(&with).copied());
+        let points = |distances: Vec<f64>| {
+            let ticks = distances.into_iter().enumerate();
+            ticks
+                .map(|(tick, distance)| (self.time().of(self.seconds(tick)), unit.of(distance)))
+                .collect()
+        };
+        Panel {
+            title: self.title(axis, "the load after its move, from its target"),
+            x_label: label("time since the command came to its end", self.time()),
+            y_label: label("from the target", unit),
+            curves: vec![
+                Curve::reference("without the error table", points(without)),
+                Curve::new("with the error table", points(with)),
+            ],
+            band: Some(self.one_count(axis, unit)),
             ..Panel::default()
         }
     }

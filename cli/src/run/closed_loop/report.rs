@@ -44,6 +44,7 @@ impl ClosedLoop<'_> {
             self.moves_text(),
             table.text("  ")
         );
+        text += &self.error_tables_text();
         match (&self.contours, &self.circles) {
             (Some(contours), _) => text += &contours.text(self.machine),
             (None, Ok(circles)) => text += &self.circles_text(circles),
@@ -55,6 +56,19 @@ impl ClosedLoop<'_> {
         let tick = self.stage.of_machine.config.tick.tick_clocks();
         let _ = writeln!(text, "\nSchedule of a tick of {tick} clocks\n  {schedule}");
         text
+    }
+
+    /// A line for each axis that has an error table.
+    pub(crate) fn error_tables_text(&self) -> String {
+        let lines = self.compensated().map(|(index, of)| {
+            let axis = &self.machine.axes[index];
+            let [with, without] = axis.unit.show_all([of.with.abs(), of.without.abs()]);
+            format!(
+                "  axis {}, homed: the load rests {with} from its target with its error table, {without} without\n",
+                axis.name
+            )
+        });
+        lines.collect()
     }
 
     /// Vibration of an axis's load without its shaper and with it, in m or rad; `None` if a move was not made.
@@ -136,6 +150,13 @@ impl ClosedLoop<'_> {
                         residual: residual(&self.shaped, index),
                         residual_minus_10_percent: residual(&self.slower, index),
                         residual_plus_10_percent: residual(&self.faster, index),
+                        error_table: self.compensated().find(|(place, _)| *place == index).map(|(_, of)| {
+                            CompensatedDocument {
+                                offset_without: of.without,
+                                offset_with: of.with,
+                                offset_allowed: of.allowed,
+                            }
+                        }),
                     }
                 })
                 .collect(),
@@ -197,6 +218,16 @@ struct AxisDocument {
     residual: Option<f64>,
     residual_minus_10_percent: Option<f64>,
     residual_plus_10_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_table: Option<CompensatedDocument>,
+}
+
+/// Distance of the load's rest position from its target, with the axis's error table and without it.
+#[derive(Serialize)]
+struct CompensatedDocument {
+    offset_without: f64,
+    offset_with: f64,
+    offset_allowed: f64,
 }
 
 #[derive(Serialize)]

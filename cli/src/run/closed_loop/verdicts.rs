@@ -20,6 +20,7 @@ impl ClosedLoop<'_> {
         checks.push(self.follows());
         checks.extend(self.calmer());
         checks.extend(self.limited());
+        checks.extend(self.led_to_true_positions());
         checks
     }
 
@@ -32,9 +33,9 @@ impl ClosedLoop<'_> {
             let matched = circles.matched.as_ref().ok();
             std::iter::once(&circles.apart).chain(matched)
         });
-        let of_moves = self.moves().map(|moved| moved.trouble.as_ref());
+        let moves = self.moves().into_iter().chain(&self.uncompensated);
+        let of_moves = moves.map(|moved| moved.trouble.as_ref());
         let mut of_runs = of_moves
-            .into_iter()
             .chain(circles.map(|circled| circled.trouble.as_ref()))
             .chain(self.contours.iter().flat_map(Contours::troubles));
         let runs = of_runs.clone().count();
@@ -195,6 +196,41 @@ impl ClosedLoop<'_> {
             });
         }
         checks
+    }
+
+    /// With its error table, the load of an axis must rest at its target; no check where no axis has a table.
+    fn led_to_true_positions(&self) -> Option<Check> {
+        self.uncompensated.as_ref()?;
+        let (mut failed, mut held, mut open) = (None, Vec::new(), Vec::new());
+        for (index, of) in self.compensated() {
+            let axis = &self.machine.axes[index];
+            let [with, allowed, without] = axis.unit.show_all([of.with.abs(), of.allowed, of.without.abs()]);
+            let text = format!(
+                "axis {}: the load rests {with} from its target with the table, {allowed} allowed, {without} without",
+                axis.name
+            );
+            match (of.holds(), of.is_exercised()) {
+                (false, _) => failed = failed.or(Some(text)),
+                (true, true) => held.push(text),
+                (true, false) => open.push(text),
+            }
+        }
+        let is_open = held.is_empty();
+        held.extend(open);
+        let detail = match (&failed, is_open) {
+            (Some(text), _) => text.clone(),
+            (None, false) => held.join("; "),
+            (None, true) if held.is_empty() => format!("{NOT_EXERCISED}nothing moved"),
+            (None, true) => format!(
+                "{NOT_EXERCISED}{}; choose a place with a larger error by --move",
+                held.join("; ")
+            ),
+        };
+        Some(Check {
+            name: "the error tables lead the loads to their true positions",
+            passed: failed.is_none(),
+            detail,
+        })
     }
 
     /// The error must stay below `following_error`; no check where no axis has that limit.

@@ -1,0 +1,68 @@
+//! What an error table does for an axis: how far the load rests from its target with the table and without it.
+
+use posicast_model::hardware::error_table_departure_counts;
+use posicast_model::machine_file::{AxisSection, ErrorTableSection, ErrorUse};
+use posicast_model::rtl::stage::StageAxis;
+
+use super::{Expected, Moved};
+
+/// A table is exercised by a move after which, without the table, the load rests at least this many times as far from
+/// its target as is allowed with it.
+const EXERCISED: f64 = 1.5;
+
+/// Where the load of an axis with an error table rests after its move. Lengths are in m or rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compensated {
+    /// Distance from the target without the table, with its sign.
+    pub without: f64,
+    /// Distance from the target with the table, with its sign.
+    pub with: f64,
+    /// Largest allowed distance with the table.
+    pub allowed: f64,
+}
+
+impl Compensated {
+    /// Figures of the axis at this place; `None` if it has no error table, or one of the moves was not made.
+    ///
+    /// `with` and `without` are the same move with the table and without it.
+    pub fn of_axis(
+        axis: &AxisSection,
+        built: &StageAxis,
+        place: usize,
+        [with, without]: [&Moved; 2],
+        expected: &Expected,
+    ) -> Option<Self> {
+        let (section, table) = (axis.error_table.as_ref()?, built.error_table.as_ref()?);
+        let departure = error_table_departure_counts(axis, &table.table) / axis.loop_counts_per_unit();
+        Some(Self {
+            without: without.axes.get(place)?.offset,
+            with: with.axes.get(place)?.offset,
+            // The loop rests within half a count of its target, and the compensated target is rounded.
+            allowed: expected.count + expected.friction + departure + of_place(section),
+        })
+    }
+
+    /// Whether the load rests where it should.
+    pub fn holds(&self) -> bool {
+        self.with.abs() <= self.allowed
+    }
+
+    /// Whether the move shows what the table does.
+    pub fn is_exercised(&self) -> bool {
+        self.without.abs() >= EXERCISED * self.allowed
+    }
+}
+
+/// Largest error that remains because the error is looked up at the reference, which is the true position, and was
+/// measured over the counted one: error times slope.
+fn of_place(section: &ErrorTableSection) -> f64 {
+    if section.apply == ErrorUse::Feedback {
+        return 0.0;
+    }
+    let largest = section.points.iter().map(|(_, error)| error.abs()).fold(0.0, f64::max);
+    let slopes = section.points.windows(2).map(|pair| {
+        let [(low, from), (high, to)] = [pair[0], pair[1]];
+        ((to - from) / (high - low)).abs()
+    });
+    largest * slopes.fold(0.0, f64::max)
+}
