@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::Path;
 
 /// The rows of the golden file, in the order of [`ControllerCase::ALL`].
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 28] = [
     "PD (same linear part as SMC: kp=c k, kd=c+k), no feedforward",
     "PD + acceleration feedforward",
     "PID (ki = 2e5), no feedforward",
@@ -34,6 +34,7 @@ const NAMES: [&str; 27] = [
     "  same, L = 1 mH",
     "  same, L = 0.2 mH",
     "eq 4-11 as printed, voltage mode, full plant",
+    "eq 4-11 corrected, voltage mode, full plant",
 ];
 
 fn figures(golden: &Value) -> [(f64, &'static str); 8] {

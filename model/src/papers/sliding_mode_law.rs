@@ -19,7 +19,8 @@ const LEAD: f64 = 0.005 / TAU;
 const WINDING: (f64, f64) = (0.05, 1.0);
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 33.9357e6;
-const DAMPING: f64 = 1.3e4;
+/// Damping of the screw in N·s/m.
+pub(super) const DAMPING: f64 = 1.3e4;
 const BACK_EMF: f64 = 0.18;
 const TORQUE: f64 = 0.378;
 
@@ -32,9 +33,9 @@ struct State {
     velocity: f64,
 }
 
-/// Returns `K_cp u · K_t/(m R P′)`, the bracket of the law.
-fn bracket(state: &State) -> f64 {
-    let stretch = (MASS * state.acceleration + DAMPING * state.velocity) / STIFFNESS;
+/// Returns `K_cp u · K_t/(m R P′)`, the bracket of the law, for a table with this damper to the ground in N·s/m.
+fn bracket(state: &State, damping: f64) -> f64 {
+    let stretch = (MASS * state.acceleration + damping * state.velocity) / STIFFNESS;
     let angle = (stretch + state.position) / LEAD;
     let current = LEAD * STIFFNESS * (LEAD * angle - state.position) / TORQUE;
     let current_rate = LEAD * STIFFNESS * (LEAD * state.motor_speed - state.velocity) / TORQUE;
@@ -43,17 +44,48 @@ fn bracket(state: &State) -> f64 {
     voltage * TORQUE / (MASS * resistance * LEAD)
 }
 
-/// Voltage in V that eq. (4-11) asks for an acceleration in m/s², in this state of rad/s, m and m/s, with the coefficients of x3 and x4 as
-/// they are printed. Friction, which the law leaves to `ε`, is not in it.
-pub(super) fn voltage(acceleration: f64, motor_speed: f64, position: f64, velocity: f64) -> f64 {
+/// The coefficients of x3 and x4 in eq. (4-11).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Coefficients {
+    /// As they are printed.
+    Printed,
+    /// As they follow from the model, for a table with a damper to the ground.
+    Corrected {
+        /// Damping B of the table in N·s/m.
+        damping: f64,
+    },
+}
+
+/// Voltage in V that eq. (4-11) asks for an acceleration in m/s², in this state of rad/s, m and m/s. Friction, which the law leaves to
+/// `ε`, is not in it.
+pub(super) fn voltage(
+    coefficients: Coefficients,
+    acceleration: f64,
+    motor_speed: f64,
+    position: f64,
+    velocity: f64,
+) -> f64 {
     let (inductance, resistance) = WINDING;
-    let of_both = bracket(&State {
+    let state = State {
         acceleration,
         motor_speed,
         ..State::default()
-    });
-    let printed_velocity = inductance * STIFFNESS / (MASS * resistance) + 1.0;
-    (of_both + PRINTED_POSITION * position + printed_velocity * velocity) * MASS * resistance * LEAD / TORQUE
+    };
+    let of_law = match coefficients {
+        Coefficients::Printed => {
+            let printed_velocity = inductance * STIFFNESS / (MASS * resistance) + 1.0;
+            bracket(&state, DAMPING) + PRINTED_POSITION * position + printed_velocity * velocity
+        }
+        Coefficients::Corrected { damping } => {
+            let whole = State {
+                position,
+                velocity,
+                ..state
+            };
+            bracket(&whole, damping)
+        }
+    };
+    of_law * MASS * resistance * LEAD / TORQUE
 }
 
 /// Coefficient of x3 in eq. (4-11) as printed, 1/s²: 2K/m.
@@ -61,11 +93,12 @@ const PRINTED_POSITION: f64 = 2.0 * STIFFNESS / MASS;
 
 /// The coefficients of eq. (4-11) that are wrong.
 pub(super) fn rows(sheet: &mut Sheet) {
-    let position = bracket(&State {
+    let one = |state: State| bracket(&state, DAMPING);
+    let position = one(State {
         position: 1.0,
         ..State::default()
     });
-    let velocity = bracket(&State {
+    let velocity = one(State {
         velocity: 1.0,
         ..State::default()
     });
@@ -90,7 +123,7 @@ mod tests {
     #[test]
     fn unit_the_elimination_is_the_algebra() {
         let (inductance, resistance) = WINDING;
-        let one = |state: State| bracket(&state);
+        let one = |state: State| bracket(&state, DAMPING);
         let of_acceleration = one(State {
             acceleration: 1.0,
             ..State::default()

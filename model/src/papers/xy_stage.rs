@@ -220,6 +220,21 @@ fn controller(sheet: &mut Sheet) {
         printed.error_peak < 1e-3,
         "two of its coefficients are wrong (above): it runs away",
     );
+    let [corrected, of_screw] = [
+        ControllerCase::EQUATION_CORRECTED,
+        ControllerCase::EQUATION_SCREW_DAMPING,
+    ]
+    .map(|case| case.float());
+    sheet.claim(
+        "eq (4-11), corrected as above: the voltage that makes the stage follow",
+        "it does",
+        format!(
+            "|e| {} with B = 200 N·s/m, the table's friction; {:.1} mm with 13,000, the screw's damper",
+            micrometres(corrected.error_peak),
+            1e3 * of_screw.error_peak
+        ),
+        corrected.error_peak < 1e-3 && corrected.limited == 0.0,
+    );
     let pid = ControllerCase::PID_FORWARD.float();
     sheet.claim(
         "chapter 4: sliding mode follows better than PID under friction",

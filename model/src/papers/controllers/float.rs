@@ -80,9 +80,13 @@ impl Law for FloatLaw {
                     VISCOUS * seen.velocity + forward,
                 )
             }
-            ControllerLaw::Equation { epsilon, boundary } => {
+            ControllerLaw::Equation {
+                coefficients,
+                epsilon,
+                boundary,
+            } => {
                 let wanted = seen.reference[2] + SLOPE * rate + epsilon * switched(sliding, boundary) + RATE * sliding;
-                return sliding_mode_law::voltage(wanted, seen.motor_speed, seen.position, seen.velocity);
+                return sliding_mode_law::voltage(coefficients, wanted, seen.motor_speed, seen.position, seen.velocity);
             }
         };
         let force = self.known.equivalent_mass() * acceleration + friction;

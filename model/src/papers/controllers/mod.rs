@@ -16,9 +16,11 @@ mod exact;
 mod float;
 mod run;
 
+pub use super::sliding_mode_law::Coefficients;
 pub use run::ControllerFigures;
 
 use super::drive::x_axis;
+use super::sliding_mode_law;
 use crate::plant::drive_train::{Amplifier, Contact, DriveTrain, Friction, Stribeck, Winding};
 use std::f64::consts::TAU;
 
@@ -62,9 +64,10 @@ pub enum ControllerLaw {
         /// Whether Coulomb friction is fed forward by the sign of r′.
         coulomb: bool,
     },
-    /// Equation (4-11) as it is printed, for a drive without a current loop: a sliding mode that the thesis derives with the motor's inertia
-    /// left out.
+    /// Equation (4-11), for a drive without a current loop: a sliding mode that the thesis derives with the motor's inertia left out.
     Equation {
+        /// Its coefficients of position and velocity.
+        coefficients: Coefficients,
         /// Reaching gain ε, m/s².
         epsilon: f64,
         /// Boundary layer φ, m/s.
@@ -114,10 +117,13 @@ const fn sliding(epsilon: f64, boundary: f64) -> ControllerLaw {
     }
 }
 
-const EQUATION: ControllerLaw = ControllerLaw::Equation {
-    epsilon: 4.0,
-    boundary: 0.02,
-};
+const fn equation(coefficients: Coefficients) -> ControllerLaw {
+    ControllerLaw::Equation {
+        coefficients,
+        epsilon: 4.0,
+        boundary: 0.02,
+    }
+}
 
 const fn without_current_loop(name: &'static str, law: ControllerLaw, inductance_h: f64) -> ControllerCase {
     ControllerCase {
@@ -143,10 +149,29 @@ impl ControllerCase {
     pub const LAYER: Self = case("sliding mode, ε = 4 m/s², φ = 0.02 m/s", sliding(4.0, 0.02));
 
     /// Equation (4-11) as it is printed.
-    pub const EQUATION_PRINTED: Self = without_current_loop("equation (4-11) as printed, 50 mH", EQUATION, 0.05);
+    pub const EQUATION_PRINTED: Self = without_current_loop(
+        "equation (4-11) as printed, 50 mH",
+        equation(Coefficients::Printed),
+        0.05,
+    );
+    /// Equation (4-11) with its coefficients corrected. B is the damper of the table to the ground: its viscous
+    /// friction.
+    pub const EQUATION_CORRECTED: Self = without_current_loop(
+        "equation (4-11) corrected, 50 mH",
+        equation(Coefficients::Corrected { damping: VISCOUS }),
+        0.05,
+    );
+    /// The same with the thesis's B, which is the damper of the screw and acts on the relative velocity.
+    pub(super) const EQUATION_SCREW_DAMPING: Self = without_current_loop(
+        "equation (4-11) corrected, B of the screw, 50 mH",
+        equation(Coefficients::Corrected {
+            damping: sliding_mode_law::DAMPING,
+        }),
+        0.05,
+    );
 
     /// All rows, in the order of the notes.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::PD,
         Self::PD_FORWARD,
         case("PID", linear(PID_INTEGRAL, false)),
@@ -227,6 +252,7 @@ impl ControllerCase {
             0.0002,
         ),
         Self::EQUATION_PRINTED,
+        Self::EQUATION_CORRECTED,
     ];
 
     /// Returns the plant.
