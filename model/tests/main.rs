@@ -9,6 +9,7 @@ mod control;
 mod controller_commit;
 mod controllers;
 mod convolution;
+mod discrete_reaching;
 mod divider;
 mod drive_command;
 mod drive_train;
