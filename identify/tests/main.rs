@@ -1,6 +1,7 @@
 //! The tests of `posicast-identify` in one program, because linking takes most of the time of a small test program.
 #![cfg(test)]
 
+mod irregular;
 mod log;
 mod motor;
 mod position;

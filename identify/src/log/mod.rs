@@ -105,6 +105,17 @@ pub enum LogError {
         /// The time before it in seconds.
         before_s: f64,
     },
+    /// The times are so irregular that the course of the command between the rows is not known.
+    #[error(
+        "the steps from row to row differ by {:.0} % of a step (root mean square), most at line {line}: what the command was between two rows cannot be told, and the log would show modes that the machine does not have; log at a constant rate, in every tick of the controller, or, if the rows are equally spaced and only their time stamps waver, write row number times period in the place of the time",
+        100.0 * .deviation
+    )]
+    Irregular {
+        /// Root mean square of the steps' deviations from their mean, in steps.
+        deviation: f64,
+        /// Line with the largest deviation.
+        line: u64,
+    },
     /// There are too few rows.
     #[error("the log has {rows} rows: {least} are needed at least")]
     Rows {
@@ -215,6 +226,12 @@ pub fn read(text: &[u8]) -> Result<Reading, LogError> {
         });
     }
     let mut columns = table.columns;
+    let has_command = columns
+        .iter()
+        .any(|column| matches!(column.meaning, Meaning::Command | Meaning::Drive));
+    if let (true, Some((deviation, line))) = (has_command, grid.wavers()) {
+        return Err(LogError::Irregular { deviation, line });
+    }
     for column in &mut columns {
         column.values = grid.of(&column.values);
     }

@@ -9,9 +9,16 @@ const GAP: f64 = 1.5;
 /// Samples that deviate by less than this, in samples, are kept where they are.
 const REGULAR: f64 = 0.1;
 
+/// Root mean square of the steps' deviations from their mean, in samples, beyond which it is not known what a command
+/// was between two rows.
+const WAVERING: f64 = 0.1;
+
 /// The rows that are used, and their position on a uniform grid.
 pub(super) struct Grid {
     pub(super) sample_s: f64,
+    /// Root mean square of the deviations of the steps between rows from their mean, in samples, and the line with the
+    /// largest one.
+    wavers: (f64, u64),
     range: Range<usize>,
     /// For irregular rows: for each sample of the grid the row before it, and the fraction of the way to the next
     /// row.
@@ -22,6 +29,12 @@ impl Grid {
     /// The rows that are used.
     pub(super) fn range(&self) -> Range<usize> {
         self.range.clone()
+    }
+
+    /// The deviation of the steps in samples and the line with the largest one, if they are too irregular for a command
+    /// that is held between two rows.
+    pub(super) fn wavers(&self) -> Option<(f64, u64)> {
+        Some(self.wavers).filter(|(deviation, _)| *deviation > WAVERING)
     }
 
     /// Interpolates values of all rows to the grid.
@@ -52,6 +65,13 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     let range = without_gaps(table, remarks);
     let used = &times[range.clone()];
     let sample_s = (used[used.len() - 1] - used[0]) / (used.len() - 1) as f64;
+    let steps = used.windows(2).map(|pair| (pair[1] - pair[0]) / sample_s - 1.0);
+    let square: f64 = steps.clone().map(|off| off * off).sum();
+    let largest = steps.enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let wavers = (
+        (square / (used.len() - 1) as f64).sqrt(),
+        table.lines[range.start + largest.map_or(0, |(row, _)| row + 1)],
+    );
     let off = |row: usize| (used[row] - used[0]) / sample_s - row as f64;
     let worst = (0..used.len())
         .max_by(|a, b| off(*a).abs().total_cmp(&off(*b).abs()))
@@ -59,6 +79,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     if off(worst).abs() <= REGULAR {
         return Ok(Grid {
             sample_s,
+            wavers,
             range,
             between: None,
         });
@@ -78,6 +99,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     });
     Ok(Grid {
         sample_s,
+        wavers,
         between: Some(between.collect()),
         range,
     })
