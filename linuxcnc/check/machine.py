@@ -39,6 +39,9 @@ class Stage:
         require("error" not in answer, f"the stage takes `{line}`: {answer}")
         return answer
 
+    def quit(self):
+        print("quit", file=self.lines, flush=True)
+
 
 def require(holds, what):
     if not holds:
@@ -216,7 +219,7 @@ def main():
     shaped = program(stage, "shaped")
     if "program" in sys.argv:
         check(stage("state")["mismatches"] == 0, "the Verilog equals the model in every clock")
-        stage("quit")
+        stage.quit()
         print("done", flush=True)
         return
     seconds = (stage("state")["clocks"] - began) / 50e6
@@ -251,7 +254,7 @@ def main():
     encoder_fault(stage)
     servo_thread_stops(stage)
     link_breaks(stage)
-    stage("quit")
+    stage.quit()
     print("done", flush=True)
 
 

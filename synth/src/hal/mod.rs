@@ -1,7 +1,7 @@
 //! What LinuxCNC needs to drive a machine, as files of the output folder:
 //!
 //! ```text
-//! hal/posicast.c, _link, _path    the real-time component, the same for every machine; it is compiled with driver/
+//! hal/posicast.c, _link, _load, _path    the real-time component, the same for every machine; it is compiled with driver/
 //! hal/posicast_hal_machine.h      the machine's scaling and travel
 //! hal/Makefile                    builds posicast.so with halcompile's rules
 //! hal/NAME.hal, NAME.ini          a configuration to start from
@@ -96,10 +96,12 @@ pub fn files(machine: &HalMachine<'_>) -> Result<Vec<DriverFile>, HalError> {
 }
 
 /// Sources that are the same for every machine.
-const FIXED: [(&str, &str); 6] = [
+const FIXED: [(&str, &str); 8] = [
     ("posicast.c", include_str!("c/posicast.c")),
     ("posicast_link.c", include_str!("c/posicast_link.c")),
     ("posicast_link.h", include_str!("c/posicast_link.h")),
+    ("posicast_load.c", include_str!("c/posicast_load.c")),
+    ("posicast_load.h", include_str!("c/posicast_load.h")),
     ("posicast_path.c", include_str!("c/posicast_path.c")),
     ("posicast_path.h", include_str!("c/posicast_path.h")),
     ("Makefile", include_str!("c/Makefile")),

@@ -23,6 +23,7 @@
 #include "posicast_hal_machine.h"
 #include "posicast_homing.h"
 #include "posicast_link.h"
+#include "posicast_load.h"
 #include "posicast_path.h"
 #include "posicast_stream.h"
 #include "posicast_wait.h"
@@ -38,29 +39,13 @@ RTAPI_MP_STRING(stage, "the stage's registers: uio:/dev/uio0, or unix:PATH of a 
 #define AHEAD 2u
 /* Servo periods without a point that an axis may go on at its velocity, before it makes a quick stop. */
 #define LATE_PERIODS 2u
-/* Bank of the table that does not shape, and of the machine's own. */
-#define UNSHAPED 1u
-#define SHAPED 0u
-/* Waits while the component is loaded, and servo periods until an axis must be on. */
-#define LOAD_TICKS 20000u
+/* Servo periods until an axis must be on, and ticks until it must be off when the component is unloaded. */
 #define ON_PERIODS 5000u
+#define OFF_TICKS  20000u
 /* A bit of `cause` beyond those of the stage. */
 #define CAUSE_LINK 0x80000000u
 
 typedef enum { OFF, CLEAR, SWITCH_ON, FOLLOW, FAULT } phase;
-
-typedef struct {
-    hal_float_t *pos_cmd, *vel_cmd, *pos_fb, *vel_fb, *following_error;
-    hal_bit_t *enable, *fault, *index_enable, *home, *limit_plus, *limit_minus;
-    hal_u32_t *cause, *shaper;
-} axis_pins;
-
-typedef struct {
-    axis_pins axis[POSICAST_AXES_MAX];
-    hal_bit_t *ok;
-    hal_u32_t *phase, *level, *late_ticks, *accesses;
-    hal_u32_t watchdog_ms;
-} pins;
 
 typedef struct {
     double origin;      /* counts since reset at which LinuxCNC's position is 0 */
@@ -70,7 +55,7 @@ typedef struct {
 } axis_state;
 
 static int component;
-static pins *hal;
+static posicast_pins *hal;
 static posicast_stage hardware;
 static posicast_stream stream;
 static posicast_path path;
@@ -160,7 +145,7 @@ static void follow_index(uint32_t axis)
 
 static void show(uint32_t axis)
 {
-    axis_pins *pin = &hal->axis[axis];
+    posicast_axis_pins *pin = &hal->axis[axis];
     const double counts = posicast_hal_counts[axis];
     const double per_second = POSICAST_HAL_MACHINE.tick_hz / 65536.0 / counts;
 
@@ -356,111 +341,11 @@ static void let_time_pass(void *context)
     (void)nanosleep(&pause, NULL);
 }
 
-/* The stage is that of the machine file if its tables are. */
-static int is_of_machine(void)
-{
-    static posicast_tap taps[256];
-    const posicast_machine *machine = &POSICAST_HAL_MACHINE;
-    uint32_t axis, tap, count;
-
-    if (hardware.axes != machine->axes) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "posicast: the stage has %u axes, %s of the machine file %u\n", hardware.axes,
-                        machine->name, machine->axes);
-        return 0;
-    }
-    for (axis = 0; axis < machine->axes; axis++) {
-        const posicast_table *table = &machine->axis[axis].table;
-        int same = posicast_read_table(&hardware, axis, SHAPED, taps, 256, &count, LOAD_TICKS) == POSICAST_OK &&
-                   count == table->count;
-
-        for (tap = 0; same && tap < count; tap++)
-            same = taps[tap].delay_samples == table->taps[tap].delay_samples &&
-                   taps[tap].coefficient == table->taps[tap].coefficient;
-        if (!same) {
-            rtapi_print_msg(RTAPI_MSG_ERR,
-                            "posicast: axis %s: the stage has a table of %u taps, not that of %s (%u taps): build the FPGA "
-                            "and this component from one machine file\n",
-                            machine->axis[axis].name, count, machine->name, table->count);
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* Switches the axes off, where another program left them on, and loads the table that does not shape. */
-static posicast_result prepare(void)
-{
-    posicast_result result = posicast_switch_off(&hardware, posicast_all_axes(&hardware), LOAD_TICKS);
-    uint32_t axis;
-
-    if (result == POSICAST_FAULT)
-        result = POSICAST_OK;
-    for (axis = 0; axis < hardware.axes && result == POSICAST_OK; axis++) {
-        const uint32_t fraction = POSICAST_HAL_MACHINE.axis[axis].table.coefficient_fraction;
-        const posicast_tap unity = {0, (int32_t)1 << fraction};
-        const posicast_table unshaped = {&unity, 1, fraction};
-
-        result = posicast_use_table(&hardware, axis, SHAPED, POSICAST_AXIS_SWAP_SWAP_HOW_AT_ONCE, LOAD_TICKS);
-        if (result == POSICAST_OK)
-            result = posicast_load_table(&hardware, axis, UNSHAPED, &unshaped, POSICAST_AXIS_SWAP_SWAP_HOW_AT_ONCE, LOAD_TICKS);
-        if (result == POSICAST_OK)
-            result = posicast_use_table(&hardware, axis, SHAPED, POSICAST_AXIS_SWAP_SWAP_HOW_AT_ONCE, LOAD_TICKS);
-        axes[axis].origin = posicast_origin(&hardware, axis);
-    }
-    watchdog_ms = hal->watchdog_ms = (uint32_t)(1000.0 / POSICAST_HAL_MACHINE.tick_hz *
-        FIELD(IORD_POSICAST_AXIS_WATCHDOG(0, 0), POSICAST_AXIS_WATCHDOG_WATCHDOG_TICKS));
-    return result;
-}
-
-static int make_pins(void)
-{
-    uint32_t axis;
-    int status_of = 0;
-
-    for (axis = 0; axis < hardware.axes && status_of == 0; axis++) {
-        axis_pins *pin = &hal->axis[axis];
-        struct { const char *name; hal_pin_dir_t direction; hal_float_t **at; } floats[] = {
-            {"pos-cmd", HAL_IN, &pin->pos_cmd}, {"vel-cmd", HAL_OUT, &pin->vel_cmd}, {"pos-fb", HAL_OUT, &pin->pos_fb},
-            {"vel-fb", HAL_OUT, &pin->vel_fb}, {"following-error", HAL_OUT, &pin->following_error},
-        };
-        struct { const char *name; hal_pin_dir_t direction; hal_bit_t **at; } bits[] = {
-            {"enable", HAL_IN, &pin->enable}, {"fault", HAL_OUT, &pin->fault}, {"index-enable", HAL_IO, &pin->index_enable},
-            {"home", HAL_OUT, &pin->home}, {"limit-plus", HAL_OUT, &pin->limit_plus}, {"limit-minus", HAL_OUT, &pin->limit_minus},
-        };
-        size_t one;
-
-        for (one = 0; one < sizeof floats / sizeof floats[0] && status_of == 0; one++)
-            status_of = hal_pin_float_newf(floats[one].direction, floats[one].at, component, "posicast.%u.%s", axis, floats[one].name);
-        for (one = 0; one < sizeof bits / sizeof bits[0] && status_of == 0; one++)
-            status_of = hal_pin_bit_newf(bits[one].direction, bits[one].at, component, "posicast.%u.%s", axis, bits[one].name);
-        if (status_of == 0)
-            status_of = hal_pin_u32_newf(HAL_OUT, &pin->cause, component, "posicast.%u.cause", axis);
-        if (status_of == 0)
-            status_of = hal_pin_u32_newf(HAL_IN, &pin->shaper, component, "posicast.%u.unshaped", axis);
-    }
-    if (status_of == 0)
-        status_of = hal_pin_bit_newf(HAL_OUT, &hal->ok, component, "posicast.ok");
-    if (status_of == 0)
-        status_of = hal_pin_u32_newf(HAL_OUT, &hal->phase, component, "posicast.phase");
-    if (status_of == 0)
-        status_of = hal_pin_u32_newf(HAL_OUT, &hal->level, component, "posicast.level");
-    if (status_of == 0)
-        status_of = hal_pin_u32_newf(HAL_OUT, &hal->late_ticks, component, "posicast.late-ticks");
-    if (status_of == 0)
-        status_of = hal_pin_u32_newf(HAL_OUT, &hal->accesses, component, "posicast.accesses");
-    if (status_of == 0)
-        status_of = hal_param_u32_newf(HAL_RW, &hal->watchdog_ms, component, "posicast.watchdog-ms");
-    if (status_of == 0)
-        status_of = hal_export_funct("posicast.read", read_stage, NULL, 1, 0, component);
-    if (status_of == 0)
-        status_of = hal_export_funct("posicast.write", write_stage, NULL, 1, 0, component);
-    return status_of;
-}
-
 static int load(void)
 {
     posicast_result result;
-    int link = posicast_link_open(stage);
+    uint32_t axis;
+    int link = posicast_link_open(stage), status_of;
 
     if (link != 0) {
         rtapi_print_msg(RTAPI_MSG_ERR, "posicast: stage=%s: error %d; give stage=uio:/dev/uio0 or stage=unix:PATH\n", stage, -link);
@@ -471,19 +356,29 @@ static int load(void)
         return -ENOMEM;
     result = posicast_open(&hardware, 0);
     hardware.pause = let_time_pass;
-    if (result != POSICAST_OK || !is_of_machine()) {
+    if (result != POSICAST_OK || !posicast_is_of_machine(&hardware, &POSICAST_HAL_MACHINE)) {
         rtapi_print_msg(RTAPI_MSG_ERR, "posicast: %s is not the stage of %s\n", stage, POSICAST_HAL_MACHINE.name);
         return -ENODEV;
     }
-    result = prepare();
+    result = posicast_prepare(&hardware, &POSICAST_HAL_MACHINE);
     if (result != POSICAST_OK) {
         rtapi_print_msg(RTAPI_MSG_ERR, "posicast: the stage cannot be prepared: result %d\n", (int)result);
         return -EIO;
     }
+    for (axis = 0; axis < hardware.axes; axis++)
+        axes[axis].origin = posicast_origin(&hardware, axis);
+    watchdog_ms = hal->watchdog_ms =
+        (uint32_t)(1000.0 / POSICAST_HAL_MACHINE.tick_hz *
+                   FIELD(IORD_POSICAST_AXIS_WATCHDOG(0, 0), POSICAST_AXIS_WATCHDOG_WATCHDOG_TICKS));
     period_ticks = (uint32_t)(POSICAST_HAL_MACHINE.tick_hz * POSICAST_HAL_SERVO_NS * 1e-9 + 0.5);
     /* In the servo thread nothing waits for time to pass. */
     hardware.pause = NULL;
-    return make_pins();
+    status_of = posicast_make_pins(hal, component, hardware.axes);
+    if (status_of == 0)
+        status_of = hal_export_funct("posicast.read", read_stage, NULL, 1, 0, component);
+    if (status_of == 0)
+        status_of = hal_export_funct("posicast.write", write_stage, NULL, 1, 0, component);
+    return status_of;
 }
 
 int rtapi_app_main(void)
@@ -508,7 +403,7 @@ void rtapi_app_exit(void)
 {
     if (!posicast_link_is_broken()) {
         hardware.pause = let_time_pass;
-        (void)posicast_switch_off(&hardware, posicast_all_axes(&hardware), LOAD_TICKS);
+        (void)posicast_switch_off(&hardware, posicast_all_axes(&hardware), OFF_TICKS);
     }
     posicast_link_close();
     hal_exit(component);
