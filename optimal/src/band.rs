@@ -1,12 +1,12 @@
-//! A mode with its uncertainty, and where its residual is largest.
+//! A mode with its uncertainty, and the points at which its residual is largest.
 //!
-//! In the plane of `p = ω(ζ + j√(1−ζ²))` a band is a part of a ring: `|p| = ω`, angle `acos ζ`. `Σ a_i e^(−p(N−i))` is analytic there, so
-//! its modulus has no maximum inside: the four edges have it all.
+//! In the plane of `p = ω(ζ + j√(1−ζ²))` a band is a part of a ring: `|p| = ω`, angle `acos ζ`. `Σ a_i e^(−p(N−i))` is
+//! analytic there, so the maximum of its modulus lies on one of the four edges.
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// A mode, the frequencies and damping ratios that it may have, and the residual that it may be left with.
+/// A mode with its ranges of frequency and damping ratio, and its largest allowed residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// Lowest and highest undamped natural frequency in Hz.
@@ -34,13 +34,13 @@ impl Point {
         Complex64::from_polar((-omega * self.damping).exp(), -imaginary)
     }
 
-    /// Ratio of the residual of these taps to the tolerance.
+    /// Returns the ratio of the residual of these taps to the tolerance.
     pub(crate) fn ratio(&self, taps: &[(u32, f64)], sample_hz: f64) -> f64 {
         residual_sum(taps, self.z(sample_hz)).norm() / self.tolerance
     }
 }
 
-/// `Σ a_i z^(N−i)`, by Horner's rule over the gaps.
+/// Computes `Σ a_i z^(N−i)` by Horner's rule over the gaps.
 pub(crate) fn residual_sum(taps: &[(u32, f64)], z: Complex64) -> Complex64 {
     let mut sum = Complex64::default();
     let mut last = None;
@@ -64,9 +64,9 @@ struct Edge {
     to: Point,
 }
 
-/// Looks at a residual in the time in which two taps turn once against each other.
+/// Number of evaluations of a residual per turn of two taps against each other.
 const LOOKS_PER_TURN: f64 = 16.0;
-/// Fewest looks along an edge.
+/// Smallest number of evaluations along an edge.
 const LOOKS_LEAST: f64 = 24.0;
 /// Rounds of the golden section that narrows a peak.
 const ROUNDS: usize = 34;
@@ -115,7 +115,7 @@ impl Band {
         edges
     }
 
-    /// Points to begin with: ends, middles and quarters of the edges.
+    /// Returns the first points of a search: ends, middles and quarters of the edges.
     pub(crate) fn first_points(&self, band: usize) -> Vec<Point> {
         let mut points: Vec<Point> = Vec::new();
         for edge in self.edges(band) {
@@ -129,7 +129,7 @@ impl Band {
         points
     }
 
-    /// Points spread over the edges, close enough for a mean over the band.
+    /// Returns points spread over the edges, close enough for a mean over the band.
     pub(crate) fn spread_points(&self, band: usize, samples: u32, sample_hz: f64) -> Vec<Point> {
         let mut points = Vec::new();
         for edge in self.edges(band) {
@@ -140,7 +140,7 @@ impl Band {
         points
     }
 
-    /// The peaks of the ratio of residual to tolerance along the edges, ends included, highest first.
+    /// Returns the peaks of the ratio of residual to tolerance along the edges, including the ends, highest first.
     pub(crate) fn peaks(&self, band: usize, taps: &[(u32, f64)], sample_hz: f64) -> Vec<(f64, Point)> {
         let samples = f64::from(taps.last().map_or(0, |tap| tap.0));
         let mut peaks = Vec::new();
@@ -172,7 +172,7 @@ impl Band {
     }
 }
 
-/// Golden section for a maximum.
+/// Finds a maximum by golden section.
 fn narrow(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> (f64, f64) {
     let golden = (5.0f64.sqrt() - 1.0) / 2.0;
     let (mut low, mut high) = (to - golden * (to - from), from + golden * (to - from));

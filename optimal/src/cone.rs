@@ -7,7 +7,8 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
-/// Tolerances of gap and feasibility, one after the other: where rounding ends the first attempt, the second mostly succeeds.
+/// Tolerances of gap and feasibility, tried one after the other: if rounding ends the first attempt, the second mostly
+/// succeeds.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
 
 /// A cone program under construction. Rows of one cone follow each other; the cones are given in the order of [`Rows`].
@@ -22,7 +23,7 @@ pub(crate) struct ConeProgram {
     cones: Vec<SupportedConeT<f64>>,
 }
 
-/// What a solver found.
+/// Solution of a solver.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
     pub(crate) x: Vec<f64>,
@@ -33,21 +34,21 @@ pub(crate) struct Solution {
 /// Why there is no solution.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Unsolved {
-    /// There is none.
+    /// The constraints cannot be met.
     Infeasible,
-    /// The solver ended early, and says this.
+    /// The solver ended early, with this message.
     Stopped(String),
 }
 
 impl ConeProgram {
-    /// Another variable with these coefficients in the objective, and its index.
+    /// Adds a variable with these coefficients in the objective, and returns its index.
     pub(crate) fn variable(&mut self, linear: f64, square: f64) -> usize {
         self.linear.push(linear);
         self.squares.push(square);
         self.linear.len() - 1
     }
 
-    /// A row `Σ coefficient · x ≤ right`, `= right`, or one of a second-order cone.
+    /// Adds a row `Σ coefficient · x ≤ right`, `= right`, or one of a second-order cone.
     fn row(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
         let row = self.right.len();
         for (column, value) in terms {
@@ -58,13 +59,13 @@ impl ConeProgram {
         self.right.push(right);
     }
 
-    /// `Σ coefficient · x = right`.
+    /// Adds `Σ coefficient · x = right`.
     pub(crate) fn equal(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
         self.row(terms, right);
         self.cones.push(SupportedConeT::ZeroConeT(1));
     }
 
-    /// `Σ coefficient · x ≤ right`.
+    /// Adds `Σ coefficient · x ≤ right`.
     pub(crate) fn at_most(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
         self.row(terms, right);
         match self.cones.last_mut() {
@@ -73,7 +74,7 @@ impl ConeProgram {
         }
     }
 
-    /// `|(b_1 − row_1, b_2 − row_2)| ≤ b_0 − row_0`. The index of the first of the three rows is returned.
+    /// Adds `|(b_1 − row_1, b_2 − row_2)| ≤ b_0 − row_0`, and returns the index of the first of the three rows.
     pub(crate) fn cone(&mut self, three: [(Vec<(usize, f64)>, f64); 3]) -> usize {
         let first = self.right.len();
         for (terms, right) in three {

@@ -1,24 +1,25 @@
-//! What more duration buys: fewer taps, or less residual.
+//! Computes what a longer duration gains: fewer taps, or less residual.
 
 use crate::prefer::fewest_at;
 use crate::refine::{Points, least_ratio, peaks};
 use crate::{OptimalError, Prefer, Request, Tap, shortest};
 
-/// A duration, and what it buys.
+/// A duration, and what it gains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontPoint {
     /// Duration in samples.
     pub samples: u32,
-    /// Few taps that hold every tolerance.
+    /// Few taps that meet every tolerance.
     pub taps: Vec<Tap>,
-    /// Least largest ratio of residual to tolerance that was found at this duration, with any number of taps.
+    /// Smallest worst ratio of residual to tolerance that was found at this duration, with any number of taps.
     pub least_ratio: f64,
 }
 
-/// What each of these durations buys; a later one of which the solver does not converge is left out. They must hold: none is below [`Shortest::least_samples`](crate::Shortest::least_samples).
+/// Returns what each of these durations gains; a duration after the first for which the solver does not converge is
+/// left out. None may be below [`Shortest::least_samples`](crate::Shortest::least_samples).
 ///
 /// # Errors
-/// [`OptimalError::Solver`], also for a duration that does not hold.
+/// [`OptimalError::Solver`], also for a duration that is too short.
 pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, OptimalError> {
     let request = Request {
         prefer: Prefer::FewestTaps,
@@ -39,7 +40,7 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
             samples,
             status: "no shaper of this duration holds".into(),
         })?;
-        // Rounding ends some programs: what the few taps reach stands for them.
+        // Rounding ends some programs early; the ratio of the few taps then takes their place.
         let ratio = match least_ratio(&request, &all, &mut points) {
             Err(OptimalError::Solver { .. }) => peaks(&request, &taps).first().map_or(0.0, |peak| peak.0),
             other => other?,

@@ -1,21 +1,22 @@
-//! Rounding to integers, and moving units between taps until the residual is within the tolerances again.
+//! Rounds to integers, and moves units between taps until the residual is within the tolerances again.
 //!
-//! Amplitudes that may not be negative are rounded by largest remainder, partial sums that have bounds by themselves: so what the command may
-//! do holds for the integers too, and their sum is exactly `2^F`. If the residual of the integers is then beyond a tolerance somewhere in a
-//! band, one unit after the other moves from a tap to another, the best of all such moves each time.
+//! Amplitudes that may not be negative are rounded by largest remainder, and partial sums with bounds one by one. So
+//! the bounds of the command hold for the integers too, and their sum is exactly `2^F`. If the residual of the integers
+//! is then beyond a tolerance somewhere in a band, one unit after the other moves from a tap to another, the best of
+//! all such moves each time.
 
 use crate::band::Point;
 use crate::refine::peaks;
 use crate::{Command, Request, Tap};
 use num_complex::Complex64;
 
-/// Moves of one unit that are made at most.
+/// Largest number of moves of one unit.
 const MOVES: usize = 400;
-/// Times that the bands are searched for new peaks.
+/// Number of searches of the bands for new peaks.
 const SEARCHES: usize = 12;
-/// Between more taps than this, units move to near ones only.
+/// With more taps than this, units move only between near taps.
 const MANY_TAPS: usize = 48;
-/// How near.
+/// Largest distance of near taps, in taps.
 const NEAR: usize = 6;
 
 /// A tap of whole units of `2^−F`.
@@ -60,7 +61,7 @@ fn as_taps(units: &[Units], unity: i64) -> Vec<Tap> {
         .collect()
 }
 
-/// Floor, then one more for the largest remainders; every tap has at least a unit.
+/// Rounds down, then adds a unit to the largest remainders; every tap has at least a unit.
 fn by_remainder(taps: &[Tap], unity: i64) -> Vec<Units> {
     let exact = |tap: &Tap| tap.1 * unity as f64;
     let mut units: Vec<Units> = taps.iter().map(|tap| (tap.0, exact(tap).floor() as i64)).collect();
@@ -74,7 +75,7 @@ fn by_remainder(taps: &[Tap], unity: i64) -> Vec<Units> {
     units
 }
 
-/// Each partial sum to the nearest integer within the bounds; the last is `2^F`.
+/// Rounds each partial sum to the nearest integer within the bounds; the last is `2^F`.
 fn by_sums(taps: &[Tap], unity: i64, low: f64, high: f64) -> Vec<Units> {
     let (low, high) = ((low * unity as f64).ceil() as i64, (high * unity as f64).floor() as i64);
     let (mut sum, mut before) = (0.0, 0);
@@ -92,10 +93,10 @@ fn by_sums(taps: &[Tap], unity: i64, low: f64, high: f64) -> Vec<Units> {
     units
 }
 
-/// Moves units until the worst of the points is within its tolerance, or nothing helps; whether anything moved.
+/// Moves units until the worst of the points is within its tolerance, or no move helps; returns whether anything moved.
 fn improve(request: &Request, units: &mut [Units], points: &[Point], unity: i64) -> bool {
     let last = units.last().map_or(0, |tap| tap.0);
-    // What a unit of each tap is at each point, in units of its tolerance.
+    // The effect of a unit of each tap at each point, in units of its tolerance.
     let shares: Vec<Vec<Complex64>> = units
         .iter()
         .map(|(sample, _)| {
@@ -145,14 +146,15 @@ fn improve(request: &Request, units: &mut [Units], points: &[Point], unity: i64)
     moved
 }
 
-/// How far ratios of residual to tolerance lie above 1: 0 if none does.
+/// Returns how far ratios of residual to tolerance are above 1, and 0 if none is.
 ///
-/// A sum of squares and not the largest: at the largest alone, most moves are worse for one of two equal peaks, and a search would end there.
+/// It is a sum of squares and not the maximum: by the maximum alone, most moves are worse for one of two equal peaks,
+/// and a search would end there.
 fn excess(ratios: impl Iterator<Item = Complex64>) -> f64 {
     ratios.map(|ratio| (ratio.norm_sqr() - 1.0).max(0.0).powi(2)).sum()
 }
 
-/// Whether a unit may move: no tap vanishes, and the command stays within its bounds.
+/// Returns whether a unit may move: no tap vanishes, and the command stays within its bounds.
 fn may_move(request: &Request, units: &[Units], from: usize, to: usize, unity: i64) -> bool {
     match request.command {
         Command::Positive => units[from].1 > 1,

@@ -1,15 +1,16 @@
-//! The shortest input shaper there is on a sample grid, by cone programming.
+//! Finds the shortest input shaper on a sample grid by cone programming.
 //!
-//! A shaper of `N` samples has one amplitude `a_i` per sample `0…N`, with sum 1. At a mode of angular frequency `ω` and damping ratio `ζ`
-//! it leaves, measured at its last sample,
+//! A shaper of `N` samples has one amplitude `a_i` per sample `0…N`, with sum 1. At a mode of angular frequency `ω` and
+//! damping ratio `ζ` it leaves, measured at its last sample,
 //!
 //! ```text
 //! V(p) = |Σ a_i z^(N−i)|,   z = e^(−p),   p = ω(ζ + j√(1−ζ²))/sample_hz
 //! ```
 //!
-//! which is the modulus of a linear function of the amplitudes: `V(p) ≤ tolerance` is a second-order cone. A band of frequency and damping is a
-//! cone at each of its points. What the command may do is linear too ([`Command`]). So for one `N` the least residual is a cone
-//! program, and the least `N` at which it is within the tolerance is found by bisection: what `N` samples hold, `N + 1` hold as well.
+//! which is the modulus of a linear function of the amplitudes: `V(p) ≤ tolerance` is a second-order cone. A band of
+//! frequency and damping is a cone at each of its points. The bounds of the command are linear too ([`Command`]). So
+//! for one `N` the least residual is a cone program, and the least `N` at which it is within the tolerance is found by
+//! bisection: if `N` samples are enough, so are `N + 1`.
 //!
 //! ```text
 //! bands ─► search: bisection over N ─► refine: worst points of the bands join the program ─► program ─► cone solver
@@ -18,10 +19,11 @@
 //!            └─► prefer: fewest taps, least residual or least delay at that N
 //! ```
 //!
-//! `V` is the modulus of an analytic function of `p`, so its maximum over a band lies on the band's edge ([`Band`]): only four curves are
-//! searched. Rounding to integers is [`round_taps`].
+//! `V` is the modulus of an analytic function of `p`, so its maximum over a band lies on the band's edge ([`Band`]):
+//! only four curves are searched. Rounding to integers is [`round_taps`].
 //!
-//! The crate knows neither machine files nor hardware. The proofs are checked elsewhere, by code that shares nothing with this.
+//! The crate knows neither machine files nor hardware. The proofs are checked elsewhere, by code that shares nothing
+//! with this.
 
 mod band;
 mod cone;
@@ -37,7 +39,7 @@ pub use front::{FrontPoint, front};
 pub use integer::round_taps;
 pub use search::{Shortest, shortest};
 
-/// What a command that passes the shaper may do.
+/// Bounds of the shaped command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Command {
     /// No amplitude is negative: the shaped command moves forward only, between the ends of the command.
@@ -51,10 +53,11 @@ pub enum Command {
     },
 }
 
-/// Which of the shapers of least duration is chosen.
+/// Choice among the shapers of least duration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Prefer {
-    /// Few taps. The search is by reweighting and by leaving out taps one by one: it finds few, and does not prove that no fewer do.
+    /// Few taps. The search reweights and leaves out taps one by one; it does not prove that their number is the
+    /// smallest.
     #[default]
     FewestTaps,
     /// The least mean square of the residual over the bands.
@@ -63,32 +66,34 @@ pub enum Prefer {
     LeastDelay,
 }
 
-/// What is to be designed.
+/// Requirements of a shaper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// Samples per second.
     pub sample_hz: f64,
     /// The modes with their uncertainty and tolerances; at least one.
     pub bands: Vec<Band>,
-    /// What the command may do.
+    /// Bounds of the shaped command.
     pub command: Command,
-    /// What is preferred among the shortest.
+    /// Preference among the shortest shapers.
     pub prefer: Prefer,
-    /// Most taps.
+    /// Largest number of taps.
     pub most_taps: usize,
     /// Longest duration that is tried, in samples.
     pub longest_samples: u32,
-    /// Mean delay in samples that the shaper is to have, where it must arrive with others.
+    /// Required mean delay in samples, if the shaper must have the same delay as others.
     pub delay_samples: Option<f64>,
 }
 
 /// A tap: the amplitude at a sample.
 pub type Tap = (u32, f64);
 
-/// A lower bound of what every shaper of `samples` samples leaves: weights of the residuals at some points of the bands.
+/// A lower bound of the residual of every shaper of `samples` samples, as weights of the residuals at some points of
+/// the bands.
 ///
-/// With `c_p` the sum `Σ a_i z_p^(N−i)` and weights `y_p`, of which `Σ tolerance_p |y_p| = 1`, the largest ratio of a residual to its tolerance is at
-/// least `Re Σ ȳ_p c_p`; and that is at least its minimum over all amplitudes that the command allows, which is found sample by sample.
+/// With `c_p` the sum `Σ a_i z_p^(N−i)` and weights `y_p`, of which `Σ tolerance_p |y_p| = 1`, the largest ratio of a
+/// residual to its tolerance is at least `Re Σ ȳ_p c_p`; and that is at least its minimum over all amplitudes that the
+/// command allows, which is found sample by sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowerBound {
     /// `N`.
@@ -115,7 +120,7 @@ pub struct WeightedPoint {
 /// Why there is no shaper.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OptimalError {
-    /// A band that reaches 0 Hz or half the sample rate, or the damping of a mode that does not ring.
+    /// A band reaches 0 Hz or half the sample rate, or has the damping of a mode that does not ring.
     #[error(
         "the band of mode {} reaches from {low_hz} to {high_hz} Hz: it must lie above 0 and below {half_sample_hz} Hz, half the sample rate",
         band + 1
@@ -130,7 +135,7 @@ pub enum OptimalError {
         /// Half the sample rate.
         half_sample_hz: f64,
     },
-    /// A tolerance that is none.
+    /// A tolerance is out of range.
     #[error("the tolerance {tolerance} of mode {} must lie above 0 and below 1", band + 1)]
     Tolerance {
         /// Index of the band.
@@ -138,7 +143,7 @@ pub enum OptimalError {
         /// The tolerance.
         tolerance: f64,
     },
-    /// Nothing within the longest duration.
+    /// No shaper within the longest duration meets the tolerances.
     #[error(
         "no shaper of up to {longest_samples} samples ({:.6} s) stays within the tolerances: the best leaves {ratio:.4} times what is allowed",
         f64::from(*longest_samples) / sample_hz
@@ -148,10 +153,10 @@ pub enum OptimalError {
         longest_samples: u32,
         /// Sample rate.
         sample_hz: f64,
-        /// Least of the largest ratios of residual to tolerance.
+        /// Smallest worst ratio of residual to tolerance.
         ratio: f64,
     },
-    /// A tap budget that is not met.
+    /// The budget of taps was not met.
     #[error(
         "no shaper of up to {longest_samples} samples was found with {budget} taps: the fewest found is {fewest}, with a duration of {samples} \
          samples"
@@ -159,9 +164,9 @@ pub enum OptimalError {
     TapBudget {
         /// Taps allowed.
         budget: usize,
-        /// Fewest taps found.
+        /// Smallest number of taps found.
         fewest: usize,
-        /// Duration at which they were.
+        /// Duration in samples of the shaper with these taps.
         samples: u32,
         /// The longest duration that was tried.
         longest_samples: u32,
@@ -171,7 +176,7 @@ pub enum OptimalError {
     Solver {
         /// Duration.
         samples: u32,
-        /// What the solver says.
+        /// Message of the solver.
         status: String,
     },
 }

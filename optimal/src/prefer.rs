@@ -1,28 +1,29 @@
-//! Which of the shapers of least duration: few taps, least residual, least delay.
+//! Chooses among the shapers of least duration: few taps, least residual or least delay.
 //!
-//! Few taps is no convex aim. The amplitudes of one program weigh those of the next, so that small ones become smaller (reweighted L1); what is
-//! left without them is solved again on the samples that remain, and then they are left out one by one as long as the rest holds.
+//! The number of taps is not a convex objective. The amplitudes of one program are the weights of the next, so that
+//! small ones become smaller (reweighted L1); then the program is solved again on the remaining samples, and taps are
+//! left out one by one as long as the rest meets the tolerances.
 
 use crate::band::Point;
 use crate::program::Objective;
 use crate::refine::{Points, Refined, SLACK, refine, significant, step};
 use crate::{OptimalError, Prefer, Request, Tap};
 
-/// Residual that is left for rounding to integers, of each tolerance, where the duration allows it: with two dozen taps of 16 fraction bits, the units
-/// of the last place add up to about this.
+/// Part of each tolerance that is reserved for rounding to integers, if the duration allows it: with two dozen taps of
+/// 16 fraction bits, the units of the last place add up to about this.
 const ROUNDING: f64 = 8e-5;
-/// Largest part of a tolerance that is left for rounding.
+/// Largest part of a tolerance that is reserved for rounding.
 const MOST_ROUNDING: f64 = 0.02;
-/// Rounds of reweighting.
+/// Number of rounds of reweighting.
 const REWEIGHTS: i32 = 6;
-/// Amplitudes below this are to vanish in reweighting.
+/// Reweighting drives amplitudes below this to 0.
 const NOTHING: f64 = 1e-3;
-/// Amplitudes below this are none.
+/// Amplitudes below this count as 0.
 const NONE: f64 = 1e-5;
-/// A budget of taps is looked for up to so many times the least duration.
+/// Longest duration at which a budget of taps is tried, as a multiple of the least duration.
 const BUDGET_REACH: u32 = 4;
 
-/// The taps of the preferred shaper of at least as many samples as those that were found to hold, within the budget of taps.
+/// Returns the taps of the preferred shaper within the budget of taps, of at least the least duration.
 pub(crate) fn choose(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
     let least = held.last().map_or(0, |tap| tap.0);
     let taps = preferred(request, held, points)?;
@@ -32,7 +33,7 @@ pub(crate) fn choose(request: &Request, held: Vec<Tap>, points: &mut Points) -> 
     }
 }
 
-/// The levels of the tolerances that are tried: room for rounding first, all of them last.
+/// Returns the levels of the tolerances that are tried: with room for rounding first, the full tolerances last.
 fn levels(request: &Request) -> [f64; 4] {
     let tolerance = request
         .bands
@@ -42,7 +43,7 @@ fn levels(request: &Request) -> [f64; 4] {
     [1.0 - room, 1.0 - room / 4.0, 1.0, 1.0 + SLACK / 2.0]
 }
 
-/// The preferred taps at a duration, from amplitudes on all its samples that hold.
+/// Returns the preferred taps at a duration, from amplitudes on all its samples that meet the tolerances.
 fn preferred(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
     let spread = spread(request, held.last().map_or(0, |tap| tap.0));
     for level in levels(request) {
@@ -65,7 +66,7 @@ fn spread(request: &Request, samples: u32) -> Vec<Point> {
         .collect()
 }
 
-/// The samples of the taps that are not nothing, with the first and the last.
+/// Returns the samples of the taps that are not 0, and the first and the last sample.
 fn support(taps: &[Tap], least: f64) -> Vec<u32> {
     let ends = [taps.first(), taps.last()].map(|tap| tap.map(|tap| tap.0));
     let kept = taps
@@ -74,7 +75,8 @@ fn support(taps: &[Tap], least: f64) -> Vec<u32> {
     kept.map(|tap| tap.0).collect()
 }
 
-/// An objective on all samples of `taps`, then once more on those that have an amplitude; `None` where the level does not hold.
+/// Optimises an objective on all samples of `taps`, then again on those that have an amplitude; returns `None` if the
+/// level cannot be met.
 fn pruned(
     request: &Request,
     held: &[Tap],
@@ -92,7 +94,7 @@ fn pruned(
     }
 }
 
-/// Few taps, from amplitudes on all samples that hold; `None` where the level does not hold.
+/// Returns few taps, from amplitudes on all samples that meet the tolerances; `None` if the level cannot be met.
 fn fewest_taps(
     request: &Request,
     held: &[Tap],
@@ -126,8 +128,8 @@ fn fewest_taps(
     Ok(None)
 }
 
-/// Leaves out taps as long as the others hold, the smallest first. One that cannot be left out of many cannot be left out of fewer: each is tried
-/// once.
+/// Leaves out taps as long as the others meet the tolerances, the smallest first. A tap that cannot be left out of many
+/// taps cannot be left out of fewer, so each is tried once.
 fn leave_out(request: &Request, mut taps: Vec<Tap>, points: &mut Points, level: f64) -> Result<Vec<Tap>, OptimalError> {
     let ends = [taps.first(), taps.last()].map(|tap| tap.map(|tap| tap.0));
     let mut tried: Vec<u32> = ends.into_iter().flatten().collect();
@@ -146,7 +148,7 @@ fn leave_out(request: &Request, mut taps: Vec<Tap>, points: &mut Points, level: 
     }
 }
 
-/// The taps that a request of few of them gets at a duration; `None` where it does not hold.
+/// Returns the few taps at a duration; `None` if it is too short.
 pub(crate) fn fewest_at(
     request: &Request,
     samples: u32,
@@ -160,7 +162,7 @@ pub(crate) fn fewest_at(
     }
 }
 
-/// The shortest duration found at which the budget of taps is met, and its taps.
+/// Returns the shortest duration found at which the budget of taps is met, and its taps.
 fn within_budget(request: &Request, least: u32, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
     let few = Request {
         prefer: Prefer::FewestTaps,

@@ -1,17 +1,17 @@
 //! The cone program of a shaper on chosen samples, at chosen points of the bands.
 //!
-//! With [`Command::Positive`] the variables are the amplitudes. With [`Command::PartialSums`] they are the partial sums `s_j`, so that a bound is a bound
-//! of one variable: `a_j = s_j − s_{j−1}`, the last sum is 1.
+//! With [`Command::Positive`] the variables are the amplitudes. With [`Command::PartialSums`] they are the partial sums
+//! `s_j`, so that each bound is one of a single variable: `a_j = s_j − s_{j−1}`, the last sum is 1.
 
 use crate::band::Point;
 use crate::cone::{ConeProgram, Solution, Unsolved};
 use crate::{Command, Request, Tap};
 use num_complex::Complex64;
 
-/// What is least.
+/// Objective of a program.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Objective<'a> {
-    /// The largest ratio of residual to tolerance; nothing bounds it.
+    /// The largest ratio of residual to tolerance, without a bound.
     Ratio,
     /// `Σ weight |a|`, one weight per sample.
     Weighted(&'a [f64]),
@@ -27,11 +27,11 @@ pub(crate) struct Program<'a> {
     /// Samples that may have an amplitude, in order; the last is the duration.
     pub(crate) samples: &'a [u32],
     pub(crate) points: &'a [Point],
-    /// Most that a ratio of residual to tolerance may be, where the ratio is not the objective.
+    /// Largest ratio of residual to tolerance, if the ratio is not the objective.
     pub(crate) level: f64,
 }
 
-/// What a program found.
+/// Solution of a program.
 pub(crate) struct Found {
     /// One amplitude per sample, with sum 1 and within the command's bounds.
     pub(crate) taps: Vec<Tap>,
@@ -51,7 +51,7 @@ impl Program<'_> {
         }
     }
 
-    /// `Σ factor_j a_j` as terms of the variables, and a constant.
+    /// Returns `Σ factor_j a_j` as terms of the variables, and a constant.
     fn combined<T>(&self, factors: &[T]) -> (Vec<(usize, T)>, T)
     where
         T: Copy + std::ops::Sub<Output = T> + Default,
@@ -65,7 +65,8 @@ impl Program<'_> {
         }
     }
 
-    /// Real and imaginary part of the residual at a point in units of its tolerance, each as terms and a constant.
+    /// Returns real and imaginary part of the residual at a point in units of its tolerance, each as terms and a
+    /// constant.
     fn residual(&self, point: &Point) -> [(Terms, f64); 2] {
         let powers = powers(self.samples, point.z(self.request.sample_hz));
         let (terms, constant) = self.combined(&powers);
@@ -144,7 +145,7 @@ impl Program<'_> {
         })
     }
 
-    /// What the command may do.
+    /// Adds the bounds of the command.
     fn bounds(&self, program: &mut ConeProgram) {
         match self.request.command {
             Command::Positive => {
@@ -162,7 +163,8 @@ impl Program<'_> {
         }
     }
 
-    /// `Σ weight |a|` of amplitudes that may be negative: a variable at least as large as each of them and as its negative.
+    /// Adds `Σ weight |a|` of amplitudes that may be negative: a variable at least as large as each of them and as its
+    /// negative.
     fn magnitudes(&self, program: &mut ConeProgram, weights: &[f64]) {
         if self.request.command == Command::Positive {
             return;
@@ -180,7 +182,7 @@ impl Program<'_> {
         }
     }
 
-    /// The amplitudes of a solution, put within the bounds that the solver keeps only nearly.
+    /// Returns the amplitudes of a solution, clamped to the bounds, which the solver meets only approximately.
     fn taps(&self, solution: &Solution) -> Vec<Tap> {
         let x = &solution.x[..self.variables()];
         let amplitudes: Vec<f64> = match self.request.command {
@@ -204,7 +206,7 @@ impl Program<'_> {
     }
 }
 
-/// `z^(N−i)` for each sample `i` of a list whose last is `N`.
+/// Returns `z^(N−i)` for each sample `i` of a list whose last is `N`.
 pub(crate) fn powers(samples: &[u32], z: Complex64) -> Vec<Complex64> {
     let mut powers = vec![Complex64::new(1.0, 0.0); samples.len()];
     for index in (1..samples.len()).rev() {

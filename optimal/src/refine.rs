@@ -1,4 +1,5 @@
-//! From points to bands: solve, find the worst points of the whole bands, let them join, solve again.
+//! Extends a solution from points to bands: solves, finds the worst points of the whole bands, adds them, and solves
+//! again.
 
 use crate::band::Point;
 use crate::cone::Unsolved;
@@ -8,20 +9,20 @@ use num_complex::Complex64;
 
 /// Slack of a tolerance, as of every insensitivity.
 pub(crate) const SLACK: f64 = 1e-6;
-/// Rounds after which the points are taken for enough; each adds the peaks of the round before, and a handful do.
+/// Largest number of rounds; each adds the peaks of the previous round, and a handful are enough.
 const ROUNDS: usize = 40;
-/// Weights below this part of all have no say in a bound.
+/// Weights below this part of their sum are left out of a bound.
 const IDLE: f64 = 1e-7;
 
-/// What holds on chosen samples.
+/// Result on chosen samples.
 pub(crate) enum Refined {
     /// These amplitudes are within every tolerance times the level, over the whole bands.
     Within(Vec<Tap>),
-    /// Nothing is; with the proof, where the ratio was the objective.
+    /// No amplitudes are; with the proof, if the ratio was the objective.
     Beyond(Option<LowerBound>),
 }
 
-/// The points that the bands are seen at.
+/// Points of the bands that are in the program.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
     points: Vec<Point>,
@@ -39,14 +40,14 @@ impl Points {
         }
     }
 
-    /// Forgets the points that the last program did not need: those of another duration lie elsewhere.
+    /// Removes the points that the last program did not need: those of another duration are elsewhere.
     pub(crate) fn prune(&mut self) {
         let mut used = self.used.iter();
         self.points.retain(|_| used.next().copied().unwrap_or(true));
         self.used = vec![true; self.points.len()];
     }
 
-    /// Lets the peaks above a level join.
+    /// Adds the peaks above a level.
     fn join(&mut self, peaks: &[(f64, Point)], level: f64) {
         let above = peaks.iter().filter(|(ratio, _)| *ratio > level * (1.0 + 0.1 * SLACK));
         for (_, point) in above {
@@ -56,7 +57,7 @@ impl Points {
     }
 }
 
-/// Solves on `samples` for an objective, with as many points as it takes.
+/// Solves on `samples` for an objective, with as many points as necessary.
 pub(crate) fn refine(
     request: &Request,
     samples: &[u32],
@@ -81,7 +82,7 @@ pub(crate) fn refine(
         if worst <= limit {
             return Ok(Refined::Within(found.taps));
         }
-        // Peaks that come no nearer: the solver is as accurate as it gets.
+        // The peaks no longer change, so the solver has reached its accuracy.
         if worst >= last && worst <= level * (1.0 + 10.0 * SLACK) {
             break;
         }
@@ -91,10 +92,10 @@ pub(crate) fn refine(
     Ok(Refined::Beyond(None))
 }
 
-/// How near the least ratio is found.
+/// Relative accuracy of the smallest worst ratio.
 const NEAR: f64 = 1e-4;
 
-/// The least largest ratio of residual to tolerance over the bands, on chosen samples.
+/// Finds the smallest worst ratio of residual to tolerance over the bands, on chosen samples.
 pub(crate) fn least_ratio(request: &Request, samples: &[u32], points: &mut Points) -> Result<f64, OptimalError> {
     let mut least = f64::INFINITY;
     for _ in 0..ROUNDS {
@@ -113,7 +114,7 @@ pub(crate) fn least_ratio(request: &Request, samples: &[u32], points: &mut Point
     Ok(least)
 }
 
-/// Solves once at the points as they are, and lets the peaks of what was found join them: a step of a search that ends with [`refine`].
+/// Solves once at the present points, and adds the peaks of the solution: a step of a search that ends with [`refine`].
 pub(crate) fn step(
     request: &Request,
     samples: &[u32],
@@ -129,7 +130,7 @@ pub(crate) fn step(
     Ok(Some(found.taps))
 }
 
-/// One program; `None` where it has no solution.
+/// Solves one program; returns `None` if it has no solution.
 fn solve_once(
     request: &Request,
     samples: &[u32],
@@ -159,7 +160,7 @@ fn solve_once(
     }
 }
 
-/// The peaks of all bands, highest first.
+/// Returns the peaks of all bands, highest first.
 pub(crate) fn peaks(request: &Request, taps: &[Tap]) -> Vec<(f64, Point)> {
     let taps: Vec<Tap> = significant(taps);
     let bands = request.bands.iter().enumerate();
@@ -170,14 +171,14 @@ pub(crate) fn peaks(request: &Request, taps: &[Tap]) -> Vec<(f64, Point)> {
     peaks
 }
 
-/// The taps without those of no amplitude, but with the last: there the residual is measured.
+/// Returns the taps without those of amplitude 0, except the last, at which the residual is measured.
 pub(crate) fn significant(taps: &[Tap]) -> Vec<Tap> {
     let last = taps.last().map(|tap| tap.0);
     let kept = taps.iter().filter(|tap| tap.1.abs() > 1e-13 || Some(tap.0) == last);
     kept.copied().collect()
 }
 
-/// The bound that the weights of a program prove, for amplitudes on its samples.
+/// Returns the bound that the weights of a program prove, for amplitudes on its samples.
 fn lower_bound(request: &Request, samples: &[u32], points: &[Point], weights: &[Complex64]) -> LowerBound {
     let weighted = weights.iter().zip(points);
     let all: f64 = weighted

@@ -1,27 +1,28 @@
-//! The least duration: bisection over the samples, on a coarse grid first.
+//! Finds the least duration by bisection over the samples, on a coarse grid first.
 //!
-//! What a coarse grid holds, the full one holds too, so the coarse one gives an upper bound at a fraction of the work. A shaper of `N` samples
-//! is one of `N + 1` whose last amplitude is 0, and what rings only decays: if `N` holds, `N + 1` does.
+//! A duration that is enough on a coarse grid is enough on the full one, so the coarse one gives an upper bound at a
+//! fraction of the work. A shaper of `N` samples is one of `N + 1` whose last amplitude is 0, and vibration only
+//! decays: if `N` is enough, so is `N + 1`.
 
 use crate::prefer;
 use crate::program::Objective;
 use crate::refine::{Points, Refined, refine};
 use crate::{LowerBound, OptimalError, Request, Tap};
 
-/// The shortest shaper, and the proof that it is that.
+/// The shortest shaper, with its proof.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shortest {
     /// Its taps, in order, with sum 1.
     pub taps: Vec<Tap>,
     /// Least duration in samples, whatever the number of taps.
     pub least_samples: u32,
-    /// Why nothing shorter exists: for one sample less than `least_samples`. `None` where that is 0 samples.
+    /// Proof that no shorter shaper exists, for one sample less than `least_samples`; `None` if that is 0 samples.
     pub shorter: Option<LowerBound>,
 }
 
-/// Samples that a coarse grid has about.
+/// Approximate number of samples of a coarse grid.
 const COARSE: u32 = 64;
-/// A coarse grid has at least so many samples per period of the highest mode.
+/// Smallest number of samples of a coarse grid per period of the highest mode.
 const SAMPLES_PER_PERIOD: f64 = 8.0;
 
 /// Designs the shortest shaper.
@@ -62,7 +63,7 @@ fn check(request: &Request) -> Result<(), OptimalError> {
     Ok(())
 }
 
-/// The samples of a grid that end at `last`, every `step`.
+/// Returns every `step`-th sample of a grid that ends at `last`.
 fn grid(last: u32, step: u32) -> Vec<u32> {
     (0..=last)
         .rev()
@@ -73,7 +74,7 @@ fn grid(last: u32, step: u32) -> Vec<u32> {
         .collect()
 }
 
-/// Looks whether a duration holds.
+/// Tests whether a duration is enough.
 fn holds(request: &Request, samples: u32, step: u32, points: &mut Points) -> Result<Refined, OptimalError> {
     points.prune();
     refine(request, &grid(samples, step), points, Objective::Ratio, 1.0)
@@ -81,9 +82,9 @@ fn holds(request: &Request, samples: u32, step: u32, points: &mut Points) -> Res
 
 /// The least duration.
 struct Least {
-    /// Amplitudes on all its samples that hold.
+    /// Amplitudes on all its samples that meet the tolerances.
     held: Vec<Tap>,
-    /// Why one sample less does not.
+    /// Proof that one sample less is not enough.
     shorter: Option<LowerBound>,
 }
 
@@ -94,7 +95,7 @@ fn least(request: &Request, points: &mut Points) -> Result<Least, OptimalError> 
     let highest_hz = frequencies().fold(0.0f64, |most, [_, high]| most.max(high));
     let widest = (request.sample_hz / (SAMPLES_PER_PERIOD * highest_hz)).clamp(1.0, 1e6) as u32;
     let step_of = |samples: u32| (samples / COARSE).clamp(1, widest);
-    // Upwards from half a period of the lowest frequency, on coarse grids.
+    // The search goes upwards from half a period of the lowest frequency, on coarse grids.
     let first = (request.sample_hz / lowest_hz / 2.0)
         .ceil()
         .clamp(1.0, f64::from(longest)) as u32;
@@ -116,7 +117,7 @@ fn least(request: &Request, points: &mut Points) -> Result<Least, OptimalError> 
             }
         }
     }
-    // Closer, still coarse: the step of the grid is what is known afterwards.
+    // Then it bisects, still on coarse grids, to within a step of the grid.
     while high - low > step_of(high) {
         let middle = low + (high - low) / 2;
         match holds(request, middle, step_of(high), points)? {
@@ -127,7 +128,7 @@ fn least(request: &Request, points: &mut Points) -> Result<Least, OptimalError> 
     on_full_grid(request, high, points)
 }
 
-/// The least duration on the full grid, from one that holds: downwards until one does not, then in between.
+/// Finds the least duration on the full grid, from one that is enough: downwards until one is not, then in between.
 fn on_full_grid(request: &Request, mut high: u32, points: &mut Points) -> Result<Least, OptimalError> {
     let (mut reach, mut held) = (1, None);
     let (mut low, mut shorter) = loop {

@@ -1,4 +1,4 @@
-//! What is certified of an axis: its table over the bands of its modes, and of `optimal` that nothing is shorter.
+//! Certifies the table of an axis over the bands of its modes and, for `optimal`, that no shorter shaper exists.
 
 use super::{CheckedBound, ResidualBound, ShorterError, check_shorter, residual_bound};
 use crate::analysis::tap_impulses;
@@ -16,23 +16,23 @@ const SLACK: f64 = 1.0 + 1e-6;
 pub struct AxisCertificate {
     /// The modes, in the order of the file.
     pub modes: Vec<ModeCertificate>,
-    /// Of `optimal`: that no shorter shaper holds the tolerances over the bands, or why that is not proven.
+    /// For `optimal`, the proof that no shorter shaper meets the tolerances over the bands, or why that is not proven.
     pub shorter: Option<Result<CheckedBound, ShorterError>>,
 }
 
-/// What an axis's integer taps leave of one mode, wherever in its band it is.
+/// Residual that an axis's integer taps leave of one mode, anywhere in its band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeCertificate {
     /// The band.
     pub band: ModeBand,
-    /// The tolerance that the file asks for.
+    /// Tolerance in the file.
     pub tolerance: f64,
     /// Upper bound of the residual, and the largest that was found.
     pub residual: ResidualBound,
 }
 
 impl ModeCertificate {
-    /// Whether the whole band is within the tolerance.
+    /// Returns whether the whole band is within the tolerance.
     pub fn holds(&self) -> bool {
         self.residual.bound <= self.tolerance * SLACK
     }
@@ -73,7 +73,7 @@ pub struct CornerFigures {
 /// Measures a shaped step on simulated plants that are each at a corner of a mode's band.
 ///
 /// # Errors
-/// [`PlantError`] for a corner that no plant can be at.
+/// [`PlantError`] for a corner that cannot be simulated.
 pub fn measure_corners(
     axis: &AxisSection,
     tables: &AxisTables,

@@ -6,16 +6,17 @@
 //! V(p) = |F(p)|,   F(p) = Σ A_i e^(−p τ_i),   F′(p) = −Σ A_i τ_i e^(−p τ_i),   |F″(p)| ≤ Σ |A_i| τ_i² e^(−Re p·τ_i)
 //! ```
 //!
-//! `F` is analytic, so `V` has its maximum over a band on the band's edge: two curves of constant damping, which are rays of the `p` plane, and two of
-//! constant frequency, which are arcs round its origin. An edge is cut into pieces. On a piece with the middle `p_0` and `|p − p_0| ≤ h`
+//! `F` is analytic, so `V` has its maximum over a band on the band's edge: two curves of constant damping, which are
+//! rays of the `p` plane, and two of constant frequency, which are arcs round its origin. An edge is cut into pieces.
+//! On a piece with the middle `p_0` and `|p − p_0| ≤ h`
 //!
 //! ```text
 //! V(p) ≤ |F(p_0) + F′(p_0)(p − p_0)| + ½h² · max |F″|
 //! ```
 //!
-//! The first term is convex in `p`, so on a straight piece it is largest at an end; an arc lies within `ω(1 − cos φ)` of its chord, which adds `|F′|` times
-//! that. Pieces are halved, those of the largest bound first, until the bound is hardly above a value that was found. The
-//! result is the largest bound of any piece.
+//! The first term is convex in `p`, so on a straight piece it is largest at an end; an arc lies within `ω(1 − cos φ)`
+//! of its chord, which adds `|F′|` times that. Pieces are halved, those of the largest bound first, until the bound is
+//! hardly above a value that was found. The result is the largest bound of any piece.
 
 use super::{UNIT, exponential_error};
 use crate::mode::{Mode, ModeBand};
@@ -26,23 +27,24 @@ use std::f64::consts::TAU;
 
 /// The bound may lie above the largest value found by this part of it, and by this much.
 const CLOSE: (f64, f64) = (1e-6, 1e-9);
-/// Pieces that an edge is cut into at most; the bound holds with any number.
+/// Largest number of pieces of an edge; the bound holds with any number.
 const PIECES: usize = 200_000;
 /// Pieces overlap by this part: their ends are rounded.
 const OVERLAP: f64 = 1.0 + 1e-12;
 
-/// What a table leaves over a band at most.
+/// Bound of the residual of a table over a band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualBound {
-    /// Nothing in the band is above this.
+    /// Upper bound of the residual in the band.
     pub bound: f64,
     /// Largest residual that was found.
     pub found: f64,
-    /// Where.
+    /// Mode at which it was found.
     pub at: Mode,
 }
 
-/// The bound of a table's residual over a band of frequencies below half of `sample_hz` and damping ratios below 1.
+/// Returns the bound of a table's residual over a band of frequencies below half of `sample_hz` and damping ratios
+/// below 1.
 pub fn residual_bound(table: &TapTable, sample_hz: f64, band: &ModeBand) -> ResidualBound {
     let unity = f64::from(1u32 << table.coefficient_fraction());
     let last = table.longest_delay_samples();
@@ -83,7 +85,7 @@ struct Term {
 
 struct Sum(Vec<Term>);
 
-/// `F`, `F′` and how far each may be from its exact value.
+/// `F` and `F′`, each with a bound of its error.
 struct Values {
     sum: Complex<f64>,
     slope: Complex<f64>,
@@ -114,7 +116,7 @@ impl Sum {
         }
     }
 
-    /// `max |F″|` where the real part of `p` is at least `decay`.
+    /// Returns `max |F″|` for a real part of `p` of at least `decay`.
     fn curvature(&self, decay: f64) -> f64 {
         let terms = self.0.iter();
         terms
@@ -173,7 +175,7 @@ impl Edge {
         Self { from, to, is_arc: true }
     }
 
-    /// The mode at a part of the edge; along an arc the angle `acos ζ` is linear.
+    /// Returns the mode at a part of the edge; along an arc the angle `acos ζ` is linear.
     fn at(&self, part: f64) -> Mode {
         let between = |from: f64, to: f64| from + part * (to - from);
         match self.is_arc {
@@ -219,12 +221,12 @@ impl Edge {
             state = add(start + half, half, &mut pieces);
             count += 1;
         }
-        // What was found is a value with its error: the bound is above it in any case.
+        // The largest value found has an error, but the bound is above it in any case.
         state.bound = state.bound.max(state.found);
         state
     }
 
-    /// The residual in the middle of a piece, and the bound over the piece.
+    /// Returns the residual in the middle of a piece, and the bound over the piece.
     fn piece(&self, sum: &Sum, per_sample: f64, start: f64, length: f64) -> (f64, f64) {
         let pole = |mode: Mode| {
             let omega = mode.frequency_hz * per_sample;
@@ -270,7 +272,8 @@ mod tests {
 
     #[test]
     fn unit_the_hump_of_an_ei_is_bounded_by_its_tolerance() {
-        // 1.05/4, 0.95/2, 1.05/4 at half periods of 50 samples: the residual at the mode is 5 %, and less at both sides.
+        // 1.05/4, 0.95/2, 1.05/4 at half periods of 50 samples: the residual at the mode is 5 %, and less at both
+        // sides.
         let ei = table(&[(0, 17_203), (50, 31_130), (100, 17_203)]);
         let band = ModeBand {
             frequency_hz: [8.7, 11.4],

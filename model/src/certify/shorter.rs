@@ -1,16 +1,18 @@
-//! The proof that no shorter shaper exists, checked.
+//! Checks the proof that no shorter shaper exists.
 //!
-//! Let a shaper of the samples `0…N` leave `c_p = Σ a_i z_p^(N−i)` at a point `p` of a band, with `z_p = e^(−p)`. For any weights `y_p`
+//! Let a shaper of the samples `0…N` leave `c_p = Σ a_i z_p^(N−i)` at a point `p` of a band, with `z_p = e^(−p)`. For
+//! any weights `y_p`
 //!
 //! ```text
 //! Σ Re(ȳ_p c_p) ≤ Σ |y_p| |c_p| ≤ Σ |y_p| tolerance_p · max |c_p|/tolerance_p
 //! ```
 //!
-//! and the left side is `Σ a_i h_i` with `h_i = Σ Re(ȳ_p z_p^(N−i))`. Amplitudes of sum 1 that are not negative have `Σ a_i h_i ≥ min h_i`. With partial sums `s_i`
-//! of which the last is 1, `Σ a_i h_i = h_N + Σ s_i (h_i − h_{i+1})`, and each term is least at a bound of `s_i`. So
-//! the least left side over all that the command may do, divided by `Σ |y_p| tolerance_p`, is a lower bound of the largest ratio of residual to
-//! tolerance. Above 1 it says that every shaper of `N` samples breaks a tolerance, and with it every shorter one: it would be one of `N`
-//! samples whose last amplitudes are 0, and what rings only decays.
+//! and the left side is `Σ a_i h_i` with `h_i = Σ Re(ȳ_p z_p^(N−i))`. Amplitudes of sum 1 that are not negative have `Σ
+//! a_i h_i ≥ min h_i`. With partial sums `s_i` of which the last is 1, `Σ a_i h_i = h_N + Σ s_i (h_i − h_{i+1})`, and
+//! each term is least at a bound of `s_i`. So the least left side over all allowed commands, divided by `Σ |y_p|
+//! tolerance_p`, is a lower bound of the largest ratio of residual to tolerance. Above 1 it says that every shaper of
+//! `N` samples breaks a tolerance, and with it every shorter one: it would be one of `N` samples whose last amplitudes
+//! are 0, and vibration only decays.
 //!
 //! This is Farkas' lemma. The weights come from the solver's dual solution; where they come from does not matter here.
 
@@ -23,22 +25,22 @@ use posicast_optimal::{Command, LowerBound, Request};
 pub struct CheckedBound {
     /// Duration in samples of the shapers that it is about.
     pub samples: u32,
-    /// Every one of them leaves at least so many times the tolerance somewhere in a band.
+    /// Smallest ratio of residual to tolerance that each of them leaves somewhere in a band.
     pub ratio: f64,
     /// Points of the bands that prove it.
     pub points: usize,
 }
 
-/// Why weights prove nothing.
+/// Reason why weights are not a proof.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShorterError {
-    /// A point that is in no band, or has no number for a weight.
-    #[error("point {} of the proof is not in a band of the modes, or its weight is no number", index + 1)]
+    /// A point is outside all bands, or its weight is not a number.
+    #[error("point {} of the proof is not in a band of the modes, or its weight is not a number", index + 1)]
     Point {
         /// Index of the point.
         index: usize,
     },
-    /// A bound that excludes nothing.
+    /// The bound excludes no shaper.
     #[error(
         "the proof bounds the residual of every shaper of {samples} samples to at least {ratio:.9} of a tolerance only, which excludes none"
     )]
@@ -50,7 +52,7 @@ pub enum ShorterError {
     },
 }
 
-/// Checks that no shaper of `proof.samples` samples or fewer holds what `request` asks for.
+/// Checks that no shaper of `proof.samples` samples or fewer meets `request`.
 ///
 /// # Errors
 /// [`ShorterError`].

@@ -7,17 +7,17 @@ ports! {
 
     /// The input ports. Bits above a port's width are ignored.
     inputs Inputs {
-        /// Synchronous reset: bank 1 is forgotten, and nothing is compensated.
+        /// Synchronous reset: bank 1 is cleared, and nothing is compensated.
         rst: Bit as bool;
-        /// One clock: `position_reference` is new. A pass that runs begins anew.
+        /// One clock: `position_reference` is new. A pass that is running starts again.
         valid: Bit as bool;
-        /// Where the axis is to be; stands from `valid` to `compensated_valid`.
+        /// Commanded position of the axis; must not change from `valid` to `compensated_valid`.
         position_reference: Signed(32) as i32, "counts, Q24.8";
-        /// Where the axis is, by its counter; read in the clock after `valid`.
+        /// Counted position of the axis; read in the clock after `valid`.
         measured: Signed(32) as i32, "counts";
-        /// Tied: 1 the error at `measured` is taken, 0 that at `position_reference`.
+        /// Tied: 1 uses the error at `measured`, 0 that at `position_reference`.
         on_measured: Bit as bool;
-        /// Tied: 1 entries are sixteenths of a count, 0 256ths.
+        /// Tied: 1 entries are in sixteenths of a count, 0 in 256ths.
         coarse: Bit as bool;
         /// Count at which the user's position is 0; read while `weight` is 0.
         origin: Signed(32) as i32, "counts";
@@ -25,9 +25,9 @@ ports! {
         drive_enable: Bit as bool;
         /// The origin is known; low: the weight goes down.
         homed: Bit as bool;
-        /// A host wants compensation; low: the weight goes down.
+        /// A host requests compensation; low: the weight goes down.
         error_enable: Bit as bool;
-        /// The bank that a host wants: 0 the machine's, 1 the loaded one.
+        /// The bank that a host selects: 0 the machine's, 1 the loaded one.
         error_select: Bit as bool;
         /// One clock: `error_entry` goes to `error_index` of bank 1.
         error_write: Bit as bool;
@@ -35,7 +35,7 @@ ports! {
         error_bank: Bit as bool;
         /// Entry that is written or read back.
         error_index: Bits(8) as u8;
-        /// What is written: true less counted position.
+        /// Entry to write: true minus counted position.
         error_entry: Signed(18) as i32, "counts / 256, or / 16";
         /// One clock: the entry at `error_bank` and `error_index` is to be read back.
         error_read: Bit as bool;
@@ -43,13 +43,13 @@ ports! {
 
     /// The output ports: registers, or functions of registers.
     outputs Outputs {
-        /// `position_reference` less the error in force.
+        /// `position_reference` minus the error in use.
         compensated: Signed(32) as i32, "counts, Q24.8";
         /// One clock: `compensated` is new.
         compensated_valid: Bit as bool;
-        /// The error in force: interpolated, times the weight.
+        /// The error in use: interpolated, times the weight.
         table_error: Signed(32) as i32, "counts, Q24.8";
-        /// How much of the error counts: 0 nothing, 1024 all of it.
+        /// Part of the error that is compensated: 0 nothing, 1024 all of it.
         error_weight: Bits(11) as u16, "1 / 1024";
         /// The bank in use.
         error_bank_used: Bit as bool;
@@ -57,9 +57,9 @@ ports! {
         error_complete: Bit as bool;
         /// One clock: an entry was refused.
         error_refused: Bit as bool;
-        /// The entry that a host read back last; 0 where none is loaded.
+        /// The entry that a host read back last; 0 if none is loaded.
         error_loaded: Signed(18) as i32, "counts / 256, or / 16";
-        /// A host's read was not served yet.
+        /// A host's read waits.
         error_read_waits: Bit as bool;
     }
 }
