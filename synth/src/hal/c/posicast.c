@@ -96,6 +96,9 @@ static void fail(const char *why)
     if (at_phase != FAULT)
         rtapi_print_msg(RTAPI_MSG_ERR, "posicast: %s\n", why);
     for (axis = 0; axis < hardware.axes && at_phase != FAULT; axis++) {
+        /* An axis may have stopped since posicast.read. */
+        if (!posicast_link_is_broken())
+            causes[axis] = posicast_causes(&hardware, axis);
         if (causes[axis] != 0)
             rtapi_print_msg(RTAPI_MSG_ERR, "posicast: axis %s: %s\n", POSICAST_HAL_MACHINE.axis[axis].name,
                             posicast_cause_name(causes[axis]));
