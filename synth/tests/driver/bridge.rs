@@ -70,6 +70,15 @@ pub(crate) struct Bridge {
 impl Bridge {
     /// Creates the stage of the driver's machine, and this program; with the Verilog beside the model, if wanted.
     pub(crate) fn new(driver: &Driver, program: &str, with_rtl: bool) -> Self {
+        let options = PlantOptions {
+            index_at: INDEX_AT,
+            ..PlantOptions::default()
+        };
+        Self::with_plants(driver, program, with_rtl, &options)
+    }
+
+    /// The same with these options of the simulated axes.
+    pub(crate) fn with_plants(driver: &Driver, program: &str, with_rtl: bool, options: &PlantOptions) -> Self {
         let machine = &driver.machine;
         let stage = stage(machine);
         let component = Component::stage(&stage.config).unwrap();
@@ -78,11 +87,7 @@ impl Bridge {
             let sources = Sources::write(&block).unwrap();
             Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
         });
-        let options = PlantOptions {
-            index_at: INDEX_AT,
-            ..PlantOptions::default()
-        };
-        let plant = |axis| AxisPlant::new(axis, &machine.clock, &options).unwrap();
+        let plant = |axis| AxisPlant::new(axis, &machine.clock, options).unwrap();
         let plants = machine.axes.iter().map(plant).collect();
         let mut bench = StageBench::new(&stage.config, &component, plants, device, 1).unwrap();
         // Filters and encoders settle.
