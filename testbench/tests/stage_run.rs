@@ -8,7 +8,7 @@ use posicast_model::motion::AxisMove;
 use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::SettingRow;
 use posicast_model::taps::{Tap, TapTable};
-use posicast_testbench::stage_run::{Expected, Moved, Shaping, StageRun};
+use posicast_testbench::stage_run::{Compensated, Expected, Moved, Shaping, StageRun};
 
 const XY: &str = include_str!("../../examples/xy-stage.toml");
 const TORQUE: &str = include_str!("../../examples/xy-stage-torque.toml");
@@ -192,4 +192,33 @@ fn golden_the_stage_goes_round_a_contour_as_the_notes_say() {
             "{equal}: {found_um} um, {expected_um} expected"
         );
     }
+}
+
+/// The load of the vertical slide rests where the file's error puts it without its table, and at its target with it.
+#[test]
+fn unit_a_homed_axis_rests_where_it_should_by_its_error_table() {
+    let text = include_str!("../../examples/vertical-slide.toml");
+    let rows = include_str!("../../examples/vertical-slide-z.csv");
+    let machine = machine_file::parse_beside("vertical-slide.toml", text, &|_: &str| Ok(rows.to_owned())).unwrap();
+    let stage = stage(&machine);
+    let to = AxisMove {
+        distance: 0.05,
+        velocity: 0.15,
+    };
+    let run = StageRun::with_moves(&machine, &stage.config, 1, &[to]).unwrap();
+    let with = run.moved(Shaping::Shaped, 1.0).unwrap();
+    let without = run.clone().without_error_tables().moved(Shaping::Shaped, 1.0).unwrap();
+    assert!(with.trouble.is_none() && without.trouble.is_none());
+    let expected = run.expected(Shaping::Shaped, 1.0).unwrap();
+    let axis = &machine.axes[0];
+    let found = Compensated::of_axis(axis, &stage.config.axes[0], 0, [&with, &without], &expected[0]).unwrap();
+    let error = axis.error_table.as_ref().unwrap().at(0.05);
+    assert!((found.without - error).abs() < 0.3e-6, "{found:?} {error}");
+    assert!(
+        found.holds() && found.is_exercised() && found.with.abs() < 0.3e-6,
+        "{found:?}"
+    );
+    // Without the table it does not hold.
+    let other = Compensated::of_axis(axis, &stage.config.axes[0], 0, [&without, &without], &expected[0]).unwrap();
+    assert!(!other.holds(), "{other:?}");
 }
