@@ -6,7 +6,7 @@
 //! ```
 //!
 //! It runs the other examples and the command line, as they are built beside it, and `cargo test` for the property
-//! tests; their output goes to standard error. Exit status: 0 if all rungs hold, 1 otherwise, 2 for wrong usage.
+//! tests and the long ones; their output goes to standard error. Exit status: 0 if all rungs hold, 1 otherwise, 2 for wrong usage.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::error::Error;
@@ -17,7 +17,7 @@ use std::time::Instant;
 
 use posicast_testbench::ladder::{Columns, Rung, rows, table};
 
-const RUNGS: [&str; 8] = [
+const RUNGS: [&str; 9] = [
     "lock step",
     "second simulator",
     "netlist",
@@ -25,6 +25,7 @@ const RUNGS: [&str; 8] = [
     "mutation",
     "coverage",
     "fuzz",
+    "long tests",
     "fault campaign",
 ];
 const SEEDS: [u64; 3] = [1, 2, 3];
@@ -118,7 +119,11 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
             &[],
             &[("holes explained", "holes explained"), ("bins", "bins")],
         ),
-        "fuzz" => fuzz(options.share(5_000, 50)),
+        "fuzz" => {
+            let cases = options.share(5_000, 50);
+            tests(name, "prop_", Some(cases))
+        }
+        "long tests" => tests(name, "long_", None),
         _ => faults(options.share(10_000, 50)),
     }
 }
@@ -205,33 +210,27 @@ fn lock_step(clocks: u64) -> Result<Rung, Box<dyn Error>> {
     ))
 }
 
-/// Runs the property tests of the workspace with this many cases each.
-fn fuzz(cases: u64) -> Result<Rung, Box<dyn Error>> {
+/// Runs the tests of the workspace whose name contains `filter`; property tests with this many cases each.
+fn tests(name: &str, filter: &str, cases: Option<u64>) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
     let mut command = Command::new("cargo");
     command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
-    command.args([
-        "test",
-        "--release",
-        "--workspace",
-        "--locked",
-        "--lib",
-        "--bins",
-        "--tests",
-        "--",
-        "prop_",
-    ]);
-    let (text, succeeded) = run(command.env("PROPTEST_CASES", cases.to_string()))?;
+    command.args(["test", "--release", "--workspace", "--locked", "--lib", "--bins", "--tests"]);
+    command.args(["--", filter]);
+    if let Some(cases) = cases {
+        command.env("PROPTEST_CASES", cases.to_string());
+    }
+    let (text, succeeded) = run(&mut command)?;
     let ended = text.lines().filter_map(|line| line.strip_prefix("test result: ok. "));
     let passed: u64 = ended
         .filter_map(|rest| rest.split(' ').next()?.parse::<u64>().ok())
         .sum();
-    let rows = [("(all)".to_owned(), vec![passed, cases])];
+    let numbers = std::iter::once(passed).chain(cases).collect();
     let is_some = succeeded && passed > 0;
     Ok(Rung::new(
-        "fuzz",
+        name,
         &["tests", "cases each"],
-        &rows,
+        &[("(all)".to_owned(), numbers)],
         is_some,
         began.elapsed(),
     ))
