@@ -215,7 +215,15 @@ fn tests(name: &str, filter: &str, cases: Option<u64>) -> Result<Rung, Box<dyn E
     let began = Instant::now();
     let mut command = Command::new("cargo");
     command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
-    command.args(["test", "--release", "--workspace", "--locked", "--lib", "--bins", "--tests"]);
+    command.args([
+        "test",
+        "--release",
+        "--workspace",
+        "--locked",
+        "--lib",
+        "--bins",
+        "--tests",
+    ]);
     command.args(["--", filter]);
     if let Some(cases) = cases {
         command.env("PROPTEST_CASES", cases.to_string());

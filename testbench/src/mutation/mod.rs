@@ -37,7 +37,7 @@ pub use self::inside::{Found, INSIDE, INSIDE_MARKS, hunt, inside_table};
 pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};
-pub use self::table::{MARKS, MutationRow, merged, table};
+pub use self::table::{MARKS, MutationRow, merged, table, unlisted};
 
 use std::path::Path;
 use std::time::Duration;

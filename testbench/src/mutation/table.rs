@@ -148,6 +148,16 @@ pub fn merged(old: &str, rows: &[MutationRow], subjects: &[Subject]) -> String {
     table(&rows)
 }
 
+/// The unknown mutants of these rows that a table in the format of [`table`] does not list, each with its block.
+pub fn unlisted(text: &str, rows: &[MutationRow]) -> Vec<String> {
+    let unknown = rows
+        .iter()
+        .flat_map(|row| row.unknown.iter().map(|mutant| format!("{}{mutant}`", row.mark())));
+    unknown
+        .filter(|line| !text.lines().any(|listed| listed == line))
+        .collect()
+}
+
 /// The rows of a table in the format of [`table`].
 fn on_page(text: &str) -> Vec<MutationRow> {
     let mut rows: Vec<MutationRow> = text.lines().filter_map(MutationRow::parse).collect();
@@ -187,5 +197,13 @@ mod tests {
             "{text}"
         );
         assert_eq!(on_page(&text), rows);
+    }
+
+    #[test]
+    fn unit_only_the_same_mutant_of_the_same_block_is_listed() {
+        let text = table(&[row("a", &["inv at Y[1]"]), row("b", &[])]);
+        assert_eq!(unlisted(&text, &[row("a", &["inv at Y[1]"])]), [""; 0]);
+        let others = [row("a", &["inv at Y[10]", "inv at Y"]), row("b", &["inv at Y[1]"])];
+        assert_eq!(unlisted(&text, &others).len(), 3);
     }
 }
