@@ -1,8 +1,8 @@
 //! Mutated recordings through all readers: no panic of ours, no file that takes long, and little memory.
 //!
 //! ```sh
-//! cargo run --release -p wavecmp --example mutate -- 1000000        # so many files
-//! cargo run --release -p wavecmp --example mutate -- 1000000 7      # beginning with this seed
+//! cargo run --release -p wavecmp --example mutated_files -- 1000000        # so many files
+//! cargo run --release -p wavecmp --example mutated_files -- 1000000 7      # beginning with this seed
 //! ```
 //!
 //! Each file is one of the fixtures (VCD of each producer, FST, packed, cut off) with up to eight edits, and is compared with
