@@ -1,11 +1,12 @@
 //! Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs come a clock
 //! late.
 //!
-//! The reference is `posicast_model::rtl::sample_select`.
+//! The reference is `posicast_model::rtl::sample_select`. One kernel per number of channels serves all words: see `compiled`.
 
+use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::prelude::*;
-use crate::simulation::{Pins, Simulated, SimulationError};
+use crate::simulation::{Simulated, SimulationError};
 use posicast_model::rtl::sample_select::{PORTS, ports};
 use posicast_model::rtl::{ClockedBlock, port_notes};
 
@@ -42,33 +43,44 @@ impl<const W: usize, const C: usize> Logic for SampleSelect<W, C> {
     }
 }
 
-/// The block at the sizes that components have: those of shapers, of a duty, and five words of 32 bits for a
-/// controller.
-fn block(word_bits: u32, channels: usize) -> Box<dyn Pins> {
-    match (word_bits, channels) {
-        (17, _) => Box::new(SampleSelect::<17, 1>::default()),
-        (16, _) => Box::new(SampleSelect::<16, 1>::default()),
-        (24, 1) => Box::new(SampleSelect::<24, 1>::default()),
-        (24, 2) => Box::new(SampleSelect::<24, 2>::default()),
-        (24, _) => Box::new(SampleSelect::<24, 3>::default()),
-        (_, 1) => Box::new(SampleSelect::<32, 1>::default()),
-        (_, 2) => Box::new(SampleSelect::<32, 2>::default()),
-        (_, 3) => Box::new(SampleSelect::<32, 3>::default()),
-        _ => Box::new(SampleSelect::<32, 5>::default()),
+/// The block with words of W bits, and C channels.
+macro_rules! sample_select {
+    ($w:literal, $c:literal) => {
+        Compiled {
+            sizes: &[$w],
+            build: |()| Box::new(SampleSelect::<$w, $c>::default()),
+        }
+    };
+}
+
+const OF_ONE: [Compiled<()>; 3] = [sample_select!(32, 1), sample_select!(24, 1), sample_select!(17, 1)];
+const OF_TWO: [Compiled<()>; 3] = [sample_select!(32, 2), sample_select!(24, 2), sample_select!(17, 2)];
+const OF_THREE: [Compiled<()>; 3] = [sample_select!(32, 3), sample_select!(24, 3), sample_select!(17, 3)];
+const OF_FIVE: [Compiled<()>; 3] = [sample_select!(32, 5), sample_select!(24, 5), sample_select!(17, 5)];
+
+/// The block at its compiled sizes: one channel for a duty, one to three for a shaper, five for a controller.
+fn block(channels: usize) -> &'static [Compiled<()>] {
+    match channels {
+        1 => &OF_ONE,
+        2 => &OF_TWO,
+        3 => &OF_THREE,
+        _ => &OF_FIVE,
     }
 }
 
-/// The selection in RustHDL's own simulator, for words of this many bits and this many channels.
+/// The selection in RustHDL's own simulator, for words of this many bits (up to 32) and this many channels.
+///
+/// It runs at a compiled size that holds these words and has the same outputs.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds an error in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block, or where the words are wider.
 pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = compiled::holding(block(channels), &[word_bits], false).ok_or(SimulationError::Size {
+        block: "sample_select",
+        word_bits,
+    })?;
     let ports = ports(word_bits as usize, channels);
-    Ok(Box::new(Simulated::new(
-        "sample_select",
-        block(word_bits, channels),
-        ports,
-    )?))
+    Ok(Box::new(Simulated::new("sample_select", (block.build)(&()), ports)?))
 }
 
 /// Name of the last module that [`emit()`] writes.
@@ -94,5 +106,5 @@ pub fn emit(word_bits: u32, channels: usize, prefix: &str) -> Result<Vec<Module>
             parameters: Vec::new(),
         },
     };
-    emit::emit(block(word_bits, channels).as_ref(), &options)
+    compiled::emit(block(channels), &(), &[word_bits], &options)
 }

@@ -49,7 +49,7 @@ fn lockstep_time_base() {
 
 #[test]
 fn lockstep_sample_select() {
-    for (word_bits, channels) in [(16, 1), (24, 2), (32, 3), (32, 5)] {
+    for (word_bits, channels) in [(16, 1), (24, 2), (26, 3), (32, 3), (32, 5)] {
         let mut rusthdl = sample_select::simulate(word_bits, channels).unwrap();
         lockstep(&mut SampleSelect::new(word_bits, channels), rusthdl.as_mut(), 1000);
     }

@@ -1,5 +1,7 @@
 //! The likely cause of a failed check, and what to try.
 
+use crate::run::checks::Check;
+
 /// A likely cause, and two things to try.
 pub(crate) struct Advice {
     pub(crate) cause: &'static str,
@@ -161,17 +163,33 @@ const ADVICE: [(&str, Advice); 15] = [
     ),
 ];
 
-/// The advice for a failed check.
-pub(crate) fn for_check(name: &str) -> Option<&'static Advice> {
+/// Advice for a comparison that was too short for a verdict.
+const TOO_SHORT: Advice = Advice {
+    cause: "too few clocks to exercise everything; nothing differed",
+    remedies: [
+        "leave --cycles away",
+        "run `posicast verify`, which says how many clocks are enough",
+    ],
+};
+
+/// The advice for a check that failed, by its name, or because it was too short.
+pub(crate) fn for_failed(check: &Check) -> Option<&'static Advice> {
+    match check.is_too_short() {
+        true => Some(&TOO_SHORT),
+        false => for_check(check.name),
+    }
+}
+
+fn for_check(name: &str) -> Option<&'static Advice> {
     ADVICE
         .iter()
         .find(|(start, _)| name.starts_with(start))
         .map(|(_, advice)| advice)
 }
 
-/// The advice as lines of text.
-pub(crate) fn text(name: &str) -> String {
-    for_check(name).map_or_else(String::new, |advice| {
+/// The advice for a failed check as lines of text.
+pub(crate) fn text(check: &Check) -> String {
+    for_failed(check).map_or_else(String::new, |advice| {
         let [first, second] = advice.remedies;
         format!(
             "        likely cause: {}\n        try: {first}\n        or:  {second}\n",

@@ -33,6 +33,9 @@ pub(crate) struct Check {
 /// Prefix of the detail of a check that compared nothing, or too little: it is named, and does not count as ok.
 pub(crate) const NOT_EXERCISED: &str = "not exercised: ";
 
+/// Part of the detail of a comparison in which nothing differed, and too little was compared.
+const TOO_LITTLE: &str = "no mismatch, but not exercised: ";
+
 impl Check {
     /// The result in a word.
     pub(crate) fn verdict(&self) -> &'static str {
@@ -41,6 +44,11 @@ impl Check {
             (true, true) => "open  ",
             (true, false) => "ok    ",
         }
+    }
+
+    /// Whether the check failed only because too few clocks were compared.
+    pub(crate) fn is_too_short(&self) -> bool {
+        !self.passed && self.detail.contains(TOO_LITTLE)
     }
 
     /// Whether the check held but compared nothing, or too little.
@@ -76,7 +84,7 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &LockstepReport) -> Check {
         .find_map(|b| b.first.as_ref().map(|first| (b, first)));
     let detail = match first {
         None if lockstep.not_exercised() > 0 => format!(
-            "{}, no mismatch, but not exercised: {}; compare more clocks with --cycles",
+            "{}, {TOO_LITTLE}{}; compare more clocks with --cycles",
             counted(lockstep.cycles, "clock"),
             lockstep.not_exercised_names().join(", ")
         ),

@@ -36,19 +36,35 @@ pub(crate) fn response_panels(
 }
 
 /// `name` with the time at which the deviations, given at times in the unit of `time`, have settled to ± `band`.
-pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64, time: ShownUnit) -> String {
+///
+/// A vibration crosses its band twice per period: it has settled only if it then stays there for `at_least_s` that are shown.
+pub(super) fn with_settling(
+    name: &str,
+    deviations: &[(f64, f64)],
+    band: f64,
+    time: ShownUnit,
+    at_least_s: f64,
+) -> String {
     let values: Vec<f64> = deviations.iter().map(|point| point.1).collect();
-    match settled_from(&values, band).map(|first| (first, deviations[first].0)) {
+    let end = deviations.last().map_or(0.0, |point| point.0);
+    let stays = |(_, at): &(usize, f64)| end - at >= time.of(at_least_s);
+    let settled = settled_from(&values, band).map(|first| (first, deviations[first].0));
+    match settled.filter(stays) {
         Some((0, _)) => format!("{name}: settled throughout"),
         Some((_, at)) => format!("{name}: settled at {} {}", trimmed(at, 3), time.symbol()),
         None => format!("{name}: settles later"),
     }
 }
 
+/// The longest damped period of an axis's modes, on a machine that is 10 % slower than it was modelled.
+pub(super) fn slowest_period_s(axis: &AxisSection) -> f64 {
+    axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max) / 0.9
+}
+
 fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Result<Panel, Failure> {
     let plant = Plant::of_axis(axis).map_err(Failure::because)?;
     let taps = tap_impulses(&tables.table, sample_hz);
-    let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
+    let slowest_s = slowest_period_s(axis);
     let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
     let time = time_axis(duration_s);
     let curve = |plant: &Plant, impulses: &[_], name: &str| {
@@ -58,7 +74,7 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
             .map(|(time_s, position)| (time.of(time_s), position))
             .collect();
         let deviations: Vec<_> = points.iter().map(|(at, position)| (*at, position - 1.0)).collect();
-        (with_settling(name, &deviations, SETTLED, time), points)
+        (with_settling(name, &deviations, SETTLED, time, slowest_s), points)
     };
     let (unshaped, points) = curve(&plant, ImpulseSequence::unity().impulses(), "unshaped");
     let machines = [
@@ -110,14 +126,15 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
             .map(|(n, position)| (time.of(n as f64 / machine.clock.sample_hz), unit.of(off(position))))
             .collect::<Vec<_>>()
     });
+    let slowest_s = slowest_period_s(axis);
     let (count, largest) = (unit.of(1.0 / axis.loop_counts_per_unit()), unit.of(largest));
     Panel {
         title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
         x_label: label("time", time),
         y_label: label("deviation from target", unit),
         curves: vec![
-            Curve::reference(with_settling("unshaped", &unshaped, count, time), unshaped),
-            Curve::new(with_settling("shaped", &shaped, count, time), shaped),
+            Curve::reference(with_settling("unshaped", &unshaped, count, time, slowest_s), unshaped),
+            Curve::new(with_settling("shaped", &shaped, count, time, slowest_s), shaped),
         ],
         y_range: (largest > 0.0).then_some((-1.1 * largest, 1.1 * largest)),
         band: Some(Band {

@@ -99,7 +99,7 @@ impl RunReport<'_> {
             };
             let _ = writeln!(text, "{verdict}  {}: {}", check.name, check.detail);
             if !check.passed {
-                text += &advice::text(check.name);
+                text += &advice::text(check);
             }
         }
         text
@@ -108,7 +108,13 @@ impl RunReport<'_> {
     /// The verdict that follows from the checks.
     pub(super) fn verdict(&self) -> String {
         let (pass, fail) = (style::passed("PASS"), style::bad("FAIL"));
-        let mut text = match (self.checks.iter().all(|c| c.passed), self.simulator) {
+        let mut failed = self.checks.iter().filter(|check| !check.passed).peekable();
+        let has_failed = failed.peek().is_some();
+        let mut text = match (!has_failed, self.simulator) {
+            (false, _) if failed.all(Check::is_too_short) => format!(
+                "{}: nothing differed, but too few clocks were compared to use this Verilog in a machine.\n",
+                style::bad("NO VERDICT")
+            ),
             (false, _) => format!("{fail}: do not put this Verilog into a machine.\n"),
             (true, Simulator::Rusthdl) => format!(
                 "{pass}, by the weaker check: the RustHDL description computes what was designed; its Verilog was not simulated.\n"

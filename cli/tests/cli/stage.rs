@@ -186,6 +186,25 @@ fn cli_a_loop_that_is_not_complete_or_has_short_words_gives_no_stage() {
 }
 
 #[test]
+fn cli_an_axis_with_a_loop_takes_words_of_any_width() {
+    for bits in [18, 26, 31] {
+        let text = changed("[[axis]]", &format!("[fixed_point]\ncommand_bits = {bits}\n[[axis]]"));
+        let (folder, file) = scratch(&text.replace("travel =", "# "));
+        let output = folder.path().join("out");
+        let mut generate = posicast();
+        generate
+            .arg("generate")
+            .arg(&file)
+            .arg("-o")
+            .arg(&output)
+            .assert()
+            .success();
+        let select = format!("rtl/posicast_sample_select_{bits}x3.v");
+        assert!(output.join(&select).is_file(), "{select}");
+    }
+}
+
+#[test]
 fn cli_a_torque_drive_whose_wrong_sign_nothing_sees_is_warned_of() {
     let text = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
     let unseen = "does not notice a wrong feedback sign";

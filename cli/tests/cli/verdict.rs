@@ -183,3 +183,21 @@ fn cli_verify_of_a_folder_finds_a_fault_latch_that_needs_the_clock() {
     ];
     assert_eq!(wrong, rows.map(|row| format!("{row}, pulses between clocks")));
 }
+
+#[test]
+fn cli_a_run_of_too_few_clocks_has_no_verdict_and_blames_nobody() {
+    let (folder, file) = scratch(&one_axis("kind = \"zv\"", "frequency_hz = 50.0\ndamping = 0.1"));
+    let mut run = posicast();
+    run.arg("run").arg(file).arg("-o").arg(folder.path().join("out"));
+    let run = run
+        .args(["--simulator", "rusthdl", "--cycles", "2000"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    assert_eq!(run.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("NO VERDICT: nothing differed") && said.contains("leave --cycles away"),
+        "{said}"
+    );
+    assert!(!said.contains("changed by hand") && !said.contains("FAIL:"), "{said}");
+}

@@ -2,7 +2,7 @@
 
 use super::ClosedLoop;
 use crate::plot::{Band, Curve, Mark, Panel, label, time_axis};
-use crate::run::pictures::with_settling;
+use crate::run::pictures::{slowest_period_s, with_settling};
 use posicast_model::unit::ShownUnit;
 use posicast_testbench::stage_bench::AxisSample;
 use posicast_testbench::stage_run::{Circled, Moved};
@@ -168,12 +168,13 @@ impl ClosedLoop<'_> {
         let all = self.runs().into_iter().flat_map(|(_, moved)| moved.ringing(axis));
         let unit = self.machine.axes[axis].unit.for_largest(all);
         let band = self.one_count(axis, unit);
+        let slowest_s = slowest_period_s(&self.machine.axes[axis]);
         let curves = self.runs().into_iter().enumerate().map(|(index, (name, moved))| {
             let points = moved.ringing(axis).into_iter().enumerate();
             let points: Vec<_> = points
                 .map(|(tick, position)| (time.of(self.seconds(tick)), unit.of(position)))
                 .collect();
-            let name = with_settling(name, &points, band.range.1, time);
+            let name = with_settling(name, &points, band.range.1, time, slowest_s);
             match index {
                 0 => Curve::reference(name, points),
                 _ => Curve::new(name, points),
