@@ -1,7 +1,7 @@
 //! Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs come a clock
 //! late.
 //!
-//! The reference is `posicast_model::rtl::sample_select`. One kernel per number of channels serves all words: see `compiled`.
+//! The reference is `posicast_model::rtl::sample_select`.
 
 use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
@@ -58,7 +58,7 @@ const OF_TWO: [Compiled<()>; 3] = [sample_select!(32, 2), sample_select!(24, 2),
 const OF_THREE: [Compiled<()>; 3] = [sample_select!(32, 3), sample_select!(24, 3), sample_select!(17, 3)];
 const OF_FIVE: [Compiled<()>; 3] = [sample_select!(32, 5), sample_select!(24, 5), sample_select!(17, 5)];
 
-/// The block at its compiled sizes: one channel for a duty, one to three for a shaper, five for a controller.
+/// The block at the compiled sizes, from which the emitter writes all words: one channel for a duty, one to three for a shaper, five for a controller.
 fn block(channels: usize) -> &'static [Compiled<()>] {
     match channels {
         1 => &OF_ONE,
