@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, posicast, scratch};
+use crate::cli::support::{example, generate, json, posicast, scratch};
 use std::path::{Path, PathBuf};
 
 const RIGHT: &str = "position,error\n-0.1,-0.000004\n0,0\n0.1,0.000004\n";
@@ -46,13 +46,7 @@ fn cli_design_says_what_became_of_the_points() {
 fn cli_the_folder_holds_the_file_and_is_verified() {
     let (folder, file) = machine(RIGHT);
     let output = folder.path().join("out");
-    posicast()
-        .arg("generate")
-        .arg(&file)
-        .arg("-o")
-        .arg(&output)
-        .assert()
-        .success();
+    generate(&file, &output);
     assert_eq!(std::fs::read_to_string(output.join("x.csv")).unwrap(), RIGHT);
     for path in [
         "rtl/xy_stage_x_error_table.v",

@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, posicast};
+use crate::cli::support::{example, generate, json, posicast};
 use std::path::{Path, PathBuf};
 
 /// Number of clocks that reach every directed case of the example and some random ones.
@@ -201,13 +201,7 @@ fn cli_the_shaper_component_of_a_controlled_axis_has_three_channels_where_it_can
 
 fn generated(folder: &Path) -> PathBuf {
     let output = folder.join("xy_stage");
-    posicast()
-        .arg("generate")
-        .arg(example("xy-stage.toml"))
-        .arg("-o")
-        .arg(&output)
-        .assert()
-        .success();
+    generate(&example("xy-stage.toml"), &output);
     output
 }
 

@@ -1,18 +1,12 @@
 //! The integration kit of machines that have only shapers.
 
-use super::support::{example, posicast};
+use super::support::{example, generate};
 use std::path::Path;
 use std::process::{Command, Output};
 
 fn generated(machine: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let mut generate = posicast();
-    generate
-        .arg("generate")
-        .arg(example(machine))
-        .arg("-o")
-        .arg(folder.path().join("out"));
-    generate.assert().success();
+    generate(&example(machine), &folder.path().join("out"));
     folder
 }
 

@@ -3,7 +3,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, posicast, scratch};
+use crate::cli::support::{example, generate, json, posicast, scratch};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -18,9 +18,7 @@ fn changed(from: &str, to: &str) -> String {
 fn cli_generate_writes_the_stage_and_verify_of_the_folder_compares_it() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("out");
-    let mut generate = posicast();
-    generate.arg("generate").arg(example("xy-stage.toml"));
-    generate.arg("-o").arg(&output).assert().success();
+    generate(&example("xy-stage.toml"), &output);
     for module in [
         "xy_stage_stage",
         "xy_stage_stage_x",
@@ -64,13 +62,7 @@ fn cli_a_file_in_millimetres_gives_the_hardware_of_the_file_in_metres() {
     let files = [("m", example("xy-stage.toml")), ("mm", millimetres)];
     let mut packages = files.into_iter().map(|(unit, file)| {
         let output = folder.path().join(unit);
-        posicast()
-            .arg("generate")
-            .arg(file)
-            .arg("-o")
-            .arg(&output)
-            .assert()
-            .success();
+        generate(&file, &output);
         let mut texts = BTreeMap::new();
         for part in ["rtl", "sopc", "sim", "docs"] {
             texts_below(&output.join(part), &output, &mut texts);
@@ -191,14 +183,7 @@ fn cli_an_axis_with_a_loop_takes_words_of_any_width() {
         let text = changed("[[axis]]", &format!("[fixed_point]\ncommand_bits = {bits}\n[[axis]]"));
         let (folder, file) = scratch(&text.replace("travel =", "# "));
         let output = folder.path().join("out");
-        let mut generate = posicast();
-        generate
-            .arg("generate")
-            .arg(&file)
-            .arg("-o")
-            .arg(&output)
-            .assert()
-            .success();
+        generate(&file, &output);
         let select = format!("rtl/posicast_sample_select_{bits}x3.v");
         assert!(output.join(&select).is_file(), "{select}");
     }

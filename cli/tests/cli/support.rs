@@ -3,6 +3,7 @@
 #![cfg(test)] // lets clippy see that this is test code
 
 use assert_cmd::Command;
+use assert_cmd::assert::Assert;
 use std::path::{Path, PathBuf};
 
 /// Returns the program, in a folder of its own.
@@ -21,6 +22,18 @@ pub(crate) fn scratch(machine: &str) -> (tempfile::TempDir, PathBuf) {
     let file = folder.path().join("machine.toml");
     std::fs::write(&file, machine).unwrap();
     (folder, file)
+}
+
+/// Runs `generate` on a machine file, which must succeed.
+pub(crate) fn generate(machine: &Path, output: &Path) -> Assert {
+    let mut generate = posicast();
+    generate
+        .arg("generate")
+        .arg(machine)
+        .arg("-o")
+        .arg(output)
+        .assert()
+        .success()
 }
 
 /// Returns a one-axis machine with this shaper and this mode.

@@ -3,7 +3,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{example, generate, json, one_axis, posicast, scratch};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -14,9 +14,7 @@ fn long_delays(folder: &Path) -> PathBuf {
     let text = one_axis("kind = \"zvd\"", "frequency_hz = 17.4\ndamping = 0.05");
     std::fs::write(&machine, text).unwrap();
     let output = folder.join("out");
-    let mut generate = posicast();
-    generate.arg("generate").arg(&machine).arg("-o").arg(&output);
-    generate.assert().success();
+    generate(&machine, &output);
     output
 }
 
@@ -157,9 +155,7 @@ fn cli_verify_that_exercised_too_little_says_what_and_is_no_match() {
 fn cli_verify_of_a_folder_finds_a_fault_latch_that_needs_the_clock() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("out");
-    let mut generate = posicast();
-    generate.arg("generate").arg(example("xy-stage.toml"));
-    generate.arg("-o").arg(&output).assert().success();
+    generate(&example("xy-stage.toml"), &output);
     let latch = output.join("rtl/posicast_fault_latch.v");
     let text = std::fs::read_to_string(&latch).unwrap();
     let from = "always @(posedge clk or negedge trip_n)";

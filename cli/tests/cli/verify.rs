@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{example, generate, json, one_axis, posicast, scratch};
 use posicast_testbench::blocks::library;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -116,13 +116,7 @@ fn cli_verify_knows_no_block_that_the_ladder_leaves_out() {
 fn cli_verify_of_a_folder_finds_a_broken_component_and_no_other() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("out");
-    let mut generate = posicast();
-    generate
-        .arg("generate")
-        .arg(example("xy-stage.toml"))
-        .arg("-o")
-        .arg(&output);
-    generate.assert().success();
+    generate(&example("xy-stage.toml"), &output);
     let top = output.join("rtl/xy_stage_y_pulse_counter_avalon.v");
     let text = std::fs::read_to_string(&top).unwrap();
     let (from, to) = (".start       (divide)", ".start       (tick)");
@@ -169,9 +163,7 @@ fn cli_verify_of_a_folder_finds_a_broken_component_and_no_other() {
 /// Returns a folder as `generate` writes it for the XY stage.
 fn generated(folder: &Path) -> PathBuf {
     let output = folder.join("out");
-    let mut generate = posicast();
-    generate.arg("generate").arg(example("xy-stage.toml"));
-    generate.arg("-o").arg(&output).assert().success();
+    generate(&example("xy-stage.toml"), &output);
     output
 }
 

@@ -1,7 +1,7 @@
 //! Unknown boards, clocks that a board does not have, machines without components, edited folders.
 
 use super::{package, replace, xy_stage};
-use crate::cli::support::{example, one_axis, posicast, scratch};
+use crate::cli::support::{example, generate, one_axis, posicast, scratch};
 use predicates::prelude::*;
 use std::fs;
 
@@ -41,13 +41,7 @@ fn cli_another_clock_than_the_boards_gets_components_and_no_project() {
     let text = fs::read_to_string(example("xy-stage.toml")).unwrap();
     let (folder, file) = scratch(&text.replace("frequency_hz = 50_000_000", "frequency_hz = 40_000_000"));
     let output = folder.path().join("out");
-    let generate = posicast()
-        .arg("generate")
-        .arg(&file)
-        .arg("-o")
-        .arg(&output)
-        .assert()
-        .success();
+    let generate = generate(&file, &output);
     generate.stderr(predicate::str::contains("no project for de1"));
     assert!(output.join("sopc/xy_stage_stage_hw.tcl").is_file());
     assert!(!output.join("sopc/quartus").exists());

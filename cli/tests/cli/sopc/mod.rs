@@ -9,7 +9,7 @@ mod components;
 mod projects;
 mod systems;
 
-use crate::cli::support::{example, posicast, scratch};
+use crate::cli::support::{example, generate, scratch};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,13 +22,7 @@ pub(super) type Ports = BTreeMap<String, (String, u32)>;
 pub(super) fn package(machine: &str) -> (tempfile::TempDir, PathBuf) {
     let (folder, file) = scratch(machine);
     let output = folder.path().join("out");
-    posicast()
-        .arg("generate")
-        .arg(&file)
-        .arg("-o")
-        .arg(&output)
-        .assert()
-        .success();
+    generate(&file, &output);
     (folder, output)
 }
 
