@@ -108,10 +108,9 @@ impl RunReport<'_> {
     /// The verdict that follows from the checks.
     pub(super) fn verdict(&self) -> String {
         let (pass, fail) = (style::passed("PASS"), style::bad("FAIL"));
-        let mut failed = self.checks.iter().filter(|check| !check.passed).peekable();
-        let has_failed = failed.peek().is_some();
-        let mut text = match (!has_failed, self.simulator) {
-            (false, _) if failed.all(Check::is_too_short) => format!(
+        let failed: Vec<&Check> = self.checks.iter().filter(|check| !check.passed).collect();
+        let mut text = match (failed.is_empty(), self.simulator) {
+            (false, _) if failed.iter().all(|check| check.is_too_short()) => format!(
                 "{}: nothing differed, but too few clocks were compared to use this Verilog in a machine.\n",
                 style::bad("NO VERDICT")
             ),
