@@ -212,6 +212,25 @@ proptest! {
 }
 
 #[test]
+fn unit_three_impulses_for_a_far_multiple_are_refused_at_once() {
+    let participants = [1e-9, 1e9].map(|hz| Participant {
+        mode: mode(hz, 0.5),
+        participation: 1.0,
+    });
+    let found = antisymmetric::design(&participants, AntisymmetricMethod::ThreeImpulse, 0.05);
+    assert!(
+        matches!(
+            found,
+            Err(DesignError::Joint(JointError::ThreeImpulseMultiple {
+                most: 16_384,
+                ..
+            }))
+        ),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn unit_a_single_mode_gets_the_shaper_of_its_own_kind() {
     let quarter = 0.25f64.acos() / std::f64::consts::TAU;
     let found = simultaneous::design(&[(mode(1.0, 0.0), Constraint::Zv)], Amplitudes::PartialSum).unwrap();

@@ -80,8 +80,9 @@ pub struct Antisymmetric {
 ///
 /// # Errors
 /// [`JointError::NoCommonDivisor`] without a usable antiperiod; [`JointError::NoAntisymmetry`] where there are
-/// several modes and no two share one; [`JointError::ThreeImpulse`] where the paper's equations have no solution;
-/// [`DesignError`] for an invalid mode.
+/// several modes and no two share one; [`JointError::ThreeImpulse`] where the paper's equations have no solution, and
+/// [`JointError::ThreeImpulseMultiple`] where a mode is more than [`MULTIPLE_MAX`] times the divisor; [`DesignError`]
+/// for an invalid mode.
 pub fn design(
     participants: &[Participant],
     method: AntisymmetricMethod,
@@ -149,9 +150,15 @@ fn class_impulses(
             decay: p.mode.decay() * antiperiod_s,
         });
     let swings: Vec<Swing> = swings.collect();
+    let highest = class.multiples.multiples.iter().copied().fold(1, u64::max);
     match method {
         AntisymmetricMethod::Exact => Ok(exact(antiperiod_s, &decays)),
         AntisymmetricMethod::TwoImpulse => Ok(two_impulse(antiperiod_s, &swings)),
+        // Its sums have as many terms as half the multiple.
+        AntisymmetricMethod::ThreeImpulse if highest > MULTIPLE_MAX => Err(JointError::ThreeImpulseMultiple {
+            multiple: highest,
+            most: MULTIPLE_MAX,
+        }),
         AntisymmetricMethod::ThreeImpulse => three_impulse(antiperiod_s, &swings),
     }
 }

@@ -100,6 +100,17 @@ pub enum JointError {
         /// Antiperiod in seconds.
         antiperiod_s: f64,
     },
+    /// A mode is too high a multiple of the common divisor for the sums of `three-impulse`.
+    #[error(
+        "a mode at {multiple} times the common divisor: method \"three-impulse\" takes multiples up to {most}: \
+         use method \"exact\", or a kind for each mode such as \"zv\""
+    )]
+    ThreeImpulseMultiple {
+        /// Multiple of the mode.
+        multiple: u64,
+        /// Largest multiple that is allowed.
+        most: u64,
+    },
     /// The kind cannot be a mode's constraint.
     #[error("a mode with shaper \"{0}\": under \"simultaneous\" a mode takes zv or zvd")]
     Constraint(ShaperKind),
