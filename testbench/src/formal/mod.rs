@@ -25,4 +25,4 @@ mod tool;
 pub use self::task::{Engine, Task};
 pub(crate) use self::task::{INDUCTION, part, refused};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
-pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, run, search};
+pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, proves, run, search};

@@ -87,16 +87,10 @@ impl ProofOutcome {
 /// example because the block no longer contains a peek; [`Error::File`] where the folder cannot be written.
 pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, Error> {
     let start = Instant::now();
-    std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
-    let bench = Bench { task, folder, limit };
+    let bench = Bench::new(task, folder, limit)?;
     bench.prepare(&[ASSERTS, COVERS])?;
     let (asserts, covers) = (bench.names("asserts.txt")?, bench.names("covers.txt")?);
-    let is_proven = match task.engine {
-        _ if asserts.is_empty() => false,
-        Engine::Pdr => bench.pdr()?,
-        Engine::Induction { clocks } => bench.induction(clocks)?,
-    };
-    let verdict = if is_proven {
+    let verdict = if bench.proves(&asserts)? {
         ProofVerdict::Proven
     } else {
         bench.counterexample(&asserts)?
@@ -109,14 +103,23 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, 
     })
 }
 
+/// Whether a task's assertions are proven, without a search for a counterexample where they are not.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn proves(task: &Task, folder: &Path, limit: Duration) -> Result<bool, Error> {
+    let bench = Bench::new(task, folder, limit)?;
+    bench.prepare(&[ASSERTS])?;
+    bench.proves(&bench.names("asserts.txt")?)
+}
+
 /// Searches a counterexample without trying the proof first: for a block that was broken on purpose, for which a
 /// proof attempt would only take time. [`ProofVerdict::Unknown`] if there is none in the clocks that are searched.
 ///
 /// # Errors
 /// Those of [`run`].
 pub fn search(task: &Task, folder: &Path, limit: Duration) -> Result<ProofVerdict, Error> {
-    std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
-    let bench = Bench { task, folder, limit };
+    let bench = Bench::new(task, folder, limit)?;
     bench.prepare(&[ASSERTS])?;
     bench.counterexample(&bench.names("asserts.txt")?)
 }
@@ -127,7 +130,12 @@ struct Bench<'a> {
     limit: Duration,
 }
 
-impl Bench<'_> {
+impl<'a> Bench<'a> {
+    fn new(task: &'a Task, folder: &'a Path, limit: Duration) -> Result<Self, Error> {
+        std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
+        Ok(Self { task, folder, limit })
+    }
+
     /// Writes the Verilog, and the engines' input files: one for each of `kinds`.
     fn prepare(&self, kinds: &[(&str, &str)]) -> Result<(), Error> {
         let mut script = String::new();
@@ -188,6 +196,15 @@ impl Bench<'_> {
         let mut yosys = YOSYS.command_in(self.folder);
         yosys.args(["-q", "prepare.ys"]);
         YOSYS.run(&mut yosys, "reading block and properties").map(drop)
+    }
+
+    /// Whether the task's engine proves these assertions; nothing is proven where there is none.
+    fn proves(&self, asserts: &[String]) -> Result<bool, Error> {
+        match self.task.engine {
+            _ if asserts.is_empty() => Ok(false),
+            Engine::Pdr => self.pdr(),
+            Engine::Induction { clocks } => self.induction(clocks),
+        }
     }
 
     /// Whether PDR proves all assertions together.
