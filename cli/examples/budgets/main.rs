@@ -7,7 +7,7 @@
 //!
 //! Exit status 1: a figure is larger than the one in `docs/area.md`, or a row is missing there. So area cannot grow
 //! unnoticed; where growth is intended, `--write` makes it part of the change. Smaller figures pass. Needs Yosys;
-//! takes some seconds.
+//! takes a minute.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "its purpose")]
 
 mod table;
@@ -16,19 +16,25 @@ use posicast_hdl::emit::Module;
 use posicast_synth::yosys::{Family, Mapping, Resources, Yosys};
 use posicast_testbench::blocks::{AreaRow, areas};
 use std::error::Error;
+use std::iter;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Mutex;
+use std::thread;
 
 /// Figures of a row.
 struct Measured {
     row: AreaRow,
     resources: Resources,
-    /// LUTs as Yosys maps alone, without carry chain and synchronous clear; `None` for the whole stage, where it
-    /// takes minutes.
+    /// LUTs as Yosys maps alone, without carry chain and synchronous clear. `None` for the whole stage, where it takes
+    /// minutes, and where the page is not written, because the figure is for readers and not compared.
     luts_by_yosys: Option<u64>,
 }
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
+type Failure = Box<dyn Error + Send + Sync>;
+
+fn main() -> Result<ExitCode, Failure> {
     let write = match std::env::args().skip(1).collect::<Vec<_>>().as_slice() {
         [] => false,
         [option] if option == "--write" => true,
@@ -36,8 +42,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     };
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/area.md");
     let yosys = Yosys::installed()?;
-    let measured: Result<Vec<_>, _> = areas()?.into_iter().map(|row| measure(&yosys, row)).collect();
-    let page = table::page(yosys.version(), &measured?);
+    let page = table::page(yosys.version(), &measure_all(&yosys, areas()?, write)?);
     print!("{page}");
     if write {
         std::fs::write(&path, page)?;
@@ -54,13 +59,36 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::FAILURE)
 }
 
-fn measure(yosys: &Yosys, row: AreaRow) -> Result<Measured, Box<dyn Error>> {
+/// Measures the rows, one per core at a time, and returns them in their order.
+fn measure_all(yosys: &Yosys, rows: Vec<AreaRow>, write: bool) -> Result<Vec<Measured>, Failure> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let waiting = Mutex::new(rows.into_iter().enumerate());
+    let next = || waiting.lock().map_or(None, |mut rows| rows.next());
+    let measure_next = || {
+        iter::from_fn(next)
+            .map(|(at, row)| Ok((at, measure(yosys, row, write)?)))
+            .collect()
+    };
+    let mut measured: Vec<(usize, Measured)> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(measure_next)).collect();
+        let results = workers.into_iter().map(|worker| worker.join());
+        let rows = results.map(|rows| rows.unwrap_or_else(|panic| resume_unwind(panic)));
+        rows.collect::<Result<Vec<Vec<_>>, Failure>>()
+    })?
+    .into_iter()
+    .flatten()
+    .collect();
+    measured.sort_by_key(|(at, _)| *at);
+    Ok(measured.into_iter().map(|(_, row)| row).collect())
+}
+
+fn measure(yosys: &Yosys, row: AreaRow, write: bool) -> Result<Measured, Failure> {
     let folder = tempfile::tempdir()?;
-    let write = |module: &Module| {
+    let written = |module: &Module| {
         let path = folder.path().join(format!("{}.v", module.name));
         std::fs::write(&path, &module.text).map(|()| path)
     };
-    let files: Vec<PathBuf> = row.modules.iter().map(write).collect::<Result<_, _>>()?;
+    let files: Vec<PathBuf> = row.modules.iter().map(written).collect::<Result<_, _>>()?;
     let estimate = |mapping| {
         let (top, ports) = row
             .modules
@@ -69,7 +97,7 @@ fn measure(yosys: &Yosys, row: AreaRow) -> Result<Measured, Box<dyn Error>> {
         let yosys = yosys.clone().with_mapping(mapping);
         yosys.estimate_alone(&files, top, ports, Family::Cyclone2)
     };
-    let by_yosys = (row.block != table::STAGE).then(|| estimate(Mapping::Luts));
+    let by_yosys = (write && row.block != table::STAGE).then(|| estimate(Mapping::Luts));
     Ok(Measured {
         resources: estimate(Mapping::LogicElement)?.total,
         luts_by_yosys: by_yosys.transpose()?.map(|estimate| estimate.total.luts),

@@ -40,7 +40,7 @@ fn verilated(verilog: &str) -> Verilated {
         top: "counter",
         ports: &ports,
     };
-    Verilated::build_in(&files.cache(), &source, 7).unwrap()
+    Verilated::build(&source, 7).unwrap()
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn lockstep_joined_models_share_reset_and_strobe() {
         top: "top",
         ports: &ports,
     };
-    let mut device = Verilated::build_in(&files.cache(), &source, 1).unwrap();
+    let mut device = Verilated::build(&source, 1).unwrap();
     let instances = joined.instances("counter");
     let mut model = joined;
     let mut clock = 0;

@@ -33,7 +33,7 @@ fn crosssim_both_simulators_count_as_the_model_does() {
         top: "counter",
         ports: &ports,
     };
-    same_as_model(&mut Verilated::build_in(&files.cache(), &source, 1).unwrap(), 10_000);
+    same_as_model(&mut Verilated::build(&source, 1).unwrap(), 10_000);
     same_as_model(&mut Icarus::build(&source).unwrap(), 2_000);
     assert_eq!(verilator::lint(&files.files, "counter").unwrap(), Vec::<String>::new());
 }
@@ -48,7 +48,7 @@ fn unit_memory_starts_at_random_by_seed_and_keeps_64_bits() {
         ports: &ports,
     };
     let first_words = |seed| {
-        let mut memory = Verilated::build_in(&files.cache(), &source, seed).unwrap();
+        let mut memory = Verilated::build(&source, seed).unwrap();
         let rows: Vec<u64> = (0..16).flat_map(|address| [0, address, 0]).collect();
         let mut words = [0; 16];
         memory.run(&rows, &mut words).unwrap();
@@ -58,7 +58,7 @@ fn unit_memory_starts_at_random_by_seed_and_keeps_64_bits() {
     assert_ne!(first_words(5), first_words(6));
     assert_ne!(first_words(5), [0; 16]);
 
-    let mut memory = Verilated::build_in(&files.cache(), &source, 1).unwrap();
+    let mut memory = Verilated::build(&source, 1).unwrap();
     let mut seen = [0; 2];
     memory.run(&[1, 3, u64::MAX - 1, 0, 3, 0], &mut seen).unwrap();
     assert_eq!(seen[1], u64::MAX - 1);
@@ -81,7 +81,7 @@ fn unit_other_ports_are_named() {
         top: "counter",
         ports: &ports,
     };
-    let error = Verilated::build_in(&files.cache(), &source, 1).unwrap_err();
+    let error = Verilated::build(&source, 1).unwrap_err();
     let Error::Ports { problems, .. } = &error else {
         panic!("{error}")
     };
@@ -150,7 +150,7 @@ fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
         top: "stops",
         ports: &ports,
     };
-    let mut device = Verilated::build_in(&files.cache(), &source, 1).unwrap();
+    let mut device = Verilated::build(&source, 1).unwrap();
     device.step(&[0], &mut [0]).unwrap();
     let error = device.step(&[1], &mut [0]).unwrap_err();
     assert!(error.to_string().contains("$finish"), "{error}");
@@ -167,7 +167,7 @@ fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
         top: "loops",
         ports: &ports,
     };
-    let mut device = Verilated::build_in(&files.cache(), &source, 1).unwrap();
+    let mut device = Verilated::build(&source, 1).unwrap();
     let error = device.step(&[1], &mut [0]).unwrap_err();
     assert!(error.to_string().contains("converge"), "{error}");
 }

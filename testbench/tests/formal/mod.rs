@@ -42,7 +42,10 @@ pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
 #[track_caller]
 pub(crate) fn is_no_longer_proven(name: &str, from: &str, to: &str) {
     let folder = tempfile::tempdir().unwrap();
-    assert!(!proves(&broken(name, from, to), folder.path(), LIMIT).unwrap(), "`{to}`");
+    assert!(
+        !proves(&broken(name, from, to), folder.path(), LIMIT).unwrap(),
+        "`{to}`"
+    );
 }
 
 #[track_caller]

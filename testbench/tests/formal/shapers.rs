@@ -14,7 +14,7 @@ fn formal_cascade() {
 }
 
 #[test]
-fn formal_shaper_small() {
+fn long_formal_shaper_small() {
     proven("shaper_small", 0);
 }
 
