@@ -39,6 +39,13 @@ pub(super) struct Cells {
     pub(super) noted: Vec<Noted>,
 }
 
+/// Compares word by word: a comparison of whole arrays reads them in one piece, which must wait until the pieces that were
+/// written last have arrived in memory.
+#[inline]
+fn same(a: Words, b: Words) -> bool {
+    (a[0] ^ b[0]) | (a[1] ^ b[1]) == 0
+}
+
 impl Cells {
     /// Creates cells for these pairs of slots, each with the numbers of its pairs, all without a value.
     pub(super) fn new(slots: [usize; 2], cells: &[([u32; 2], u32, Vec<u32>)]) -> Self {
@@ -78,9 +85,9 @@ impl Cells {
     pub(super) fn set(&mut self, side: usize, at: u32, words: Words) {
         let cell = &mut self.cells[at as usize];
         let before = cell.of[0];
-        let was_equal = before == cell.of[1];
+        let was_equal = same(before, cell.of[1]);
+        let is_equal = same(words, cell.of[1 - side]);
         cell.of[side] = words;
-        let is_equal = cell.of[0] == cell.of[1];
         if was_equal == is_equal {
             // Both values of an equal cell cannot change at once; of a different one, the difference continues.
             return;

@@ -272,15 +272,15 @@ impl Side {
         let number = *number;
         let (pairs, parts, delayed) = (&*pairs, &**parts, &**delayed);
         let plain = parts.is_empty() && lines.is_empty();
-        feed.each_change(|slot, words| {
+        feed.each_changed(|slot, changed| {
             let cell = touched.cells.of(number, slot);
             if cell != GENERAL
-                && let [bits, unknown] = *words
+                && let Some(pair) = changed.pair()
             {
-                touched.cells.set(number, cell, [bits, unknown]);
+                touched.cells.set(number, cell, pair);
                 return;
             }
-            if !values.set(slot, words) {
+            if !values.set(slot, changed.words()) {
                 return;
             }
             for pair in pairs.get(slot) {

@@ -6,14 +6,13 @@
 //!  words    bits, unknown │ bits, unknown │ …                       as many of each as the slot's kind needs
 //! ```
 //!
-//! Known values below 2^32 and single digits, which are nearly all, need no words, and so a third of the memory
-//! traffic.
+//! Values of at most 64 bits that are known, and shorter unknown ones, need no words, which are nearly all.
 
 use super::header::Kind;
 use super::values::words_of;
 
 /// A batch is handed over when it has this many changes or words.
-const CHANGES: usize = 1 << 14;
+const CHANGES: usize = 1 << 13;
 const WORDS: usize = 1 << 15;
 
 /// Place of a step to which reading cannot return.
@@ -34,40 +33,29 @@ pub(crate) struct Step {
     pub(crate) off: bool,
 }
 
-/// Position of the two bits above a change's slot, which tell how its value is stored.
-const TAG_SHIFT: u32 = 30;
-const IN_WORDS: u32 = 0;
-const KNOWN: u32 = 1;
-const DIGIT: u32 = 2;
-const SLOT: u32 = (1 << TAG_SHIFT) - 1;
+/// Marks a change whose value is in the words of the batch.
+const IN_WORDS: u32 = u32::MAX;
 
 /// A slot and its value, or the position of its words.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     slot: u32,
-    value: u32,
+    /// The unknown bits, or [`IN_WORDS`].
+    unknown: u32,
+    /// The bits, or the position of the words.
+    value: u64,
 }
 
 impl Change {
     #[inline]
-    fn new(tag: u32, slot: u32, value: u32) -> Self {
-        let slot = slot | tag << TAG_SHIFT;
-        Self { slot, value }
-    }
-
-    #[inline]
     pub(super) fn slot(self) -> u32 {
-        self.slot & SLOT
+        self.slot
     }
 
     /// Returns the value, if it needs no words: its bits, and a mask of the unknown ones.
     #[inline]
     pub(super) fn small(self) -> Option<[u64; 2]> {
-        match self.slot >> TAG_SHIFT {
-            KNOWN => Some([self.value.into(), 0]),
-            DIGIT => Some([u64::from(self.value & 1), u64::from(self.value >> 1)]),
-            _ => None,
-        }
+        (self.unknown != IN_WORDS).then_some([self.value, self.unknown.into()])
     }
 
     /// Returns the position of its words.
@@ -94,24 +82,54 @@ impl Batch {
         self.words.clear();
     }
 
-    /// Calls `each` with slot and words of the changes from `first` to `end`. `lengths` has the number of words of each
-    /// slot.
+    /// Calls `each` with the slots and values of the changes from `first` to `end`. `lengths` has the number of words of
+    /// each slot.
     #[inline]
-    pub(super) fn each(&self, first: usize, end: usize, lengths: &[u32], mut each: impl FnMut(u32, &[u64])) {
+    pub(super) fn each(&self, first: usize, end: usize, lengths: &[u32], mut each: impl FnMut(u32, Changed<'_>)) {
         for change in &self.changes[first..end] {
             let slot = change.slot();
-            let small;
-            let words = match change.small() {
-                Some(words) => {
-                    small = words;
-                    &small[..]
-                }
-                None => {
-                    let from = change.words_at();
-                    &self.words[from..from + lengths[slot as usize] as usize]
-                }
-            };
-            each(slot, words);
+            each(
+                slot,
+                match change.small() {
+                    Some(words) => Changed::Word(words),
+                    None => {
+                        let from = change.words_at();
+                        Changed::Words(&self.words[from..from + lengths[slot as usize] as usize])
+                    }
+                },
+            );
+        }
+    }
+}
+
+/// A new value.
+///
+/// Short values are passed on without a place in memory: to read them from where they were just written to, in other
+/// pieces, would cost more than everything else that happens to a change.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Changed<'a> {
+    /// Its bits, and a mask of the unknown ones.
+    Word([u64; 2]),
+    /// The words of the slot's kind.
+    Words(&'a [u64]),
+}
+
+impl Changed<'_> {
+    /// Returns the words of the slot's kind.
+    #[inline]
+    pub(crate) fn words(&self) -> &[u64] {
+        match self {
+            Self::Word(words) => words,
+            Self::Words(words) => words,
+        }
+    }
+
+    /// Returns the bits and the mask of the unknown ones, if each is one word.
+    #[inline]
+    pub(crate) fn pair(self) -> Option<[u64; 2]> {
+        match self {
+            Self::Word(words) => Some(words),
+            Self::Words(words) => words.try_into().ok(),
         }
     }
 }
@@ -197,42 +215,43 @@ impl Gatherer {
     /// Adds a known or unknown value of at most 64 bits, or a real number.
     #[inline]
     pub(super) fn put_word(&mut self, slot: u32, bits: u64, unknown: u64) {
-        let change = if let (Ok(value), 0) = (u32::try_from(bits), unknown) {
-            Change::new(KNOWN, slot, value)
-        } else {
-            let word = self.batch.words.len() as u32;
-            self.batch.words.extend_from_slice(&[bits, unknown]);
-            Change::new(IN_WORDS, slot, word)
-        };
-        self.put(change, [bits, unknown]);
+        if unknown >= u64::from(IN_WORDS) {
+            let words = self.put_words(slot);
+            words.copy_from_slice(&[bits, unknown]);
+            self.watch_last(slot);
+            return;
+        }
+        self.batch.changes.push(Change {
+            slot,
+            unknown: unknown as u32,
+            value: bits,
+        });
+        if self.watched == slot {
+            self.clock[1] = [bits, unknown];
+        }
+        if self.batch.changes.len() > self.press_at.0 {
+            self.press();
+        }
     }
 
     /// Adds a single digit: bit 0 is its value, bit 1 tells whether it is unknown.
     #[inline]
     pub(super) fn put_digit(&mut self, slot: u32, digit: u8) {
-        let value = [u64::from(digit & 1), u64::from(digit >> 1)];
-        self.put(Change::new(DIGIT, slot, digit.into()), value);
-    }
-
-    #[inline]
-    fn put(&mut self, change: Change, value: [u64; 2]) {
-        self.batch.changes.push(change);
-        if self.watched == change.slot() {
-            self.clock[1] = value;
-        }
-        if self.batch.changes.len() > self.press_at.0 || self.batch.words.len() > self.press_at.1 {
-            self.press();
-        }
+        self.put_word(slot, u64::from(digit & 1), u64::from(digit >> 1));
     }
 
     /// Adds a value of the slot's kind and returns its words, all zero.
     pub(super) fn put_words(&mut self, slot: u32) -> &mut [u64] {
-        if self.batch.words.len() > self.press_at.1 {
+        if self.batch.changes.len() > self.press_at.0 || self.batch.words.len() > self.press_at.1 {
             self.press();
         }
         let batch = &mut self.batch;
         let from = batch.words.len();
-        batch.changes.push(Change::new(IN_WORDS, slot, from as u32));
+        batch.changes.push(Change {
+            slot,
+            unknown: IN_WORDS,
+            value: from as u64,
+        });
         batch.words.resize(from + words_of(self.kinds[slot as usize]), 0);
         &mut batch.words[from..]
     }
@@ -321,7 +340,7 @@ impl Gatherer {
         for change in &mut kept {
             if change.small().is_none() {
                 let from = change.words_at();
-                change.value = (first_word + words.len()) as u32;
+                change.value = (first_word + words.len()) as u64;
                 words.extend_from_slice(&self.batch.words[from..from + words_of(self.kinds[change.slot() as usize])]);
             }
         }

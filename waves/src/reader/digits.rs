@@ -92,6 +92,41 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
     (word, end)
 }
 
+/// Returns the decimal number at `at` and the position after it; `None` without a digit, or beyond 64 bits.
+#[inline]
+pub(super) fn decimal(data: &[u8], at: usize) -> Option<(u64, usize)> {
+    const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
+    /// With this added, a byte from 10 on has its upper bit set.
+    const ABOVE_9: u64 = u64::from_le_bytes([0x80 - 10; 8]);
+    const HIGH: u64 = u64::from_le_bytes([0x80; 8]);
+    const POWERS: [u64; 9] = [
+        1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000,
+    ];
+    let (mut number, mut end) = (0u64, at);
+    // Eight digits at a time; only the first byte that is no digit is sure to be found.
+    while let Some(eight) = data.get(end..end + 8) {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(eight);
+        let digits = u64::from_le_bytes(bytes) ^ ZEROS;
+        let count = ((digits.wrapping_add(ABOVE_9) | digits) & HIGH).trailing_zeros() / 8;
+        // Zeros go before the digits in place of what comes after them.
+        let digits = digits.unbounded_shl(64 - 8 * count);
+        let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
+        let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
+        let value = fours.wrapping_mul(10_000).wrapping_add(fours >> 32) & 0xffff_ffff;
+        number = number.checked_mul(POWERS[count as usize])?.checked_add(value)?;
+        end += count as usize;
+        if count < 8 {
+            return (end > at).then_some((number, end));
+        }
+    }
+    while let Some(digit @ 0..=9) = data.get(end).map(|byte| byte.wrapping_sub(b'0')) {
+        number = number.checked_mul(10)?.checked_add(digit.into())?;
+        end += 1;
+    }
+    (end > at).then_some((number, end))
+}
+
 /// Packs `digits`, most significant first, into `bits` and `unknown`, which hold `width` bits, least significant word
 /// first. Missing digits are as in VCD: zeros, or the first digit if that is unknown. There must not be more digits
 /// than `width`.
@@ -175,6 +210,19 @@ mod tests {
             let data = [digits.as_bytes(), &[next], &rest].concat();
             let expected = u64::from_str_radix(&digits, 2).unwrap_or(0);
             prop_assert_eq!(known_run(&data, 0), (expected, digits.len()));
+        }
+
+        #[test]
+        fn prop_a_decimal_number_ends_where_it_ends(zeros in "0{0,12}", number: u64, next in 0u8..=255, rest in any::<[u8; 9]>()) {
+            prop_assume!(!next.is_ascii_digit());
+            let digits = format!("{zeros}{number}");
+            for behind in 0..=rest.len() {
+                let data = [b"#", digits.as_bytes(), &[next], &rest[..behind]].concat();
+                prop_assert_eq!(decimal(&data, 1), Some((number, 1 + digits.len())));
+            }
+            prop_assert_eq!(decimal(digits.as_bytes(), 0), Some((number, digits.len())));
+            prop_assert_eq!(decimal(format!("{}0{next}", u64::MAX).as_bytes(), 0), None);
+            prop_assert_eq!(decimal(&[&[next], digits.as_bytes()].concat(), 0), None);
         }
 
         #[test]

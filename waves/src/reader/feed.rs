@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-use super::batch::{Batch, Gatherer, Step};
+use super::batch::{Batch, Changed, Gatherer, Step};
 use super::section::{Ended, truncated};
 use super::twin::Reopen;
 use crate::WaveError;
@@ -165,7 +165,13 @@ impl Feed {
 
     /// Returns the changes of the current step: slot and words.
     #[inline]
-    pub(crate) fn each_change(&self, each: impl FnMut(u32, &[u64])) {
+    pub(crate) fn each_change(&self, mut each: impl FnMut(u32, &[u64])) {
+        self.each_changed(|slot, changed| each(slot, changed.words()));
+    }
+
+    /// As [`Feed::each_change`], with short values by themselves.
+    #[inline]
+    pub(crate) fn each_changed(&self, each: impl FnMut(u32, Changed<'_>)) {
         let end = self
             .batch
             .steps

@@ -26,7 +26,7 @@ pub(super) fn id_number(data: &[u8], mut at: usize) -> (Option<u64>, usize) {
 /// As [`id_number`], for a position that eight bytes follow: most id codes have one to four characters, whose number is
 /// computed at once.
 #[inline]
-pub(super) fn short_id_number(data: &[u8], at: usize) -> (Option<u64>, usize) {
+fn short_id_number(data: &[u8], at: usize) -> (Option<u64>, usize) {
     let Some(eight) = data.get(at..at + 8) else {
         return id_number(data, at);
     };
@@ -81,6 +81,21 @@ impl Ids {
         }
         self.others.get(&number).copied()
     }
+
+    /// Returns the slot of the id code at `at`, if there is one, and the position after the id code.
+    #[inline(always)] // a call for each change takes as long as the rest of it
+    pub(super) fn slot_at(&self, data: &[u8], at: usize) -> (Option<u32>, usize) {
+        // The signals that were declared first have an id code of one character.
+        if let Some([first @ b'!'..=b'~', ..=b' ']) = data.get(at..at + 2) {
+            return (self.get(u64::from(first - b' ')), at + 1);
+        }
+        self.long_slot_at(data, at)
+    }
+
+    fn long_slot_at(&self, data: &[u8], at: usize) -> (Option<u32>, usize) {
+        let (number, end) = short_id_number(data, at);
+        (number.and_then(|number| self.get(number)), end)
+    }
 }
 
 #[cfg(test)]
@@ -101,6 +116,10 @@ mod tests {
             let data = [id.as_bytes(), b"\n#1234567"].concat();
             prop_assert_eq!(short_id_number(&data, 0), id_number(&data, 0));
             prop_assert_eq!(short_id_number(&data, 0).1, id.len());
+            let mut ids = Ids::default();
+            prop_assert_eq!(ids.slot_at(&data, 0), (None, id.len()));
+            ids.insert(Ids::number(&id).unwrap(), 7);
+            prop_assert_eq!(ids.slot_at(&data, 0), (Some(7), id.len()));
         }
     }
 }

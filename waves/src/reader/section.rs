@@ -17,9 +17,9 @@ use std::sync::Arc;
 
 use super::batch::{Gatherer, NOWHERE};
 use super::counted::Counted;
-use super::digits::{digit, known_run};
+use super::digits::{decimal, digit, known_run};
 use super::header::Kind;
-use super::ids::{Ids, short_id_number};
+use super::ids::Ids;
 use super::put::{put_digits, put_real, put_text, shown};
 use crate::WaveError;
 
@@ -227,6 +227,7 @@ impl Section {
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
     ) -> Result<Pause, Fault> {
         let data = &self.buffer[..self.to];
+        let ids = &*self.ids;
         loop {
             let at = skip_space(data, self.from);
             self.from = at;
@@ -247,11 +248,13 @@ impl Section {
                         return Ok(Pause::More);
                     };
                     let id_at = skip_space(data, digits_end);
-                    let (number, end) = short_id_number(data, id_at);
+                    let (slot, end) = ids.slot_at(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
-                    let slot = slot(&self.ids, number, data, id_at, end)?;
+                    let Some(slot) = slot else {
+                        return Err(unknown_id(data, id_at, end));
+                    };
                     let digits = &data[at + 1..digits_end];
                     match (word, gatherer.kind(slot)) {
                         (Some(word), Kind::Bits(width)) if digits.len() as u32 <= width && width <= 64 => {
@@ -262,13 +265,16 @@ impl Section {
                     self.from = end;
                 }
                 b'#' => {
-                    let Some(end) = word_end(data, at + 1) else {
-                        return Ok(Pause::More);
+                    let (time, end) = match decimal(data, at + 1) {
+                        Some((time, end)) if matches!(data.get(end), Some(0..=b' ')) => (time, end),
+                        _ => {
+                            let Some(end) = word_end(data, at + 1) else {
+                                return Ok(Pause::More);
+                            };
+                            let what = format!("`{}` is not a time", shown(&data[at..end]));
+                            return Err(Fault { at, what });
+                        }
                     };
-                    let time = number(&data[at + 1..end]).ok_or_else(|| Fault {
-                        at,
-                        what: format!("`{}` is not a time", shown(&data[at..end])),
-                    })?;
                     if time < gatherer.time() {
                         let before = gatherer.time();
                         return Err(Fault {
@@ -290,11 +296,13 @@ impl Section {
                         return Ok(Pause::More);
                     };
                     let id_at = skip_space(data, word_to);
-                    let (number, end) = short_id_number(data, id_at);
+                    let (slot, end) = ids.slot_at(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
-                    let slot = slot(&self.ids, number, data, id_at, end)?;
+                    let Some(slot) = slot else {
+                        return Err(unknown_id(data, id_at, end));
+                    };
                     let word = &data[at + 1..word_to];
                     let put = if first.eq_ignore_ascii_case(&b'r') {
                         put_real
@@ -340,11 +348,13 @@ impl Section {
                     };
                     // IEEE 1364 has no space between the digit and the id code, but some writers do.
                     let id_at = skip_space(data, at + 1);
-                    let (number, end) = short_id_number(data, id_at);
+                    let (slot, end) = ids.slot_at(data, id_at);
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
-                    let slot = slot(&self.ids, number, data, id_at, end)?;
+                    let Some(slot) = slot else {
+                        return Err(unknown_id(data, id_at, end));
+                    };
                     if gatherer.kind(slot) == Kind::Bits(1) {
                         gatherer.put_digit(slot, digit);
                     } else {
@@ -434,33 +444,18 @@ fn leading_word(data: &[u8], at: usize) -> Option<(Option<u64>, usize)> {
     }
 }
 
-fn number(digits: &[u8]) -> Option<u64> {
-    if digits.is_empty() {
-        return None;
-    }
-    digits.iter().try_fold(0u64, |number, byte| {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            return None;
-        }
-        number.checked_mul(10)?.checked_add(u64::from(digit))
-    })
-}
-
-#[inline]
-fn slot(ids: &Ids, number: Option<u64>, data: &[u8], at: usize, end: usize) -> Result<u32, Fault> {
-    number.and_then(|number| ids.get(number)).ok_or_else(|| {
-        let what = if at == end {
-            format!(
-                "unexpected character `{}`: an id code was expected",
-                shown(&data[at..at + 1])
-            )
-        } else {
-            format!(
-                "a change of `{}`, which was never declared: the file is damaged",
-                shown(&data[at..end])
-            )
-        };
-        Fault { at, what }
-    })
+#[cold]
+fn unknown_id(data: &[u8], at: usize, end: usize) -> Fault {
+    let what = if at == end {
+        format!(
+            "unexpected character `{}`: an id code was expected",
+            shown(&data[at..at + 1])
+        )
+    } else {
+        format!(
+            "a change of `{}`, which was never declared: the file is damaged",
+            shown(&data[at..end])
+        )
+    };
+    Fault { at, what }
 }

@@ -23,10 +23,10 @@ use memchr::memmem::Finder;
 
 use super::batch::{Batch, Gatherer, Watch};
 use super::counted::Counted;
-use super::digits::{digit, known_run};
+use super::digits::{decimal, digit, known_run};
 use super::feed::Feed;
 use super::header::Kind;
-use super::ids::{Ids, short_id_number};
+use super::ids::Ids;
 use super::put::{put_digits, put_real, put_text};
 use super::section::Section;
 use crate::WaveError;
@@ -261,7 +261,9 @@ impl<'a> Joined<'a> {
             self.clock = Some(piece.clock);
         }
         for batch in [&self.rest, &piece.settled] {
-            batch.each(0, batch.changes.len(), &self.twins.lengths, &mut *apply);
+            batch.each(0, batch.changes.len(), &self.twins.lengths, |slot, changed| {
+                apply(slot, changed.words());
+            });
         }
         self.rest = piece.rest;
         stretch.samples += piece.samples;
@@ -421,7 +423,7 @@ impl<'a> Worker<'a> {
                         break;
                     }
                     let (number, next) = decimal(data, at + 1)?;
-                    if time.is_some_and(|time| number <= time) {
+                    if *data.get(next)? != b'\n' || time.is_some_and(|time| number <= time) {
                         return None;
                     }
                     if time.is_none() {
@@ -435,7 +437,7 @@ impl<'a> Worker<'a> {
                         self.settle_lines(count);
                     }
                     step_from = self.open.len();
-                    at = next;
+                    at = next + 1;
                 }
                 b'b' => {
                     let (_, mut digits_end) = known_run(data, at + 1);
@@ -539,21 +541,8 @@ fn put_line(gatherer: &mut Gatherer, slot: u32, line: &[u8]) -> Option<()> {
 /// Returns the slot of the id code at `at`, which ends the line, and the position after the line.
 #[inline]
 fn line_end(ids: &Ids, data: &[u8], at: usize) -> Option<(u32, usize)> {
-    let (number, end) = short_id_number(data, at);
-    let slot = ids.get(number?)?;
-    (*data.get(end)? == b'\n').then_some((slot, end + 1))
-}
-
-/// Returns the number at `at`, which ends the line, and the position after the line.
-#[inline]
-fn decimal(data: &[u8], mut at: usize) -> Option<(u64, usize)> {
-    let from = at;
-    let mut number = 0u64;
-    while let Some(digit @ 0..=9) = data.get(at).map(|byte| byte.wrapping_sub(b'0')) {
-        number = number.checked_mul(10)?.checked_add(digit.into())?;
-        at += 1;
-    }
-    (at > from && *data.get(at)? == b'\n').then_some((number, at + 1))
+    let (slot, end) = ids.slot_at(data, at);
+    (*data.get(end)? == b'\n').then_some((slot?, end + 1))
 }
 
 /// Reads up to the buffer's length; the position of the file's own reader does not change.

@@ -1,0 +1,84 @@
+//! Numbers and packed bytes in a block.
+
+use flate2::{Decompress, FlushDecompress};
+
+use super::{Stop, damaged};
+
+/// Unpacks a chain and appends it.
+pub(super) fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Result<(), Stop> {
+    let mut at = 0;
+    let length = varint(chain, &mut at).ok_or_else(|| damaged("a chain of changes is empty"))?;
+    if length == 0 {
+        out.extend_from_slice(&chain[at..]);
+    } else if packing == b'4' {
+        let from = out.len();
+        let to = from as u64 + length;
+        if to > u64::from(u32::MAX) || length > 256 * (chain.len() as u64 + 64) {
+            return Err(damaged("a chain of changes is longer than its packing can be"));
+        }
+        out.resize(to as usize, 0);
+        let count = lz4_flex::block::decompress_into(&chain[at..], &mut out[from..]);
+        if count.ok() != Some(length as usize) {
+            return Err(damaged("a chain of changes cannot be unpacked"));
+        }
+    } else {
+        // The length of a chain includes this number, but its packed bytes begin after it.
+        out.extend(unpacked(&chain[at..], length, false)?);
+    }
+    if u32::try_from(out.len()).is_err() {
+        return Err(damaged("a block unpacks to more than 4 GiB"));
+    }
+    Ok(())
+}
+
+/// Unpacks `length` bytes that zlib packed; where allowed, they may also be stored without packing.
+pub(super) fn unpacked(bytes: &[u8], length: u64, may_be_plain: bool) -> Result<Vec<u8>, Stop> {
+    if may_be_plain && length == bytes.len() as u64 {
+        return Ok(bytes.to_vec());
+    }
+    // zlib packs by a factor of 1000 at most.
+    let room = usize::try_from(length)
+        .ok()
+        .filter(|room| *room <= 1100 * (bytes.len() + 64));
+    let room = room.ok_or_else(|| damaged("something is longer than its packing can be"))?;
+    let mut out = Vec::with_capacity(room);
+    let unpacked = Decompress::new(true).decompress_vec(bytes, &mut out, FlushDecompress::Finish);
+    match unpacked {
+        Ok(_) if out.len() == room => Ok(out),
+        _ => Err(damaged("something cannot be unpacked")),
+    }
+}
+
+pub(super) fn word(bytes: &[u8], at: usize) -> Option<u64> {
+    let mut word = [0; 8];
+    word.copy_from_slice(bytes.get(at..at.checked_add(8)?)?);
+    Some(u64::from_be_bytes(word))
+}
+
+/// A number in seven bits a byte, the lowest first.
+#[inline]
+pub(super) fn varint(bytes: &[u8], at: &mut usize) -> Option<u64> {
+    let first = *bytes.get(*at)?;
+    *at += 1;
+    let mut number = u64::from(first & 0x7f);
+    let (mut byte, mut shift) = (first, 7);
+    while byte & 0x80 != 0 {
+        if shift > 63 {
+            return None;
+        }
+        byte = *bytes.get(*at)?;
+        *at += 1;
+        number |= u64::from(byte & 0x7f) << shift;
+        shift += 7;
+    }
+    Some(number)
+}
+
+pub(super) fn signed_varint(bytes: &[u8], at: &mut usize) -> Option<i64> {
+    let from = *at;
+    let number = varint(bytes, at)?;
+    let bits = 7 * (*at - from) as u32;
+    let negative = bytes[*at - 1] & 0x40 != 0;
+    let sign = if negative { u64::MAX.unbounded_shl(bits) } else { 0 };
+    Some((number | sign) as i64)
+}
