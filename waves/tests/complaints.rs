@@ -1,26 +1,11 @@
 //! What people complain of in other comparers: each of these was reported as equal by some tool.
 
+#[path = "../examples/small_pairs.rs"]
+mod small_pairs;
+
 use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict};
 
-/// A clock of the period in ns and a word, `values` from clock to clock; 100 ns in all.
-fn vcd(period: usize, name: &str, values: &[u32]) -> String {
-    let mut text = format!(
-        "$timescale 1ns $end $scope module t $end $var wire 1 ! clk $end $var wire 16 \" {name} $end $var real 64 r level $end \
-         $upscope $end $enddefinitions $end\n#0\n0!\nr0.5 r\n"
-    );
-    for (at, value) in values.iter().enumerate() {
-        if period > 0 {
-            text += &format!(
-                "#{}\n0!\nb{value:b} \"\n#{}\n1!\n",
-                period * at,
-                period * at + period / 2
-            );
-        } else {
-            text += &format!("#{}\nb{value:b} \"\n", 10 * at);
-        }
-    }
-    text
-}
+use self::small_pairs::{Deserves, small_pairs, vcd};
 
 fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
     let folder = tempfile::tempdir().unwrap();
@@ -28,6 +13,27 @@ fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
     std::fs::write(&a_path, a).unwrap();
     std::fs::write(&b_path, b).unwrap();
     diff::compare(&a_path, &b_path, options, &mut |_| {}).unwrap()
+}
+
+#[test]
+fn unit_each_small_pair_gets_the_verdict_that_it_deserves() {
+    let mut options = DiffOptions::default();
+    options.add_tolerance("level=0.001abs").unwrap();
+    let mut count = 0;
+    for pair in small_pairs() {
+        let expected = match pair.deserves {
+            Deserves::Equal => DiffVerdict::Equal,
+            Deserves::Different => DiffVerdict::Different,
+            Deserves::Incomparable => DiffVerdict::Incomparable,
+        };
+        let [a, b] = &pair.texts;
+        for (a, b) in [(a, b), (b, a)] {
+            let result = compare(a, b, &options);
+            assert_eq!(result.result, expected, "{}: {result}", pair.name);
+        }
+        count += 1;
+    }
+    assert_eq!(count, 11);
 }
 
 #[test]

@@ -99,9 +99,7 @@ pub(super) fn decimal(data: &[u8], at: usize) -> Option<(u64, usize)> {
     /// With this added, a byte from 10 on has its upper bit set.
     const ABOVE_9: u64 = u64::from_le_bytes([0x80 - 10; 8]);
     const HIGH: u64 = u64::from_le_bytes([0x80; 8]);
-    const POWERS: [u64; 9] = [
-        1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000,
-    ];
+    const POWERS: [u64; 9] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
     let (mut number, mut end) = (0u64, at);
     // Eight digits at a time; only the first byte that is no digit is sure to be found.
     while let Some(eight) = data.get(end..end + 8) {

@@ -36,7 +36,8 @@ impl Layout {
         let head = bytes_at(file, block, 0, (HEAD + NUMBERS) as u64)?;
         let mut at = HEAD;
         let mut number = || varint(&head, &mut at);
-        let (Some(start), Some(unpacked), Some(packed), Some(_)) = (word(&head, 8), number(), number(), number()) else {
+        let (Some(start), Some(unpacked), Some(packed), Some(_)) = (word(&head, 8), number(), number(), number())
+        else {
             return Ok(None);
         };
         let Some(behind) = (at as u64).checked_add(packed).filter(|behind| *behind < block.length) else {
