@@ -4,7 +4,7 @@
 //! ```sh
 //! cargo bench -p wavecmp --bench speed                       # pairs of 400 MB
 //! cargo bench -p wavecmp --bench speed -- --megabytes 50
-//! cargo bench -p wavecmp --bench speed -- --generate DIR     # only writes the pairs to DIR
+//! cargo bench -p wavecmp --bench speed -- --generate DIR 20  # only writes the pairs, of 20 MB each, to DIR
 //! cargo bench -p wavecmp --bench speed -- --files A B        # two existing files
 //! ```
 //!
@@ -25,7 +25,7 @@ use wavecmp::diff::{self, DiffOptions, DiffVerdict};
 
 use self::generator::{Recording, Second, Shape};
 
-const RUNS: usize = 3;
+const RUNS: usize = 5;
 const PAIRS: [(&str, Shape, Second); 5] = [
     ("words, other names", Shape::Words, Second::OtherNames),
     ("words, same bytes", Shape::Words, Second::SameBytes),
@@ -40,15 +40,19 @@ fn main() {
     match arguments[..] {
         ["--run", how, a, b] => run(how, Path::new(a), Path::new(b)),
         ["--files", a, b] => compare("two files", Path::new(a), Path::new(b)),
-        ["--generate", folder] => {
+        ["--generate", folder, megabytes] => {
             for pair in 0..PAIRS.len() {
-                generate(Path::new(folder), pair, 400);
+                generate(Path::new(folder), pair, number(megabytes));
             }
         }
-        ["--megabytes", megabytes] => all(megabytes.parse().expect("--megabytes takes a whole number")),
+        ["--megabytes", megabytes] => all(number(megabytes)),
         [] => all(400),
-        _ => panic!("--megabytes N, --generate DIR or --files A B"),
+        _ => panic!("--megabytes N, --generate DIR N or --files A B"),
     }
+}
+
+fn number(megabytes: &str) -> u64 {
+    megabytes.parse().expect("megabytes are a whole number")
 }
 
 fn all(megabytes: u64) {
