@@ -1,5 +1,6 @@
 //! Damaged and hostile waveforms: an error with the place, never a panic, never much memory.
 
+use std::io::{Read, Write};
 use std::path::Path;
 
 use proptest::prelude::*;
@@ -121,6 +122,62 @@ fn unit_what_would_eat_the_memory_is_refused() {
     assert!(error(endless.as_bytes()).contains("longer than"));
     let endless = format!("$scope module {}", "x".repeat(40 << 20));
     assert!(error(endless.as_bytes()).contains("longer than"));
+}
+
+/// An FST as a writer packs it as a whole.
+fn packed_as_a_whole(plain: &[u8]) -> Vec<u8> {
+    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    gzip.write_all(plain).unwrap();
+    let gzip = gzip.finish().unwrap();
+    let length = (gzip.len() as u64 + 16).to_be_bytes();
+    [&[254], &length[..], &(plain.len() as u64).to_be_bytes(), &gzip].concat()
+}
+
+#[test]
+fn unit_lengths_that_an_fst_cannot_have_are_refused_before_memory_is_reserved() {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("killed.fst");
+    let mut refused = 0;
+    for name in ["waves/icarus.fst", "waves/ghdl.fst", "cut/ran.fst", "cut/killed.fst"] {
+        let mut plain = std::fs::read(fixtures.join(name)).unwrap();
+        if plain[0] == 254 {
+            let mut unpacked = Vec::new();
+            flate2::read::GzDecoder::new(&plain[17..])
+                .read_to_end(&mut unpacked)
+                .unwrap();
+            plain = unpacked;
+        }
+        if name.contains("killed") {
+            std::fs::copy(
+                fixtures.join("cut/killed.fst.hier"),
+                folder.path().join("killed.fst.hier"),
+            )
+            .unwrap();
+        }
+        let length = |at: usize| u64::from_be_bytes(plain[at + 1..at + 9].try_into().unwrap()) as usize;
+        let mut at = 0;
+        while at + 9 < plain.len() && length(at) >= 8 && at + 1 + length(at) <= plain.len() {
+            let next = at + 1 + length(at);
+            // Lengths are at the beginning of a block and at its end.
+            for place in (at + 1..at + 60)
+                .chain(next.max(60) - 40..next)
+                .filter(|place| place + 6 <= next)
+            {
+                let mut damaged = plain.clone();
+                damaged[place..place + 6].copy_from_slice(&[0x01, 0x12, 0xa4, 0xff, 0xff, 0x7f]);
+                for content in [packed_as_a_whole(&damaged), damaged] {
+                    std::fs::write(&path, content).unwrap();
+                    match compare(&path) {
+                        Ok(result) => assert_ne!(result.result, DiffVerdict::Different, "{name} {place}"),
+                        Err(_) => refused += 1,
+                    }
+                }
+            }
+            at = next;
+        }
+    }
+    assert!(refused > 1000, "{refused}");
 }
 
 #[test]

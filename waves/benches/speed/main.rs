@@ -25,7 +25,7 @@ use wavecmp::diff::{self, DiffOptions, DiffVerdict};
 
 use self::generator::{Recording, Second, Shape};
 
-const RUNS: usize = 5;
+const RUNS: usize = 3;
 const PAIRS: [(&str, Shape, Second); 5] = [
     ("words, other names", Shape::Words, Second::OtherNames),
     ("words, same bytes", Shape::Words, Second::SameBytes),

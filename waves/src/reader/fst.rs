@@ -2,13 +2,13 @@
 //!
 //! That crate reads block by block and calls back in the order of time, so memory is bounded by the size of a block,
 //! which the writer chooses, and not by the length of the file; but a file that is packed as a whole, as GHDL writes
-//! it, is unpacked in memory first. It is the reader inside `wellen`, by the same author, without what `wellen` keeps
+//! it, is unpacked in memory first ([`super::fst_file`]). It is the reader inside `wellen`, by the same author, without what `wellen` keeps
 //! in memory; it is pinned to its minor version, since its interface still changes.
 //!
 //! It does not report the periods of `$dumpoff`. It panics on some damaged files; that is caught here.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::BufReader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
@@ -19,21 +19,16 @@ use fst_reader::{
 use super::batch::{Gatherer, NOWHERE};
 use super::digits::pack;
 use super::fst_blocks::{Blocks, Stop};
+use super::fst_file::{self, Bytes, Cut, PACKED};
 use super::header::{Declarations, Kind};
 use super::section::Ended;
 use super::values::pack_text;
 use crate::WaveError;
 
-type Source = FstReader<BufReader<Whole>>;
+type Source = FstReader<BufReader<Bytes>>;
 
 /// Beginning of a file with a header block: its first byte and the length.
 const HEADER: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 0x49];
-/// First byte of a file that is packed as a whole.
-const PACKED: u8 = 254;
-/// Largest length of such a file after unpacking, which the crate does in memory.
-const PACKED_BYTES: u64 = 1 << 28;
-/// Number of bytes of a block header: kind and length.
-const BLOCK_BYTES: u64 = 9;
 
 /// Returns whether the file begins like an FST.
 pub(super) fn is_fst(beginning: &[u8]) -> bool {
@@ -53,39 +48,6 @@ pub(super) struct FstValues {
     blocks: Option<Blocks>,
 }
 
-/// The file up to the end of its last complete block.
-struct Whole {
-    file: File,
-    at: u64,
-    end: u64,
-}
-
-impl Whole {
-    fn new(file: File, end: u64) -> Self {
-        Self { file, at: 0, end }
-    }
-}
-
-impl Read for Whole {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let left = usize::try_from(self.end.saturating_sub(self.at)).unwrap_or(usize::MAX);
-        let room = left.min(buffer.len());
-        let count = self.file.read(&mut buffer[..room])?;
-        self.at += count as u64;
-        Ok(count)
-    }
-}
-
-impl Seek for Whole {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.at = self.file.seek(match to {
-            SeekFrom::End(by) => SeekFrom::Start(self.end.checked_add_signed(by).ok_or(io::ErrorKind::InvalidInput)?),
-            other => other,
-        })?;
-        Ok(self.at)
-    }
-}
-
 /// Path of the file in which a writer keeps the hierarchy until it appends it: `x.fst.hier`.
 fn hierarchy_beside(path: &Path) -> Option<File> {
     let mut name = path.as_os_str().to_owned();
@@ -98,12 +60,10 @@ fn hierarchy_beside(path: &Path) -> Option<File> {
 
 /// Opens a file and reads its declarations.
 pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> {
-    let mut file = File::open(path).map_err(WaveError::file(path, "open"))?;
-    let (bytes, cut) = check_blocks(path, &mut file)?;
-    let up_to = |end| {
-        let file = File::open(path).map_err(WaveError::file(path, "open"))?;
-        Ok::<_, WaveError>(BufReader::new(Whole::new(file, end)))
-    };
+    let mut file = Bytes::open(path)?;
+    let cut = check(path, &mut file, false)?;
+    let bytes = file.length();
+    let up_to = |end| Ok::<_, WaveError>(BufReader::new(file.again(path, end)?));
     let opened = match &cut {
         None => {
             let whole = up_to(bytes)?;
@@ -140,10 +100,15 @@ pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> 
         Some(what) => Err(damaged(path, &what)),
         None => declarations.finish().map_err(|what| damaged(path, &what)),
     }?;
-    let blocks = match File::open(path) {
-        Ok(file) if !is_cut => Blocks::find(file, &slots, &declarations.kinds).unwrap_or(None),
-        _ => None,
+    let blocks = if is_cut {
+        None
+    } else {
+        let again = file.again(path, bytes)?;
+        Blocks::find(again, &slots, &declarations.kinds).unwrap_or(None)
     };
+    if blocks.is_none() {
+        check(path, &mut file, true)?;
+    }
     let path = path.to_owned();
     let values = FstValues {
         path,
@@ -154,6 +119,11 @@ pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> 
         blocks,
     };
     Ok((declarations, values))
+}
+
+fn check(path: &Path, file: &mut Bytes, chains: bool) -> Result<Option<Cut>, WaveError> {
+    let checked = fst_file::check(file, chains).map_err(WaveError::file(path, "read"))?;
+    checked.map_err(|what| damaged(path, &what))
 }
 
 fn declare(
@@ -270,54 +240,6 @@ fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result
     Ok(())
 }
 
-/// Byte of a block that does not lie within its file, and the reason.
-type Cut = (u64, String);
-
-/// Returns the file's length, and the first block that does not lie within it.
-fn check_blocks(path: &Path, file: &mut File) -> Result<(u64, Option<Cut>), WaveError> {
-    let read = WaveError::file(path, "read");
-    let mut walk = || -> io::Result<Result<(u64, Option<Cut>), String>> {
-        let length = file.metadata()?.len();
-        let mut at = 0;
-        while at < length {
-            file.seek(SeekFrom::Start(at))?;
-            let mut head = [0; BLOCK_BYTES as usize];
-            if length - at < BLOCK_BYTES {
-                let what = format!("the file ends inside a block at byte {at}: it was cut off");
-                return Ok(Ok((length, Some((at, what)))));
-            }
-            file.read_exact(&mut head)?;
-            if head[0] == PACKED {
-                let mut length = [0; 8];
-                file.read_exact(&mut length)?;
-                let unpacked = u64::from_be_bytes(length);
-                if unpacked > PACKED_BYTES {
-                    return Ok(Err(format!(
-                        "the file is packed as a whole, {unpacked} bytes, and at most {PACKED_BYTES} are unpacked in memory"
-                    )));
-                }
-                break;
-            }
-            let section = u64::from_be_bytes([head[1], head[2], head[3], head[4], head[5], head[6], head[7], head[8]]);
-            let next = at.checked_add(1).and_then(|at| at.checked_add(section));
-            at = match next {
-                // A block that is still being written is marked to be skipped.
-                Some(next) if section >= 8 && next <= length => next,
-                _ => {
-                    let what =
-                        format!("a block of {section} bytes at byte {at} does not end in the file: it was cut off");
-                    return Ok(Ok((length, Some((at, what)))));
-                }
-            };
-        }
-        Ok(Ok((length, None)))
-    };
-    let walked = walk();
-    let back = file.seek(SeekFrom::Start(0));
-    let found = walked.and_then(|found| back.map(|_| found)).map_err(read)?;
-    found.map_err(|what| damaged(path, &what))
-}
-
 fn unit_fs(exponent: i8) -> Result<u64, String> {
     let zeros = u32::try_from(i32::from(exponent) + 15).ok();
     let unit = zeros.and_then(|zeros| 10u64.checked_pow(zeros));
@@ -330,7 +252,7 @@ fn guarded<T>(path: &Path, call: impl FnOnce() -> T) -> Result<T, WaveError> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|_| damaged(path, "its reader gave up"))
 }
 
-fn damaged(path: &Path, what: &str) -> WaveError {
+pub(super) fn damaged(path: &Path, what: &str) -> WaveError {
     WaveError::Damaged {
         path: path.to_owned(),
         place: "FST".to_owned(),

@@ -22,6 +22,7 @@ mod digits;
 mod feed;
 mod fst;
 mod fst_blocks;
+mod fst_file;
 mod header;
 mod ids;
 mod put;

@@ -1,12 +1,12 @@
 //! The chains of changes of a block, and which signals change at which time.
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
 use super::layout::{Layout, Table};
 use super::packing::{unpack_chain, varint};
 use super::{Form, Stop, damaged};
+use crate::reader::fst_file::Bytes;
 
 /// Number of bytes that are read at once; chains are mostly short.
 const READ_BYTES: usize = 1 << 16;
@@ -30,7 +30,7 @@ pub(super) struct Chains {
 impl Chains {
     /// Unpacks the chains of the signals that are `wanted`, one after the other, so that only one is in memory packed.
     pub(super) fn unpack(
-        file: &mut File,
+        file: &mut Bytes,
         layout: &Layout,
         table: &Table,
         forms: &[Form],

@@ -1,10 +1,10 @@
 //! Parts of a block other than the changes themselves: what is where, the times, and where the chains begin.
 
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
-use super::packing::{signed_varint, unpacked, varint, word};
+use super::packing::{most_unpacked, signed_varint, unpacked, varint, word};
 use super::{Block, CHANGES_ALIAS_2, Form, Stop, damaged};
+use crate::reader::fst_file::Bytes;
 
 /// Bytes of a block of changes before the values: length, first and last time, memory.
 const HEAD: usize = 32;
@@ -13,6 +13,9 @@ const NUMBERS: usize = 30;
 const HANDLES: usize = 11;
 /// Bytes at the end: lengths of the times.
 const TAIL: u64 = 24;
+
+/// Largest number of signals in a block: more than a file may declare.
+pub(super) const MOST_HANDLES: u64 = 1 << 20;
 
 /// Where the parts of a block are.
 pub(super) struct Layout {
@@ -32,7 +35,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Reads the beginning of a block; `None` if it is too short.
-    pub(super) fn read(file: &mut File, block: Block) -> io::Result<Option<Self>> {
+    pub(super) fn read(file: &mut Bytes, block: Block) -> io::Result<Option<Self>> {
         let head = bytes_at(file, block, 0, (HEAD + NUMBERS) as u64)?;
         let mut at = HEAD;
         let mut number = || varint(&head, &mut at);
@@ -60,36 +63,84 @@ impl Layout {
     }
 
     /// Reads the values before the first change.
-    pub(super) fn values(&self, file: &mut File) -> Result<Vec<u8>, Stop> {
+    pub(super) fn values(&self, file: &mut Bytes) -> Result<Vec<u8>, Stop> {
         let (at, packed, length) = self.values;
         unpacked(&bytes_at(file, self.block, at, packed)?, length, true)
     }
 
+    /// Checks that the lengths of the values and the times can be true; with `chains`, also those of the chains.
+    pub(super) fn check(&self, file: &mut Bytes, chains: bool) -> Result<(), Stop> {
+        let more = || damaged("it says that it holds more than it can");
+        let (_, packed, unpacked) = self.values;
+        let (tail, times_at) = self.tail(file)?;
+        let fits = unpacked <= most_unpacked(packed)
+            && self.handles <= MOST_HANDLES
+            && tail.length <= most_unpacked(tail.packed)
+            && tail.count <= tail.length;
+        if !fits {
+            return Err(more());
+        }
+        if !chains {
+            return Ok(());
+        }
+        for (from, to) in self.table(file, times_at)?.into_iter().flatten() {
+            let head = bytes_at(file, self.block, self.chains_from + from as u64, 10)?;
+            if varint(&head, &mut 0).is_none_or(|length| length > most_unpacked((to - from) as u64)) {
+                return Err(more());
+            }
+        }
+        Ok(())
+    }
+
     /// Reads the times, and where the chains are.
-    pub(super) fn times_and_table(&self, file: &mut File) -> Result<(Vec<u64>, Table), Stop> {
-        let short = || damaged("a block ends too early");
-        let tail_at = self.block.length.checked_sub(TAIL).ok_or_else(short)?;
-        let tail = bytes_at(file, self.block, tail_at, TAIL)?;
-        let [length, packed, count] = [0, 8, 16].map(|by| word(&tail, by).unwrap_or(0));
-        let times_at = tail_at.checked_sub(packed).ok_or_else(short)?;
-        let times = times(&bytes_at(file, self.block, times_at, packed)?, length, count)?;
-        let table_end = times_at.checked_sub(8).ok_or_else(short)?;
-        let length = word(&bytes_at(file, self.block, table_end, 8)?, 0).ok_or_else(short)?;
-        let table_at = table_end.checked_sub(length).ok_or_else(short)?;
-        let chains = table_at.checked_sub(self.chains_from).ok_or_else(short)? as usize;
-        let bytes = bytes_at(file, self.block, table_at, length)?;
+    pub(super) fn times_and_table(&self, file: &mut Bytes) -> Result<(Vec<u64>, Table), Stop> {
+        let (tail, times_at) = self.tail(file)?;
+        let times = times(
+            &bytes_at(file, self.block, times_at, tail.packed)?,
+            tail.length,
+            tail.count,
+        )?;
+        Ok((times, self.table(file, times_at)?))
+    }
+
+    /// Returns the lengths of the times, and their place.
+    fn tail(&self, file: &mut Bytes) -> Result<(Tail, u64), Stop> {
+        let at = self.block.length.checked_sub(TAIL).ok_or_else(short)?;
+        let bytes = bytes_at(file, self.block, at, TAIL)?;
+        let [length, packed, count] = [0, 8, 16].map(|by| word(&bytes, by).unwrap_or(0));
+        let times_at = at.checked_sub(packed).ok_or_else(short)?;
+        Ok((Tail { length, packed, count }, times_at))
+    }
+
+    /// Returns where the chains are; its own length is before the times.
+    fn table(&self, file: &mut Bytes, times_at: u64) -> Result<Table, Stop> {
+        let end = times_at.checked_sub(8).ok_or_else(short)?;
+        let length = word(&bytes_at(file, self.block, end, 8)?, 0).ok_or_else(short)?;
+        let at = end.checked_sub(length).ok_or_else(short)?;
+        let chains = at.checked_sub(self.chains_from).ok_or_else(short)? as usize;
+        let bytes = bytes_at(file, self.block, at, length)?;
         let handles = usize::try_from(self.handles).map_err(|_| short())?;
         let table = match self.block.kind {
             CHANGES_ALIAS_2 => table_2(&bytes, handles, chains),
             _ => table_1(&bytes, handles, chains),
         };
-        let table = table.ok_or_else(|| damaged("where the changes begin is not told"))?;
-        Ok((times, table))
+        table.ok_or_else(|| damaged("where the changes begin is not told"))
     }
 }
 
+/// Numbers at the end of a block: bytes of the times, unpacked and packed, and the number of times.
+struct Tail {
+    length: u64,
+    packed: u64,
+    count: u64,
+}
+
+fn short() -> Stop {
+    damaged("a block ends too early")
+}
+
 /// Returns up to `length` bytes of a block, fewer where it ends.
-fn bytes_at(file: &mut File, block: Block, at: u64, length: u64) -> io::Result<Vec<u8>> {
+pub(super) fn bytes_at(file: &mut Bytes, block: Block, at: u64, length: u64) -> io::Result<Vec<u8>> {
     let length = length.min(block.length.saturating_sub(at));
     let mut bytes = vec![0; usize::try_from(length).map_err(io::Error::other)?];
     file.seek(SeekFrom::Start(block.at + at))?;
@@ -98,7 +149,7 @@ fn bytes_at(file: &mut File, block: Block, at: u64, length: u64) -> io::Result<V
 }
 
 /// Returns how the changes of each handle are written.
-pub(super) fn forms(file: &mut File, block: Block) -> io::Result<Option<Vec<Form>>> {
+pub(super) fn forms(file: &mut Bytes, block: Block) -> io::Result<Option<Vec<Form>>> {
     let Some(packed) = block
         .length
         .checked_sub(24)

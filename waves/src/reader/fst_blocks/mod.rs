@@ -14,16 +14,18 @@
 
 mod chains;
 mod layout;
+mod lengths;
 mod packing;
 
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
 use self::chains::Chains;
 use self::layout::{Layout, forms};
+pub(super) use self::lengths::problem;
 use self::packing::varint;
 use super::batch::{Gatherer, NOWHERE};
 use super::digits::pack;
+use super::fst_file::Bytes;
 use super::header::Kind;
 use super::values::pack_text;
 
@@ -42,11 +44,11 @@ const DIGITS: &[u8; 8] = b"xzhuwl-?";
 
 /// A block that holds changes.
 #[derive(Debug, Clone, Copy)]
-struct Block {
-    kind: u8,
+pub(super) struct Block {
+    pub(super) kind: u8,
     /// Byte after its kind, and its length from there on.
-    at: u64,
-    length: u64,
+    pub(super) at: u64,
+    pub(super) length: u64,
 }
 
 /// How a signal's changes are written.
@@ -59,7 +61,7 @@ enum Form {
 
 /// The blocks of a file that this module can read.
 pub(super) struct Blocks {
-    file: File,
+    file: Bytes,
     blocks: Vec<Block>,
     /// Indexed by handle.
     forms: Vec<Form>,
@@ -87,8 +89,8 @@ fn damaged(what: &str) -> Stop {
 impl Blocks {
     /// Finds the blocks of a file that contains all of them completely; `None` if only `fst-reader` can read it.
     /// `slots` and `kinds` are those of the declarations.
-    pub(super) fn find(mut file: File, slots: &[Option<u32>], kinds: &[Kind]) -> io::Result<Option<Self>> {
-        let length = file.metadata()?.len();
+    pub(super) fn find(mut file: Bytes, slots: &[Option<u32>], kinds: &[Kind]) -> io::Result<Option<Self>> {
+        let length = file.length();
         let mut blocks = Vec::new();
         let mut geometry = None;
         let mut at = 0;

@@ -4,6 +4,12 @@ use flate2::{Decompress, FlushDecompress};
 
 use super::{Stop, damaged};
 
+/// Returns the largest number of bytes to which so many can unpack: zlib packs by a factor of 1000 at most, LZ4 and FastLZ
+/// by less than 300.
+pub(super) fn most_unpacked(packed: u64) -> u64 {
+    packed.saturating_add(64).saturating_mul(1100)
+}
+
 /// Unpacks a chain and appends it.
 pub(super) fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Result<(), Stop> {
     let mut at = 0;
@@ -36,10 +42,9 @@ pub(super) fn unpacked(bytes: &[u8], length: u64, may_be_plain: bool) -> Result<
     if may_be_plain && length == bytes.len() as u64 {
         return Ok(bytes.to_vec());
     }
-    // zlib packs by a factor of 1000 at most.
     let room = usize::try_from(length)
         .ok()
-        .filter(|room| *room <= 1100 * (bytes.len() + 64));
+        .filter(|_| length <= most_unpacked(bytes.len() as u64));
     let room = room.ok_or_else(|| damaged("something is longer than its packing can be"))?;
     let mut out = Vec::with_capacity(room);
     let unpacked = Decompress::new(true).decompress_vec(bytes, &mut out, FlushDecompress::Finish);
