@@ -1,7 +1,7 @@
 //! The controllers of a machine's axes: the gains computed from its file, and warnings about them.
 
-use crate::output;
 use crate::plot::{Curve, Panel};
+use crate::warning::Warning;
 use posicast_model::control::DEFAULT_MARGIN;
 use posicast_model::control::sampled::Margins;
 use posicast_model::hardware::{AxisLoop, Hardware};
@@ -41,22 +41,28 @@ pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Opti
 }
 
 impl AxisControl {
-    /// Prints the warnings on standard error.
-    pub(crate) fn warn(&self) {
-        for warning in self.warnings() {
-            output::say(&format!("warning: controller of axis `{}`: {warning}", self.axis));
-        }
+    /// The warnings about the controller of the axis with this index.
+    pub(crate) fn warnings_of(&self, index: usize) -> Vec<Warning> {
+        let warnings = self.warnings().into_iter();
+        let placed = warnings.map(|(key, text)| {
+            let text = format!("controller of axis `{}`: {text}", self.axis);
+            Warning::new(index, key, text)
+        });
+        placed.collect()
     }
 
-    fn warnings(&self) -> Vec<String> {
-        let of_law = self.of_axis.derived.warnings.iter().map(ToString::to_string);
+    /// Texts of the warnings, each with the key that it is about.
+    fn warnings(&self) -> Vec<(&'static str, String)> {
+        let of_law = self.of_axis.derived.warnings.iter();
+        let of_law = of_law.map(|warning| (warning.key(), warning.to_string()));
         let hardware = [
-            (self.of_axis.is_one_sided, ONE_SIDED),
-            (self.of_axis.is_one_channel, ONE_CHANNEL),
+            (self.of_axis.is_one_sided, "axis.pwm.mode", ONE_SIDED),
+            (self.of_axis.is_one_channel, "fixed_point.command_bits", ONE_CHANNEL),
         ];
-        let hardware = hardware.into_iter().filter(|(holds, _)| *holds);
-        let hardware = hardware.map(|(_, text)| text.to_owned());
-        let range = self.of_axis.no_travel.iter().map(ToString::to_string);
+        let hardware = hardware.into_iter().filter(|(holds, ..)| *holds);
+        let hardware = hardware.map(|(_, key, text)| (key, text.to_owned()));
+        let range = self.of_axis.no_travel.iter();
+        let range = range.map(|warning| ("axis.limits.travel", warning.to_string()));
         of_law.chain(hardware).chain(range).collect()
     }
 
@@ -151,7 +157,7 @@ impl AxisControl {
                 })
                 .collect(),
             supervision: self.of_axis.supervision.words().into(),
-            warnings: self.warnings(),
+            warnings: self.warnings().into_iter().map(|(_, text)| text).collect(),
         }
     }
 

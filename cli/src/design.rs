@@ -124,11 +124,13 @@ pub(crate) struct DesignReport<'a> {
     pub(crate) controllers: Vec<Option<AxisControl>>,
     /// Whether every axis is certified, and not just those of `optimal`.
     certify: bool,
+    /// The machine file, or the folder that contains it.
+    path: &'a Path,
 }
 
 impl<'a> DesignReport<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
-    pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn new(machine: &'a Machine, path: &'a Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|error| machine::of_design(machine, &error, path))?;
         let hardware = Hardware::of(machine, &design).map_err(|error| machine::of_hardware(&error, path))?;
         let controllers = control::of_machine(machine, &hardware);
@@ -138,22 +140,22 @@ impl<'a> DesignReport<'a> {
             hardware,
             controllers,
             certify: false,
+            path,
         })
     }
 
     /// Prints warnings on standard error about tables and controllers, and about guards that an axis lacks.
     pub(crate) fn warn(&self) {
-        let tables = beyond_tolerance(self.machine, &self.design);
-        for warning in tables.into_iter().chain(guards::missing(self.machine)) {
-            output::say(&format!("warning: {warning}"));
-        }
-        for warning in self.families().filter_map(|family| family.warning()) {
-            output::say(&format!("warning: {warning}"));
-        }
-        if let Some(warning) = error_table::not_built(self.machine, &self.hardware) {
-            output::say(&format!("warning: {warning}"));
-        }
-        self.controllers.iter().flatten().for_each(AxisControl::warn);
+        let mut warnings = beyond_tolerance(self.machine, &self.design);
+        warnings.extend(guards::missing(self.machine));
+        warnings.extend(self.families().filter_map(|family| family.warning()));
+        warnings.extend(error_table::not_built(self.machine, &self.hardware));
+        let controllers = self.controllers.iter().enumerate();
+        warnings.extend(controllers.flat_map(|(index, control)| {
+            let of_axis = control.as_ref().map(|control| control.warnings_of(index));
+            of_axis.unwrap_or_default()
+        }));
+        warnings.iter().for_each(|warning| warning.print(self.path));
     }
 
     fn axes(&self) -> impl Iterator<Item = AxisReport<'_>> {
@@ -165,6 +167,8 @@ impl<'a> DesignReport<'a> {
             .zip(self.hardware.axes())
             .enumerate()
             .map(|(place, (((axis, tables), control), built))| AxisReport {
+                path: self.path,
+                place,
                 axis,
                 tables,
                 certificate: CertificateReport::new(axis, tables, self.design.sample_hz, self.certify),
@@ -181,7 +185,9 @@ impl<'a> DesignReport<'a> {
     /// The axes whose modes move, with their tables.
     fn families(&self) -> impl Iterator<Item = FamilyReport<'_>> {
         let axes = self.machine.axes.iter().enumerate();
-        axes.filter_map(|(index, axis)| FamilyReport::new(axis, self.design.family_of(index), self.design.sample_hz))
+        axes.filter_map(|(index, axis)| {
+            FamilyReport::new(index, axis, self.design.family_of(index), self.design.sample_hz)
+        })
     }
 
     /// The residual over the variable of the modes, for each axis whose modes move.
@@ -220,6 +226,10 @@ impl<'a> DesignReport<'a> {
 }
 
 struct AxisReport<'a> {
+    /// The machine file, or the folder that contains it.
+    path: &'a Path,
+    /// Index of the axis, from 0.
+    place: usize,
     axis: &'a AxisSection,
     tables: &'a AxisTables,
     /// What is certified of it, where that is asked for.
@@ -409,7 +419,8 @@ impl AxisReport<'_> {
             );
         }
         for warning in &self.convolution.warnings {
-            let _ = writeln!(text, "\n  warning: {warning}");
+            let placed = machine::place(self.path, self.place, "axis.shaper", warning);
+            let _ = writeln!(text, "\n  warning: {placed}");
         }
         text
     }

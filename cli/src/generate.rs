@@ -7,7 +7,7 @@ use crate::hal::HalArgs;
 use crate::hardware::{Built, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
-use crate::output;
+use crate::output::{self, shell_word};
 use crate::{sopc, verilog};
 use posicast_model::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     verilog::add_sources(&mut package, &file, &modules)?;
     kit::add(&mut package, &kit::files(&file.machine, &modules, &built))?;
     let (components, stage) = (&built.components, built.stage.as_ref());
-    sopc::add(&mut package, &file.machine, board, stage, components)?;
+    sopc::add(&mut package, (&file.machine, &args.machine), board, stage, components)?;
     driver::add(&mut package, &file.machine, &modules, components, stage)?;
     args.hal.add(
         &mut package,
@@ -114,7 +114,7 @@ impl Document {
             folder.display(),
             entries(folder, &files).join(", "),
             folder.join("README.md").display(),
-            folder.display(),
+            shell_word(folder),
         )
     }
 }

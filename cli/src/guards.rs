@@ -1,5 +1,6 @@
 //! Guards that an axis lacks because the machine file does not ask for them, and what can happen without them.
 
+use crate::warning::Warning;
 use posicast_model::control::{LostSign, lost_sign};
 use posicast_model::machine_file::{AxisSection, LimitsSection, Machine};
 
@@ -35,18 +36,21 @@ const GUARDS: [Guard; 4] = [
 ];
 
 /// A warning for every guard that an axis with a controller lacks.
-pub(crate) fn missing(machine: &Machine) -> Vec<String> {
-    let loops = machine.axes.iter().filter(|axis| axis.controller.is_some());
-    let of_axis = |axis: &'_ AxisSection| {
+pub(crate) fn missing(machine: &Machine) -> Vec<Warning> {
+    let axes = machine.axes.iter().enumerate();
+    let loops = axes.filter(|(_, axis)| axis.controller.is_some());
+    let of_axis = |(index, axis): (usize, &'_ AxisSection)| {
         let limits = axis.limits.unwrap_or_default();
         let absent = GUARDS.iter().filter(|guard| !(guard.is_set)(axis, &limits));
         let texts = absent.map(|guard| {
-            format!(
+            let text = format!(
                 "axis `{}` has no {} in [axis.limits]: {}",
                 axis.name, guard.key, guard.without
-            )
+            );
+            Warning::new(index, format!("axis.limits.{}", guard.key), text)
         });
-        texts.chain(sign(axis, &limits)).collect::<Vec<_>>()
+        let sign = sign(axis, &limits).map(|text| Warning::new(index, "axis.limits.encoder_lost_s", text));
+        texts.chain(sign).collect::<Vec<_>>()
     };
     loops.flat_map(of_axis).collect()
 }

@@ -3,7 +3,7 @@
 use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine::{at_key, of_hardware};
-use crate::output;
+use crate::warning::Warning;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
@@ -62,9 +62,8 @@ impl<'a> Built<'a> {
             ComponentBlock::new(one.component, &top, axis).with_prefix(&format!("{}_{axis}", machine.name))
         });
         if let Some(reason) = hardware.without_stage() {
-            output::say(&format!(
-                "warning: no stage is built, its blocks are components of their own: {reason}"
-            ));
+            let text = format!("no stage is built, its blocks are components of their own: {reason}");
+            Warning::new(reason.axis, reason.key.as_str(), text).print(path);
         }
         let stage = hardware.stage().map_err(refused)?.map(|stage| {
             let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();

@@ -11,8 +11,10 @@ use crate::failure::Failure;
 use crate::new::{KindFlags, MachineKind};
 use crate::output;
 use crate::plot;
+use crate::schema;
 use excitation::ExcitationFlags;
 use findings::Findings;
+use machine_file::Written;
 use posicast_identify::log::{self, Reading};
 use posicast_identify::recommend::Judgement;
 use posicast_system::output::{self as files, OutputFiles};
@@ -85,21 +87,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         margin: args.margin / 100.0,
         ..Judgement::default()
     };
-    let findings = Findings::of(reading, &args.excitation, &judgement).map_err(|error| error.in_file(&args.log))?;
+    let mut findings = Findings::of(reading, &args.excitation, &judgement).map_err(|error| error.in_file(&args.log))?;
     let machine = match &args.output {
         Some(path) if !findings.modes.is_empty() => Some((path, machine_text(args, path, &findings)?)),
         _ => None,
     };
+    findings.unit = match &machine {
+        Some((_, machine)) => machine.unit,
+        None => args.kind.kind().unwrap_or(findings.kind()).unit(),
+    };
     if let Some(path) = &args.plot {
         write_text(path, &plot::svg(&pictures::panels(&findings))?).map_err(Failure::because)?;
     }
-    if let Some((path, text)) = &machine {
-        files::write_text(path, text).map_err(Failure::because)?;
+    if let Some((path, machine)) = &machine {
+        files::write_text(path, machine.text.as_str()).map_err(Failure::because)?;
     }
     if args.json {
         output::print_json(&document::Document::new(&findings))?;
     } else {
-        let written = machine.as_ref().map(|(path, _)| path.as_path());
+        let written = machine.as_ref().map(|(path, machine)| (path.as_path(), machine));
         output::print_beside(&outputs, &text::text(&args.log, &findings, written))?;
     }
     match findings.modes.is_empty() {
@@ -137,13 +143,15 @@ pub(crate) fn new_machine(
     outputs: &OutputFiles,
 ) -> Result<(), Failure> {
     let flags = ExcitationFlags::default();
-    let findings = Findings::of(read(log)?, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
+    let mut findings = Findings::of(read(log)?, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
     if findings.modes.is_empty() {
         return Err(none_found(log, true));
     }
-    let text = machine_file::from_template(kind.unwrap_or(findings.kind()), file, None, &findings)?;
-    files::write_text(file, text.as_str()).map_err(Failure::because)?;
-    output::print_beside(outputs, &text::text(log, &findings, Some(file)))
+    let machine = machine_file::from_template(kind.unwrap_or(findings.kind()), file, None, &findings)?;
+    findings.unit = machine.unit;
+    files::write_text(file, machine.text.as_str()).map_err(Failure::because)?;
+    let said = text::text(log, &findings, Some((file, &machine)));
+    output::print_beside(outputs, &format!("{said}{}\n", schema::hint(file)))
 }
 
 fn none_found(log: &Path, wanted: bool) -> Failure {
@@ -151,7 +159,7 @@ fn none_found(log: &Path, wanted: bool) -> Failure {
     Failure::Check(format!("{}: no mode was found{but}", log.display()))
 }
 
-fn machine_text(args: &Args, path: &Path, findings: &Findings) -> Result<String, Failure> {
+fn machine_text(args: &Args, path: &Path, findings: &Findings) -> Result<Written, Failure> {
     match &args.machine {
         Some(machine) => machine_file::into_existing(machine, args.axis.as_deref(), findings),
         None => {

@@ -33,7 +33,16 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
             "cannot read the machine file `{name}`: {found}"
         ))
     };
-    let text = text_of(path).map_err(|found| unreadable(&found))?;
+    let text = match text_of(path) {
+        Ok(text) => text,
+        Err(Unreadable::Encoding { line, found }) => {
+            return Err(Failure::from(miette::miette!(
+                help = "save the file as UTF-8: in the editor's menu, or `iconv -f LATIN1 -t UTF-8 OLD > NEW`",
+                "{name}:{line}: found {found}; allowed: text in UTF-8"
+            )));
+        }
+        Err(found) => return Err(unreadable(&found)),
+    };
     let beside = RefCell::default();
     let machine = parse_beside(path, &text, &beside)?;
     Ok(MachineFile {
@@ -43,16 +52,53 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
     })
 }
 
+/// Why a file has no text.
+#[derive(Debug, thiserror::Error)]
+enum Unreadable {
+    #[error("{0}")]
+    File(String),
+    /// It is in another encoding.
+    #[error("line {line}: found {found}; allowed: text in UTF-8")]
+    Encoding {
+        /// Line of the first byte that is not UTF-8, from 1.
+        line: usize,
+        /// That byte in its line.
+        found: String,
+    },
+}
+
+impl Unreadable {
+    /// Describes the first byte that is not UTF-8, which comes after `valid` others, by the words before it.
+    fn encoding(bytes: &[u8], valid: usize) -> Self {
+        const SHOWN: usize = 20;
+        let before = String::from_utf8_lossy(&bytes[..valid]);
+        let line = before.lines().count().max(1) + usize::from(before.ends_with('\n'));
+        let words = before.rsplit('\n').next().unwrap_or_default();
+        let skipped = words.chars().count().saturating_sub(SHOWN);
+        let words: String = words.chars().skip(skipped).collect();
+        let byte = bytes.get(valid).copied().unwrap_or_default();
+        Self::Encoding {
+            line,
+            found: match words.trim() {
+                "" => format!("the byte 0x{byte:02X}"),
+                words => format!("the byte 0x{byte:02X} after \"{words}\""),
+            },
+        }
+    }
+}
+
 /// The text of a file, or why it cannot be read.
-fn text_of(path: &Path) -> Result<String, String> {
-    let said = |error: std::io::Error| error.to_string();
+fn text_of(path: &Path) -> Result<String, Unreadable> {
+    let said = |error: std::io::Error| Unreadable::File(error.to_string());
     let metadata = std::fs::metadata(path).map_err(said)?;
     if metadata.is_dir() {
-        return Err("it is a folder".to_owned());
+        return Err(Unreadable::File("it is a folder".to_owned()));
     }
     if metadata.len() > LARGEST_FILE_BYTES {
         let found = metadata.len();
-        return Err(format!("{found} bytes found, at most {LARGEST_FILE_BYTES} allowed"));
+        return Err(Unreadable::File(format!(
+            "{found} bytes found, at most {LARGEST_FILE_BYTES} allowed"
+        )));
     }
     // The length above is 0 for a device or a pipe: these may go on for ever.
     let file = File::open(path).map_err(said)?;
@@ -63,9 +109,12 @@ fn text_of(path: &Path) -> Result<String, String> {
         .map_err(said)? as u64
         > LARGEST_FILE_BYTES
     {
-        return Err(format!("it goes on after {LARGEST_FILE_BYTES} bytes"));
+        return Err(Unreadable::File(format!("it goes on after {LARGEST_FILE_BYTES} bytes")));
     }
-    String::from_utf8(bytes).map_err(|error| format!("it is not UTF-8 text: {error}"))
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        Unreadable::encoding(error.as_bytes(), valid)
+    })
 }
 
 /// Validates the text of the machine file at `path`; files that it names are read beside it.
@@ -97,9 +146,7 @@ pub(crate) fn family(machine: &Machine) -> Result<Family, Failure> {
 /// Bad input at a key of the machine file at `path`, or of the machine file in the folder `path`; `axis` counts from
 /// 0.
 pub(crate) fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Display) -> Failure {
-    let file = file_of(path);
-    let line = line_of(&file, axis, key);
-    Failure::from(miette::miette!("{}{line}: {key}: {reason}", file.display()))
+    Failure::from(miette::miette!("{}", place(path, axis, key, reason)))
 }
 
 /// `:LINE` of a key, to follow the file's name.
@@ -148,5 +195,15 @@ pub(crate) fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> 
 
 /// The failure of hardware of the machine file at `path`, or of that in the folder `path`.
 pub(crate) fn of_hardware(error: &HardwareError, path: &Path) -> Failure {
-    at_key(path, error.axis, &error.key, error)
+    let message = place(path, error.axis, &error.key, error);
+    Failure::from(match &error.help {
+        Some(help) => miette::miette!(help = help.clone(), "{message}"),
+        None => miette::miette!("{message}"),
+    })
+}
+
+/// A message with the file, the line and the key of the machine file that it is about.
+pub(crate) fn place(path: &Path, axis: usize, key: &str, message: impl fmt::Display) -> String {
+    let file = file_of(path);
+    format!("{}{}: {key}: {message}", file.display(), line_of(&file, axis, key))
 }

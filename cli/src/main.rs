@@ -41,6 +41,7 @@ mod synth;
 mod tolerance;
 mod verify;
 mod verilog;
+mod warning;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use posicast_system::interrupt;

@@ -1,8 +1,13 @@
 //! `posicast man`: writes the help of every command as a manual page.
+//!
+//! The synopsis has the values of the options, and what follows the options in the help is in sections of its own:
+//! the examples, and the exit status, which every page has.
 
 use crate::failure::Failure;
 use crate::output;
+use clap::Arg;
 use clap_mangen::Man;
+use clap_mangen::roff::{Inline, Roff, bold, italic, roman};
 use posicast_system::output::{self as files, OutputFiles};
 use std::path::PathBuf;
 
@@ -38,16 +43,126 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
         let name = page.get_display_name().unwrap_or_else(|| page.get_name());
         let path = args.folder.join(format!("{name}.1"));
         outputs.claim("DIR", &path).map_err(Failure::because)?;
-        let mut text = Vec::new();
-        Man::new(page).render(&mut text).map_err(Failure::because)?;
+        let text = page_text(&page).map_err(Failure::because)?;
         written.push((path, text));
     }
     for (path, text) in &written {
-        files::write_text(path, &String::from_utf8_lossy(text)).map_err(Failure::because)?;
+        files::write_text(path, text.as_str()).map_err(Failure::because)?;
     }
     output::print(&format!(
         "{} pages written to {}\n",
         written.len(),
         args.folder.display()
     ))
+}
+
+/// Begin of the paragraph of a command's help that says its exit status.
+const EXIT_STATUS: &str = "Exit status";
+/// The exit status of a command whose help does not say it.
+const STATUS: &str =
+    "0 what was asked for was done, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.";
+/// What holds for every command.
+const SIGNALS: &str = "130 or 143 after SIGINT or SIGTERM, with nothing left behind.";
+
+fn page_text(command: &clap::Command) -> std::io::Result<String> {
+    let man = Man::new(command.clone()).source(concat!("posicast ", env!("POSICAST_VERSION")));
+    let mut synopsis = Roff::new();
+    synopsis.control("SH", ["SYNOPSIS"]).text(usage(command));
+    let mut parts = vec![
+        rendered(|part| man.render_title(part))?,
+        rendered(|part| man.render_name_section(part))?,
+        synopsis.to_roff(),
+        rendered(|part| man.render_description_section(part))?,
+        rendered(|part| man.render_options_section(part))?,
+    ];
+    if command.get_subcommands().next().is_some() {
+        parts.push(rendered(|part| man.render_subcommands_section(part))?);
+    }
+    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    parts.push(end(&after).to_roff());
+    // Each part of clap_mangen begins with the same definitions.
+    let is_definition = |line: &&str| line.starts_with(".ie \\n(.g") || line.starts_with(".el .ds Aq");
+    let (title, others) = parts.split_at(1);
+    let others = others
+        .iter()
+        .flat_map(|part| part.lines().filter(|line| !is_definition(line)));
+    let lines = title.iter().flat_map(|part| part.lines()).chain(others);
+    Ok(lines.map(|line| format!("{line}\n")).collect())
+}
+
+fn rendered(render: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()>) -> std::io::Result<String> {
+    let mut part = Vec::new();
+    render(&mut part)?;
+    Ok(String::from_utf8_lossy(&part).into_owned())
+}
+
+/// The sections that come from the text after a command's help.
+fn end(after: &str) -> Roff {
+    let (status, examples): (Vec<&str>, Vec<&str>) = after
+        .split("\n\n")
+        .partition(|paragraph| paragraph.trim_start().starts_with(EXIT_STATUS));
+    let mut end = Roff::new();
+    let examples = examples.join("\n\n");
+    if !examples.trim().is_empty() {
+        end.control("SH", ["EXAMPLES"]).control("nf", []);
+        for line in examples.lines().filter(|line| !line.starts_with("Example")) {
+            end.text([roman(line)]);
+        }
+        end.control("fi", []);
+    }
+    end.control("SH", ["EXIT STATUS"]);
+    let own = status
+        .first()
+        .map(|own| own.split_whitespace().collect::<Vec<_>>().join(" "));
+    match own.as_deref().map(|own| own.trim_start_matches(EXIT_STATUS)) {
+        // The whole list.
+        Some(own) if own.starts_with(':') => end.text([roman(own.trim_start_matches(": "))]),
+        // What one of the numbers means.
+        Some(_) => end
+            .text([roman(STATUS)])
+            .control("PP", [])
+            .text([roman(own.unwrap_or_default())]),
+        None => end.text([roman(STATUS)]),
+    };
+    if !after.contains("130") {
+        end.control("PP", []).text([roman(SIGNALS)]);
+    }
+    end
+}
+
+/// The name, every option with its value, and the arguments.
+fn usage(command: &clap::Command) -> Vec<Inline> {
+    let mut line = vec![bold(command.get_bin_name().unwrap_or_else(|| command.get_name()))];
+    let shown = command
+        .get_arguments()
+        .filter(|argument| !argument.is_hide_set() && !["help", "version"].contains(&argument.get_id().as_str()));
+    let (arguments, options): (Vec<&Arg>, Vec<&Arg>) = shown.partition(|argument| argument.is_positional());
+    for argument in options.into_iter().chain(arguments) {
+        let (open, close) = match argument.is_required_set() {
+            true => (" ", ""),
+            false => (" [", "]"),
+        };
+        line.push(roman(open));
+        let short = argument.get_short().map(|short| format!("-{short}"));
+        let long = argument.get_long().map(|long| format!("--{long}"));
+        let flags: Vec<String> = short.into_iter().chain(long).collect();
+        if !flags.is_empty() {
+            line.push(bold(flags.join("|")));
+        }
+        if argument.get_num_args().is_some_and(|number| number.takes_values()) {
+            let names: Vec<&str> = argument
+                .get_value_names()
+                .unwrap_or_default()
+                .iter()
+                .map(|name| name.as_str())
+                .collect();
+            line.extend((!flags.is_empty()).then(|| roman(" ")));
+            line.push(italic(names.join(" ")));
+        }
+        line.push(roman(close));
+    }
+    if command.get_subcommands().next().is_some() {
+        line.extend([roman(" "), italic("COMMAND")]);
+    }
+    line
 }

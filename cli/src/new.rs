@@ -8,13 +8,14 @@ mod template;
 
 use crate::failure::Failure;
 use crate::identify;
-use crate::output;
+use crate::output::{self, shell_word};
+use crate::schema;
 use posicast_system::output::{self as files, OutputError, OutputFiles};
 use questions::Questions;
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
 use std::path::PathBuf;
-pub(crate) use template::{Draft, MachineKind};
+pub(crate) use template::{Draft, MachineKind, to_measure};
 
 /// Write a commented machine file for a kind of machine, to start from
 #[derive(clap::Args)]
@@ -82,14 +83,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None if asks => Questions::new(stdin().lock(), stderr()).draft(&args.file)?,
         kind => Draft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
     };
-    let (file, text) = (args.file.display(), draft.text());
+    let (file, text) = (shell_word(&args.file), draft.text());
     files::write_text(&args.file, text).map_err(Failure::because)?;
-    let marked = text.matches("MEASURE").count() - usize::from(text.contains("marked MEASURE"));
     let said = format!(
-        "{file} written: machine {}, {}\n\
-         next: put your values in the {marked} lines that say MEASURE, then `posicast design {file}`, then `posicast run {file}`\n",
+        "{} written: machine {}, {}\n\
+         next: {}`posicast design {file}`, then `posicast run {file}`\n\
+         {}\n",
+        args.file.display(),
         draft.name(),
         draft.kind().about(),
+        to_measure(text),
+        schema::hint(&args.file),
     );
     output::print_beside(&outputs, &said)
 }

@@ -8,6 +8,7 @@ use posicast_model::unit::AxisUnit;
 use posicast_system::output::OutputFiles;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 /// Prints text on standard output. It is not an error if the reader has ended (`| head`).
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
@@ -45,6 +46,13 @@ pub(crate) fn one_document(outputs: &OutputFiles, json: bool) -> Result<(), Fail
             "--json: standard output takes one document, and a file is written there already"
         ))),
     }
+}
+
+/// A path as a word of a command line that the user copies into a shell.
+pub(crate) fn shell_word(path: &Path) -> String {
+    let path = path.display().to_string();
+    // Only a NUL character cannot be quoted, and no path has one.
+    shlex::try_quote(&path).map_or_else(|_| path.clone(), |quoted| quoted.into_owned())
 }
 
 /// Prints one JSON document on standard output.

@@ -17,11 +17,14 @@ type Drawn = Result<(), Box<dyn std::error::Error>>;
 /// Style of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Look {
+    /// Wide and pale, for a curve on which another is expected to lie: it is seen on both sides of that.
+    Under,
     /// Grey, for a curve with which others are compared.
     Reference,
     /// A colour of its own, which no other curve of the panel has.
     Own,
-    /// Dashed, in the colour of the curve before: another form of the same quantity.
+    /// Dashed on top, in a shade of the colour of the curve before: another form of the same quantity, which may
+    /// lie exactly on it.
     Dashed,
     /// Dashed and dark red, for a level that must not be exceeded.
     Limit,
@@ -44,6 +47,11 @@ impl Curve {
     /// A curve in a colour of its own.
     pub(crate) fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self::of(Look::Own, name, points)
+    }
+
+    /// A curve on which another is expected to lie.
+    pub(crate) fn under(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self::of(Look::Under, name, points)
     }
 
     /// Another form of the curve before it.
@@ -143,7 +151,14 @@ const COLOURS: [RGBColor; 8] = [
 const GREY: RGBColor = RGBColor(140, 140, 140);
 const DARK_RED: RGBColor = RGBColor(170, 0, 0);
 const BAND: RGBColor = RGBColor(222, 240, 222);
+/// Colour of the ends of a band, which show it where it is thin.
+const BAND_END: RGBColor = RGBColor(120, 180, 120);
 const GRID: RGBColor = RGBColor(225, 225, 225);
+/// Width in pixels of a curve under another, and how pale it is.
+const UNDER_WIDTH: u32 = 6;
+const PALE: f64 = 0.5;
+/// How much darker a dashed curve is than the one before it.
+const DARK: f64 = 0.65;
 /// Lengths of a dash and of the gap after it, in pixels.
 const DASH: (i32, i32) = (7, 5);
 
@@ -219,11 +234,20 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .build_cartesian_2d(x_low..x_high, y_low..y_high)?;
     if let Some(band) = &panel.band {
         let (low, high) = (band.range.0.max(y_low), band.range.1.min(y_high));
-        if low < high && !band.holds_all(y_low, y_high) {
+        if low < high {
             chart.draw_series(std::iter::once(Rectangle::new(
                 [(x_low, low), (x_high, high)],
                 BAND.filled(),
             )))?;
+        }
+        let ends = [band.range.0, band.range.1];
+        for end in ends.into_iter().filter(|end| (y_low..=y_high).contains(end)) {
+            draw_line(
+                &mut chart,
+                vec![(x_low, end), (x_high, end)],
+                BAND_END.stroke_width(1),
+                false,
+            )?;
         }
     }
     for range in &panel.x_ranges {
@@ -282,11 +306,26 @@ fn looks(curves: &[Curve]) -> Vec<(ShapeStyle, bool)> {
             next += 1;
             (colour.stroke_width(2), false)
         }
-        Look::Dashed => (colour.stroke_width(1), true),
+        Look::Under => {
+            colour = COLOURS[next % COLOURS.len()];
+            next += 1;
+            (shade(colour, PALE, 255).stroke_width(UNDER_WIDTH), false)
+        }
+        Look::Dashed => {
+            // Black has no darker shade.
+            let end = if colour == RGBColor(0, 0, 0) { 255 } else { 0 };
+            (shade(colour, DARK, end).stroke_width(1), true)
+        }
         Look::Reference => (GREY.stroke_width(1), false),
         Look::Limit => (DARK_RED.stroke_width(1), true),
     };
     curves.iter().map(look).collect()
+}
+
+/// A colour, this part of the way to black (0) or white (255).
+fn shade(colour: RGBColor, part: f64, end: u8) -> RGBColor {
+    let mixed = |channel: u8| (f64::from(channel) * (1.0 - part) + f64::from(end) * part).round() as u8;
+    RGBColor(mixed(colour.0), mixed(colour.1), mixed(colour.2))
 }
 
 /// The parts of a curve between `low` and `high`, each up to where it crosses one of them.
@@ -366,14 +405,49 @@ mod tests {
     }
 
     #[test]
-    fn unit_eight_curves_have_eight_colours_and_a_dashed_one_has_its_neighbours() {
+    fn unit_eight_curves_have_eight_colours_and_a_dashed_one_a_shade_that_shows_on_its_neighbour() {
         let curve = |_| [Curve::new("", Vec::new()), Curve::beside("", Vec::new())];
         let curves: Vec<_> = (0..8).flat_map(curve).collect();
         let mut colours: Vec<_> = looks(&curves).iter().map(|(style, _)| style.color.rgb()).collect();
-        assert!(colours.chunks(2).all(|pair| pair[0] == pair[1]));
+        let light = |(r, g, b): (u8, u8, u8)| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
+        for pair in colours.chunks(2) {
+            let (light_of, shade) = (light(pair[0]), light(pair[1]));
+            assert!((light_of - shade).abs() > 50.0, "{pair:?}");
+        }
         colours.sort_unstable();
         colours.dedup();
-        assert_eq!(colours.len(), 8);
+        assert_eq!(colours.len(), 16);
+    }
+
+    #[test]
+    fn unit_a_curve_that_lies_exactly_on_another_is_still_seen() {
+        let line = || vec![(0.0, 0.0), (1.0, 1.0)];
+        let looks = looks(&[Curve::new("shaped", line()), Curve::under("load", line())]);
+        let [on_top, under] = [&looks[0].0, &looks[1].0];
+        assert!(under.stroke_width >= on_top.stroke_width + 2);
+        // It is drawn before the other.
+        assert!(Look::Under < Look::Own && Look::Own < Look::Dashed);
+    }
+
+    #[test]
+    fn unit_a_band_that_is_wider_than_the_picture_fills_it_and_a_thin_one_has_ends() {
+        let drawn = |range: (f64, f64)| {
+            let panel = Panel {
+                curves: vec![Curve::new("c", vec![(0.0, -1.0), (1.0, 1.0)])],
+                band: Some(Band {
+                    name: "±1 count".into(),
+                    range,
+                }),
+                ..Panel::default()
+            };
+            svg(&[panel]).ok().unwrap()
+        };
+        let colour = |colour: RGBColor| format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2);
+        let wide = drawn((-5.0, 5.0));
+        // The sample of the legend, and the whole picture.
+        assert_eq!(wide.matches(&colour(BAND)).count(), 2, "{wide}");
+        assert!(wide.contains("±1 count: more than is shown"));
+        assert_eq!(drawn((-1e-6, 1e-6)).matches(&colour(BAND_END)).count(), 2);
     }
 
     #[test]

@@ -116,7 +116,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut package = package.with_evidence().map_err(Failure::because)?;
     let files = verilog::add_sources(&mut package, &file, &modules)?;
     kit::add(&mut package, &kit)?;
-    sopc::add(&mut package, machine, board, stage.as_ref(), &components)?;
+    sopc::add(
+        &mut package,
+        (machine, &args.machine),
+        board,
+        stage.as_ref(),
+        &components,
+    )?;
     driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
     let components = components.map(|component| component as &dyn Block);

@@ -1,10 +1,10 @@
 //! `posicast schema`: writes the machine file's JSON Schema for editors.
 
 use crate::failure::Failure;
-use crate::output;
+use crate::output::{self, shell_word};
 use posicast_model::machine_file;
 use posicast_system::output::{self as files, OutputFiles};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The JSON Schema of the machine file, for editors that complete and check TOML
 #[derive(clap::Args)]
@@ -22,6 +22,15 @@ pub(crate) struct Args {
     /// Replace a file that posicast did not write, or that was changed since
     #[arg(long, requires = "output")]
     force: bool,
+}
+
+/// Name of the schema's file in the first line of machine files that `posicast new` writes.
+const FILE: &str = "posicast-machine.schema.json";
+
+/// How to get the schema that a new machine file names in its first line.
+pub(crate) fn hint(machine: &Path) -> String {
+    let schema = shell_word(&machine.with_file_name(FILE));
+    format!("editors complete and check it beside its schema: `posicast schema -o {schema}`")
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

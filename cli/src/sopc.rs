@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::machine;
-use crate::output;
+use crate::warning::Warning;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, Design, Unit};
@@ -35,10 +35,10 @@ pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Fai
     Ok(Some(board))
 }
 
-/// Adds the files to the folder.
+/// Adds the files to the folder; `path` is the machine file.
 pub(crate) fn add(
     package: &mut Package,
-    machine: &Machine,
+    (machine, path): (&Machine, &Path),
     board: Option<Board>,
     stage: Option<&Stage>,
     components: &[ComponentBlock],
@@ -66,9 +66,10 @@ pub(crate) fn add(
         components: components?,
     };
     if let Some(board) = board.filter(|board| design.stage.is_some() && !design.runs_on(*board)) {
-        output::say(&format!(
-            "warning: no project for {board}: its oscillator and clock.frequency_hz differ; README.md gives the difference"
-        ));
+        let text = format!(
+            "no project for {board}: its oscillator and clock.frequency_hz differ; README.md gives the difference"
+        );
+        Warning::new(0, BOARD_KEY, text).print(path);
     }
     for file in design.files().map_err(Failure::because)? {
         package

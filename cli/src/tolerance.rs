@@ -1,5 +1,6 @@
 //! Checks whether the integer tap tables keep the tolerance of the machine file.
 
+use crate::warning::Warning;
 use posicast_model::certify::{ModeCertificate, certify_axis};
 use posicast_model::design::{Findings, MachineDesign};
 use posicast_model::machine_file::Machine;
@@ -7,6 +8,9 @@ use posicast_model::machine_file::Machine;
 /// Fraction of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps,
 /// which changes the residual of kinds that leave one by design.
 const BETWEEN_SAMPLES: f64 = 0.05;
+
+/// The key of what decides.
+const KEY: &str = "axis.shaper";
 
 /// Number of modes for which a shaper is made: those of axes whose shaper has more than one impulse.
 pub(crate) fn shaped_modes(machine: &Machine, design: &MachineDesign) -> usize {
@@ -16,9 +20,9 @@ pub(crate) fn shaped_modes(machine: &Machine, design: &MachineDesign) -> usize {
 }
 
 /// The modes whose residual with the integer taps exceeds their tolerance, each with what to do.
-pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec<String> {
+pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec<Warning> {
     let mut beyond = Vec::new();
-    for (axis, tables) in machine.axes.iter().zip(&design.axes) {
+    for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
         if tables.design.impulses.impulses().len() < 2 {
             continue;
         }
@@ -26,7 +30,7 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
             let certificate = certify_axis(axis, tables, design.sample_hz);
             let above = |mode: &&ModeCertificate| mode.residual.bound > mode.tolerance * (1.0 + BETWEEN_SAMPLES);
             beyond.extend(certificate.modes.iter().filter(above).map(|mode| {
-                format!(
+                let text = format!(
                     "axis {}, mode of {:.3} … {:.3} Hz: the integer taps leave up to {:.4} % of the vibration in the band, {:.4} % is the \
                      tolerance; leave coefficient_fraction out, or allow a longer shaper with fewer taps",
                     axis.name,
@@ -34,7 +38,8 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
                     mode.band.frequency_hz[1],
                     100.0 * mode.residual.bound,
                     100.0 * mode.tolerance
-                )
+                );
+                Warning::new(index, KEY, text)
             }));
             continue;
         }
@@ -47,13 +52,14 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
                 true => "the impulses leave as much: choose another kind, or raise the tolerance of the mode",
                 false => "the impulses themselves do not: leave coefficient_fraction out, or raise sample_hz",
             };
-            beyond.push(format!(
+            let text = format!(
                 "axis {}, mode of {:.3} Hz: the integer taps leave {:.2} % of the vibration, {:.2} % is the tolerance; {remedy}",
                 axis.name,
                 mode.mode.frequency_hz,
                 100.0 * found,
                 100.0 * asked
-            ));
+            );
+            beyond.push(Warning::new(index, KEY, text));
         }
     }
     beyond

@@ -56,7 +56,11 @@ fn unit_shapers_that_do_not_suit_a_stage_are_a_reason_and_no_error() {
     let hardware = Hardware::of(&machine, &design_machine(&machine).unwrap()).unwrap();
     assert!(hardware.stage().unwrap().is_none());
     assert!(
-        hardware.without_stage().unwrap().contains("stage shapes position"),
+        hardware
+            .without_stage()
+            .unwrap()
+            .reason
+            .contains("stage shapes position"),
         "{:?}",
         hardware.without_stage()
     );

@@ -1,5 +1,6 @@
 //! The error table of an axis, for people and for programs.
 
+use crate::warning::Warning;
 use posicast_model::hardware::{self, Hardware};
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::rtl::stage::StageErrorTable;
@@ -73,15 +74,14 @@ impl<'a> ErrorTableReport<'a> {
 }
 
 /// What is said of tables that nothing is built of.
-pub(super) fn not_built(machine: &Machine, hardware: &Hardware<'_>) -> Option<String> {
+pub(super) fn not_built(machine: &Machine, hardware: &Hardware<'_>) -> Option<Warning> {
     let has_stage = !matches!(hardware.stage(), Ok(None));
-    let axis = machine
-        .axes
-        .iter()
-        .find(|axis| axis.error_table.is_some() && !has_stage)?;
-    Some(format!(
+    let mut axes = machine.axes.iter().enumerate();
+    let (index, axis) = axes.find(|(_, axis)| axis.error_table.is_some() && !has_stage)?;
+    let text = format!(
         "axis {}: its error table is not built, because it is a part of the stage, which needs encoder, PWM, drive and controller on \
          every axis",
         axis.name
-    ))
+    );
+    Some(Warning::new(index, "axis.error_table", text))
 }

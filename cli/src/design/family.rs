@@ -2,6 +2,7 @@
 
 use crate::output::Table;
 use crate::plot::{Curve, Panel};
+use crate::warning::Warning;
 use posicast_model::analysis::{residual_vibration, tap_impulses};
 use posicast_model::design::{FamilyMember, TableFamily};
 use posicast_model::machine_file::{AxisSection, FamilySection};
@@ -59,6 +60,8 @@ struct MemberMode {
 
 /// An axis whose modes move, with its tables.
 pub(super) struct FamilyReport<'a> {
+    /// Index of the axis, from 0.
+    index: usize,
     pub(super) axis: &'a AxisSection,
     pub(super) family: &'a FamilySection,
     pub(super) tables: &'a TableFamily,
@@ -67,8 +70,14 @@ pub(super) struct FamilyReport<'a> {
 
 impl<'a> FamilyReport<'a> {
     /// `None` where no mode of the axis moves.
-    pub(super) fn new(axis: &'a AxisSection, tables: Option<&'a TableFamily>, sample_hz: f64) -> Option<Self> {
+    pub(super) fn new(
+        index: usize,
+        axis: &'a AxisSection,
+        tables: Option<&'a TableFamily>,
+        sample_hz: f64,
+    ) -> Option<Self> {
         Some(Self {
+            index,
             axis,
             family: axis.family.as_ref()?,
             tables: tables?,
@@ -118,7 +127,15 @@ impl<'a> FamilyReport<'a> {
 
     fn variable(&self) -> String {
         match self.family.is_position() {
-            true => format!("{} {}", self.family.variable, self.axis.unit.name()),
+            true => format!("{} {}", self.family.variable, self.axis.unit.symbol()),
+            false => self.family.variable.clone(),
+        }
+    }
+
+    /// Label of the variable's axis in a picture.
+    fn axis_label(&self) -> String {
+        match self.family.is_position() {
+            true => format!("{}, {}", self.family.variable, self.axis.unit.symbol()),
             false => self.family.variable.clone(),
         }
     }
@@ -188,15 +205,16 @@ impl<'a> FamilyReport<'a> {
     }
 
     /// A warning where the axis may move faster than its tables follow.
-    pub(super) fn warning(&self) -> Option<String> {
+    pub(super) fn warning(&self) -> Option<Warning> {
         let velocity = self.axis.limits?.velocity.filter(|_| self.family.is_position())?;
         let fastest = self.tables.fastest_per_s(self.sample_hz);
         (fastest < velocity).then(|| {
-            format!(
+            let text = format!(
                 "axis {}: above {} its mode leaves the tolerance of a table before the next one shapes the command: lower limits.velocity, or choose a kind that is shorter or less sensitive",
                 self.axis.name,
                 self.axis.unit.show_round(fastest, "/s")
-            )
+            );
+            Warning::new(self.index, "axis.limits.velocity", text)
         })
     }
 
@@ -231,7 +249,7 @@ impl<'a> FamilyReport<'a> {
                 "{machine}, axis {}: residual vibration while {} changes",
                 self.axis.name, self.family.variable
             ),
-            x_label: self.variable(),
+            x_label: self.axis_label(),
             y_label: "residual vibration of the worst mode, %".into(),
             curves: vec![
                 Curve::new(

@@ -9,6 +9,8 @@ use serde::Serialize;
 pub(super) struct Document<'a> {
     modes: Vec<ModeDocument>,
     recommended: Vec<RecommendedDocument>,
+    /// `m` or `rad`: the unit of the displacements and of the smoothing, whatever their names end with.
+    si_unit: &'static str,
     method: &'static str,
     rows: usize,
     sample_hz: f64,
@@ -42,6 +44,7 @@ impl<'a> Document<'a> {
         Self {
             modes: findings.modes.iter().map(mode).collect(),
             recommended: findings.recommended.iter().map(recommended).collect(),
+            si_unit: findings.unit.si_name(),
             method: findings.method_name,
             rows: findings.rows,
             sample_hz: 1.0 / findings.sample_s,

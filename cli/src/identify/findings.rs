@@ -11,7 +11,7 @@ use posicast_identify::recommend::{Judgement, Recommendation, recommend};
 use posicast_identify::spectrum::{PowerSpectrum, welch};
 use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
-use posicast_model::unit::trimmed;
+use posicast_model::unit::{AxisUnit, trimmed};
 
 /// Measured data and what the modes explain of it, for the plots.
 pub(super) enum Evidence {
@@ -57,6 +57,8 @@ pub(super) struct Findings {
     pub(super) axis: Option<String>,
     pub(super) modes: Vec<FoundMode>,
     pub(super) recommended: Vec<Recommendation>,
+    /// Unit of the axis that the modes are for, in which the shapers' figures are shown.
+    pub(super) unit: AxisUnit,
     pub(super) judgement: Judgement,
     /// Problems of the log, and what it does not contain.
     pub(super) remarks: Vec<String>,
@@ -125,6 +127,7 @@ fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
         axis: axis_of(&found.direction),
         modes: found.modes.clone(),
         recommended: Vec::new(),
+        unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks: remarks(&found, sweep),
         evidence: Evidence::Transfer {
@@ -162,6 +165,7 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
         evidence: Evidence::response("correlation of the acceleration with itself", &found.decay),
         modes: found.modes,
         recommended: Vec::new(),
+        unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks,
         spectrum: spectrum(log, &found.direction),
@@ -204,6 +208,7 @@ fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
         evidence: Evidence::response("response", &found),
         modes: found.modes,
         recommended: Vec::new(),
+        unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks,
         spectrum: None,
@@ -230,6 +235,7 @@ fn of_motor(log: &DriveLog) -> Result<Findings, Failure> {
         evidence: Evidence::response("motor", &found.held),
         modes: found.held.modes,
         recommended: Vec::new(),
+        unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks,
         spectrum: None,

@@ -3,13 +3,20 @@
 use super::findings::Findings;
 use crate::failure::Failure;
 use crate::machine;
-use crate::new::{Draft, MachineKind};
-use posicast_model::unit::trimmed;
+use crate::new::{Draft, MachineKind, to_measure};
+use posicast_model::unit::{AxisUnit, trimmed};
 use std::path::Path;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
 /// Digits of a frequency and of a damping ratio: more than any log determines.
 const DIGITS: usize = 6;
+
+/// A machine file with the modes of a log.
+pub(super) struct Written {
+    pub(super) text: String,
+    /// Unit of the axis that has the modes.
+    pub(super) unit: AxisUnit,
+}
 
 /// The template, with only the axis that was measured.
 pub(super) fn from_template(
@@ -17,7 +24,7 @@ pub(super) fn from_template(
     path: &Path,
     axis: Option<&str>,
     findings: &Findings,
-) -> Result<String, Failure> {
+) -> Result<Written, Failure> {
     let draft = Draft::new(kind, path);
     let mut document = parsed(draft.text(), path)?;
     let axes = axes(&mut document, path)?;
@@ -31,11 +38,23 @@ pub(super) fn from_template(
     let mut only = ArrayOfTables::new();
     only.push(measured);
     document.insert("axis", Item::ArrayOfTables(only));
-    checked(document.to_string(), path)
+    checked(without_stale_step(document.to_string()), path, 0)
+}
+
+/// The first step that the head of a template tells does not remain where the log has answered all of it.
+fn without_stale_step(text: String) -> String {
+    const STEP: &str = "Measure what is marked MEASURE and write it in";
+    match to_measure(&text).is_empty() {
+        true => text.replace(
+            STEP,
+            "The modes are from the log, with their 95 % intervals; check the other values",
+        ),
+        false => text,
+    }
 }
 
 /// An existing machine file, with the modes in one of its axes.
-pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings) -> Result<String, Failure> {
+pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings) -> Result<Written, Failure> {
     let text = machine::read(path)?.text;
     let mut document = parsed(&text, path)?;
     let axes = axes(&mut document, path)?;
@@ -46,7 +65,7 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
         None if axes.len() == 1 => Some(0),
         None => None,
     };
-    let Some(target) = index.and_then(|index| axes.get_mut(index)) else {
+    let Some((index, target)) = index.and_then(|index| Some((index, axes.get_mut(index)?))) else {
         let what = wanted.map_or("the log does not name its axis".into(), |wanted| {
             format!("no axis \"{wanted}\"")
         });
@@ -57,7 +76,7 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
         )));
     };
     fill(target, findings);
-    checked(document.to_string(), path)
+    checked(document.to_string(), path, index)
 }
 
 fn parsed(text: &str, path: &Path) -> Result<DocumentMut, Failure> {
@@ -136,8 +155,9 @@ fn noted(number: f64, low: f64, high: f64) -> Item {
     Item::Value(item)
 }
 
-/// The text, if posicast accepts it as a machine file.
-fn checked(text: String, path: &Path) -> Result<String, Failure> {
-    machine::parse(path, &text)?;
-    Ok(text)
+/// The text, if posicast accepts it as a machine file, with the unit of its axis `index`.
+fn checked(text: String, path: &Path, index: usize) -> Result<Written, Failure> {
+    let machine = machine::parse(path, &text)?;
+    let unit = machine.axes.get(index).map(|axis| axis.unit).unwrap_or_default();
+    Ok(Written { text, unit })
 }

@@ -7,7 +7,7 @@ use posicast_identify::recommend::{Recommendation, deflection};
 use posicast_identify::spectrum::PowerSpectrum;
 use posicast_model::analysis::sensitivity_curve;
 use posicast_model::impulse::ImpulseSequence;
-use posicast_model::unit::{AxisUnit, trimmed};
+use posicast_model::unit::trimmed;
 
 /// Number of shapers that are drawn.
 const SHAPERS: usize = 4;
@@ -84,7 +84,7 @@ fn transfer(findings: &Findings, points: &[ResponsePoint], fitted: &[(f64, f64)]
         x_label: "frequency, Hz".into(),
         y_label: "ratio".into(),
         curves: vec![
-            Curve::reference("measured", measured.collect()),
+            Curve::under("measured", measured.collect()),
             Curve::new("modes", fitted.to_vec()),
             Curve::new("what they leave", left.collect()),
         ],
@@ -107,7 +107,7 @@ fn response(name: &str, row_s: f64, measured: &[f64], fitted: &[f64]) -> Panel {
         x_label: label("time", time),
         y_label: "unit of the log".into(),
         curves: vec![
-            Curve::reference("measured", over_time(&mut measured.iter().copied())),
+            Curve::under("measured", over_time(&mut measured.iter().copied())),
             Curve::new("modes", over_time(&mut fitted.iter().copied())),
             Curve::new("what they leave", over_time(&mut left)),
         ],
@@ -169,12 +169,13 @@ fn ringing(findings: &Findings, best: &Recommendation) -> Panel {
     let of = |impulses: &ImpulseSequence| deflection(&findings.modes, impulses, acceleration, duration_s, POINTS);
     let (unshaped, shaped) = (of(&ImpulseSequence::unity()), of(&best.impulses));
     let largest = unshaped.iter().map(|(_, x)| x.abs()).fold(0.0, f64::max);
-    let (time, length) = (time_axis(duration_s), AxisUnit::Metre.for_size(largest));
+    let (time, length) = (time_axis(duration_s), findings.unit.for_size(largest));
     let scaled = |points: Vec<(f64, f64)>| points.into_iter().map(|(t, x)| (time.of(t), length.of(x))).collect();
     Panel {
         title: format!(
-            "deflection after a jump of the acceleration by {} m/s²",
-            trimmed(acceleration, 4)
+            "deflection after a jump of the acceleration by {} {}/s²",
+            trimmed(acceleration, 4),
+            findings.unit.si_name()
         ),
         x_label: label("time", time),
         y_label: label("deflection", length),

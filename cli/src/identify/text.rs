@@ -1,15 +1,17 @@
 //! Text that `identify` prints for people.
 
 use super::findings::Findings;
-use crate::output::{Table, percent};
+use super::machine_file::Written;
+use crate::new::to_measure;
+use crate::output::{Table, percent, shell_word};
 use posicast_identify::Interval;
-use posicast_model::unit::{AxisUnit, show_seconds, trimmed};
+use posicast_model::unit::{show_seconds, trimmed};
 use posicast_testbench::wording::counted;
 use std::fmt::Write;
 use std::path::Path;
 
 /// Modes, shapers, and what to do next.
-pub(super) fn text(log: &Path, findings: &Findings, written: Option<&Path>) -> String {
+pub(super) fn text(log: &Path, findings: &Findings, written: Option<(&Path, &Written)>) -> String {
     let mut text = format!(
         "{}: {} over {} at {} samples per second; {}\n{}\n",
         log.display(),
@@ -24,9 +26,10 @@ pub(super) fn text(log: &Path, findings: &Findings, written: Option<&Path>) -> S
         text += &modes(findings);
         let _ = write!(
             text,
-            "\nshapers after a jump of the acceleration by {} m/s², frequencies anywhere in their intervals and ±{} %: first the \
+            "\nshapers after a jump of the acceleration by {} {}/s², frequencies anywhere in their intervals and ±{} %: first the \
              shortest that leave {} % at most\n",
             trimmed(findings.judgement.acceleration, 4),
+            findings.unit.si_name(),
             trimmed(100.0 * findings.judgement.margin, 4),
             trimmed(100.0 * findings.judgement.enough, 4),
         );
@@ -38,11 +41,13 @@ pub(super) fn text(log: &Path, findings: &Findings, written: Option<&Path>) -> S
             let _ = writeln!(text, "  - {remark}");
         }
     }
-    if let Some(path) = written {
-        let file = path.display();
+    if let Some((path, machine)) = written {
+        let file = shell_word(path);
         let _ = writeln!(
             text,
-            "\n{file} written\nnext: `posicast design {file}`, then `posicast run {file}`"
+            "\n{} written\nnext: {}`posicast design {file}`, then `posicast run {file}`",
+            path.display(),
+            to_measure(&machine.text),
         );
     } else if !findings.modes.is_empty() {
         text += "\nnext: -o machine.toml writes a machine file with these modes and the first shaper\n";
@@ -86,9 +91,9 @@ fn shapers(findings: &Findings) -> String {
             shaper.kind.name().to_owned(),
             show_seconds(shaper.impulses.duration_s(), 3),
             show_seconds(shaper.impulses.delay_s(), 3),
-            AxisUnit::Metre.show(shaper.residual_displacement, 3),
+            findings.unit.show(shaper.residual_displacement, 3),
             percent(shaper.ratio()),
-            AxisUnit::Metre.show(shaper.smoothing, 3),
+            findings.unit.show(shaper.smoothing, 3),
         ]);
     }
     table.text("  ")

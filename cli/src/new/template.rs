@@ -1,6 +1,7 @@
 //! The templates of machine files, and the replacement of a value in one.
 
 use posicast_model::machine_file::{self, Machine};
+use posicast_model::unit::AxisUnit;
 use std::path::Path;
 
 /// Kind of machine that a template is for.
@@ -46,7 +47,15 @@ impl MachineKind {
 
     /// Whether its axes are rotary, with the radian as their unit.
     pub(crate) fn turns(self) -> bool {
-        self == Self::Joint
+        self.unit() == AxisUnit::Radian
+    }
+
+    /// Unit of its axes.
+    pub(crate) fn unit(self) -> AxisUnit {
+        match self {
+            Self::Printer | Self::Gantry | Self::Crane => AxisUnit::Metre,
+            Self::Joint => AxisUnit::Radian,
+        }
     }
 }
 
@@ -154,6 +163,19 @@ impl Draft {
     }
 }
 
+/// Lines that the user has to fill in are marked by this word.
+const MARK: &str = "MEASURE";
+
+/// What is left to measure in the text of a machine file, to stand before the next command; empty where nothing is.
+pub(crate) fn to_measure(text: &str) -> String {
+    let is_marked = |line: &&str| line.contains(&format!("# {MARK}"));
+    match text.lines().filter(is_marked).count() {
+        0 => String::new(),
+        1 => format!("put your value in the line that says {MARK}, then "),
+        marked => format!("put your values in the {marked} lines that say {MARK}, then "),
+    }
+}
+
 /// A text in TOML quotes. Characters that TOML would have to escape are left out, because no name has them.
 pub(crate) fn quoted(text: &str) -> String {
     let plain: String = text
@@ -174,6 +196,7 @@ mod tests {
             let machine = draft.machine().unwrap();
             assert_eq!(machine.name, "my_machine", "{name}");
             assert_eq!(draft.name(), "my_machine");
+            assert!(machine.axes.iter().all(|axis| axis.unit == kind.unit()), "{name}");
             for no_name in ["", "wire.toml", "1.toml", "-"] {
                 let draft = Draft::new(kind, Path::new(no_name));
                 assert_eq!(draft.text(), kind.template(), "{no_name}");

@@ -12,7 +12,6 @@ const ROW: i32 = 18;
 const LETTER: f64 = 0.5;
 
 enum Sample {
-    Nothing,
     Line(ShapeStyle, bool),
     Band,
 }
@@ -36,7 +35,7 @@ impl Legend {
         let curves = panel.curves.iter().zip(looks);
         let curves = curves.map(|(curve, (style, is_dashed))| (Sample::Line(*style, *is_dashed), curve.name.clone()));
         let band = panel.band.iter().map(|band| match band.holds_all(low, high) {
-            true => (Sample::Nothing, format!("{}: more than is shown", band.name)),
+            true => (Sample::Band, format!("{}: more than is shown", band.name)),
             false => (Sample::Band, band.name.clone()),
         });
         let band = band.chain(panel.x_ranges.iter().map(|range| (Sample::Band, range.name.clone())));
@@ -71,7 +70,6 @@ impl Legend {
             let (x, y) = (origin.0 + entry.place.0, origin.1 + entry.place.1);
             let middle = y + TEXT_SIZE / 2;
             match entry.sample {
-                Sample::Nothing => {}
                 Sample::Line(style, false) => {
                     area.draw(&PathElement::new([(x, middle), (x + SAMPLE, middle)], style))?;
                 }

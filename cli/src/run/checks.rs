@@ -28,32 +28,61 @@ pub(crate) struct Check {
     pub(crate) passed: bool,
     /// The figures of the check; for a failed one the place where it failed first.
     pub(crate) detail: String,
+    /// How much of what the check is about was compared.
+    #[serde(skip)]
+    pub(crate) coverage: Coverage,
 }
 
-/// Prefix of the detail of a check that compared nothing, or too little: it is named, and does not count as ok.
-pub(crate) const NOT_EXERCISED: &str = "not exercised: ";
-
-/// Part of the detail of a comparison in which nothing differed, and too little was compared.
-const TOO_LITTLE: &str = "no mismatch, but not exercised: ";
+/// How much of what a check is about was compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Coverage {
+    /// Enough for its verdict.
+    #[default]
+    Enough,
+    /// Nothing differed in the clocks that were compared, but there were too few of them.
+    TooFewClocks,
+    /// Nothing was compared, or too little to tell: the check is named, and does not count as ok.
+    Nothing,
+}
 
 impl Check {
+    /// A check that compared what its name says.
+    pub(crate) fn new(name: &'static str, passed: bool, detail: String) -> Self {
+        Self {
+            name,
+            passed,
+            detail,
+            coverage: Coverage::Enough,
+        }
+    }
+
+    /// A check that compared nothing, or too little, for this reason.
+    pub(crate) fn not_exercised(name: &'static str, passed: bool, reason: &str) -> Self {
+        Self {
+            name,
+            passed,
+            detail: format!("not exercised: {reason}"),
+            coverage: Coverage::Nothing,
+        }
+    }
+
     /// The result in a word.
     pub(crate) fn verdict(&self) -> &'static str {
-        match (self.passed, self.detail.starts_with(NOT_EXERCISED)) {
+        match (self.passed, self.coverage) {
             (false, _) => "FAILED",
-            (true, true) => "open  ",
-            (true, false) => "ok    ",
+            (true, Coverage::Enough) => "ok    ",
+            (true, _) => "open  ",
         }
     }
 
     /// Whether the check failed only because too few clocks were compared.
     pub(crate) fn is_too_short(&self) -> bool {
-        !self.passed && self.detail.contains(TOO_LITTLE)
+        !self.passed && self.coverage == Coverage::TooFewClocks
     }
 
     /// Whether the check held but compared nothing, or too little.
     pub(crate) fn is_open(&self) -> bool {
-        self.passed && self.detail.starts_with(NOT_EXERCISED)
+        self.passed && self.coverage != Coverage::Enough
     }
 }
 
@@ -82,9 +111,10 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &LockstepReport) -> Check {
         .blocks
         .iter()
         .find_map(|b| b.first.as_ref().map(|first| (b, first)));
+    let is_short = first.is_none() && lockstep.not_exercised() > 0;
     let detail = match first {
-        None if lockstep.not_exercised() > 0 => format!(
-            "{}, {TOO_LITTLE}{}; compare more clocks with --cycles",
+        None if is_short => format!(
+            "{}, no mismatch, but not exercised: {}; compare more clocks with --cycles",
             counted(lockstep.cycles, "clock"),
             lockstep.not_exercised_names().join(", ")
         ),
@@ -95,48 +125,39 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &LockstepReport) -> Check {
         ),
         Some((block, first)) => format!("{} {}:\n{first}", block.name, block.instance),
     };
+    let name = match simulator {
+        Simulator::Rusthdl => "RustHDL description equals the bit-exact model in every clock",
+        Simulator::Verilator | Simulator::Icarus => "RTL equals the bit-exact model in every clock",
+    };
+    let check = match lockstep.cycles > 0 && lockstep.samples > 0 {
+        true => Check::new(name, lockstep.result == LockstepVerdict::Match, detail),
+        false => Check::not_exercised(name, false, &detail),
+    };
     Check {
-        name: match simulator {
-            Simulator::Rusthdl => "RustHDL description equals the bit-exact model in every clock",
-            Simulator::Verilator | Simulator::Icarus => "RTL equals the bit-exact model in every clock",
+        coverage: match is_short {
+            true => Coverage::TooFewClocks,
+            false => check.coverage,
         },
-        passed: lockstep.result == LockstepVerdict::Match && lockstep.cycles > 0 && lockstep.samples > 0,
-        detail: match lockstep.cycles > 0 && lockstep.samples > 0 {
-            true => detail,
-            false => format!("{NOT_EXERCISED}{detail}"),
-        },
+        ..check
     }
 }
 
 fn move_equals_model(waves: &Waves) -> Check {
-    Check {
-        name: "wave/rtl.vcd equals wave/model.vcd over the move",
-        passed: waves.model.result == DiffVerdict::Equal && !is_empty(&waves.model),
-        detail: compared(&waves.model, waves),
-    }
+    compared("wave/rtl.vcd equals wave/model.vcd over the move", &waves.model, waves)
 }
 
 fn within_float_bound(waves: &Waves) -> Check {
-    Check {
-        name: "RTL stays within the rounding bound of the float design",
-        passed: waves.float.result == DiffVerdict::Equal && !is_empty(&waves.float),
-        detail: compared(&waves.float, waves),
-    }
+    let name = "RTL stays within the rounding bound of the float design";
+    compared(name, &waves.float, waves)
 }
 
-fn is_empty(comparison: &Comparison) -> bool {
-    comparison.signals == 0 || comparison.samples == 0
-}
-
-fn compared(comparison: &Comparison, waves: &Waves) -> String {
-    if is_empty(comparison) {
-        return format!(
-            "{NOT_EXERCISED}{}, {}",
-            counted(comparison.signals, "signal"),
-            counted(comparison.samples, "clock")
-        );
+fn compared(name: &'static str, comparison: &Comparison, waves: &Waves) -> Check {
+    if comparison.signals == 0 || comparison.samples == 0 {
+        let found = [(comparison.signals, "signal"), (comparison.samples, "clock")];
+        let found = found.map(|(number, what)| counted(number, what));
+        return Check::not_exercised(name, false, &found.join(", "));
     }
-    match comparison.differences.first() {
+    let detail = match comparison.differences.first() {
         None => format!(
             "{} in {} recorded clocks of {}",
             counted(comparison.signals, "signal"),
@@ -149,7 +170,8 @@ fn compared(comparison: &Comparison, waves: &Waves) -> String {
             first.signal,
             comparison.time(first.time)
         ),
-    }
+    };
+    Check::new(name, comparison.result == DiffVerdict::Equal, detail)
 }
 
 /// Every axis must move by a count or more: the waveforms of an axis at rest compare nothing.
@@ -167,34 +189,26 @@ pub(crate) fn moves(machine: &Machine, axes: &[AxisSimulation]) -> Check {
         .zip(axes.iter().map(counts))
         .collect();
     let still = moved.iter().find(|(_, counts)| *counts < 1.0);
-    Check {
-        name: "the command moves every axis",
-        passed: still.is_none() && !moved.is_empty(),
-        detail: match still {
-            Some((axis, counts)) => format!("{NOT_EXERCISED}axis {axis} moves by {counts:.3} counts"),
-            None => {
-                let texts: Vec<String> = moved
-                    .iter()
-                    .map(|(axis, counts)| format!("{axis} by {counts:.0} counts"))
-                    .collect();
-                texts.join(", ")
-            }
-        },
+    let name = "the command moves every axis";
+    if let Some((axis, counts)) = still {
+        return Check::not_exercised(name, false, &format!("axis {axis} moves by {counts:.3} counts"));
     }
+    let texts: Vec<String> = moved
+        .iter()
+        .map(|(axis, counts)| format!("{axis} by {counts:.0} counts"))
+        .collect();
+    Check::new(name, !moved.is_empty(), texts.join(", "))
 }
 
 /// The integer tables must keep every mode within its tolerance.
 fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check {
     let (beyond, modes) = (beyond_tolerance(machine, design), shaped_modes(machine, design));
-    Check {
-        name: "the integer taps keep the tolerance that was asked for",
+    let name = "the integer taps keep the tolerance that was asked for";
+    match (beyond.first(), modes) {
+        (Some(first), _) => Check::new(name, false, first.text.clone()),
         // A machine whose axes have no shaper asks for nothing: that is reported, and is not a failure.
-        passed: beyond.is_empty(),
-        detail: match (beyond.first(), modes) {
-            (Some(text), _) => text.clone(),
-            (None, 0) => format!("{NOT_EXERCISED}no axis has a shaper for a mode"),
-            (None, modes) => counted(modes as u64, "mode"),
-        },
+        (None, 0) => Check::not_exercised(name, true, "no axis has a shaper for a mode"),
+        (None, modes) => Check::new(name, true, counted(modes as u64, "mode")),
     }
 }
 
@@ -235,17 +249,20 @@ fn residual_at_corners(machine: &Machine, design: &MachineDesign) -> Option<Chec
         }
     }
     let (measured, certified) = worst.unwrap_or_default();
-    (corners > 0 || beyond.is_some()).then(|| Check {
-        name: "at the corners of the modes' bands the simulated plant keeps the certified residual",
-        passed: beyond.is_none(),
-        detail: beyond.unwrap_or_else(|| {
+    (corners > 0 || beyond.is_some()).then(|| {
+        let held = || {
             format!(
                 "{}, largest residual of a step {} %, {} % certified",
                 counted(corners, "corner"),
                 percent(measured),
                 percent(certified)
             )
-        }),
+        };
+        Check::new(
+            "at the corners of the modes' bands the simulated plant keeps the certified residual",
+            beyond.is_none(),
+            beyond.unwrap_or_else(held),
+        )
     })
 }
 
@@ -265,11 +282,11 @@ fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check 
             }
         }
     }
-    Check {
-        name: "integer taps keep the residual that was digitised",
-        passed: worst.is_none(),
-        detail: worst.unwrap_or_else(|| "every mode".to_owned()),
-    }
+    Check::new(
+        "integer taps keep the residual that was digitised",
+        worst.is_none(),
+        worst.unwrap_or_else(|| "every mode".to_owned()),
+    )
 }
 
 /// Verilator's lint must have no warning about the Verilog under any of the tops; no check where Verilator is not the
@@ -283,14 +300,12 @@ pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block])
         let reached = sources.reached_by(*top).map_err(bench::failure)?;
         warnings.extend(reached.lint(*top).map_err(bench::failure)?);
     }
-    Ok(Some(Check {
-        name: "Verilog is clean under verilator --lint-only -Wall",
-        passed: warnings.is_empty(),
-        detail: warnings
-            .first()
-            .cloned()
-            .unwrap_or_else(|| format!("{} files", sources.files().len())),
-    }))
+    let clean = || format!("{} files", sources.files().len());
+    Ok(Some(Check::new(
+        "Verilog is clean under verilator --lint-only -Wall",
+        warnings.is_empty(),
+        warnings.first().cloned().unwrap_or_else(clean),
+    )))
 }
 
 /// The top module, without the components, must fit the device of the machine file; no check where it names none.
@@ -302,9 +317,9 @@ pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
             e.needed, e.resource, e.available, e.block
         )
     });
-    Some(Check {
-        name: "the top module, with its shapers alone, fits the target device",
-        passed: excess.is_none(),
-        detail: excess.unwrap_or_else(|| estimate.device.name.to_owned()),
-    })
+    Some(Check::new(
+        "the top module, with its shapers alone, fits the target device",
+        excess.is_none(),
+        excess.unwrap_or_else(|| estimate.device.name.to_owned()),
+    ))
 }

@@ -37,22 +37,26 @@ pub(crate) fn response_panels(
 
 /// `name` with the time at which the deviations, given at times in the unit of `time`, have settled to ± `band`.
 ///
-/// A vibration crosses its band twice per period: it has settled only if it then stays there for `at_least_s` that are shown.
+/// A vibration of this period crosses its band twice in each: it has settled only if it then stays there for a whole
+/// period that is shown. If it leaves the band within the last half of one, it has not settled before the end; if it
+/// stays in the band for longer than that, but less than a period, more would have to be shown to tell.
 pub(super) fn with_settling(
     name: &str,
     deviations: &[(f64, f64)],
     band: f64,
     time: ShownUnit,
-    at_least_s: f64,
+    period_s: f64,
 ) -> String {
     let values: Vec<f64> = deviations.iter().map(|point| point.1).collect();
+    let begin = deviations.first().map_or(0.0, |point| point.0);
     let end = deviations.last().map_or(0.0, |point| point.0);
-    let stays = |(_, at): &(usize, f64)| end - at >= time.of(at_least_s);
+    let period = time.of(period_s);
     let settled = settled_from(&values, band).map(|first| (first, deviations[first].0));
-    match settled.filter(stays) {
-        Some((0, _)) => format!("{name}: settled throughout"),
-        Some((_, at)) => format!("{name}: settled at {} {}", trimmed(at, 3), time.symbol()),
-        None => format!("{name}: settles later"),
+    match settled {
+        Some((0, at)) if end - at >= period => format!("{name}: settled throughout"),
+        Some((_, at)) if end - at >= period => format!("{name}: settled at {} {}", trimmed(at, 3), time.symbol()),
+        Some((_, at)) if end - at >= 0.5 * period || at <= begin => format!("{name}: not shown long enough"),
+        _ => format!("{name}: settles later"),
     }
 }
 
@@ -142,5 +146,38 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
             range: (-count, count),
         }),
         ..Panel::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use posicast_model::unit::time_unit;
+    use std::f64::consts::TAU;
+
+    /// The label of a vibration of 10 ms that begins at 7 and halves in each period, shown for this long.
+    fn label_of(shown_ms: f64) -> String {
+        let points = (0..=(10.0 * shown_ms) as usize).map(|n| {
+            let t = n as f64 / 10.0;
+            (t, 7.0 * 0.5f64.powf(t / 10.0) * (TAU * t / 10.0).cos())
+        });
+        with_settling("load", &points.collect::<Vec<_>>(), 1.0, time_unit(5e-3), 10e-3)
+    }
+
+    #[test]
+    fn unit_what_is_said_of_settling_is_what_is_shown() {
+        // The envelope at the half periods is 7 · 2^(−n/2): 1.24 at 25 ms is the last above 1, and the curve enters the
+        // band for good soon after.
+        assert_eq!(label_of(60.0), "load: settled at 25.9 ms");
+        assert_eq!(label_of(37.0), "load: settled at 25.9 ms");
+        assert_eq!(label_of(33.0), "load: not shown long enough");
+        // It crosses the band, and leaves it again.
+        for shown_ms in [2.5, 7.5, 12.5, 20.0, 28.0] {
+            assert_eq!(label_of(shown_ms), "load: settles later", "{shown_ms}");
+        }
+        let quiet = |shown: usize| (0..=shown).map(|n| (n as f64, 0.1)).collect::<Vec<_>>();
+        let label = |shown| with_settling("load", &quiet(shown), 1.0, time_unit(5e-3), 10e-3);
+        assert_eq!(label(10), "load: settled throughout");
+        assert_eq!(label(2), "load: not shown long enough");
     }
 }

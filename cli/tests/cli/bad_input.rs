@@ -292,3 +292,202 @@ fn cli_a_named_simulator_that_is_missing_is_exit_status_3() {
             .stderr(predicate::str::contains("not found"));
     }
 }
+
+/// Returns the ball screw, whose mode follows from [axis.mechanics], with another value of a key.
+fn ball_screw(key: &str, value: &str) -> String {
+    let text = std::fs::read_to_string(example("ball-screw.toml")).unwrap();
+    with_value(&text, key, value)
+}
+
+/// Replaces the value of every line that begins with this key.
+fn with_value(text: &str, key: &str, value: &str) -> String {
+    let start = format!("{key} = ");
+    let lines = text.lines().map(|line| match line.starts_with(&start) {
+        true => format!("{start}{value}\n"),
+        false => format!("{line}\n"),
+    });
+    let changed: String = lines.collect();
+    assert_ne!(changed, text, "{key}");
+    changed
+}
+
+#[test]
+fn cli_an_error_of_a_mode_that_follows_from_mechanics_blames_the_mechanics() {
+    for (key, value, words) in [
+        (
+            "motor_held_damping",
+            "0.7",
+            &[
+                "machine.toml:36: axis.mechanics.motor_held_damping of axis z: shaper",
+                "or use \"zv\"",
+            ][..],
+        ),
+        (
+            "bearing_stiffness",
+            "1e3",
+            &[
+                "machine.toml:26: axis.mechanics of axis z: the shaper lasts",
+                "check the units, lengths in m",
+            ],
+        ),
+        (
+            "tolerance",
+            "0.99",
+            &[
+                "machine.toml:23: axis.shaper.tolerance of axis z: shaper",
+                "tolerance 0.99",
+            ],
+        ),
+    ] {
+        let machine = ball_screw(key, value);
+        let machine = match key {
+            // Soft bearings alone still hold 38 kg at 0.8 Hz.
+            "bearing_stiffness" => with_value(&machine, "table_mass", "1e5"),
+            _ => machine,
+        };
+        refused(&["design"], &machine, words);
+    }
+}
+
+#[test]
+fn cli_lengths_of_a_screw_in_millimetres_are_asked_for() {
+    for (key, value, hint) in [
+        ("lead_m", "16", "`lead_m` is in metres: 16 mm is 0.016; else"),
+        (
+            "screw_diameter_m",
+            "13.5",
+            "`screw_diameter_m` is in metres: 13.5 mm is 0.0135; else",
+        ),
+        (
+            "screw_length_m",
+            "600",
+            "`screw_length_m` is in metres: 600 mm is 0.6; else",
+        ),
+    ] {
+        refused(
+            &["design"],
+            &ball_screw(key, value),
+            &[&format!("axis.mechanics.{key}"), hint],
+        );
+    }
+}
+
+#[test]
+fn cli_values_that_the_supervisor_does_not_hold_get_their_range_and_a_remedy() {
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let ticks = "allowed: at least 0, at most 6.5535 s, the 65,535 ticks that its word counts";
+    for value in ["7.0", "60.0", "500.0"] {
+        refused(
+            &["design"],
+            &with_value(&stage, "watchdog_s", value),
+            &[ticks, "a lower clock.sample_hz allows more"],
+        );
+    }
+    let counts = with_value(&stage, "following_error", "0.04");
+    let words = [
+        "axis.limits.following_error: axis x: found 0.04 m; allowed: 1.52588e-11 to 0.0327679 m",
+        "help: write `following_error = 0.0327679`, or less; a lower counts_per_unit allows more",
+    ];
+    refused(&["design"], &counts, &words);
+}
+
+#[test]
+fn cli_a_stop_that_leaves_the_position_word_is_blamed_on_the_keys_that_decide() {
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let slow = with_value(&with_value(&stage, "travel", "[-4.0, 4.1]"), "acceleration", "0.01");
+    let words = [
+        ": axis.limits.acceleration: axis x: found a travel from -4 to 4.1 m",
+        "a quick stop from `velocity` at `acceleration` 3.125 m",
+        "help: shorten `travel`, raise `acceleration` or lower `velocity`",
+    ];
+    refused(&["design"], &slow, &words);
+    // Here the travel alone is too long.
+    let long = with_value(&stage, "travel", "[-4.0, 4.3]");
+    refused(
+        &["design"],
+        &long,
+        &[": axis.limits.travel: axis x", "help: shorten `travel`"],
+    );
+}
+
+#[test]
+fn cli_a_travel_that_the_word_does_not_hold_is_told_in_whole_counts_and_with_the_words_of_a_stage() {
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let narrow = format!(
+        "{}\n[fixed_point]\ncommand_bits = 24\n",
+        with_value(&stage, "travel", "[-0.1, 0.4339036]")
+    );
+    let words = [
+        "found a travel of up to 433904 counts; allowed: at most 32767 counts in 24 bits",
+        "help: set fixed_point.command_bits = 32, which a stage needs",
+    ];
+    refused(&["design"], &narrow, &words);
+    // Without a controller the narrowest word that holds it is enough.
+    let alone =
+        one_axis("kind = \"zvd\"", MODE) + "[axis.limits]\ntravel = [0, 0.1]\n[fixed_point]\ncommand_bits = 24\n";
+    refused(&["design"], &alone, &["help: set fixed_point.command_bits = 26"]);
+}
+
+#[test]
+fn cli_a_device_of_another_vendor_is_told_what_to_write() {
+    let machine = one_axis("kind = \"zvd\"", MODE) + "[target]\nfamily = \"ecp5\"\n";
+    let words = [
+        "machine.toml:14: target.family: found \"ecp5\"",
+        "remove [target]: the Verilog suits every device",
+    ];
+    refused(&["design"], &machine, &words);
+}
+
+#[test]
+fn cli_sliding_mode_without_gains_is_told_where_to_begin() {
+    let stage = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
+    let without = stage
+        .lines()
+        .filter(|line| !["c = ", "k = ", "boundary = "].iter().any(|key| line.starts_with(key)));
+    let without = without.collect::<Vec<_>>().join("\n");
+    let words = [
+        "axis.controller.c of axis x: found no such key",
+        "begin with the XY stage's, c = 150.0",
+        "`kind = \"pd\"`",
+    ];
+    refused(&["design"], &without, &words);
+}
+
+#[test]
+fn cli_a_file_in_another_encoding_is_refused_with_its_line_and_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("latin.toml");
+    std::fs::write(&file, b"name = \"m\"\n# Gr\xf6\xdfe\n").unwrap();
+    let assert = posicast().arg("design").arg(&file).assert().code(2).stdout("");
+    assert.stderr(
+        predicate::str::contains("latin.toml:2: found the byte 0xF6 after \"# Gr\"; allowed: text in UTF-8")
+            .and(predicate::str::contains("help: save the file as UTF-8")),
+    );
+}
+
+#[test]
+fn cli_warnings_name_file_line_and_key() {
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let without = stage.lines().filter(|line| !line.starts_with("watchdog_s"));
+    let (_folder, file) = scratch(&without.collect::<Vec<_>>().join("\n"));
+    let text = std::fs::read_to_string(&file).unwrap();
+    let limits = 1 + text.lines().position(|line| line.starts_with("[axis.limits]")).unwrap();
+    let expected = format!(
+        "warning: {}:{limits}: axis.limits.watchdog_s: axis `x` has no watchdog_s in [axis.limits]",
+        file.display()
+    );
+    let assert = posicast().arg("design").arg(&file).assert().success();
+    assert.stderr(predicate::str::contains(expected));
+    // A stage needs words of 32 bits.
+    let narrow = with_value(&stage, "travel", "[-0.01, 0.01]") + "\n[fixed_point]\ncommand_bits = 24\n";
+    let (folder, file) = scratch(&narrow);
+    let line = narrow.lines().count();
+    let generate = posicast()
+        .arg("generate")
+        .arg(&file)
+        .current_dir(folder.path())
+        .assert()
+        .success();
+    let expected = format!("machine.toml:{line}: fixed_point.command_bits: no stage is built");
+    generate.stderr(predicate::str::contains(expected));
+}

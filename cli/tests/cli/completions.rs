@@ -41,6 +41,17 @@ fn each_command_has_a_manual_page_and_pages_of_others_stay() {
         page.contains("posicast\\-run") && page.contains("Machine file"),
         "{page}"
     );
+    // The synopsis has the values, and every page has its exit status.
+    assert!(
+        page.contains(r"[\fB\-o|\-\-output\fR \fIDIR\fR]") && page.contains(r"] \fIMACHINE\fR"),
+        "{page}"
+    );
+    for name in ["posicast", "posicast-run", "posicast-new", "posicast-diff"] {
+        let page = std::fs::read_to_string(pages.join(format!("{name}.1"))).unwrap();
+        let (_, status) = page.split_once(".SH \"EXIT STATUS\"\n").expect(name);
+        assert!(status.starts_with("0 ") && status.contains("130 "), "{page}");
+        assert!(page.contains(".SH EXAMPLES") && !page.contains("EXTRA"), "{page}");
+    }
     assert!(pages.join("posicast.1").is_file() && pages.join("posicast-identify.1").is_file());
     std::fs::write(pages.join("posicast-run.1"), "mine").unwrap();
     let refused = man(&[]);

@@ -86,7 +86,7 @@ fn cli_design_and_generate_warn_of_a_controller_that_is_too_fast() {
     assert!(design.status.success());
     let said = String::from_utf8_lossy(&design.stderr).into_owned();
     assert!(
-        said.contains("warning: controller of axis `x`: proportional·lag = 0.6"),
+        said.contains(": axis.controller: controller of axis `x`: proportional·lag = 0.6"),
         "{said}"
     );
     let axis = &json(&design.stdout)["axes"][0];
@@ -170,8 +170,9 @@ fn cli_design_names_key_and_line_of_a_limit_that_its_word_does_not_hold() {
     let design = posicast().arg("design").arg(&file).output().unwrap();
     assert_eq!((design.status.code(), design.stdout.len()), (Some(2), 0));
     let said = String::from_utf8_lossy(&design.stderr).into_owned();
-    let expected =
-        format!("machine.toml:{line}: axis.limits.watchdog_s: axis x: found 6.6 s; allowed: 0.0001 to 6.5535 s");
+    let expected = format!(
+        "machine.toml:{line}: axis.limits.watchdog_s of axis x: found 6.6; allowed: at least 0, at most 6.5535 s, the 65,535 ticks"
+    );
     assert!(said.contains(&expected), "{said}");
 }
 

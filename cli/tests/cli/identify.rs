@@ -199,6 +199,85 @@ fn cli_new_from_a_log_writes_the_same_machine_and_replaces_none() {
     assert_eq!(new(), Some(2), "it is there already");
 }
 
+/// Writes a free decay at 30 Hz.
+fn write_decay(folder: &Path) {
+    let rows: String = (0..500)
+        .map(|n| {
+            let t = 1e-3 * f64::from(n);
+            format!("{t},{}\n", (-6.0 * t).exp() * (190.0 * t).cos())
+        })
+        .collect();
+    std::fs::write(folder.join("stop.csv"), format!("time,response\n{rows}")).unwrap();
+}
+
+#[test]
+fn cli_a_rotary_axis_has_angles_in_text_picture_and_document() {
+    let folder = tempfile::tempdir().unwrap();
+    write_decay(folder.path());
+    let joint = ["stop.csv", "--joint", "--plot", "joint.svg"];
+    let (status, said, _) = identify(folder.path(), &joint);
+    assert_eq!(status, Some(0));
+    assert!(
+        said.contains("acceleration by 5 rad/s²") && said.contains("µrad"),
+        "{said}"
+    );
+    assert!(!said.contains("µm") && !said.contains("m/s²"), "{said}");
+    let picture = std::fs::read_to_string(folder.path().join("joint.svg")).unwrap();
+    assert!(picture.contains("by 5 rad/s²") && picture.contains("deflection, µrad"));
+    let (_, said, _) = identify(folder.path(), &["stop.csv", "--joint", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(document["si_unit"], "rad");
+    // The axis of a machine that is there says its unit.
+    std::fs::write(
+        folder.path().join("arm.toml"),
+        std::fs::read_to_string(crate::cli::support::example("robot-joint.toml")).unwrap(),
+    )
+    .unwrap();
+    let (status, said, problems) = identify(folder.path(), &["stop.csv", "--machine", "arm.toml", "-o", "new.toml"]);
+    assert_eq!(status, Some(0), "{problems}");
+    assert!(said.contains("rad/s²") && !said.contains("m/s²"), "{said}");
+    let (_, said, _) = identify(folder.path(), &["stop.csv"]);
+    assert!(said.contains("acceleration by 5 m/s²") && said.contains("µm"), "{said}");
+}
+
+#[test]
+fn cli_new_from_a_log_tells_what_is_left_to_measure() {
+    let folder = tempfile::tempdir().unwrap();
+    write_decay(folder.path());
+    let new = |kind: &str, file: &str| {
+        let mut command = posicast();
+        command.current_dir(folder.path());
+        let output = command
+            .args(["new", kind, "--from-log", "stop.csv", file])
+            .output()
+            .unwrap();
+        (
+            String::from_utf8(output.stdout).unwrap(),
+            std::fs::read_to_string(folder.path().join(file)).unwrap(),
+        )
+    };
+    // The mode of the joint is measured; its counts and the bandwidth of its drive are not.
+    let (said, text) = new("--joint", "arm.toml");
+    assert_eq!(text.matches("# MEASURE").count(), 2, "{text}");
+    assert!(text.contains("Measure what is marked MEASURE"), "{text}");
+    assert!(
+        said.contains("next: put your values in the 2 lines that say MEASURE, then `posicast design arm.toml`"),
+        "{said}"
+    );
+    assert!(said.contains("rad/s²") && !said.contains("m/s²"), "{said}");
+    // Of a crane everything is.
+    let (said, text) = new("--crane", "crane.toml");
+    assert!(
+        !text.contains("MEASURE") && text.contains("The modes are from the log"),
+        "{text}"
+    );
+    assert!(said.contains("next: `posicast design crane.toml`"), "{said}");
+    assert!(
+        said.contains("`posicast schema -o posicast-machine.schema.json`"),
+        "{said}"
+    );
+}
+
 #[test]
 fn cli_without_knowing_the_excitation_the_spectrum_still_tells_a_mode() {
     let folder = tempfile::tempdir().unwrap();

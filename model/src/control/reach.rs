@@ -85,13 +85,17 @@ pub(super) fn check_travel(axis: &AxisSection, table: &TableBounds) -> Result<()
         return Ok(());
     };
     let deceleration = limits.stop_deceleration.or(limits.acceleration);
+    let key = match limits.stop_deceleration {
+        Some(_) => "axis.limits.stop_deceleration",
+        None => "axis.limits.acceleration",
+    };
     let stop = match (limits.velocity, deceleration) {
         (Some(velocity), Some(deceleration)) => velocity * velocity / (2.0 * deceleration),
         _ => 0.0,
     };
-    let taken = (high - low) * table.farthest + stop;
+    let shaped = (high - low) * table.farthest;
     let reach = reach(axis);
-    if taken <= reach {
+    if shaped + stop <= reach {
         return Ok(());
     }
     Err(SupervisionError::Reach {
@@ -99,7 +103,9 @@ pub(super) fn check_travel(axis: &AxisSection, table: &TableBounds) -> Result<()
         unit: axis.unit,
         low,
         high,
-        taken,
+        shaped,
+        stop,
+        deceleration: key,
         reach,
         counts_per_unit: axis.loop_counts_per_file_unit(),
     })

@@ -37,6 +37,30 @@ pub struct DesignBlame {
 
 /// The key that a design error of this machine comes from; `None` where the error is not about an axis of it.
 pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
+    of_modes(machine, error).map(|blame| as_written(machine, blame))
+}
+
+/// The key that the file has in place of a mode's: that of `[axis.mechanics]`, from which the mode follows, or of
+/// `[axis.shaper]`, from which its tolerance comes.
+fn as_written(machine: &Machine, blame: DesignBlame) -> DesignBlame {
+    let axis = machine.axes.get(blame.axis);
+    let is_computed = axis.is_some_and(|axis| axis.mechanics.is_some());
+    let mode = axis.and_then(|axis| axis.modes.get(blame.mode?));
+    let key = match blame.key.strip_prefix("axis.mode") {
+        Some(".tolerance") if mode.is_some_and(|mode| mode.tolerance.is_none()) => "axis.shaper.tolerance",
+        Some(".damping") if is_computed => "axis.mechanics.motor_held_damping",
+        Some(".shaper" | ".frequency_band" | ".damping_band") if is_computed => "axis.shaper",
+        Some(_) if is_computed => "axis.mechanics",
+        _ => return blame,
+    };
+    DesignBlame {
+        mode: None,
+        key: key.to_owned(),
+        ..blame
+    }
+}
+
+fn of_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
     let of_axis = |name: &str| machine.axes.iter().position(|axis| axis.name == name);
     let shaper = |axis: usize| DesignBlame {
         axis,
@@ -185,12 +209,20 @@ fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
         });
     };
     let hz = mode.mode.frequency_hz;
-    let in_khz = (hz < UNLIKELY_HZ && hz * 1e3 < machine.clock.sample_hz / 2.0).then(|| {
+    let is_computed = section.mechanics.is_some();
+    let of_mechanics = is_computed.then(|| {
+        format!(
+            "the mode computed from [axis.mechanics] is {} Hz: check the units, lengths in m, stiffness in N/m, inertia in kg·m², mass \
+             in kg",
+            short(hz)
+        )
+    });
+    let in_khz = (!is_computed && hz < UNLIKELY_HZ && hz * 1e3 < machine.clock.sample_hz / 2.0).then(|| {
         let (found, meant) = (short(hz), short(hz * 1e3));
         format!("{found} kHz? Frequencies are in Hz: write `frequency_hz = {meant}`")
     });
     let rate = rate_that_fits(machine, axis).map(|(text, _)| text);
-    let remedies: Vec<String> = [in_khz, rate].into_iter().flatten().collect();
+    let remedies: Vec<String> = [of_mechanics, in_khz, rate].into_iter().flatten().collect();
     Some(DesignBlame {
         axis,
         mode: Some(index),

@@ -198,8 +198,8 @@ fn control(
     };
     let (own, family) = tables;
     let bounds = TableBounds::of_axis(&own.table, family);
-    let supervision =
-        supervision(axis, &machine.clock, bounds).map_err(|error| HardwareError::new(index, error.key(), &error))?;
+    let supervision = supervision(axis, &machine.clock, bounds)
+        .map_err(|error| HardwareError::new(index, error.key(), &error).with_help(error.remedy()))?;
     Ok(Some(AxisLoop {
         lag_s,
         derived,

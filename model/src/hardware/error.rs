@@ -10,8 +10,10 @@ pub struct HardwareError {
     pub axis: usize,
     /// The key of the machine file to blame, such as `axis.pwm.frequency_hz`.
     pub key: String,
-    /// The reason and the remedy, in words.
+    /// The reason in words, with the remedy where `help` has none.
     pub reason: String,
+    /// What to do.
+    pub help: Option<String>,
 }
 
 impl HardwareError {
@@ -21,6 +23,15 @@ impl HardwareError {
             axis,
             key: key.to_owned(),
             reason: reason.to_string(),
+            help: None,
+        }
+    }
+
+    /// The error with what to do about it.
+    pub(crate) fn with_help(self, help: String) -> Self {
+        Self {
+            help: Some(help),
+            ..self
         }
     }
 }

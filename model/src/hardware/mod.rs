@@ -24,11 +24,16 @@ use crate::design::MachineDesign;
 use crate::machine_file::Machine;
 use crate::rtl::component::Component;
 use crate::rtl::divider::DividerConfig;
-use crate::rtl::shaper::ShaperConfig;
+use crate::rtl::group::MOST_AXES;
+use crate::rtl::shaper::{ShaperConfig, WORD_BITS};
 use crate::rtl::stage::StageError;
 
 /// Key of the sample rate.
 const SAMPLE_KEY: &str = "clock.sample_hz";
+/// Key of the width of the command's words.
+const WORD_KEY: &str = "fixed_point.command_bits";
+/// Key of an axis's shaper.
+const SHAPER_KEY: &str = "axis.shaper";
 /// Key of an axis's name.
 pub const NAME_KEY: &str = "axis.name";
 /// Key of a PWM's frequency.
@@ -40,7 +45,7 @@ pub struct Hardware<'a> {
     machine: &'a Machine,
     axes: Vec<AxisHardware>,
     stage: Result<Option<StageHardware>, HardwareError>,
-    without_stage: Option<String>,
+    without_stage: Option<HardwareError>,
 }
 
 /// The stage of a machine, with its component.
@@ -92,8 +97,8 @@ impl<'a> Hardware<'a> {
     }
 
     /// Why a machine whose loops are all complete has no stage: its shapers do not suit one. Else `None`.
-    pub fn without_stage(&self) -> Option<&str> {
-        self.without_stage.as_deref()
+    pub fn without_stage(&self) -> Option<&HardwareError> {
+        self.without_stage.as_ref()
     }
 
     /// The shaper of each axis in the machine's top module.
@@ -139,7 +144,7 @@ impl<'a> Hardware<'a> {
 fn complete_stage(
     machine: &Machine,
     design: &MachineDesign,
-    reason: &mut Option<String>,
+    reason: &mut Option<HardwareError>,
 ) -> Result<Option<StageHardware>, HardwareError> {
     // A machine with only shapers may have words and delays that a stage does not allow; it needs no stage.
     if !machine.axes.iter().all(crate::machine_file::AxisSection::has_loop) {
@@ -149,18 +154,24 @@ fn complete_stage(
         Ok(Some(stage)) => stage,
         Ok(None) => return Ok(None),
         Err(error @ MachineStageError::Shaper { .. }) => {
-            *reason = Some(error.to_string());
+            let (axis, key) = error.key();
+            *reason = Some(HardwareError::new(axis, &key, error));
             return Ok(None);
         }
         Err(error) => {
             let (axis, key) = error.key();
-            return Err(HardwareError::new(axis, &key, error));
+            let refused = HardwareError::new(axis, &key, &error);
+            return Err(match error.remedy() {
+                Some(remedy) => refused.with_help(remedy),
+                None => refused,
+            });
         }
     };
     match Component::stage(&of_machine.config) {
         Ok(component) => Ok(Some(StageHardware { of_machine, component })),
         Err(error @ (StageError::Axes(_) | StageError::Channels { .. })) => {
-            *reason = Some(error.to_string());
+            let (axis, key) = to_blame(&of_machine, &error);
+            *reason = Some(HardwareError::new(axis, key, error));
             Ok(None)
         }
         Err(error) => {
@@ -172,11 +183,12 @@ fn complete_stage(
 
 /// Axis and key of the machine file that are to blame for an error of a stage.
 fn to_blame(stage: &MachineStage, error: &StageError) -> (usize, &'static str) {
+    let of = |name: &str| stage.config.axes.iter().position(|axis| axis.name == name).unwrap_or(0);
     match error {
-        StageError::Period { axis, .. } => {
-            let index = stage.config.axes.iter().position(|other| other.name == *axis);
-            (index.unwrap_or(0), PERIOD_KEY)
-        }
+        StageError::Period { axis, .. } => (of(axis), PERIOD_KEY),
+        StageError::Channels { axis, word_bits, .. } if *word_bits < *WORD_BITS.end() => (of(axis), WORD_KEY),
+        StageError::Channels { axis, .. } => (of(axis), SHAPER_KEY),
+        StageError::Axes(_) => (MOST_AXES, "axis"),
         StageError::Map(_) | StageError::Composition(_) | StageError::Component(_) => {
             let axis = stage.clashing_axis(|config| Component::stage(config).is_ok());
             (axis, NAME_KEY)

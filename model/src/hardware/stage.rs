@@ -118,6 +118,14 @@ impl MachineStageError {
             Self::Supervision { axis, error } => (*axis, error.key().to_owned()),
         }
     }
+
+    /// What to do, where the text does not say it.
+    pub fn remedy(&self) -> Option<String> {
+        match self {
+            Self::Supervision { error, .. } => Some(error.remedy()),
+            _ => None,
+        }
+    }
 }
 
 /// The stage of a machine; `None` unless every axis has encoder, PWM, drive and controller.

@@ -130,7 +130,9 @@ pub(super) fn read(
     };
     // The position of a modulo axis wraps: any travel fits.
     let word = loop_counts_per_unit.zip(fixed_point).filter(|_| !modulo);
-    let limits = table.table("limits").map(|t| limits::read(table, &t, word, unit));
+    let limits = table
+        .table("limits")
+        .map(|t| limits::read(table, &t, word, unit, clock));
     let error_table = table.table("error_table").map(|t| {
         let of_axis = error_table::OfAxis {
             unit,
@@ -193,7 +195,10 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
         let (least, most) = (MOTION_WORD_BITS.start(), MOTION_WORD_BITS.end());
         let found = format!("modulo = true with command words of {bits} bits");
         let allowed = format!("modulo = true with fixed_point.command_bits = {least} to {most}");
-        let remedy = format!("set fixed_point.command_bits = {least}");
+        let remedy = match table.has("controller") {
+            true => format!("set fixed_point.command_bits = {most}, which a stage needs"),
+            false => format!("set fixed_point.command_bits = {least}"),
+        };
         table.contradiction("modulo", found, allowed, remedy);
     }
     modulo

@@ -102,6 +102,13 @@ const GAINS: [(&str, &[&str]); 7] = [
     ("integral", &["pid"]),
 ];
 
+/// The gains that may be 0.
+const NOT_NEGATIVE_GAINS: [&str; 2] = ["k", "epsilon"];
+/// What to do where a gain of the sliding-mode law is missing.
+const SLIDING_MODE: &str = "sliding mode needs the gains `c`, `k`, `epsilon` and `boundary`: begin with the XY stage's, \
+                            c = 150.0, k = 50.0, and in m epsilon = 4.0, boundary = 0.05 (docs/controllers.md says how they act); \
+                            `kind = \"pd\"` computes its own gains";
+
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> {
     table.allow(KEYS);
@@ -119,7 +126,12 @@ pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> 
     let kind = kind?;
     for (key, kinds) in GAINS {
         if kinds == ["sliding-mode"] && kind == "sliding-mode" {
-            table.require(key, POSITIVE);
+            let range = if NOT_NEGATIVE_GAINS.contains(&key) {
+                NOT_NEGATIVE
+            } else {
+                POSITIVE
+            };
+            table.require_with(key, range, SLIDING_MODE);
         } else if table.has(key) && !kinds.contains(&kind) {
             let found = format!("{key} with kind = \"{kind}\"");
             let kinds: Vec<String> = kinds.iter().map(|kind| format!("\"{kind}\"")).collect();

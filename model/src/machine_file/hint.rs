@@ -43,6 +43,9 @@ pub(super) fn in_other_unit(key: &str, found_hz: f64, units: &[Prefix], right: i
     ))
 }
 
+/// Times the upper end of a shortened range, above which a time is taken for one in ms.
+const FAR: f64 = 20.0;
+
 /// The remedy for a number outside its range.
 pub(super) fn of_number(key: &str, found: f64, range: NumberRange) -> String {
     let otherwise = format!("give `{key}` a value in this range");
@@ -51,12 +54,18 @@ pub(super) fn of_number(key: &str, found: f64, range: NumberRange) -> String {
         let (percent, part) = (short(found), short(found / 100.0));
         return format!("percent? {percent} % is {part}; else {otherwise}");
     }
-    if range.unit_name() == "s" && found > high && range.contains(found * 1e-3) {
+    // A time that just exceeds a word is one in seconds.
+    let far = if range.is_shortened() { FAR * high } else { high };
+    if range.unit_name() == "s" && found > far && range.contains(found * 1e-3) {
         let number = short(found);
         let [ms, us, ns] = [1e-3, 1e-6, 1e-9].map(|unit| short(found * unit));
         return format!(
             "`{key}` is in seconds: {number} ms is {ms}, {number} µs {us}, {number} ns {ns}; else {otherwise}"
         );
+    }
+    if key.ends_with("_m") && found > high && range.contains(found * 1e-3) {
+        let (number, meant) = (short(found), short(found * 1e-3));
+        return format!("`{key}` is in metres: {number} mm is {meant}; else {otherwise}");
     }
     if found < 0.0 && low >= 0.0 && range.contains(-found) {
         return format!("{otherwise}, without the minus sign");
@@ -194,6 +203,9 @@ mod tests {
         let time = NumberRange::closed(0.0, 60.0).unit("s");
         let seconds = "`watchdog_s` is in seconds: 500 ms is 0.5, 500 µs 0.0005, 500 ns 5e-7";
         assert!(of_number("watchdog_s", 500.0, time).starts_with(seconds));
+        let length = NumberRange::closed(1e-4, 1.0).unit("m");
+        assert!(of_number("lead_m", 16.0, length).starts_with("`lead_m` is in metres: 16 mm is 0.016; else"));
+        assert!(!of_number("lead_m", 16_000.0, length).contains("mm"));
         assert!(of_number("watchdog_s", -5.0, time).ends_with("without the minus sign"));
     }
 }

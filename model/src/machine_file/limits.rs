@@ -4,13 +4,13 @@
 //! the words of the hardware, and refuses values that do not fit. `docs/machine-file.md` has every key with its
 //! default.
 
-use super::FixedPoint;
 use super::key::{Default as Absent, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
+use super::{ClockSection, FixedPoint};
 use crate::rtl::axis::{ALWAYS_OFF, Cause};
 use crate::rtl::shaper::WORD_BITS;
-use crate::unit::AxisUnit;
+use crate::unit::{AxisUnit, short};
 
 /// Range of positions.
 const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9);
@@ -18,6 +18,8 @@ const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9);
 const MOTION: NumberRange = NumberRange::positive(1e9);
 /// Range of the brake's times and of the monitors' time limits, which may be 0.
 const SECONDS: NumberRange = NumberRange::closed(0.0, 60.0).unit("s");
+/// Largest number of ticks of a time of the supervisor, whose word has 16 bits.
+const TICKS_MAX: f64 = u16::MAX as f64;
 /// Range of times that must be above 0.
 const LASTING: NumberRange = NumberRange::positive(60.0).unit("s");
 /// Range of fractions of full scale.
@@ -240,23 +242,29 @@ pub(super) const KEYS: &[Key] = &[
 const OF_MOVES: usize = 4;
 
 /// Reads the limits of an axis. `word` has the loop's counts per unit and the number format that the travel must fit;
-/// `None` where one of them is invalid.
+/// `None` where one of them is invalid. The supervisor counts most times in ticks of `clock`.
 pub(super) fn read(
     axis: &Table<'_, '_>,
     table: &Table<'_, '_>,
     word: Option<(f64, FixedPoint)>,
     unit: AxisUnit,
+    clock: Option<ClockSection>,
 ) -> LimitsSection {
     table.allow(KEYS);
     check_needs(axis, table);
+    let reason = "the 65,535 ticks that its word counts: a lower clock.sample_hz allows more";
+    let in_ticks = |range: NumberRange| match clock {
+        Some(clock) => range.at_most(TICKS_MAX / clock.sample_hz, reason),
+        None => range,
+    };
     let default = LimitsSection::default();
     let quantity = |key| table.quantity(key, MOTION, unit);
-    let seconds = |key| table.number(key, SECONDS).unwrap_or(0.0);
+    let seconds = |key| table.number(key, in_ticks(SECONDS)).unwrap_or(0.0);
     LimitsSection {
         velocity: quantity("velocity"),
         acceleration: quantity("acceleration"),
         jerk: quantity("jerk"),
-        travel: read_travel(table, word, unit),
+        travel: read_travel(table, word, unit, axis.has("controller")),
         soft_limits_after_homing: table.boolean("soft_limits_after_homing").unwrap_or(false),
         stop_deceleration: quantity("stop_deceleration"),
         following_error: quantity("following_error"),
@@ -269,12 +277,12 @@ pub(super) fn read(
         watchdog_s: seconds("watchdog_s"),
         brake_release_s: seconds("brake_release_s"),
         brake_apply_s: seconds("brake_apply_s"),
-        line_filter_s: seconds("line_filter_s"),
+        line_filter_s: table.number("line_filter_s", SECONDS).unwrap_or(0.0),
         off_causes: table
             .choices("off", &CHOICES.map(|cause| (cause.name(), cause)))
             .map_or(default.off_causes, word_of),
         direct_duty: table.number("direct_duty", PART).unwrap_or(default.direct_duty),
-        direct_hold_s: table.number("direct_hold_s", LASTING),
+        direct_hold_s: table.number("direct_hold_s", in_ticks(LASTING)),
         excitation: quantity("excitation"),
     }
 }
@@ -306,20 +314,32 @@ fn need(table: &Table<'_, '_>, key: &str, missing: &str, allowed: String) {
 }
 
 /// Reads the travel, and checks that the word holds it.
-fn read_travel(table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>, unit: AxisUnit) -> Option<[f64; 2]> {
+fn read_travel(
+    table: &Table<'_, '_>,
+    word: Option<(f64, FixedPoint)>,
+    unit: AxisUnit,
+    has_controller: bool,
+) -> Option<[f64; 2]> {
     let travel = table
         .numbers::<2>("travel", POSITION.times(unit.per_si()).unit(unit.symbol()))?
         .map(|position| unit.to_si(position));
     if travel[0] >= travel[1] {
         table.refuse("travel", "[low, high] with low below high", "exchange the two limits");
     } else if let Some((counts_per_unit, format)) = word {
-        check_travel(table, travel, counts_per_unit, format);
+        check_travel(table, travel, counts_per_unit, format, has_controller);
     }
     Some(travel)
 }
 
-/// Checks that the whole travel fits the position word, and names the next size that holds it.
-fn check_travel(limits: &Table<'_, '_>, travel: [f64; 2], counts_per_unit: f64, format: FixedPoint) {
+/// Checks that the whole travel fits the position word, and names the next size that holds it: that of a stage on an
+/// axis with a controller.
+fn check_travel(
+    limits: &Table<'_, '_>,
+    travel: [f64; 2],
+    counts_per_unit: f64,
+    format: FixedPoint,
+    has_controller: bool,
+) {
     let counts = travel.iter().fold(0.0, |most: f64, position| most.max(position.abs())) * counts_per_unit;
     let fits = |bits: u32, fraction: u32| counts <= largest_position(bits, fraction);
     let (bits, fraction) = (format.command_bits, format.command_fraction);
@@ -328,13 +348,18 @@ fn check_travel(limits: &Table<'_, '_>, travel: [f64; 2], counts_per_unit: f64, 
     }
     let next_bits = WORD_BITS.into_iter().find(|b| *b > bits && fits(*b, fraction));
     let next_fraction = (0..fraction).rev().find(|f| fits(bits, *f));
+    let widest = *WORD_BITS.end();
     let remedy = match (next_bits, next_fraction) {
+        (Some(_), _) if has_controller && fits(widest, fraction) => {
+            format!("set fixed_point.command_bits = {widest}, which a stage needs")
+        }
         (Some(bits), _) => format!("set fixed_point.command_bits = {bits}"),
-        (None, Some(fraction)) => format!("set fixed_point.command_fraction = {fraction}"),
-        (None, None) => "lower counts_per_unit, or shorten the travel".to_owned(),
+        // The positions of a stage have 8 fraction bits, whatever the command's words have.
+        (None, Some(fraction)) if !has_controller => format!("set fixed_point.command_fraction = {fraction}"),
+        (None, _) => "lower counts_per_unit, or shorten the travel".to_owned(),
     };
-    let found = format!("a travel of up to {counts} counts");
-    let most = largest_position(bits, fraction);
+    let found = format!("a travel of up to {} counts", short(counts.ceil()));
+    let most = short(largest_position(bits, fraction).floor());
     let allowed = format!("at most {most} counts in {bits} bits with {fraction} fraction bits; {remedy}");
     limits.contradiction("travel", found, allowed, remedy);
 }

@@ -308,7 +308,10 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
 
 fn read_target(table: &Table<'_, '_>) -> Option<Target> {
     table.allow(TARGET_KEYS);
-    let family = table.required_choice("family", &FAMILIES);
+    table.require("family", FAMILIES.join(", "));
+    let otherwise = "for a device of Lattice, AMD or another family remove [target]: the Verilog suits every device, docs/kit.md says how to \
+                     build it for those, and `posicast synth --family` takes one of the list for an estimate";
+    let family = table.choice_else("family", &FAMILIES, otherwise);
     let board = table.text("board", BOARDS.join(", "));
     if let Some(unknown) = board.filter(|board| !BOARDS.contains(board)) {
         // A name with another number is another board, not a misspelling.

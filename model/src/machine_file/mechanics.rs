@@ -11,8 +11,10 @@ use super::{AxisMode, ClockSection, mode};
 use crate::mechanics::{SHEAR_MODULUS, ScrewDrive, Stiction, torsional_stiffness};
 use crate::unit::AxisUnit;
 
-/// Range of lengths; its lower end catches a length that was given in another unit than m.
-const LENGTH_M: NumberRange = NumberRange::closed(1e-4, 100.0).unit("m");
+/// Range of the length of a screw; its upper end catches most lengths in mm.
+const LENGTH_M: NumberRange = NumberRange::closed(1e-4, 20.0).unit("m");
+/// Range of the lead, of diameters and of a coupling's length: a number above is in mm.
+const SMALL_M: NumberRange = NumberRange::closed(1e-4, 1.0).unit("m");
 /// Stiffness of nut and bearings.
 const STIFFNESS: NumberRange = NumberRange::closed(1e3, 1e12).unit("N/m");
 /// Torsional stiffness of a coupling.
@@ -39,10 +41,10 @@ const COUPLING_STIFFNESS: &str = "coupling_stiffness";
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("lead_m", Values::Number(LENGTH_M), "Lead of the screw in m per turn.").required(),
+    Key::new("lead_m", Values::Number(SMALL_M), "Lead of the screw in m per turn.").required(),
     Key::new(
         "screw_diameter_m",
-        Values::Number(LENGTH_M),
+        Values::Number(SMALL_M),
         "Diameter of the steel screw in m; the root diameter where it is known.",
     )
     .required(),
@@ -54,10 +56,10 @@ pub(super) const KEYS: &[Key] = &[
     ),
     Key::new(
         COUPLING[0],
-        Values::Number(LENGTH_M),
+        Values::Number(SMALL_M),
         "Diameter of a steel coupling in m. Absent: the coupling is rigid.",
     ),
-    Key::new(COUPLING[1], Values::Number(LENGTH_M), "Length of that coupling in m."),
+    Key::new(COUPLING[1], Values::Number(SMALL_M), "Length of that coupling in m."),
     Key::new(
         COUPLING_STIFFNESS,
         Values::Number(TORSION),
@@ -118,8 +120,8 @@ pub(super) fn read<'r, 't>(
         let remedy = "set `unit = \"m\"` or another length, or give the mode in [[axis.mode]]";
         axis.contradiction(TABLE, found, "a screw on an axis whose unit is a length", remedy);
     }
-    let [lead, diameter, length] =
-        ["lead_m", "screw_diameter_m", "screw_length_m"].map(|key| table.required_number(key, LENGTH_M));
+    let [lead, diameter] = ["lead_m", "screw_diameter_m"].map(|key| table.required_number(key, SMALL_M));
+    let length = table.required_number("screw_length_m", LENGTH_M);
     let loaded = table.number("loaded_length_m", LENGTH_M);
     let coupling = read_coupling(&table);
     let [nut, bearing] =
@@ -194,7 +196,7 @@ fn read_stiction(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Option<S
 
 /// Torsional stiffness of the coupling; infinite where the file has none.
 fn read_coupling(table: &Table<'_, '_>) -> Option<f64> {
-    let [diameter, length] = COUPLING.map(|key| table.number(key, LENGTH_M));
+    let [diameter, length] = COUPLING.map(|key| table.number(key, SMALL_M));
     let stiffness = table.number(COUPLING_STIFFNESS, TORSION);
     let sized = COUPLING.into_iter().find(|key| table.has(key));
     let missing = COUPLING.into_iter().find(|key| table.lacks(key));

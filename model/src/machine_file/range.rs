@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// Relative rounding of a decimal such as `6.5535`.
+const ROUNDING: f64 = 1e-12;
+
 /// An interval of finite numbers with its unit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NumberRange {
@@ -10,6 +13,7 @@ pub(super) struct NumberRange {
     high: f64,
     high_included: bool,
     unit: &'static str,
+    reason: &'static str,
 }
 
 impl NumberRange {
@@ -21,6 +25,7 @@ impl NumberRange {
             high,
             high_included: true,
             unit: "",
+            reason: "",
         }
     }
 
@@ -57,9 +62,24 @@ impl NumberRange {
         Self { low, ..wider }
     }
 
+    /// The range without the numbers above `high`, rounded down to six digits, for this reason.
+    pub(super) fn at_most(self, high: f64, reason: &'static str) -> Self {
+        let digits = 10f64.powf(5.0 - high.log10().floor());
+        let high = (high * digits * (1.0 + ROUNDING)).floor() / digits;
+        match high < self.high {
+            true => Self { high, reason, ..self },
+            false => self,
+        }
+    }
+
     /// The range with a unit for messages.
     pub(super) const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
+    }
+
+    /// Whether its upper end is lower than that of the quantity itself, by [`NumberRange::at_most`].
+    pub(super) const fn is_shortened(&self) -> bool {
+        !self.reason.is_empty()
     }
 
     /// The name of its unit; empty where it has none.
@@ -98,10 +118,12 @@ impl fmt::Display for NumberRange {
         let low = if self.low_included { "at least" } else { "above" };
         let high = if self.high_included { "at most" } else { "below" };
         write!(f, "{low} {}, {high} {}", end(self.low), end(self.high))?;
-        match self.unit {
-            "" => Ok(()),
-            unit => write!(f, " {unit}"),
+        for (mark, words) in [(" ", self.unit), (", ", self.reason)] {
+            if !words.is_empty() {
+                write!(f, "{mark}{words}")?;
+            }
         }
+        Ok(())
     }
 }
 
@@ -132,6 +154,11 @@ mod tests {
         assert_eq!(frequency.to_string(), "above 0, at most 10 Hz");
         assert!(!frequency.contains(0.0) && frequency.contains(10.0));
         assert!(!frequency.contains(f64::NAN) && !frequency.contains(f64::INFINITY));
+        let time = NumberRange::closed(0.0, 60.0).unit("s");
+        let ticks = |sample_hz: f64| time.at_most(65_535.0 / sample_hz, "65,535 ticks");
+        assert_eq!(ticks(10e3).to_string(), "at least 0, at most 6.5535 s, 65,535 ticks");
+        assert_eq!(ticks(7e3).to_string(), "at least 0, at most 9.36214 s, 65,535 ticks");
+        assert_eq!(ticks(100.0).to_string(), "at least 0, at most 60 s");
         assert_eq!(
             frequency.times(1e3).unit("mHz").to_string(),
             "above 0, at most 10000 mHz"

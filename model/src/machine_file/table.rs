@@ -263,11 +263,16 @@ impl<'r, 't> Table<'r, 't> {
 
     /// One of a list of words.
     pub(super) fn choice<'w>(&self, key: &str, words: &[&'w str]) -> Option<&'w str> {
+        self.choice_else(key, words, "choose one of the list")
+    }
+
+    /// One of a list of words; `otherwise` is the remedy for a word that is not nearly one of them.
+    pub(super) fn choice_else<'w>(&self, key: &str, words: &[&'w str], otherwise: &str) -> Option<&'w str> {
         let list = words.join(", ");
         let text = self.text(key, &list)?;
         let word = words.iter().find(|word| **word == text).copied();
         if word.is_none() {
-            let remedy = did_you_mean(text, words, '"').unwrap_or("choose one of the list".to_owned());
+            let remedy = did_you_mean(text, words, '"').unwrap_or(otherwise.to_owned());
             let found = self.quote(key);
             self.report(key, ProblemCause::NotAChoice { found, allowed: list }, remedy);
         }

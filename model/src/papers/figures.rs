@@ -44,7 +44,7 @@ fn curve(name: impl Into<String>, points: Vec<(f64, f64)>) -> FigureCurve {
     }
 }
 
-/// Returns a horizontal line from `low` to `high`. If it extends beyond the curves, the legend has room beside them.
+/// Returns a horizontal line from `low` to `high`, the ends of the curves.
 fn level(name: &str, low: f64, high: f64, at: f64) -> FigureCurve {
     FigureCurve {
         name: name.into(),
@@ -69,12 +69,12 @@ pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
             .map(|(ratio, residual)| (ratio, 100.0 * residual))
             .collect())
     };
-    let mut near = vec![level("5 %", 0.0, 2.4, 5.0)];
+    let mut near = vec![level("5 %", 0.0, 2.0, 5.0)];
     for (name, kind) in hybrid_ei::TABLE_1 {
         near.push(curve(name, sensitivity(kind, 2.0)?));
     }
     let far = vec![
-        level("5 %", 0.0, 9.2, 5.0),
+        level("5 %", 0.0, 8.0, 5.0),
         curve("EI", sensitivity(ShaperKind::ZvEi, 8.0)?),
         curve("Multi-EI", sensitivity(ShaperKind::MultiEi, 8.0)?),
     ];
@@ -95,7 +95,7 @@ pub(super) fn negative_hybrid() -> Result<Vec<Figure>, DesignError> {
     type Design = fn((usize, usize)) -> Result<(String, ImpulseSequence), DesignError>;
     let figure = |title: &str, pairs: &[(usize, usize)], design: Design| -> Result<Figure, DesignError> {
         let plant = negative_shapers::plant();
-        let mut curves = vec![level("target", 0.0, 35.0, 1.0)];
+        let mut curves = vec![level("target", 0.0, 30.0, 1.0)];
         for pair in pairs {
             let (name, designed) = design(*pair)?;
             let points = step_response(&plant, designed.impulses(), 0.03, POINTS);
@@ -132,8 +132,8 @@ pub(super) fn vibrationless() -> Result<Vec<Figure>, DesignError> {
             .collect()
     };
     let (mut whole, mut near) = (
-        vec![level("ε = 0.05", 0.2, 2.2, EPSILON)],
-        vec![level("ε = 0.05", 0.6, 1.6, EPSILON)],
+        vec![level("ε = 0.05", 0.2, 1.8, EPSILON)],
+        vec![level("ε = 0.05", 0.6, 1.4, EPSILON)],
     );
     for order in 1..=5 {
         let cascade = optimum(order, EPSILON)?;

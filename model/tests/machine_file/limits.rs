@@ -99,9 +99,11 @@ fn unit_values_out_of_range_are_refused_with_their_place() {
     case("following_error = 0.001", "following_error = true", expected);
     let expected = "m.toml:78: axis.limits.encoder_lost_command of axis x: found 1; allowed: at least 0, below 1";
     case("encoder_lost_command = 0.25", "encoder_lost_command = 1", expected);
-    let expected = "m.toml:79: axis.limits.watchdog_s of axis x: found 61; allowed: at least 0, at most 60 s";
+    let expected = "m.toml:79: axis.limits.watchdog_s of axis x: found 61; allowed: at least 0, at most 6.5535 s, the \
+                    65,535 ticks that its word counts: a lower clock.sample_hz allows more";
     case("watchdog_s = 0.5", "watchdog_s = 61", expected);
-    let expected = "m.toml:83: axis.limits.direct_hold_s of axis x: found 0; allowed: above 0, at most 60 s";
+    let expected = "m.toml:83: axis.limits.direct_hold_s of axis x: found 0; allowed: above 0, at most 6.5535 s, the \
+                    65,535 ticks that its word counts: a lower clock.sample_hz allows more";
     case("direct_hold_s = 0.1", "direct_hold_s = 0", expected);
 }
 

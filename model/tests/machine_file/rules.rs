@@ -136,12 +136,12 @@ fn unit_the_travel_fits_the_position_word_or_the_next_size_is_named() {
     let limits = |bits: &str, travel: &str| format!("{}[axis.limits]\ntravel = {travel}\n", SMALL.replace("32", bits));
     let place = "m.toml:16: axis.limits.travel of axis x";
     let expected = format!(
-        "{place}: found a travel of up to 50000 counts; allowed: at most 32767.99609375 counts in 24 bits \
+        "{place}: found a travel of up to 50000 counts; allowed: at most 32767 counts in 24 bits \
                             with 8 fraction bits; set fixed_point.command_bits = 25"
     );
     assert_eq!(wrong(&limits("24", "[-0.05, 0.01]")).to_string(), expected);
     let expected = format!(
-        "{place}: found a travel of up to 10000000 counts; allowed: at most 8388607.99609375 counts in 32 \
+        "{place}: found a travel of up to 10000000 counts; allowed: at most 8388607 counts in 32 \
                             bits with 8 fraction bits; set fixed_point.command_fraction = 7"
     );
     assert_eq!(wrong(&limits("32", "[0.0, 10.0]")).to_string(), expected);

@@ -150,7 +150,7 @@ fn unit_what_a_word_does_not_hold_is_told_in_the_unit_of_the_axis() {
     let error = supervision(&machine.axes[0], &machine.clock, table).unwrap_err();
     let text = error.to_string();
     assert!(
-        text.contains("found 40 mm; allowed: 0.0000000152588 to 32.7679 mm"),
+        text.contains("found 40 mm; allowed: 1.52588e-8 to 32.7679 mm"),
         "{text}"
     );
 }

@@ -41,6 +41,26 @@ fn meaning(shaper: &KitShaper<'_>, port: &Port) -> String {
         .replace('`', "")
 }
 
+/// The user's signal at a port: that of the example where it has one.
+fn yours(shaper: &KitShaper<'_>, port: &Port) -> String {
+    connected(shaper, port).unwrap_or_else(|| format!("{}_{}", shaper.axis, port.name))
+}
+
+/// Meaning of the ports with the axis's position; `None` for others.
+fn of_position(kit: &Kit<'_>, shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
+    let axis = shaper.axis;
+    if port.name == shaper.position("x") {
+        let fraction = kit.command_fraction;
+        return Some(format!(
+            "Command of axis {axis}: its position in counts, with {fraction} fraction bits; read at strobe."
+        ));
+    }
+    let holds = port.name == shaper.position("y");
+    holds.then(|| {
+        format!("Shaped command of axis {axis}, in the same format; new when {axis}_valid is high, and holds.")
+    })
+}
+
 fn header(text: &mut String, kit: &Kit<'_>, about: &str) {
     let _ = write!(
         text,
@@ -50,7 +70,7 @@ fn header(text: &mut String, kit: &Kit<'_>, about: &str) {
     );
 }
 
-/// Writes an instance of the top, with a line for each port.
+/// Writes an instance of the top, with a line for each port. The wires have the names of the example's ports.
 pub(super) fn template(kit: &Kit<'_>) -> String {
     let mut text = String::new();
     header(
@@ -79,14 +99,15 @@ pub(super) fn template(kit: &Kit<'_>) -> String {
     for shaper in kit.shapers {
         for port in shaper.ports() {
             let name = format!("{}_{}", shaper.axis, port.name);
-            let (wire, mark) = match connection(&port) {
-                Connection::Yours => (name.clone(), "CONNECT: "),
-                Connection::Idle => (format!("{}'d0", port.width), ""),
-                Connection::Open => (String::new(), ""),
+            let (wire, mark, meaning) = match connection(&port) {
+                Connection::Yours => (yours(shaper, &port), "CONNECT: ", of_position(kit, shaper, &port)),
+                Connection::Idle => (format!("{}'d0", port.width), "", None),
+                Connection::Open => (String::new(), "", None),
             };
+            let meaning = meaning.unwrap_or_else(|| self::meaning(shaper, &port));
             let sign = if port.signed { "signed, " } else { "" };
             let bits = if port.width == 1 { "bit" } else { "bits" };
-            let about = format!("{mark}{sign}{} {bits}. {}", port.width, meaning(shaper, &port));
+            let about = format!("{mark}{sign}{} {bits}. {meaning}", port.width);
             lines.push((name, wire, about));
         }
     }

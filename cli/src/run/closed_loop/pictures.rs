@@ -112,7 +112,7 @@ impl ClosedLoop<'_> {
             curves: vec![
                 Curve::reference("command", self.points(samples, |sample| sample.command * per_count)),
                 Curve::new("shaped", self.points(samples, |sample| sample.shaped * per_count)),
-                Curve::new("load", self.points(samples, |sample| unit.of(sample.load))),
+                Curve::under("load", self.points(samples, |sample| unit.of(sample.load))),
             ],
             marks: self.trips([("trip", &self.shaped)]),
             ..Panel::default()
@@ -164,13 +164,18 @@ impl ClosedLoop<'_> {
         if self.runs().iter().any(|(_, moved)| moved.trouble.is_some()) {
             return self.until_the_trip(axis);
         }
-        let time = self.time();
-        let all = self.runs().into_iter().flat_map(|(_, moved)| moved.ringing(axis));
+        // Commands come to their ends at different times, and so what is left after them differs in length: all are
+        // shown for as long as the shortest.
+        let runs = self.runs().map(|(name, moved)| (name, moved.ringing(axis)));
+        let shown = runs.iter().map(|(_, load)| load.len()).filter(|ticks| *ticks > 0).min();
+        let shown = shown.unwrap_or(0);
+        let time = time_axis(self.seconds(shown));
+        let all = runs.iter().flat_map(|(_, load)| load.iter().take(shown).copied());
         let unit = self.machine.axes[axis].unit.for_largest(all);
         let band = self.one_count(axis, unit);
         let slowest_s = slowest_period_s(&self.machine.axes[axis]);
-        let curves = self.runs().into_iter().enumerate().map(|(index, (name, moved))| {
-            let points = moved.ringing(axis).into_iter().enumerate();
+        let curves = runs.into_iter().enumerate().map(|(index, (name, load))| {
+            let points = load.into_iter().take(shown).enumerate();
             let points: Vec<_> = points
                 .map(|(tick, position)| (time.of(self.seconds(tick)), unit.of(position)))
                 .collect();

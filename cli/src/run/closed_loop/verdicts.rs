@@ -2,7 +2,7 @@
 
 use super::contours::Contours;
 use super::{ClosedLoop, MOVES};
-use crate::run::checks::{Check, NOT_EXERCISED};
+use crate::run::checks::Check;
 use posicast_model::machine_file::AxisSection;
 use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
 use posicast_testbench::wording::counted;
@@ -46,14 +46,12 @@ impl ClosedLoop<'_> {
             Err(reason) => format!("; no circle: {reason}"),
         };
         let trouble = of_runs.find_map(|trouble| trouble);
-        Check {
-            name: "the stage carries out its commands without a fault",
-            passed: trouble.is_none(),
-            detail: trouble.map_or_else(
-                || format!("{runs} runs, watched in every tick from reset to standstill{circles}"),
-                ToString::to_string,
-            ),
-        }
+        let held = || format!("{runs} runs, watched in every tick from reset to standstill{circles}");
+        Check::new(
+            "the stage carries out its commands without a fault",
+            trouble.is_none(),
+            trouble.map_or_else(held, ToString::to_string),
+        )
     }
 
     /// Measured and expected figures of every move of every axis. Empty for a move that was not made.
@@ -76,7 +74,7 @@ impl ClosedLoop<'_> {
         let mut short = axes.filter(|(_, expected)| !expected.moves());
         short.next().map(|(axis, expected)| {
             format!(
-                "{NOT_EXERCISED}axis {}: its move of {} is {:.1} counts, and below 100 it is the encoder's steps that move",
+                "axis {}: its move of {} is {:.1} counts, and below 100 it is the encoder's steps that move",
                 axis.name,
                 axis.unit.show(expected.distance, 3),
                 expected.counts
@@ -99,19 +97,18 @@ impl ClosedLoop<'_> {
                 });
             }
         }
-        let empty = self
-            .motionless()
-            .or_else(|| (compared == 0).then(|| format!("{NOT_EXERCISED}nothing moved")));
-        Check {
-            name: "the axes follow as closely as their loops are designed to",
-            passed: empty.is_none() && worst.is_none(),
-            detail: empty.or(worst).unwrap_or_else(|| {
-                format!(
-                    "{compared} moves of an axis, each within its bound; tightest {}",
-                    self.tightest()
-                )
-            }),
+        let name = "the axes follow as closely as their loops are designed to";
+        let nothing = (compared == 0).then(|| "nothing moved".to_owned());
+        if let Some(reason) = self.motionless().or(nothing) {
+            return Check::not_exercised(name, false, &reason);
         }
+        let held = || {
+            format!(
+                "{compared} moves of an axis, each within its bound; tightest {}",
+                self.tightest()
+            )
+        };
+        Check::new(name, worst.is_none(), worst.unwrap_or_else(held))
     }
 
     /// The move that comes closest to its bound.
@@ -172,28 +169,17 @@ impl ClosedLoop<'_> {
         let name = "the shapers suppress the vibration of the move that they are made for";
         let mut checks = Vec::new();
         if let Some(detail) = louder {
-            checks.push(Check {
-                name,
-                passed: false,
-                detail,
-            });
+            checks.push(Check::new(name, false, detail));
         } else if !held.is_empty() {
-            checks.push(Check {
-                name,
-                passed: true,
-                detail: held.join("; "),
-            });
+            checks.push(Check::new(name, true, held.join("; ")));
         }
         if !open.is_empty() {
             // A move that is too short for any figure already fails in the check of the error.
-            checks.push(Check {
-                name: "every shaper is exercised by the move",
-                passed: self.motionless().is_none(),
-                detail: format!(
-                    "{NOT_EXERCISED}{}: too little to tell from counts and friction",
-                    open.join("; ")
-                ),
-            });
+            checks.push(Check::not_exercised(
+                "every shaper is exercised by the move",
+                self.motionless().is_none(),
+                &format!("{}: too little to tell from counts and friction", open.join("; ")),
+            ));
         }
         checks
     }
@@ -215,21 +201,17 @@ impl ClosedLoop<'_> {
                 (true, false) => open.push(text),
             }
         }
+        let name = "the error tables lead the loads to their true positions";
         let is_open = held.is_empty();
         held.extend(open);
-        let detail = match (&failed, is_open) {
-            (Some(text), _) => text.clone(),
-            (None, false) => held.join("; "),
-            (None, true) if held.is_empty() => format!("{NOT_EXERCISED}nothing moved"),
-            (None, true) => format!(
-                "{NOT_EXERCISED}{}; choose a place with a larger error by --move",
-                held.join("; ")
-            ),
-        };
-        Some(Check {
-            name: "the error tables lead the loads to their true positions",
-            passed: failed.is_none(),
-            detail,
+        Some(match (failed, is_open) {
+            (Some(text), _) => Check::new(name, false, text),
+            (None, false) => Check::new(name, true, held.join("; ")),
+            (None, true) if held.is_empty() => Check::not_exercised(name, true, "nothing moved"),
+            (None, true) => {
+                let found = format!("{}; choose a place with a larger error by --move", held.join("; "));
+                Check::not_exercised(name, true, &found)
+            }
         })
     }
 
@@ -241,16 +223,16 @@ impl ClosedLoop<'_> {
         });
         let limited: Vec<_> = limited.collect();
         let beyond = limited.iter().find(|(_, _, peak, limit)| peak.is_nan() || peak > limit);
-        (!limited.is_empty()).then(|| Check {
-            name: "the axes follow within their following_error",
-            passed: beyond.is_none(),
-            detail: beyond.map_or_else(
-                || format!("{} moves of an axis", limited.len()),
-                |(name, unit, peak, limit)| {
-                    let [found, allowed] = unit.show_all([*peak, *limit]);
-                    format!("{name}: {found}, {allowed} allowed")
-                },
-            ),
+        let detail = beyond.map_or_else(
+            || format!("{} moves of an axis", limited.len()),
+            |(name, unit, peak, limit)| {
+                let [found, allowed] = unit.show_all([*peak, *limit]);
+                format!("{name}: {found}, {allowed} allowed")
+            },
+        );
+        (!limited.is_empty()).then(|| {
+            let name = "the axes follow within their following_error";
+            Check::new(name, beyond.is_none(), detail)
         })
     }
 }
@@ -275,9 +257,9 @@ pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
         (None, Some(trouble)) => trouble.to_string(),
         (None, None) => format!("{} clocks, {reach}, no mismatch", compared.clocks),
     };
-    Check {
-        name: "the stage's RTL equals the bit-exact model in every clock of the closed loop",
-        passed: compared.clocks > 0 && compared.mismatches == 0 && compared.trouble.is_none(),
+    Check::new(
+        "the stage's RTL equals the bit-exact model in every clock of the closed loop",
+        compared.clocks > 0 && compared.mismatches == 0 && compared.trouble.is_none(),
         detail,
-    }
+    )
 }
