@@ -158,9 +158,9 @@ const GRID: RGBColor = RGBColor(225, 225, 225);
 const UNDER_WIDTH: u32 = 6;
 const PALE: f64 = 0.5;
 /// How much darker a dashed curve is than the one before it.
-const DARK: f64 = 0.65;
+const DARK: f64 = 0.7;
 /// Lengths of a dash and of the gap after it, in pixels.
-const DASH: (i32, i32) = (7, 5);
+const DASH: (i32, i32) = (8, 7);
 
 /// File name extensions of picture formats other than SVG.
 const OTHER_FORMATS: [&str; 11] = [
@@ -314,7 +314,7 @@ fn looks(curves: &[Curve]) -> Vec<(ShapeStyle, bool)> {
         Look::Dashed => {
             // Black has no darker shade.
             let end = if colour == RGBColor(0, 0, 0) { 255 } else { 0 };
-            (shade(colour, DARK, end).stroke_width(1), true)
+            (shade(colour, DARK, end).stroke_width(2), true)
         }
         Look::Reference => (GREY.stroke_width(1), false),
         Look::Limit => (DARK_RED.stroke_width(1), true),

@@ -109,7 +109,7 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
 }
 
 /// The machine near its target, from the end of the unshaped command on. The deviations after the shaped command's
-/// end determine the shown range of the vertical axis.
+/// end determine the shown range of the vertical axis, which has at least the band of a count.
 fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &AxisSimulation) -> Panel {
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target);
@@ -122,7 +122,7 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
         .iter()
         .flat_map(|positions| positions.iter().skip(arrived).map(off));
     let largest = later.map(f64::abs).fold(0.0, f64::max);
-    let unit = axis.unit.for_size(largest);
+    let unit = axis.unit.for_size(largest.max(1.0 / axis.loop_counts_per_unit()));
     let time = time_axis(run.shaped.len() as f64 / machine.clock.sample_hz);
     let [unshaped, shaped] = both.map(|positions| {
         let points = positions.iter().enumerate().skip(from);
@@ -131,7 +131,9 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
             .collect::<Vec<_>>()
     });
     let slowest_s = slowest_period_s(axis);
-    let (count, largest) = (unit.of(1.0 / axis.loop_counts_per_unit()), unit.of(largest));
+    let count = unit.of(1.0 / axis.loop_counts_per_unit());
+    // What stays within a count from the start on does not leave the picture.
+    let shown = unit.of(largest).max(count);
     Panel {
         title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
         x_label: label("time", time),
@@ -140,7 +142,7 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
             Curve::reference(with_settling("unshaped", &unshaped, count, time, slowest_s), unshaped),
             Curve::new(with_settling("shaped", &shaped, count, time, slowest_s), shaped),
         ],
-        y_range: (largest > 0.0).then_some((-1.1 * largest, 1.1 * largest)),
+        y_range: Some((-1.1 * shown, 1.1 * shown)),
         band: Some(Band {
             name: "±1 count".into(),
             range: (-count, count),

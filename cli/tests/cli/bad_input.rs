@@ -334,7 +334,7 @@ fn cli_an_error_of_a_mode_that_follows_from_mechanics_blames_the_mechanics() {
             "tolerance",
             "0.99",
             &[
-                "machine.toml:23: axis.shaper.tolerance of axis z: shaper",
+                "machine.toml:24: axis.shaper.tolerance of axis z: shaper",
                 "tolerance 0.99",
             ],
         ),

@@ -128,3 +128,27 @@ fn cli_the_kits_makefile_says_which_tool_is_missing_and_how_to_get_it() {
     // What needs no tool works without.
     assert!(make(&out, &["NEXTPNR=", "YOSYS=", "clean"]).status.success());
 }
+
+#[test]
+fn cli_the_kits_pll_makes_the_clock_of_the_machine_as_nextpnr_derives_it() {
+    let folder = generated("robot-joint.toml");
+    let out = folder.path().join("out");
+    // 12 MHz need both dividers of the feedback.
+    for oscillator_hz in ["12000000", "25000000"] {
+        let output = make(&out, &[&format!("OSCILLATOR_HZ={oscillator_hz}")]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        let derived = "Derived frequency constraint of 50.0 MHz for net clk";
+        assert!(said.contains(derived), "{said}");
+        assert!(
+            out.join(format!("kit/lattice/robot_joint_{oscillator_hz}.config"))
+                .is_file()
+        );
+    }
+    let output = make(&out, &["OSCILLATOR_HZ=7000000"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        !output.status.success() && said.contains("has_no_dividers_for_this_oscillator"),
+        "{said}"
+    );
+}

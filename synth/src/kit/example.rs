@@ -61,7 +61,7 @@ fn of_position(kit: &Kit<'_>, shaper: &KitShaper<'_>, port: &Port) -> Option<Str
     })
 }
 
-fn header(text: &mut String, kit: &Kit<'_>, about: &str) {
+pub(super) fn header(text: &mut String, kit: &Kit<'_>, about: &str) {
     let _ = write!(
         text,
         "// {about}\n//\n// Written by posicast {} for the machine {}.\n\n",
@@ -167,6 +167,25 @@ fn word(shaper: &KitShaper<'_>) -> String {
     format!("signed [{}:0]", shaper.config.word_bits() - 1)
 }
 
+/// Signals of an axis at the example's ports.
+pub(super) const SIGNALS: [&str; 5] = ["command", "shaped", "valid", "saturated", "overrun"];
+
+/// The ports of the axes, a line each.
+pub(super) fn ports(kit: &Kit<'_>) -> String {
+    let mut text = String::new();
+    for shaper in kit.shapers {
+        let (axis, word) = (shaper.axis, word(shaper));
+        for (index, signal) in SIGNALS.into_iter().enumerate() {
+            let _ = match index {
+                0 => writeln!(text, "    input  wire {word} {axis}_{signal},"),
+                1 => writeln!(text, "    output wire {word} {axis}_{signal},"),
+                _ => writeln!(text, "    output wire {axis}_{signal},"),
+            };
+        }
+    }
+    text
+}
+
 /// Writes the module that joins strobe and shapers.
 pub(super) fn example(kit: &Kit<'_>) -> String {
     let machine = kit.machine;
@@ -189,14 +208,7 @@ module {machine}_example #(
 ",
         clocks = kit.sample_clocks
     );
-    for shaper in kit.shapers {
-        let (axis, word) = (shaper.axis, word(shaper));
-        let _ = write!(
-            text,
-            "    input  wire {word} {axis}_command,\n    output wire {word} {axis}_shaped,\n    output wire {axis}_valid,\n\
-             \x20   output wire {axis}_saturated,\n    output wire {axis}_overrun,\n"
-        );
-    }
+    text.push_str(&ports(kit));
     let _ = write!(
         text,
         "    output wire strobe

@@ -10,11 +10,13 @@
 //! kit/NAME_example.v                strobe and shapers joined: commands in, shaped commands out
 //! kit/NAME_bench.v                  a step through the example, with a verdict
 //! kit/lattice/Makefile, NAME.lpf    Yosys and nextpnr for ECP5
+//! kit/lattice/NAME_pll.v            the clock from a board's oscillator, where one suits
 //! kit/amd/NAME.tcl, NAME.xdc        Vivado
 //! ```
 
 mod bench;
 mod example;
+mod pll;
 mod vendors;
 
 use posicast_model::rtl::shaper::{ShaperConfig, ports};
@@ -109,6 +111,7 @@ pub fn files(kit: &Kit<'_>) -> Vec<(String, String)> {
             (format!("kit/amd/{machine}.tcl"), vendors::vivado(kit)),
             (format!("kit/amd/{machine}.xdc"), vendors::xdc(kit)),
         ]);
+        files.extend(pll::verilog(kit).map(|text| (format!("kit/lattice/{machine}_pll.v"), text)));
     }
     files
 }
@@ -152,6 +155,8 @@ apart, and shows the shaped word when `valid` is high for one clock, some {pass}
 The words are counts with {fraction} fraction bits; the shaper only needs that `x` and `y` are
 read alike. A constant command comes out as the same constant.
 
+The clock is {mhz} MHz. {of_pll}
+
 | vendor | how | checked |
 |---|---|---|
 | Intel | add `../{machine}.qip` to the project | not run in Quartus |
@@ -161,5 +166,23 @@ read alike. A constant command comes out as the same constant.
         axes = axes.join(", "),
         sample_clocks = kit.sample_clocks,
         fraction = kit.command_fraction,
+        mhz = kit.clock_hz / 1e6,
+        of_pll = of_pll(kit),
+    )
+}
+
+/// What to do on a board with another oscillator.
+fn of_pll(kit: &Kit<'_>) -> String {
+    let oscillators = pll::oscillators(kit);
+    let other = "On a board with another oscillator add a PLL: in Quartus ALTPLL (or PLL Intel FPGA IP)\nof the IP catalogue, with the oscillator \
+                 at `inclk0` (`refclk`), `c0` (`outclk_0`) as `clk`, and `locked`, inverted, as `rst`.";
+    let Some(first) = oscillators.first() else {
+        return other.to_owned();
+    };
+    let mhz: Vec<String> = oscillators.iter().map(|hz| (*hz as f64 / 1e6).to_string()).collect();
+    format!(
+        "{other}\nOn a Lattice ECP5, `make -C kit/lattice OSCILLATOR_HZ={first}` builds `{}_on_board` with one; it knows oscillators of\n{} MHz.",
+        kit.machine,
+        mhz.join(", ")
     )
 }

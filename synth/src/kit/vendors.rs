@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::Kit;
+use super::{Kit, pll};
 
 /// The list of Verilog files for a Quartus project.
 pub(super) fn qip(kit: &Kit<'_>) -> String {
@@ -35,21 +35,50 @@ PACKAGE ?= CABGA381
 
 SOURCES = \\
 \t{sources}
+{board}
+.DEFAULT_GOAL := $(STEM).config
 
-{machine}.config: {machine}.json {machine}.lpf
-\t$(call needed,$(NEXTPNR),nextpnr-ecp5,NEXTPNR)$(NEXTPNR) $(DEVICE) --package $(PACKAGE) --json {machine}.json --lpf {machine}.lpf --lpf-allow-unconstrained \\
+$(STEM).config: $(STEM).json $(LPF)
+\t$(call needed,$(NEXTPNR),nextpnr-ecp5,NEXTPNR)$(NEXTPNR) $(DEVICE) --package $(PACKAGE) --json $(STEM).json --lpf $(LPF) --lpf-allow-unconstrained \\
 \t\t--freq {mhz} --textcfg $@
 
-{machine}.json: $(SOURCES)
-\t$(call needed,$(YOSYS),yosys,YOSYS)$(YOSYS) -q -p \"read_verilog $(SOURCES); synth_ecp5 -top {machine}_example -json $@\"
+$(STEM).json: $(SOURCES)
+\t$(call needed,$(YOSYS),yosys,YOSYS)$(YOSYS) -q -p \"read_verilog $(SOURCES); $(SET) synth_ecp5 -top $(TOP) -json $@\"
 
 .PHONY: clean
 clean:
-\trm -f {machine}.json {machine}.config
+\trm -f {machine}.json {machine}.config {machine}_*.json {machine}_*.config {machine}_*.lpf
 ",
         sources = sources(kit).join(" \\\n\t"),
+        board = board(kit),
         mhz = kit.clock_hz / 1e6,
     )
+}
+
+/// The part of the Makefile that chooses what is built: the example, or the example behind the PLL.
+fn board(kit: &Kit<'_>) -> String {
+    let machine = kit.machine;
+    let example = format!("TOP = {machine}_example\nSTEM = {machine}\nLPF = {machine}.lpf\n");
+    match pll::oscillators(kit).first() {
+        None => format!("\n{example}"),
+        Some(first) => format!(
+            "
+# For a board whose oscillator is not {mhz} MHz, with a PLL: make OSCILLATOR_HZ={first}
+ifdef OSCILLATOR_HZ
+TOP = {machine}_on_board
+STEM = {machine}_$(OSCILLATOR_HZ)
+LPF = $(STEM).lpf
+SOURCES += {machine}_pll.v
+SET = chparam -set OSCILLATOR_HZ $(OSCILLATOR_HZ) $(TOP);
+
+$(STEM).lpf:
+\techo 'FREQUENCY PORT \"oscillator\" $(OSCILLATOR_HZ) HZ;' > $@
+else
+{example}endif
+",
+            mhz = kit.clock_hz / 1e6,
+        ),
+    }
 }
 
 /// Constraints for Lattice; the user adds the pins, each with a `LOCATE COMP`.
