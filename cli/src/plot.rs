@@ -447,7 +447,9 @@ mod tests {
         // The sample of the legend, and the whole picture.
         assert_eq!(wide.matches(&colour(BAND)).count(), 2, "{wide}");
         assert!(wide.contains("±1 count: more than is shown"));
-        assert_eq!(drawn((-1e-6, 1e-6)).matches(&colour(BAND_END)).count(), 2);
+        let thin = drawn((-1e-6, 1e-6));
+        assert_eq!(thin.matches(&colour(BAND_END)).count(), 2);
+        assert!(thin.contains("±1 count: thinner than a line"));
     }
 
     #[test]

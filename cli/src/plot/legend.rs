@@ -8,6 +8,8 @@ const SAMPLE: i32 = 26;
 const GAP: i32 = 6;
 const BETWEEN: i32 = 20;
 const ROW: i32 = 18;
+/// Part of a panel's height below which a band is thinner than a curve, which hides it.
+const THIN: f64 = 0.008;
 /// Average width of a letter, as a fraction of the text size.
 const LETTER: f64 = 0.5;
 
@@ -34,9 +36,14 @@ impl Legend {
     pub(super) fn new(panel: &Panel, looks: &[(ShapeStyle, bool)], (low, high): (f64, f64), width: i32) -> Self {
         let curves = panel.curves.iter().zip(looks);
         let curves = curves.map(|(curve, (style, is_dashed))| (Sample::Line(*style, *is_dashed), curve.name.clone()));
-        let band = panel.band.iter().map(|band| match band.holds_all(low, high) {
-            true => (Sample::Band, format!("{}: more than is shown", band.name)),
-            false => (Sample::Band, band.name.clone()),
+        let band = panel.band.iter().map(|band| {
+            let part = (band.range.1 - band.range.0) / (high - low);
+            let name = match band.holds_all(low, high) {
+                true => format!("{}: more than is shown", band.name),
+                false if part < THIN => format!("{}: thinner than a line", band.name),
+                false => band.name.clone(),
+            };
+            (Sample::Band, name)
         });
         let band = band.chain(panel.x_ranges.iter().map(|range| (Sample::Band, range.name.clone())));
         let marks = panel.marks.iter();

@@ -491,3 +491,17 @@ fn cli_warnings_name_file_line_and_key() {
     let expected = format!("machine.toml:{line}: fixed_point.command_bits: no stage is built");
     generate.stderr(predicate::str::contains(expected));
 }
+
+#[test]
+fn cli_a_number_in_quotes_is_told_where_its_unit_is_said() {
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    for (key, words) in [
+        ("watchdog_s", "`watchdog_s` has one unit, and its name says which"),
+        (
+            "following_error",
+            "`following_error` has one unit, which docs/machine-file.md says",
+        ),
+    ] {
+        refused(&["design"], &with_value(&stage, key, "\"0.5 ms\""), &[words]);
+    }
+}

@@ -330,7 +330,7 @@ fn cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
     assert!(has("the command moves every axis", "not exercised"), "{failed:?}");
     assert!(has("the axes follow as closely", "not exercised"), "{failed:?}");
     assert!(
-        said.contains("warning: axis x, mode of 131.117 Hz: the integer taps leave"),
+        said.contains(": axis.shaper: axis x, mode of 131.117 Hz: the integer taps leave"),
         "{said}"
     );
 }

@@ -81,9 +81,8 @@ pub(super) fn of_type(key: &str, found: &DeValue<'_>, allowed: &str, dotted: &st
             return format!("write it without quotes: `{key} = {}`", text.trim());
         }
         if number {
-            return format!(
-                "write the number alone, without quotes and unit: `{key}` has one unit, and its name says which"
-            );
+            let unit = unit_of(key);
+            return format!("write the number alone, without quotes and unit: {unit}");
         }
         if allowed == "true or false" {
             let flag = matches!(text.trim().to_lowercase().as_str(), "true" | "yes" | "on" | "1");
@@ -107,6 +106,15 @@ pub(super) fn of_type(key: &str, found: &DeValue<'_>, allowed: &str, dotted: &st
         }
         _ if allowed.starts_with("a table") => format!("write it as a table of its own, under the header [{dotted}]"),
         _ => format!("write `{key}` as {allowed}"),
+    }
+}
+
+/// Where the unit of a key's number is said.
+fn unit_of(key: &str) -> String {
+    let is_in_name = ["_hz", "_s", "_m", "_a"].iter().any(|unit| key.ends_with(unit));
+    match is_in_name {
+        true => format!("`{key}` has one unit, and its name says which"),
+        false => format!("`{key}` has one unit, which docs/machine-file.md says"),
     }
 }
 
