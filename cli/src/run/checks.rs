@@ -9,6 +9,7 @@ use posicast_model::certify::{certify_axis, measure_corners};
 use posicast_model::design::{Findings, MachineDesign};
 use posicast_model::machine_file::Machine;
 use posicast_model::simulation::AxisSimulation;
+use posicast_model::unit::short;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
@@ -276,7 +277,10 @@ fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check 
                 worst.get_or_insert_with(|| {
                     format!(
                         "axis {}, {} Hz: {:.3e} after rounding, {:.3e} before, {allowed:.1e} allowed",
-                        axis.name, mode.mode.frequency_hz, mode.residual_quantised, mode.residual_digitised
+                        axis.name,
+                        short(mode.mode.frequency_hz),
+                        mode.residual_quantised,
+                        mode.residual_digitised
                     )
                 });
             }

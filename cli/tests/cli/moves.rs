@@ -92,3 +92,22 @@ fn cli_a_radius_that_no_circle_has_is_refused_before_any_work() {
         .code(2)
         .stderr(predicates::str::contains("the machine has no stage"));
 }
+
+#[test]
+fn cli_a_move_beyond_the_command_word_is_told_in_readable_counts() {
+    let machine =
+        one_axis("kind = \"zvd\"", "frequency_hz = 100.0\ndamping = 0.1") + "[fixed_point]\ncommand_bits = 24\n";
+    let (folder, file) = scratch(&machine);
+    let mut simulate = posicast();
+    // As a product of binary fractions this is 433903.60000000003 counts.
+    simulate
+        .arg("simulate")
+        .arg(&file)
+        .args(["--move", "0.4339036"])
+        .current_dir(folder.path());
+    let said = String::from_utf8(simulate.assert().code(2).get_output().stderr.clone()).unwrap();
+    assert!(
+        said.contains("ends at 433904 counts, beyond a command word of 24 bits"),
+        "{said}"
+    );
+}

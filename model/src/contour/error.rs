@@ -1,5 +1,6 @@
 //! Errors of contours.
 
+use crate::unit::short;
 use thiserror::Error;
 
 /// Why a machine cannot follow a contour.
@@ -42,7 +43,7 @@ pub enum ContourError {
         most: String,
     },
     /// A radius, a side or a speed is not a positive number.
-    #[error("{what} is {found}: it must be above 0")]
+    #[error("{what} is {}: it must be above 0", short(*.found))]
     Size {
         /// Name of the quantity.
         what: &'static str,

@@ -6,7 +6,7 @@ use super::linear::{FACTORS, has_modes};
 use super::sampled::{LinearLaw, SampledLoop};
 use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode, LimitsSection};
 use crate::rtl::sliding_mode::{SettingRow, Settings};
-use crate::unit::{AxisUnit, show_seconds};
+use crate::unit::{AxisUnit, short, show_seconds};
 
 /// Largest product of gains and lag.
 const GAIN_LAG_MAX: f64 = 0.5;
@@ -114,7 +114,8 @@ pub enum ControlWarning {
     },
     /// A motion limit exceeds the word of its reference.
     #[error(
-        "the limit of the {what} is {found} counts per tick or tick², its word holds {largest}: raise sample_hz, or use coarser counts"
+        "the limit of the {what} is {} counts per tick or tick², its word holds {largest}: raise sample_hz, or use coarser counts",
+        short(*.found)
     )]
     Word {
         /// `velocity` or `acceleration`.

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::profile::{Profile, ProfileError, motion_limits};
 use crate::machine_file::{AxisSection, FixedPoint};
-use crate::unit::AxisUnit;
+use crate::unit::{AxisUnit, short};
 
 /// Smallest distance where there is room, in m or rad.
 const LEAST_DISTANCE: f64 = 0.005;
@@ -74,9 +74,9 @@ pub enum AxisMoveError {
     },
     /// The move ends beyond the command word.
     #[error(
-        "a move of {} ends at {counts} counts, beyond a command word of {command_bits} bits with {command_fraction} fraction bits: \
+        "a move of {} ends at {} counts, beyond a command word of {command_bits} bits with {command_fraction} fraction bits: \
          give at most {}, or raise command_bits or lower command_fraction in [fixed_point]",
-        .unit.as_in_file(*.distance, ""), .unit.as_in_file(*.most, "")
+        .unit.as_in_file(*.distance, ""), short(*.counts), .unit.as_in_file(*.most, "")
     )]
     BeyondWord {
         /// Requested distance.
