@@ -505,3 +505,14 @@ fn cli_a_number_in_quotes_is_told_where_its_unit_is_said() {
         refused(&["design"], &with_value(&stage, key, "\"0.5 ms\""), &[words]);
     }
 }
+
+#[test]
+fn cli_a_misspelt_table_is_the_only_thing_that_is_told() {
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let (_folder, file) = scratch(&stage.replace("[axis.controller]", "[axis.controler]"));
+    let design = posicast().arg("design").arg(&file).assert().code(2).stdout("");
+    design.stderr(
+        predicate::str::contains("did you mean `controller`?")
+            .and(predicate::str::contains("without [axis.controller]").not()),
+    );
+}

@@ -291,10 +291,11 @@ pub(super) fn read(
 fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
     let supervised = KEYS.iter().skip(OF_MOVES).map(|key| key.name);
     for key in supervised.filter(|key| table.has(key)) {
-        if !axis.has("controller") {
+        // A misspelt table has been reported already.
+        if axis.lacks("controller") {
             let allowed = format!("{key} on an axis with [axis.controller], which has a supervisor");
             need(table, key, "[axis.controller]", allowed);
-        } else if key == "deviation" && !axis.has("scale") {
+        } else if key == "deviation" && axis.lacks("scale") {
             let allowed = "deviation on an axis with [axis.scale], from which the motor may deviate";
             need(table, key, "[axis.scale]", allowed.to_owned());
         } else if key == "soft_limits_after_homing" && !table.has("travel") {
