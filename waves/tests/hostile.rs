@@ -124,6 +124,29 @@ fn unit_what_would_eat_the_memory_is_refused() {
     assert!(error(endless.as_bytes()).contains("longer than"));
 }
 
+#[test]
+fn unit_a_packed_file_that_is_cut_anywhere_is_read_to_an_end() {
+    let packed = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/packed");
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["counter.vcd.gz", "counter.vcd.xz", "counter.vcd.zst"] {
+        let whole = std::fs::read(packed.join(name)).unwrap();
+        let path = folder.path().join(name);
+        for end in (0..64).chain((64..whole.len()).step_by(5)) {
+            std::fs::write(&path, &whole[..end]).unwrap();
+            for allow_truncated in [false, true] {
+                let options = DiffOptions {
+                    allow_truncated,
+                    ..DiffOptions::default()
+                };
+                // Before the last bytes, which are checksums, something is always missing.
+                let result = diff::compare(&path, &path, &options, &mut |_| {});
+                let complete = result.is_ok_and(|result| result.result == DiffVerdict::Equal);
+                assert!(allow_truncated || !complete || end + 64 > whole.len(), "{name} {end}");
+            }
+        }
+    }
+}
+
 /// An FST as a writer packs it as a whole.
 fn packed_as_a_whole(plain: &[u8]) -> Vec<u8> {
     let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
@@ -160,10 +183,10 @@ fn unit_lengths_that_an_fst_cannot_have_are_refused_before_memory_is_reserved() 
         while at + 9 < plain.len() && length(at) >= 8 && at + 1 + length(at) <= plain.len() {
             let next = at + 1 + length(at);
             // Lengths are at the beginning of a block and at its end.
-            for place in (at + 1..at + 60)
-                .chain(next.max(60) - 40..next)
-                .filter(|place| place + 6 <= next)
-            {
+            for place in (at + 1..at + 60).chain(next.max(60) - 40..next).step_by(3) {
+                if place + 6 > next {
+                    continue;
+                }
                 let mut damaged = plain.clone();
                 damaged[place..place + 6].copy_from_slice(&[0x01, 0x12, 0xa4, 0xff, 0xff, 0x7f]);
                 for content in [packed_as_a_whole(&damaged), damaged] {
@@ -177,7 +200,7 @@ fn unit_lengths_that_an_fst_cannot_have_are_refused_before_memory_is_reserved() 
             at = next;
         }
     }
-    assert!(refused > 1000, "{refused}");
+    assert!(refused > 300, "{refused}");
 }
 
 #[test]

@@ -50,9 +50,12 @@ pub(super) fn open(path: &Path) -> Result<Source, WaveError> {
     let kind = [GZIP, XZ, ZSTD].iter().position(|magic| head.starts_with(magic));
     let whole = BufReader::with_capacity(1 << 16, Cursor::new(head).chain(input));
     let (input, is_packed): (Box<dyn Read + Send>, bool) = match kind {
-        Some(0) => (Box::new(MultiGzDecoder::new(whole)), true),
-        Some(1) => (Box::new(XzReader::new_mem_limit(whole, true, WINDOW_KIB)), true),
-        Some(_) => (Box::new(Frames(Frame::Between(Some(whole)))), true),
+        Some(0) => (Box::new(UntilError::new(MultiGzDecoder::new(whole))), true),
+        Some(1) => {
+            let xz = XzReader::new_mem_limit(whole, true, WINDOW_KIB);
+            (Box::new(UntilError::new(xz)), true)
+        }
+        Some(_) => (Box::new(UntilError::new(Frames(Frame::Between(Some(whole))))), true),
         None => (Box::new(whole.into_inner()), false),
     };
     Ok(Source {
@@ -60,6 +63,33 @@ pub(super) fn open(path: &Path) -> Result<Source, WaveError> {
         file: file.filter(|_| !is_packed),
         bytes: length.filter(|_| !is_packed),
     })
+}
+
+/// A reader that is not asked again after an error: the crate for xz would then search for its next byte for ever.
+struct UntilError<R> {
+    input: R,
+    failed: Option<io::ErrorKind>,
+}
+
+impl<R: Read> UntilError<R> {
+    fn new(input: R) -> Self {
+        Self { input, failed: None }
+    }
+}
+
+impl<R: Read> Read for UntilError<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if let Some(kind) = self.failed {
+            return Err(kind.into());
+        }
+        let read = self.input.read(buffer);
+        if let Err(cause) = &read
+            && cause.kind() != io::ErrorKind::Interrupted
+        {
+            self.failed = Some(cause.kind());
+        }
+        read
+    }
 }
 
 /// The frames of a zstd file, one after the other.
