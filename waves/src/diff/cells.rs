@@ -3,7 +3,11 @@
 //! A change costs one comparison, and a sample at which all are equal again costs nothing. Changes since the last
 //! sample are noted with the value at that sample.
 
+use super::matching::Pair;
+use super::rule::Rule;
+use super::side::Side;
 use super::touched::Lists;
+use crate::reader::Kind;
 
 /// Marks a slot without a cell; its pairs are compared the general way.
 pub(super) const GENERAL: u32 = u32::MAX;
@@ -136,4 +140,50 @@ impl Cells {
         self.noted
             .retain(|noted| !std::mem::replace(&mut seen[noted.cell as usize], true));
     }
+}
+
+/// Returns the cells and the cell of each pair. A pair has a cell if it is compared word by word and each of its slots
+/// has one partner.
+pub(super) fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u32>) {
+    let mut cell_of = vec![GENERAL; pairs.len()];
+    if !(a.is_plain() && b.is_plain()) {
+        return (Cells::default(), cell_of);
+    }
+    let slots = [a.values.count(), b.values.count()];
+    let mut partners = slots.map(|count| vec![None; count]);
+    let mut is_general = slots.map(|count| vec![false; count]);
+    for (side, reset) in [a.reset_slot(), b.reset_slot()].into_iter().enumerate() {
+        if let Some(slot) = reset {
+            is_general[side][slot as usize] = true;
+        }
+    }
+    let width = |pair: &Pair| match (a.values.kind(pair.a?), b.values.kind(pair.b?)) {
+        (Kind::Bits(a), Kind::Bits(b)) if a == b && a <= 64 => Some(a),
+        _ => None,
+    };
+    for (pair, rule) in pairs {
+        let simple = rule.is_plain() && width(pair).is_some();
+        for (side, [slot, partner]) in [[pair.a, pair.b], [pair.b, pair.a]].into_iter().enumerate() {
+            let Some(slot) = slot else { continue };
+            let known = partners[side][slot as usize].get_or_insert(partner);
+            is_general[side][slot as usize] |= !simple || *known != partner;
+        }
+    }
+    let mut cells: Vec<([u32; 2], u32, Vec<u32>)> = Vec::new();
+    let mut of_slot = std::collections::HashMap::new();
+    for (at, (pair, _)) in (0..).zip(pairs) {
+        let (Some(slot_a), Some(slot_b), Some(width)) = (pair.a, pair.b, width(pair)) else {
+            continue;
+        };
+        if is_general[0][slot_a as usize] || is_general[1][slot_b as usize] {
+            continue;
+        }
+        let cell = *of_slot.entry(slot_a).or_insert_with(|| {
+            cells.push(([slot_a, slot_b], width, Vec::new()));
+            cells.len() - 1
+        });
+        cells[cell].2.push(at);
+        cell_of[at as usize] = cell as u32;
+    }
+    (Cells::new(slots, &cells), cell_of)
 }

@@ -4,14 +4,13 @@
 //! stays as equal or as different as it was, and its count is added when that state ends.
 
 use super::alike::Alike;
-use super::cells::{Cells, GENERAL};
-use super::clocking::Slots;
+use super::cells::{GENERAL, cells};
 use super::gather::Gathering;
 use super::matching::Pair;
-use super::options::{DiffOptions, SamplingEdge};
-use super::result::{Difference, SignalState, seconds};
-use super::rule::{Rule, View};
-use super::side::{ClockEdge, Side, slot_of};
+use super::options::DiffOptions;
+use super::result::{Difference, SignalState};
+use super::rule::Rule;
+use super::side::Side;
 use super::touched::Touched;
 use super::value::Shown;
 use crate::WaveError;
@@ -145,127 +144,6 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Compares at the edges of the clock.
-    pub(super) fn at_edges(&mut self, clock: Slots, progress: &mut dyn FnMut(Progress)) -> Result<(), WaveError> {
-        self.a.start()?;
-        self.b.start()?;
-        let mut last: Option<[u128; 2]> = None;
-        let mut period_fs = 0;
-        loop {
-            let mut a = self.a.next_edge(&mut self.touched)?;
-            let mut b = self.b.next_edge(&mut self.touched)?;
-            if let (Some(edge_a), Some(edge_b)) = (a, b)
-                && edge_a.gap != edge_b.gap
-            {
-                (a, b) = self.meet_again(edge_a, edge_b, last, period_fs)?;
-            }
-            let (a, b) = match (a, b) {
-                (Some(a), Some(b)) => (a, b),
-                (None, None) => return Ok(()),
-                (Some(_), None) if self.b.feed().cut().is_some() => return Ok(()),
-                (None, Some(_)) if self.a.feed().cut().is_some() => return Ok(()),
-                (Some(edge), None) => {
-                    self.b.cut_off()?;
-                    return self.count_surplus(clock, edge, true);
-                }
-                (None, Some(edge)) => {
-                    self.a.cut_off()?;
-                    return self.count_surplus(clock, edge, false);
-                }
-            };
-            if a.time_fs != b.time_fs && self.shifted_fs.is_none() {
-                self.shifted_fs = Some(a.time_fs);
-            }
-            if let Some([last_a, _]) = last
-                && !a.gap
-            {
-                period_fs = a.time_fs - last_a;
-            }
-            last = Some([a.time_fs, b.time_fs]);
-            if self.options.end_fs.is_some_and(|end| a.time_fs > end) {
-                return Ok(());
-            }
-            let sample = u128::from(self.samples);
-            for side in [&mut self.a, &mut self.b] {
-                side.pend(sample)?;
-                side.release(sample, &mut self.touched);
-            }
-            if self.options.start_fs.is_none_or(|start| a.time_fs >= start) {
-                self.compare(a.time_fs, progress);
-                if self.is_stopped() {
-                    return Ok(());
-                }
-                if let Some(times_fs) = self.follow_alike(true, progress)? {
-                    last = Some([times_fs[0]; 2]);
-                    period_fs = times_fs[0] - times_fs[1];
-                }
-            }
-        }
-    }
-
-    /// After a period that one file does not record, pairs edges by their time, with the same offset as before.
-    fn meet_again(
-        &mut self,
-        mut a: ClockEdge,
-        mut b: ClockEdge,
-        last: Option<[u128; 2]>,
-        period_fs: u128,
-    ) -> Result<(Option<ClockEdge>, Option<ClockEdge>), WaveError> {
-        // The times are compared in a common scale: each file's own time relative to its last common edge.
-        let [last_a, last_b] = last.unwrap_or_default();
-        loop {
-            let (time_a, time_b) = (a.time_fs + last_b, b.time_fs + last_a);
-            if time_a.abs_diff(time_b) <= period_fs / 2 {
-                return Ok((Some(a), Some(b)));
-            }
-            self.unrecorded += 1;
-            let behind = if time_a < time_b {
-                (&mut self.a, &mut a)
-            } else {
-                (&mut self.b, &mut b)
-            };
-            match behind.0.next_edge(&mut self.touched)? {
-                Some(edge) => *behind.1 = edge,
-                // The remaining edges of the other file have no partner that could have been recorded.
-                None => return Ok((None, None)),
-            }
-        }
-    }
-
-    /// Counts a difference of the clock if one file has more edges than the other, from the first edge without a
-    /// partner.
-    fn count_surplus(&mut self, clock: Slots, edge: ClockEdge, of_a: bool) -> Result<(), WaveError> {
-        let within = |edge: ClockEdge| self.options.end_fs.is_none_or(|end| edge.time_fs <= end);
-        if !within(edge) {
-            return Ok(());
-        }
-        let side = if of_a { &mut self.a } else { &mut self.b };
-        let mut count = 1;
-        while side.next_edge(&mut self.touched)?.is_some_and(within) {
-            count += 1;
-        }
-        let digit = if self.options.edge == SamplingEdge::Rising {
-            "1"
-        } else {
-            "0"
-        };
-        let shown = Shown::Bits(digit.to_owned());
-        let slots = [slot_of(clock, false), slot_of(clock, true)].map(Some);
-        let at = self.hot.iter().position(|hot| [hot.a, hot.b] == slots);
-        self.surplus = Some(Difference {
-            signal: at.map_or_else(String::new, |at| self.states[at].name.clone()),
-            time: seconds(edge.time_fs),
-            a: if of_a { shown.clone() } else { Shown::Missing },
-            b: if of_a { Shown::Missing } else { shown },
-            count,
-            persistent: true,
-            a_number: None,
-            b_number: None,
-            view: View::Bits,
-        });
-        Ok(())
-    }
-
     /// Compares at every time at which something changes.
     pub(super) fn at_changes(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), WaveError> {
         self.a.start()?;
@@ -312,7 +190,7 @@ impl<'a> Engine<'a> {
         self.options.first && self.context.is_some()
     }
 
-    fn compare(&mut self, time_fs: u128, progress: &mut dyn FnMut(Progress)) {
+    pub(super) fn compare(&mut self, time_fs: u128, progress: &mut dyn FnMut(Progress)) {
         let Self {
             a,
             b,
@@ -479,50 +357,4 @@ impl<'a> Engine<'a> {
             self.context = Some(gathering);
         }
     }
-}
-
-/// Returns the cells and the cell of each pair. A pair has a cell if it is compared word by word and each of its slots
-/// has one partner.
-fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u32>) {
-    let mut cell_of = vec![GENERAL; pairs.len()];
-    if !(a.is_plain() && b.is_plain()) {
-        return (Cells::default(), cell_of);
-    }
-    let slots = [a.values.count(), b.values.count()];
-    let mut partners = slots.map(|count| vec![None; count]);
-    let mut is_general = slots.map(|count| vec![false; count]);
-    for (side, reset) in [a.reset_slot(), b.reset_slot()].into_iter().enumerate() {
-        if let Some(slot) = reset {
-            is_general[side][slot as usize] = true;
-        }
-    }
-    let width = |pair: &Pair| match (a.values.kind(pair.a?), b.values.kind(pair.b?)) {
-        (Kind::Bits(a), Kind::Bits(b)) if a == b && a <= 64 => Some(a),
-        _ => None,
-    };
-    for (pair, rule) in pairs {
-        let simple = rule.is_plain() && width(pair).is_some();
-        for (side, [slot, partner]) in [[pair.a, pair.b], [pair.b, pair.a]].into_iter().enumerate() {
-            let Some(slot) = slot else { continue };
-            let known = partners[side][slot as usize].get_or_insert(partner);
-            is_general[side][slot as usize] |= !simple || *known != partner;
-        }
-    }
-    let mut cells: Vec<([u32; 2], u32, Vec<u32>)> = Vec::new();
-    let mut of_slot = std::collections::HashMap::new();
-    for (at, (pair, _)) in (0..).zip(pairs) {
-        let (Some(slot_a), Some(slot_b), Some(width)) = (pair.a, pair.b, width(pair)) else {
-            continue;
-        };
-        if is_general[0][slot_a as usize] || is_general[1][slot_b as usize] {
-            continue;
-        }
-        let cell = *of_slot.entry(slot_a).or_insert_with(|| {
-            cells.push(([slot_a, slot_b], width, Vec::new()));
-            cells.len() - 1
-        });
-        cells[cell].2.push(at);
-        cell_of[at as usize] = cell as u32;
-    }
-    (Cells::new(slots, &cells), cell_of)
 }

@@ -36,6 +36,7 @@ mod alike_tests;
 mod cells;
 mod clocking;
 mod delay;
+mod edges;
 mod engine;
 mod explain;
 mod finish;

@@ -7,8 +7,12 @@
 //!                                                  └─► delay line ─► value as it was N samples, or a time, ago ──► pairs
 //! ```
 
+mod delayed;
+mod settle;
+
 use std::collections::VecDeque;
 
+use self::settle::Settle;
 use super::cells::GENERAL;
 use super::clocking::Slots;
 use super::delay::DelayLine;
@@ -17,27 +21,12 @@ use super::touched::{Lists, Touched};
 use crate::WaveError;
 use crate::reader::{Feed, Kind, Step, Values};
 
-/// Largest number of words that all delay lines of a file may hold together.
-const DELAYED_WORDS: usize = 1 << 21;
-/// Largest number of changes that may be delayed until it is known whether they are glitches.
-const HELD_CHANGES: usize = 1 << 20;
-
 /// Destination of the bits of a part of a vector.
 #[derive(Debug, Clone, Copy)]
 struct PartOf {
     whole: u32,
     width: u32,
     low: u32,
-}
-
-/// Delays values until they have lasted long enough.
-#[derive(Debug)]
-struct Settle {
-    width_fs: u128,
-    /// The next value and its beginning, by slot.
-    next: Values,
-    since: Vec<Option<u128>>,
-    queue: VecDeque<(u128, u32)>,
 }
 
 /// An edge of the clock.
@@ -329,91 +318,6 @@ impl Side {
     /// Returns the slot of the reset, until it has been released.
     pub(super) fn reset_slot(&self) -> Option<u32> {
         self.reset.map(|(slot, _)| slot)
-    }
-
-    fn hold_back(&mut self, time_fs: u128) -> Result<(), WaveError> {
-        let Some(settle) = &mut self.settle else { return Ok(()) };
-        self.feed.each_change(|slot, words| {
-            settle.next.set(slot, words);
-            settle.since[slot as usize] = Some(time_fs);
-            settle.queue.push_back((time_fs, slot));
-        });
-        if settle.queue.len() > HELD_CHANGES {
-            return Err(WaveError::Option(format!(
-                "--glitch: {} changes within one glitch, and at most {HELD_CHANGES} are held back; give a shorter time",
-                settle.queue.len()
-            )));
-        }
-        Ok(())
-    }
-
-    /// Takes in the values that have lasted long enough.
-    fn take_in_settled(&mut self, time_fs: u128, touched: &mut Touched) -> bool {
-        let Some(settle) = &mut self.settle else { return false };
-        let mut happened = false;
-        while let Some((since, slot)) = settle.queue.front().copied()
-            && since + settle.width_fs <= time_fs
-        {
-            settle.queue.pop_front();
-            // Another value has come since: this one did not last.
-            if settle.since[slot as usize] != Some(since) {
-                continue;
-            }
-            happened = true;
-            if self.values.set(slot, settle.next.words(slot)) {
-                for pair in self.pairs.get(slot) {
-                    touched.touch(*pair);
-                }
-                let derived = Derived {
-                    pairs: &self.pairs,
-                    parts: &self.parts,
-                    delayed: &self.delayed,
-                };
-                derived.follow(slot, &mut self.values, &mut self.lines, touched);
-            }
-        }
-        happened
-    }
-
-    /// Puts the changes since the last call into the delay lines. `now` counts samples, or femtoseconds.
-    pub(super) fn pend(&mut self, now: u128) -> Result<(), WaveError> {
-        for line in &mut self.lines {
-            for place in line.changed.drain(..) {
-                line.is_changed[place as usize] = false;
-                let (source, shown) = line.slots[place as usize];
-                line.queue.push_back((now + line.by, shown));
-                line.words.extend(self.values.words(source));
-            }
-        }
-        let held: usize = self.lines.iter().map(|line| line.words.len()).sum();
-        if held > DELAYED_WORDS {
-            return Err(WaveError::Option(format!(
-                "--latency: {held} words of delayed values, and at most {DELAYED_WORDS} are held back; give a shorter \
-                 latency, or delay fewer signals"
-            )));
-        }
-        Ok(())
-    }
-
-    /// Applies delayed values. Returns whether there were any.
-    pub(super) fn release(&mut self, now: u128, touched: &mut Touched) -> bool {
-        let mut happened = false;
-        for line in &mut self.lines {
-            while let Some((due, shown)) = line.queue.front().copied()
-                && due <= now
-            {
-                line.queue.pop_front();
-                happened = true;
-                let count = self.values.words(shown).len();
-                let words: Vec<u64> = line.words.drain(..count).collect();
-                self.values.set(shown, &words);
-                for pair in self.pairs.get(shown) {
-                    touched.waiting[*pair as usize] = false;
-                    touched.touch(*pair);
-                }
-            }
-        }
-        happened
     }
 }
 

@@ -15,8 +15,9 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 use super::batch::{Batch, Changed, Gatherer, Step};
-use super::section::{Ended, truncated};
+use super::section::Ended;
 use super::twin::Reopen;
+use super::words::truncated;
 use crate::WaveError;
 
 const BATCHES: usize = 3;

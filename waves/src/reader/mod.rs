@@ -25,11 +25,13 @@ mod fst_blocks;
 mod fst_file;
 mod header;
 mod ids;
+mod piece;
 mod put;
 mod section;
 mod twin;
 mod unpack;
 mod values;
+mod words;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -46,10 +48,11 @@ pub(crate) use self::feed::Feed;
 use self::fst::FstValues;
 pub(crate) use self::header::{Declarations, Kind, Named};
 use self::ids::Ids;
-use self::section::{Section, truncated};
+use self::section::Section;
 use self::twin::Reopen;
 pub(crate) use self::twin::{Stretch, Twins};
 pub(crate) use self::values::{Value, Values, value};
+use self::words::truncated;
 use crate::WaveError;
 
 /// First bytes of a GHW.

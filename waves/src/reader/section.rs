@@ -10,17 +10,17 @@
 //! a table. The buffer is refilled when it does not contain a whole command, and grows only for a command that is
 //! longer than the buffer.
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::batch::{Gatherer, NOWHERE};
 use super::counted::Counted;
-use super::digits::{decimal, digit, known_run};
+use super::digits::{decimal, digit};
 use super::header::Kind;
 use super::ids::Ids;
 use super::put::{put_digits, put_real, put_text, shown};
+use super::words::{Fault, leading_word, line_of, skip_space, truncated, unknown_id, word_end};
 use crate::WaveError;
 
 const BUFFER_BYTES: usize = 1 << 18;
@@ -42,12 +42,6 @@ enum Pause {
     /// A command continues after the buffer.
     More,
     Stop,
-}
-
-/// An error at a place in the buffer.
-struct Fault {
-    at: usize,
-    what: String,
 }
 
 /// The value changes of a file.
@@ -380,82 +374,4 @@ impl Section {
         // The line break that was appended to the file does not belong to it.
         truncated(&self.path, self.start + self.to as u64 - u64::from(self.at_end), inside)
     }
-}
-
-pub(super) fn truncated(path: &Path, byte: u64, inside: &str) -> WaveError {
-    WaveError::Damaged {
-        path: path.to_owned(),
-        place: format!("byte {byte}"),
-        problem: format!(
-            "the file ends {inside}: it was cut off, or its writer is still running; write it again \
-             (a complete file ends with a line break)"
-        ),
-    }
-}
-
-/// Returns the line of a byte, which is counted only for an error; `None` if the file cannot be read again.
-fn line_of(path: &Path, byte: u64) -> Option<u64> {
-    let file = File::open(path).ok()?;
-    if !file.metadata().ok()?.is_file() {
-        return None;
-    }
-    let mut reader = BufReader::new(file.take(byte));
-    let mut line = 1;
-    loop {
-        let buffer = reader.fill_buf().ok()?;
-        if buffer.is_empty() {
-            return Some(line);
-        }
-        line += buffer.iter().filter(|b| **b == b'\n').count() as u64;
-        let count = buffer.len();
-        reader.consume(count);
-    }
-}
-
-/// Returns the end of the word at `at`; `None` if the data ends in it.
-#[inline]
-fn word_end(data: &[u8], at: usize) -> Option<usize> {
-    let length = data.get(at..)?.iter().position(|byte| *byte <= b' ')?;
-    Some(at + length)
-}
-
-/// Returns the end of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty
-/// for ever.
-#[inline]
-fn skip_space(data: &[u8], mut at: usize) -> usize {
-    while let Some(0..=b' ') = data.get(at) {
-        at += 1;
-    }
-    at
-}
-
-/// Returns the end of the digits at `at`, and their number if all are known and there are at most 64; `None` if the
-/// data ends in them.
-#[inline]
-fn leading_word(data: &[u8], at: usize) -> Option<(Option<u64>, usize)> {
-    let (mut word, mut end) = known_run(data, at);
-    while let Some(bit @ 0..=1) = data.get(end).map(|byte| byte ^ b'0') {
-        word = word << 1 | u64::from(bit);
-        end += 1;
-    }
-    match data.get(end) {
-        Some(0..=b' ') if end > at && end - at <= 64 => Some((Some(word), end)),
-        _ => Some((None, word_end(data, end)?)),
-    }
-}
-
-#[cold]
-fn unknown_id(data: &[u8], at: usize, end: usize) -> Fault {
-    let what = if at == end {
-        format!(
-            "unexpected character `{}`: an id code was expected",
-            shown(&data[at..at + 1])
-        )
-    } else {
-        format!(
-            "a change of `{}`, which was never declared: the file is damaged",
-            shown(&data[at..end])
-        )
-    };
-    Fault { at, what }
 }
