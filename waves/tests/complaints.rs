@@ -48,6 +48,22 @@ fn unit_a_tolerance_for_real_numbers_does_not_hide_a_difference_of_vectors() {
 }
 
 #[test]
+fn unit_two_signals_of_one_name_are_not_compared_with_each_other() {
+    let twice = vcd(10, "y", &[1, 2, 3]).replace("$upscope", "$var wire 1 t y [15:0] $end\n$upscope");
+    let twice = twice.replace("#15\n", "#15\n1t\n");
+    for raw in [false, true] {
+        let options = DiffOptions {
+            raw,
+            ..DiffOptions::default()
+        };
+        let result = compare(&twice, &twice, &options);
+        assert_eq!((result.result, result.signals), (DiffVerdict::Equal, 4), "{result}");
+        let result = compare(&twice, &twice.replace("1t\n", "0t\n"), &options);
+        assert_eq!(result.result, DiffVerdict::Different, "{result}");
+    }
+}
+
+#[test]
 fn unit_files_without_a_common_signal_are_not_equal() {
     let result = compare(
         &vcd(10, "y", &[1, 2]),

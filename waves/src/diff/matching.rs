@@ -1,6 +1,6 @@
 //! Matches the signals of the first file with those of the second.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{HashMap, HashSet, VecDeque};
 
 use super::names::{Entry, Names, canonical};
 use super::pattern::Pattern;
@@ -164,14 +164,24 @@ impl Partners<'_> {
             true => MatchedBy::Name,
             false => MatchedBy::Scopes,
         };
-        let targets: HashMap<&str, usize> = free_b
-            .iter()
-            .filter_map(|at| Some((self.b[*at].path.strip_prefix(top_b.as_str())?, *at)))
-            .collect();
+        let mut targets: HashMap<&str, VecDeque<usize>> = HashMap::new();
+        for at in free_b {
+            if let Some(name) = self.b[at].path.strip_prefix(top_b.as_str()) {
+                targets.entry(name).or_default().push_back(at);
+            }
+        }
         for at in free_a {
             let name = self.a[at].path.strip_prefix(top_a.as_str());
-            if let Some(target) = name.and_then(|name| targets.get(name)) {
-                self.claim(at, *target, by);
+            let Some(targets) = name.and_then(|name| targets.get_mut(name)) else {
+                continue;
+            };
+            // A name that is declared several times meets its partners in the order of the files.
+            let target = match targets.len() {
+                1 => targets.front().copied(),
+                _ => targets.pop_front(),
+            };
+            if let Some(target) = target {
+                self.claim(at, target, by);
             }
         }
     }
