@@ -16,6 +16,7 @@ mod design;
 mod diff;
 mod doctor;
 mod driver;
+mod export;
 mod failure;
 mod generate;
 mod guards;
@@ -73,6 +74,7 @@ enum Command {
     New(new::Args),
     Run(run::Args),
     Design(design::Args),
+    Export(export::Args),
     Generate(generate::Args),
     Simulate(simulate::Args),
     Verify(verify::Args),
@@ -98,6 +100,7 @@ fn main() -> ExitCode {
         Command::New(args) => new::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Design(args) => design::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Verify(args) => verify::run(&args),

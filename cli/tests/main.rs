@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod cli;
+mod export;
 mod names;
 mod reproduce;
 mod suites;
