@@ -27,6 +27,7 @@
 //! | [`drive_command`] | the drive command: the duty for the PWM, from the controller or by hand in direct mode |
 //! | [`linear_scale`] | the linear scale: compares motor and scale; deviation, position, velocity |
 //! | [`trace`] | the trace memory: records signals of an axis, tick by tick, around a trigger |
+//! | [`uart_bridge`] | the bridge from a serial line to the registers |
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -59,5 +60,6 @@ mod simulation;
 pub mod sliding_mode;
 pub mod time_base;
 pub mod trace;
+pub mod uart_bridge;
 
 pub use simulation::SimulationError;

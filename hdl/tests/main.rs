@@ -22,3 +22,4 @@ mod shaper_verilog;
 mod sliding_mode;
 mod stimulus;
 mod trace;
+mod uart_bridge;

@@ -19,6 +19,7 @@ pub mod design;
 pub mod digitise;
 pub mod hardware;
 pub mod impulse;
+pub mod link;
 pub mod machine_file;
 pub mod mechanics;
 pub mod mode;

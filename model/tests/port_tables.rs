@@ -2,14 +2,14 @@
 
 use posicast_model::rtl::{
     Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, error_table,
-    excitation, linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, trace,
+    excitation, linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, trace, uart_bridge,
 };
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 12] = [
+const DATASHEETS: [(&str, PortList); 13] = [
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
@@ -22,6 +22,7 @@ const DATASHEETS: [(&str, PortList); 12] = [
     ("segments", segments::PORTS),
     ("sliding_mode", sliding_mode::PORTS),
     ("trace", trace::PORTS),
+    ("uart_bridge", uart_bridge::PORTS),
 ];
 
 /// The lists of blocks with sizes.

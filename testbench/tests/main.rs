@@ -36,4 +36,5 @@ mod stage_range;
 mod stage_run;
 mod support;
 mod trace;
+mod uart_bridge;
 mod wrong_sign;

@@ -29,6 +29,7 @@ pub mod sliding_mode;
 pub mod stage;
 pub mod time_base;
 pub mod trace;
+pub mod uart_bridge;
 pub mod word;
 
 pub(crate) use moore::quiet_at_rest;

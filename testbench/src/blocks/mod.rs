@@ -43,6 +43,7 @@ mod sliding_mode;
 mod sources;
 mod stage;
 mod trace;
+mod uart_bridge;
 
 pub use self::axis::AxisBlock;
 pub use self::cascade::CascadeBlock;
@@ -68,6 +69,7 @@ pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 pub use self::stage::StageBlock;
 pub use self::trace::TraceBlock;
+pub use self::uart_bridge::UartBridgeBlock;
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};

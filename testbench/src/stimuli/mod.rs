@@ -36,6 +36,7 @@ mod segments;
 mod sliding_mode;
 mod table;
 mod trace;
+mod uart_bridge;
 
 pub use self::axis::AxisRandom;
 pub use self::axis_coverage::{AxisCoverage, AxisSafety};
@@ -63,6 +64,7 @@ pub use self::registers::{
 pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
 pub use self::trace::{TraceCoverage, TraceRandom};
+pub use self::uart_bridge::{UartBridgeCoverage, UartBridgeRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {

@@ -1,4 +1,4 @@
-//! Proofs of encoder, time base, PWM, segments, scale, trace and test signals.
+//! Proofs of encoder, time base, PWM, segments, scale, trace, test signals and the bridge of the host link.
 
 use crate::formal::{fails, is_no_longer_proven, proven};
 
@@ -55,6 +55,36 @@ fn formal_encoder_generator() {
 #[test]
 fn formal_excitation() {
     proven("excitation", 0);
+}
+
+#[test]
+fn formal_uart_bridge() {
+    proven("uart_bridge", 0);
+}
+
+#[test]
+fn formal_uart_sequencer() {
+    proven("uart_sequencer", 0);
+}
+
+#[test]
+fn formal_a_request_that_is_executed_before_all_of_it_is_checked_is_found() {
+    fails(
+        "uart_sequencer",
+        "looks_next = 1'd1",
+        "looks_next = 1'd0",
+        "known_all_seen",
+    );
+}
+
+#[test]
+fn formal_a_repeated_request_that_is_executed_again_is_found() {
+    fails(
+        "uart_sequencer",
+        "(|sequence_number) & (sequence_number == last_sequence)",
+        "1'b0",
+        "known_again",
+    );
 }
 
 #[test]

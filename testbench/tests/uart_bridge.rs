@@ -1,0 +1,62 @@
+//! The bridge's Verilog compared with its bit-exact model: every output in every clock.
+
+use crate::support;
+
+use posicast_testbench::blocks::UartBridgeBlock;
+use support::{caught, icarus_agrees, million_random_clocks};
+
+fn bridge() -> UartBridgeBlock {
+    UartBridgeBlock::new("", "alone")
+}
+
+#[test]
+fn lockstep_a_million_random_clocks() {
+    for seed in 1..=2 {
+        million_random_clocks(&bridge(), seed, 3);
+    }
+}
+
+#[test]
+fn crosssim_icarus_agrees_with_the_model() {
+    icarus_agrees(&bridge());
+}
+
+#[test]
+fn lockstep_catches_a_checksum_that_is_not_looked_at() {
+    caught(&bridge(), "holds = sum == RESIDUE", "holds = 1'b1", 300_000);
+}
+
+#[test]
+fn lockstep_catches_a_repeated_request_that_is_executed_again() {
+    caught(&bridge(), "(sequence_number == last_sequence)", "1'b0", 300_000);
+}
+
+#[test]
+fn lockstep_catches_an_address_one_beyond_the_registers() {
+    caught(
+        &bridge(),
+        "exists = address_q < address_limit",
+        "exists = address_q <= address_limit",
+        1_000_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_frame_that_goes_on_after_a_byte_without_a_stop_bit() {
+    caught(
+        &bridge(),
+        "spoilt = skips | bad | (expired & begun)",
+        "spoilt = skips | (expired & begun)",
+        1_000_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_time_out_that_never_comes() {
+    caught(&bridge(), "| bad | (expired & begun)", "| bad", 1_000_000);
+}
+
+#[test]
+fn lockstep_catches_a_bit_that_is_taken_an_eighth_late() {
+    caught(&bridge(), "MIDDLE = 3'd3", "MIDDLE = 3'd4", 300_000);
+}
