@@ -23,7 +23,9 @@ mod moves;
 mod new;
 mod optimal;
 mod outputs;
+mod pages;
 mod replay;
 mod schema;
 #[cfg(target_os = "linux")]
 mod signals;
+mod tutorial;
