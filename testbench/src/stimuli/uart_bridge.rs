@@ -105,7 +105,13 @@ impl UartBridgeRandom {
         );
         let count = *pick(&mut self.rng, &[0, 1, 2, 41, 64, other as u8]);
         let length = *pick(&mut self.rng, &[9, 13, 8, 10, other as usize % 250]);
-        let mut bytes = vec![*pick(&mut self.rng, &[self.sequence, 0, any as u8]), command, count];
+        let sequence = *pick(&mut self.rng, &[self.sequence, 0, any as u8]);
+        let write_without_sequence = (0, 0x11, 1, 13);
+        let (sequence, command, count, length) = match self.one_in(4) {
+            true => write_without_sequence,
+            false => (sequence, command, count, length),
+        };
+        let mut bytes = vec![sequence, command, count];
         bytes.resize(length.saturating_sub(4), any as u8);
         bytes.extend(Crc::of(&bytes).to_le_bytes());
         let mut frame = cobs::encode(&bytes).unwrap_or_default();
@@ -155,12 +161,12 @@ impl UartBridgeRandom {
 
     /// Puts the next frame on the line.
     fn send(&mut self) {
-        if self.one_in(30) {
+        if self.one_in(8) {
             self.baud_step = *pick(
                 &mut self.rng,
-                &[0xffff, 0xffff, 0xffff, 0xffff, 0xf000, 0xc001, 0x8000, 9_000],
+                &[0xffff, 0xffff, 0xffff, 0xffff, 0xf000, 0xc001, 0x7000, 16_000],
             );
-            self.silence_limit = *pick(&mut self.rng, &[160, 400, 1 << 17, 300]);
+            self.silence_limit = *pick(&mut self.rng, &[160, 400, 0xf_ffff, 300]);
             self.address_limit = *pick(&mut self.rng, &[300, 300, 512, 1, 0, 0xffff, 0x8000]);
             self.waits = *pick(&mut self.rng, &[1, 2, 8, 100]);
         }
@@ -174,7 +180,7 @@ impl UartBridgeRandom {
             if place == cut {
                 match fault {
                     // A pause, a break, a glitch.
-                    0 => self.line.push_back((true, self.silence_limit.min(2000) as u32 + 60)),
+                    0 | 7..=9 => self.line.push_back((true, self.silence_limit.min(2000) as u32 + 60)),
                     1 => self.line.push_back((true, self.silence_limit.min(2000) as u32 - 100)),
                     2 => self.line.extend([(false, 100), (true, 30)]),
                     3 => self.line.extend([(false, 1), (true, 40)]),
