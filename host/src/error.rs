@@ -1,0 +1,49 @@
+//! Why a call on the link fails.
+
+use posicast_model::link::{LinkStatus, RequestError};
+use std::time::Duration;
+
+/// Why a call on the link fails.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// The port cannot be opened.
+    #[error("{port}: {reason}: is the name right, and may you use it (group dialout)?")]
+    Open {
+        /// Name of the port.
+        port: String,
+        /// What the operating system says.
+        reason: String,
+    },
+    /// The line fails.
+    #[error("the line fails: {0}")]
+    Line(#[from] std::io::Error),
+    /// No reply, or only damaged ones.
+    #[error(
+        "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, is the baud rate that of its machine \
+         file, are the lines crossed?{}", .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
+    )]
+    NoReply {
+        /// How often the request was sent.
+        attempts: u32,
+        /// How long each reply was awaited.
+        timeout: Duration,
+        /// Number of frames that came and were no reply.
+        damaged: u64,
+        /// Whether the request writes.
+        written: bool,
+    },
+    /// The bridge refuses the request. Nothing was read or written.
+    #[error("the bridge refuses the request: {0}")]
+    Refused(LinkStatus),
+    /// The reply has another number of words than was asked for.
+    #[error("{found} words came, {asked} were asked for: is the other end a bridge of this version?")]
+    Words {
+        /// Number of words that were asked for.
+        asked: usize,
+        /// Number of words that came.
+        found: usize,
+    },
+    /// The request cannot be sent.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+}
