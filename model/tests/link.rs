@@ -2,8 +2,8 @@
 
 use crate::support::random_inputs::Random;
 use posicast_model::link::{
-    Bus, FrameDecoder, FrameEnd, Header, LinkBridge, LinkStatus, MOST_REPLY_BYTES, MOST_REQUEST_BYTES, MOST_WORDS,
-    Reply, Request, RequestError, cobs,
+    Bus, FrameDecoder, FrameEnd, LinkBridge, LinkStatus, MOST_REPLY_BYTES, MOST_REQUEST_BYTES, MOST_WORDS, Reply,
+    Request, RequestError, RequestHeader, cobs,
 };
 use proptest::prelude::*;
 
@@ -166,7 +166,7 @@ fn unit_requests_that_are_none_are_refused_on_both_sides() {
         Err(RequestError::Words(0))
     );
 
-    let header = |sequence, command, count| Header {
+    let header = |sequence, command, count| RequestHeader {
         sequence,
         command,
         count,

@@ -99,7 +99,7 @@ impl LinkBridge {
 }
 
 /// The addresses of a request, each with the word that is written.
-fn accesses(bytes: &[u8], header: super::Header) -> Vec<(u16, Option<u32>)> {
+fn accesses(bytes: &[u8], header: super::RequestHeader) -> Vec<(u16, Option<u32>)> {
     let mut rest = bytes[REQUEST_HEADER_BYTES..bytes.len() - CRC_BYTES]
         .iter()
         .map(|byte| u32::from(*byte));

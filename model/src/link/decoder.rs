@@ -1,7 +1,7 @@
 //! The bridge's decoder of frames: the line byte by byte, whatever comes.
 
 use super::cobs::UNUSED_CODE;
-use super::{Crc, DELIMITER, Header, MOST_REQUEST_BYTES};
+use super::{Crc, DELIMITER, MOST_REQUEST_BYTES, RequestHeader};
 
 /// What a delimiter ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,9 +106,9 @@ impl FrameDecoder {
     }
 
     /// The first bytes of the frame; those that have not come are those of the frame before.
-    pub fn header(&self) -> Header {
+    pub fn header(&self) -> RequestHeader {
         let [sequence, command, count, ..] = self.bytes;
-        Header {
+        RequestHeader {
             sequence,
             command,
             count,

@@ -56,7 +56,7 @@ pub use bridge::{Bus, LinkBridge};
 pub use crc::{CRC_START, Crc, POLYNOMIAL, RESIDUE};
 pub use decoder::{FrameDecoder, FrameEnd};
 pub use reply::{LinkStatus, Reply, ReplyError};
-pub use request::{Header, Request, RequestError};
+pub use request::{Request, RequestError, RequestHeader};
 
 /// Ends every frame, and occurs nowhere else.
 pub const DELIMITER: u8 = 0;

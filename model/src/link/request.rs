@@ -106,7 +106,7 @@ impl Request {
 
 /// The first bytes of a request, as the bridge reads them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Header {
+pub struct RequestHeader {
     /// Sequence number.
     pub sequence: u8,
     /// Command.
@@ -115,7 +115,7 @@ pub struct Header {
     pub count: u8,
 }
 
-impl Header {
+impl RequestHeader {
     /// Whether words are written.
     pub fn writes(&self) -> bool {
         self.command & WRITES != 0
