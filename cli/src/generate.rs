@@ -4,7 +4,7 @@ use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
 use crate::hal::HalArgs;
-use crate::hardware::{Built, STAGE_SUFFIX};
+use crate::hardware::{Built, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::output::{self, shell_word};
@@ -96,6 +96,7 @@ impl Document {
             folder: folder.display().to_string(),
             top: std::iter::once(name.clone())
                 .chain(has_stage.then(|| format!("{name}{STAGE_SUFFIX}")))
+                .chain(machine.link.map(|_| format!("{name}{LINK_SUFFIX}")))
                 .collect(),
             files: files.iter().map(relative).collect(),
         }
@@ -106,6 +107,11 @@ impl Document {
         let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
         let top = match self.top.as_slice() {
             [shapers, stage] => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
+            [shapers, stage, link] => {
+                format!(
+                    "top modules: {shapers} (the shapers), {stage} (the whole stage), {link} (the stage with its serial line)"
+                )
+            }
             _ => format!("top module: {} (the shapers)", self.top.join(", ")),
         };
         format!(

@@ -7,16 +7,21 @@ use crate::warning::Warning;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
-use posicast_model::machine_file::Machine;
+use posicast_model::machine_file::{LinkSection, Machine};
 use posicast_model::rtl::component::Component;
+use posicast_model::rtl::linked_stage::address_limit;
 use posicast_model::rtl::stage::StageConfig;
-use posicast_testbench::blocks::{Block, ComponentBlock};
+use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
 use std::path::Path;
 
 /// Suffix of a component's top module.
 pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
 /// Suffix of a stage's top module.
 pub(crate) const STAGE_SUFFIX: &str = "_stage";
+/// Suffix of the top module with a stage and its serial line.
+pub(crate) const LINK_SUFFIX: &str = "_link";
+/// Table of the machine file with the serial line.
+const LINK_KEY: &str = "link.baud";
 
 /// The hardware of a machine.
 pub(crate) struct Built<'a> {
@@ -28,6 +33,8 @@ pub(crate) struct Built<'a> {
     pub(crate) components: Vec<ComponentBlock>,
     /// All axes behind one agent, where every loop is complete.
     pub(crate) stage: Option<Stage>,
+    /// The stage with its serial line, where the machine file has one. Its top module is `<machine>_link`.
+    pub(crate) link: Option<LinkedStageBlock>,
 }
 
 /// A stage: its settings from the machine file, and its hardware.
@@ -73,16 +80,26 @@ impl<'a> Built<'a> {
                 block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")).with_prefix(&machine.name),
             }
         });
+        let link = match (machine.link, &stage) {
+            (None, _) => None,
+            (Some(link), Some(stage)) => Some(linked(machine, &link, stage, path)?),
+            (Some(_), None) => {
+                let reason =
+                    "a line needs the stage, and none is built; remove [link], or change what the warning names";
+                return Err(at_key(path, 0, LINK_KEY, reason));
+            }
+        };
         Ok(Self {
             machine,
             shapers,
             components: components.collect(),
             stage,
+            link,
         })
     }
 
-    /// The Verilog modules without duplicates: those of the machine's top, then those of its components, then those
-    /// of its stage. `path` is the machine file.
+    /// The Verilog modules without duplicates: those of the machine's top, then those of its components, of its stage,
+    /// and of its serial line. `path` is the machine file.
     pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
         for component in &self.components {
@@ -91,8 +108,27 @@ impl<'a> Built<'a> {
         if let Some(stage) = &self.stage {
             add(&mut modules, stage.modules(path)?).map_err(Failure::because)?;
         }
+        if let Some(link) = &self.link {
+            add(&mut modules, link.modules().map_err(Failure::because)?).map_err(Failure::because)?;
+        }
         Ok(modules)
     }
+}
+
+/// The stage of a machine with its serial line.
+fn linked(machine: &Machine, link: &LinkSection, stage: &Stage, path: &Path) -> Result<LinkedStageBlock, Failure> {
+    let component = stage.block.component();
+    let config = link.bridge(&machine.clock, address_limit(component));
+    let config = config.map_err(|error| at_key(path, 0, LINK_KEY, error))?;
+    let axes: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
+    let top = format!("{}{LINK_SUFFIX}", machine.name);
+    let names = [top.as_str(), &stage.block.top(), &machine.name];
+    Ok(LinkedStageBlock::new(
+        component,
+        (config, machine.clock.frequency_hz),
+        &axes,
+        names,
+    ))
 }
 
 impl Stage {

@@ -14,6 +14,7 @@ use posicast_synth::package::Package;
 pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) -> Vec<(String, String)> {
     let files: Vec<String> = modules.iter().map(verilog::path).collect();
     let blocks = match (&built.stage, built.components.is_empty()) {
+        (Some(_), _) if built.link.is_some() => BuiltBlocks::LinkedStage,
         (Some(_), _) => BuiltBlocks::Stage,
         (None, false) => BuiltBlocks::Components,
         (None, true) => BuiltBlocks::Shapers,

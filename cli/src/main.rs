@@ -22,6 +22,7 @@ mod generate;
 mod guards;
 mod hal;
 mod hardware;
+mod host;
 mod identify;
 mod kit;
 mod machine;
@@ -83,6 +84,7 @@ enum Command {
     Diff(Box<diff::Args>),
     Synth(synth::Args),
     Identify(identify::Args),
+    Host(host::Args),
     Reproduce(reproduce::Args),
     Doctor(doctor::Args),
     Schema(schema::Args),
@@ -107,6 +109,7 @@ fn main() -> ExitCode {
         Command::Diff(args) => diff::run(&args),
         Command::Synth(args) => synth::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::Host(args) => host::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Schema(args) => schema::run(&args),

@@ -74,7 +74,7 @@ pub(crate) fn by_default(machine: &Machine) -> Vec<AxisMove> {
 
 /// A figure for every axis, or one for each axis that is named.
 #[derive(Debug, Clone, PartialEq)]
-enum PerAxis {
+pub(crate) enum PerAxis {
     /// The same figure for all axes.
     All(f64),
     /// Figures by the names of the axes.
@@ -83,7 +83,7 @@ enum PerAxis {
 
 impl PerAxis {
     /// The figure for an axis, if there is one.
-    fn of(&self, axis: &AxisSection) -> Option<f64> {
+    pub(crate) fn of(&self, axis: &AxisSection) -> Option<f64> {
         match self {
             Self::All(figure) => Some(*figure),
             Self::Named(figures) => figures
@@ -94,7 +94,7 @@ impl PerAxis {
     }
 
     /// Refuses names of axes that the machine does not have.
-    fn only_for(&self, machine: &Machine, option: &str) -> Result<(), Failure> {
+    pub(crate) fn only_for(&self, machine: &Machine, option: &str) -> Result<(), Failure> {
         let Self::Named(figures) = self else {
             return Ok(());
         };

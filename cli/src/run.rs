@@ -108,6 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         shapers,
         components,
         stage,
+        link,
         ..
     } = built;
     let top = blocks::shapers(machine, shapers, &words)?;
@@ -126,6 +127,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
     let components = components.map(|component| component as &dyn Block);
+    let components = components.chain(link.as_ref().map(|link| link as &dyn Block));
     let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
     let all = Sources::found(files.clone());
     let sources = all.reached_by(&top).map_err(bench::failure)?;

@@ -2,7 +2,7 @@
 //! system and projects.
 
 use crate::failure::Failure;
-use crate::hardware::Stage;
+use crate::hardware::{LINK_SUFFIX, Stage};
 use crate::machine;
 use crate::warning::Warning;
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -62,6 +62,9 @@ pub(crate) fn add(
         clock_hz: machine.clock.frequency_hz,
         board,
         stage,
+        link: machine
+            .link
+            .map(|link| (format!("{}{LINK_SUFFIX}", machine.name), link.baud)),
         active_low_axes: active_low.map(|axis| axis.name.as_str()).collect(),
         components: components?,
     };

@@ -161,6 +161,7 @@ impl Job {
             let short = short.map(|short| short.with_prefix(&machine.name));
             others.push(Box::new(block));
             others.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
+            others.extend(built.link.map(|block| Box::new(block) as Box<dyn Block>));
         }
         let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {

@@ -28,6 +28,7 @@
 //! | [`linear_scale`] | the linear scale: compares motor and scale; deviation, position, velocity |
 //! | [`trace`] | the trace memory: records signals of an axis, tick by tick, around a trigger |
 //! | [`uart_bridge`] | the bridge from a serial line to the registers |
+//! | [`linked_stage`] | the stage with that bridge |
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -45,6 +46,7 @@ pub mod excitation;
 pub mod group;
 mod kernel;
 pub mod linear_scale;
+pub mod linked_stage;
 pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;

@@ -1,4 +1,4 @@
-//! The host's end of the link: reads and writes the registers of a stage over a serial line.
+//! The host's end of the link: reads and writes the registers of a stage over a serial line, and operates its axes.
 //!
 //! The frames are those of [`posicast_model::link`], the other end is the block of `docs/uart_bridge.md`.
 //!
@@ -15,9 +15,32 @@
 //! link.write_list(&[(16, 1), (20, 7)])?;
 //! # Ok::<(), posicast_host::LinkError>(())
 //! ```
+//!
+//! [`HostedStage`] is the stage of a machine file at the other end: it refuses any other, and knows the registers by their names.
+//!
+//! | call | what it does |
+//! |---|---|
+//! | [`HostedStage::status`] | states, causes and positions of all axes; writes nothing |
+//! | [`HostedStage::switch_on`], [`HostedStage::switch_off`] | outputs on and off |
+//! | [`HostedStage::move_axes`] | a jerk-limited move of several axes that start together |
+//! | [`HostedStage::trace`] | signals of an axis, tick by tick |
+//! | [`HostedStage::load_table`] | another tap table, while the axis stands or moves |
+//!
+//! Calls that wait kick the watchdogs of all axes. When the host dies, the watchdog stops the machine
+//! (`watchdog_s` of the machine file): a link that ends is no other case than a host that ends.
 
 mod error;
+mod host_error;
 mod link;
+mod moves;
+mod stage;
+mod tables;
+mod trace;
 
 pub use error::LinkError;
+pub use host_error::HostError;
 pub use link::{Link, LinkOptions, LinkStatistics};
+pub use moves::HostMove;
+pub use serialport::SerialPort;
+pub use stage::{AxisStatus, HostedStage, causes};
+pub use trace::{RecordedSignal, RecordedTrace, Shake, TraceRequest};

@@ -1,6 +1,9 @@
 //! The tests of `posicast-host` in one program.
 #![cfg(test)]
 
+mod campaign;
 mod faults;
+mod stage;
 #[cfg(unix)]
 mod terminal;
+mod verilated;

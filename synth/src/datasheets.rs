@@ -20,6 +20,8 @@ const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divide
 const STAGE: [(&str, &str); 9] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
 ];
+/// Of machines whose stage has a serial line.
+const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
 
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,13 +32,16 @@ pub enum BuiltBlocks {
     Components,
     /// Blocks of axes joined to a stage.
     Stage,
+    /// A stage with a serial line.
+    LinkedStage,
 }
 
 /// The datasheets of a machine, as path in the output folder and text.
 pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
     let components = COMPONENTS.iter().filter(|_| built >= BuiltBlocks::Components);
     let stage = STAGE.iter().filter(|_| built >= BuiltBlocks::Stage);
-    let pages: Vec<_> = SHAPER.iter().chain(components).chain(stage).collect();
+    let link = LINK.iter().filter(|_| built >= BuiltBlocks::LinkedStage);
+    let pages: Vec<_> = SHAPER.iter().chain(components).chain(stage).chain(link).collect();
     let is_there = |name: &str| pages.iter().any(|(page, _)| *page == name);
     let file = |(name, text): &&(&str, &str)| (format!("{FOLDER}/{name}.md"), with_links_to(text, is_there));
     pages.iter().map(file).collect()
@@ -91,6 +96,7 @@ mod tests {
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),
             (BuiltBlocks::Stage, 15),
+            (BuiltBlocks::LinkedStage, 16),
         ] {
             let files = files(built);
             assert_eq!(files.len(), pages);

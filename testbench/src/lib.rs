@@ -15,6 +15,7 @@
 //! - [`campaign`] is the order of stimuli for a machine; [`recording`] records a real move as waveforms.
 //! - [`fault_campaign`] injects every fault into a stage with its machine, at random clocks of a move.
 //! - [`register_tests`] checks over the bus that registers behave as described.
+//! - [`linked_bench`] puts a stage with its simulated machine behind a serial line.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
 //! - [`asynchronous`] tests effects that no clock samples.
 //! - [`crosssim`] compares the waveforms of two simulators.
@@ -37,6 +38,7 @@ pub mod fault_campaign;
 pub mod formal;
 pub mod icarus;
 pub mod ladder;
+pub mod linked_bench;
 pub mod lockstep;
 pub mod mutation;
 pub mod netlist;

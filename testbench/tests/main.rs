@@ -16,6 +16,7 @@ mod fault_campaign;
 mod formal;
 mod latency;
 mod linear_scale;
+mod linked_stage;
 mod moving_modes;
 mod mutation;
 mod netlist;

@@ -117,6 +117,7 @@ fn quick(axes: usize) -> StageConfig {
     let mut quick = StageConfig {
         tick: config.tick,
         axes: Vec::new(),
+        machine_crc: None,
     };
     for (name, mode) in ["x", "y", "z", "phi"].into_iter().zip(modes).take(axes) {
         let mut axis = config.axes[0].clone();

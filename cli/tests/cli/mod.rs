@@ -17,6 +17,8 @@ mod folder;
 mod fuzz;
 mod hal;
 mod hardware;
+#[cfg(unix)]
+mod host;
 mod identify;
 mod kit;
 mod moves;

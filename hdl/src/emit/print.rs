@@ -208,7 +208,7 @@ pub(super) fn declarations(lines: &mut Lines, declarations: &[(&str, Type, Strin
 }
 
 /// An instance with named connections in one column.
-pub(super) fn instance(lines: &mut Lines, module: &str, name: &str, pins: &[(String, String)]) {
+pub(crate) fn instance(lines: &mut Lines, module: &str, name: &str, pins: &[(String, String)]) {
     let width = pins.iter().map(|(port, _)| port.len()).max().unwrap_or(0);
     lines.nest(&format!("{module} {name} ("), ");", |lines| {
         for (index, (port, net)) in pins.iter().enumerate() {

@@ -186,7 +186,11 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         derived.push(gains);
     }
     Ok(Some(MachineStage {
-        config: StageConfig { tick, axes: built },
+        config: StageConfig {
+            tick,
+            axes: built,
+            machine_crc: machine.link.map(|link| link.machine_crc),
+        },
         lags_s,
         derived,
         families: design.families.clone(),

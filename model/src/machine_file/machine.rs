@@ -6,7 +6,7 @@ use super::hint::{self, KILO, MEGA_OR_KILO};
 use super::key::{Default, Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
-use super::{ClockSection, Digitise, FixedPoint, Machine, Target, axis, stage};
+use super::{AxisSection, ClockSection, Digitise, FixedPoint, LinkSection, Machine, Target, axis, link, stage};
 use crate::rtl::shaper::WORD_BITS;
 use crate::spelling::same_letters;
 use crate::taps::COEFFICIENT_FRACTION_MAX;
@@ -48,6 +48,11 @@ pub(super) const KEYS: &[Key] = &[
         "stage",
         Values::Table(stage::KEYS),
         "Settings of all axes together. With this table, even an empty one, the delays of all axes are made equal.",
+    ),
+    Key::new(
+        "link",
+        Values::Table(link::KEYS),
+        "A serial line through which a host reads and writes the registers of the stage.",
     ),
 ];
 
@@ -127,6 +132,7 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     root.require("axis", format_args!("1 to {MAX_AXES} tables [[axis]]"));
     let axes = read_axes(root, clock, fixed_point);
     let stage = root.table("stage").map(|table| stage::read(&table));
+    let link = read_link(root, clock, axes.as_deref());
     Some(Machine {
         name: name?,
         clock: clock?,
@@ -134,14 +140,34 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
         target,
         axes: axes?,
         stage,
+        link,
     })
+}
+
+fn read_link(root: &Table<'_, '_>, clock: Option<ClockSection>, axes: Option<&[AxisSection]>) -> Option<LinkSection> {
+    let link = root.table("link").and_then(|table| link::read(&table, clock));
+    // Where the axes have a problem, it is the one to mend first.
+    let lacks = |axis: &&AxisSection| {
+        axis.encoder.is_none() || axis.pwm.is_none() || axis.drive.is_none() || axis.controller.is_none()
+    };
+    if let Some(axis) = axes?.iter().find(lacks)
+        && link.is_some()
+    {
+        root.contradiction(
+            "link",
+            format!("[link] beside axis {}, which lacks a part of its loop", axis.name),
+            "[link] where every axis has encoder, pwm, drive and controller: these make the stage that a host operates",
+            "remove [link], or add what the axis lacks",
+        );
+    }
+    link
 }
 
 fn read_axes(
     root: &Table<'_, '_>,
     clock: Option<ClockSection>,
     fixed_point: Option<FixedPoint>,
-) -> Option<Vec<super::AxisSection>> {
+) -> Option<Vec<AxisSection>> {
     let mut lines: Vec<(String, usize)> = Vec::new();
     let mut axes = Some(Vec::new());
     for (index, table) in root.tables("axis", MAX_AXES).into_iter().enumerate() {

@@ -38,6 +38,7 @@ mod error_table;
 mod hint;
 mod key;
 mod limits;
+mod link;
 mod machine;
 mod mechanics;
 mod mode;
@@ -61,6 +62,7 @@ pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
 pub use error_table::{ErrorTableSection, ErrorUse, STEEPEST_IN_FILE};
 pub use limits::LimitsSection;
+pub use link::LinkSection;
 pub use machine::{BOARDS, FAMILIES};
 pub(crate) use moving::MAX_TABLES;
 pub use moving::{FamilySection, ModePoint};
@@ -71,9 +73,11 @@ pub use schema::schema;
 pub use stage::StageSection;
 pub use trace::TraceSection;
 
+use std::cell::RefCell;
 use toml::de::DeTable;
 
 use crate::design::kind::ShaperKind;
+use crate::link::Crc;
 use crate::mechanics::ScrewDrive;
 use crate::mode::{Mode, ModeBand};
 use crate::unit::AxisUnit;
@@ -102,7 +106,16 @@ pub fn parse_beside(
     text: &str,
     beside: &dyn Fn(&str) -> Result<String, String>,
 ) -> Result<Machine, SpecError> {
-    let reader = Reader::new(file_name, text, beside);
+    let files = RefCell::new(vec![(String::new(), text.to_owned())]);
+    let beside = |name: &str| {
+        let text = beside(name)?;
+        let mut files = files.borrow_mut();
+        if files.iter().all(|(other, _)| other != name) {
+            files.push((name.to_owned(), text.clone()));
+        }
+        Ok(text)
+    };
+    let reader = Reader::new(file_name, text, &beside);
     let whole_file = |span: std::ops::Range<usize>, cause, remedy: &str| {
         let span = span.start.min(text.len())..span.end.min(text.len());
         reader.report(reader.problem(span, String::new(), "", cause, remedy.to_owned()));
@@ -132,7 +145,13 @@ pub fn parse_beside(
         }
         Ok(document) => machine::read(&Table::root(&reader, document.get_ref())),
     };
-    reader.finish(machine)
+    let mut machine = reader.finish(machine)?;
+    if let Some(link) = &mut machine.link {
+        let files = files.borrow();
+        let bytes: Vec<u8> = files.iter().flat_map(|(_, text)| text.bytes()).collect();
+        link.machine_crc = Crc::of(&bytes);
+    }
+    Ok(machine)
 }
 
 /// A whole machine file.
@@ -150,6 +169,8 @@ pub struct Machine {
     pub axes: Vec<AxisSection>,
     /// `[stage]`: settings of all axes together.
     pub stage: Option<StageSection>,
+    /// `[link]`: the serial line to the registers of the stage.
+    pub link: Option<LinkSection>,
 }
 
 /// `[clock]`.

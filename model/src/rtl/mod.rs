@@ -15,6 +15,7 @@ pub mod error_table;
 pub mod excitation;
 pub mod group;
 pub mod linear_scale;
+pub mod linked_stage;
 mod moore;
 mod ports;
 pub mod pulse_counter;

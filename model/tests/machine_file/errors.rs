@@ -42,7 +42,7 @@ fn unit_an_unknown_key_lists_the_allowed_ones_and_suggests_the_nearest() {
         "did you mean `damping`? Else remove the key"
     );
     let expected =
-        "m.toml:5: wibble: found the unknown key wibble; allowed: name, clock, fixed_point, target, axis, stage";
+        "m.toml:5: wibble: found the unknown key wibble; allowed: name, clock, fixed_point, target, axis, stage, link";
     breaks("[fixed_point]\ncommand_bits = 32", "[wibble]", expected);
 }
 

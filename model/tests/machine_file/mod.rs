@@ -7,6 +7,7 @@ mod files;
 mod hints;
 mod joint_kinds;
 mod limits;
+mod link;
 mod mechanics;
 mod modes;
 mod prop;

@@ -45,6 +45,8 @@ pub struct Design<'a> {
     pub board: Option<Board>,
     /// Its stage, if it has one.
     pub stage: Option<Unit<'a>>,
+    /// Top module of the stage with its serial line, and the baud rate, if it has one.
+    pub link: Option<(String, u32)>,
     /// The axes of the stage whose gates are off at a high level.
     pub active_low_axes: Vec<&'a str>,
     /// The blocks that stand alone.

@@ -64,6 +64,13 @@ to overwrite a file that was edited, and says which.
              | `docs/` | the shaper's datasheet |\n",
         );
     }
+    if let Some((top, baud)) = &design.link {
+        let _ = writeln!(
+            text,
+            "| `rtl/{top}.v` | a top module without a processor: the stage and its serial line of {baud} baud, which `posicast host` operates \
+             (`docs/uart_bridge.md`) |"
+        );
+    }
     if design.units().next().is_some() {
         text.push_str("| `sopc/*_hw.tcl` | components for Platform Designer (Qsys) |\n");
     }

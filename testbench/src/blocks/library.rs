@@ -131,6 +131,7 @@ pub(super) fn stage() -> Result<StageConfig, Error> {
     let mut stage = StageConfig {
         tick: DividerConfig::new(TICK_CLOCKS).map_err(refused)?,
         axes: vec![x, y],
+        machine_crc: None,
     };
     // This is the shortest tick that is long enough for the schedule, in whole periods.
     let periods = stage.timing().duty_clocks() / STAGE_PERIOD_CLOCKS + 1;

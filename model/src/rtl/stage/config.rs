@@ -23,6 +23,8 @@ pub struct StageConfig {
     pub tick: DividerConfig,
     /// Its axes.
     pub axes: Vec<StageAxis>,
+    /// Contents of the register `MACHINE_CRC`, if it has one: the checksum of its machine file.
+    pub machine_crc: Option<u32>,
 }
 
 /// One axis of a stage.

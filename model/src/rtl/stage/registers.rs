@@ -29,7 +29,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
     let about = "Stage: axes, from motion segments to the pins; window 0 is the stage's, then there is one window per \
         axis.";
     let parameter = |name: &str, bits, meaning: &str, value| Field::new(name, 0, bits, meaning).with_reset(value);
-    let parameters = vec![
+    let mut parameters = vec![
         parameter("axes", 3, "windows after this one", config.axes.len() as u32),
         parameter("tick_clocks", 17, "time from tick to tick", config.tick.tick_clocks()).with_unit("clocks"),
         parameter(
@@ -47,6 +47,9 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         )
         .with_unit("clocks"),
     ];
+    if let Some(crc) = config.machine_crc {
+        parameters.push(parameter("machine_crc", 32, "CRC-32 of the machine file", crc));
+    }
     let mut description = Description::new("stage", about, *b"STGE", (2, 2), parameters)
         .with_windows(config.axes.len() as u32 + 1)
         .with(

@@ -1,0 +1,209 @@
+//! `posicast host`: operates a stage through its serial line.
+
+mod actions;
+mod text;
+
+use crate::design::DesignReport;
+use crate::failure::Failure;
+use crate::machine;
+use crate::moves::PerAxis;
+use posicast_host::{HostError, HostedStage, Link, LinkError, LinkOptions};
+use posicast_model::hardware::StageHardware;
+use posicast_model::machine_file::Machine;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Operate a stage through its serial line: show its state, move, record, load a shaper
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  posicast host /dev/ttyUSB0 status --machine xy_stage/machine.toml
+  posicast host /dev/ttyUSB0 move x=0.04,y=-0.02 --machine xy_stage/machine.toml
+  posicast host /dev/ttyUSB0 trace x -o x.csv --shake 60 --machine xy_stage/machine.toml
+  posicast host /dev/ttyUSB0 load x new.toml --machine xy_stage/machine.toml
+
+The machine file is the one from which the FPGA was built; it has a table [link]. Exit status: 1 the stage did not do it, 2 bad input
+or another machine, 3 no port or no reply.")]
+pub(crate) struct Args {
+    /// Serial port, such as /dev/ttyUSB0 or COM3
+    port: String,
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(clap::Subcommand)]
+enum Action {
+    /// Show states, causes and positions of all axes; writes nothing to the stage
+    Status {
+        #[command(flatten)]
+        line: Line,
+        /// Print one JSON document on standard output
+        #[arg(long)]
+        json: bool,
+    },
+    /// Switch on, move, and switch off
+    Move {
+        /// Distance from where the axis stands, in its unit: 40 for every axis, or x=40,y=-20
+        #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
+        distance: PerAxis,
+        /// Largest speed, in the axis's unit per second: 100, or x=100,y=50 [default: the velocity limit]
+        #[arg(long, value_name = "SPEED")]
+        speed: Option<PerAxis>,
+        #[command(flatten)]
+        faults: Faults,
+        /// Leave the axes on at the end. An axis with watchdog_s then stops by itself, because nobody kicks its watchdog
+        #[arg(long)]
+        hold: bool,
+        #[command(flatten)]
+        line: Line,
+    },
+    /// Record signals of an axis, tick by tick; needs [axis.trace]
+    Trace(TraceArgs),
+    /// Load the shaper that another machine file has for an axis; it is used until the next reset
+    Load {
+        /// Name of the axis
+        axis: String,
+        /// Machine file with the new modes or shaper of this axis
+        from: PathBuf,
+        #[command(flatten)]
+        line: Line,
+    },
+}
+
+#[derive(clap::Args)]
+struct TraceArgs {
+    /// Name of the axis
+    axis: String,
+    /// File for the trace: CSV, which posicast identify reads, or VCD
+    #[arg(short, long, value_name = "FILE.csv|FILE.vcd")]
+    output: PathBuf,
+    /// Signals: one, two or four, separated by commas [default: command_position, shaped_position, captured_position and error; with
+    /// --shake those that posicast identify needs]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    signals: Vec<String>,
+    /// Ticks from row to row [default: 1; with --shake and a scale 2]
+    #[arg(long, value_name = "TICKS")]
+    every: Option<u32>,
+    /// Switch the axis on and shake it meanwhile: amplitude of a pseudo-random sequence in counts, at most that of the machine file's
+    /// limits.excitation
+    #[arg(long, value_name = "COUNTS")]
+    shake: Option<f64>,
+    /// Duration of a bit of that sequence in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.5e-3, requires = "shake")]
+    bit: f64,
+    #[command(flatten)]
+    faults: Faults,
+    /// Replace a file that posicast did not write, or that was changed since
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    line: Line,
+}
+
+#[derive(clap::Args)]
+struct Faults {
+    /// Clear the faults of the axes before they are switched on, once you have removed their causes
+    #[arg(long)]
+    clear_faults: bool,
+}
+
+/// The line to the stage.
+#[derive(clap::Args)]
+struct Line {
+    /// Machine file from which the FPGA was built
+    #[arg(long, value_name = "FILE")]
+    machine: PathBuf,
+    /// Baud rate [default: that of the machine file]
+    #[arg(long)]
+    baud: Option<u32>,
+    /// Time in milliseconds for which a reply is awaited, 1 to 10000; every request is sent up to five times
+    #[arg(long, value_name = "MS", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    timeout: u64,
+}
+
+impl Action {
+    fn line(&self) -> &Line {
+        match self {
+            Self::Status { line, .. } | Self::Move { line, .. } | Self::Load { line, .. } => line,
+            Self::Trace(trace) => &trace.line,
+        }
+    }
+}
+
+/// A stage behind a port.
+type Port<'m> = HostedStage<'m, Box<dyn posicast_host::SerialPort>>;
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let line = args.action.line();
+    let path = line.machine.as_path();
+    let machine = machine::read(path)?.machine;
+    let report = DesignReport::new(&machine, path)?;
+    let stage = report
+        .hardware
+        .stage()
+        .map_err(|error| machine::of_hardware(&error, path))?;
+    let (Some(link), Some(stage)) = (machine.link, stage) else {
+        return Err(Failure::from(miette::miette!(
+            help = "add [link] with its baud rate, and generate and build the stage anew",
+            "{}: the machine has no [link]: its stage has no serial line",
+            path.display()
+        )));
+    };
+    let baud = line.baud.unwrap_or(link.baud);
+    if let Action::Trace(trace) = &args.action {
+        // What is wrong with the file is said before the machine moves.
+        actions::check_output(trace)?;
+    }
+    let open = || open(args, &machine, stage, baud);
+    match &args.action {
+        Action::Status { json, .. } => text::status(&mut open()?, *json),
+        Action::Move {
+            distance,
+            speed,
+            faults,
+            hold,
+            ..
+        } => actions::move_axes(&machine, (distance, speed.as_ref()), [faults.clear_faults, *hold], open),
+        Action::Trace(trace) => actions::trace(&machine, trace, open),
+        Action::Load { axis, from, .. } => actions::load(&machine, axis, from, open),
+    }
+}
+
+fn open<'m>(args: &Args, machine: &'m Machine, stage: &'m StageHardware, baud: u32) -> Result<Port<'m>, Failure> {
+    let options = LinkOptions {
+        timeout: Duration::from_millis(args.action.line().timeout),
+        ..LinkOptions::default()
+    };
+    let link = Link::open(&args.port, baud, options).map_err(|error| failure(error.into()))?;
+    HostedStage::open(link, machine, stage).map_err(|error| match error {
+        HostError::Link(LinkError::NoReply { .. }) => {
+            Failure::missing_tool(format!("{}, {baud} baud: {error}", args.port))
+        }
+        error => failure(error),
+    })
+}
+
+/// The failure of a call.
+fn failure(error: HostError) -> Failure {
+    match &error {
+        HostError::Link(LinkError::Open { .. } | LinkError::NoReply { .. } | LinkError::Line(_)) => {
+            Failure::missing_tool(error)
+        }
+        HostError::Fault { .. } => Failure::Check(format!("{error} (--clear-faults)")),
+        HostError::Late { .. } | HostError::Refused { .. } | HostError::Standstill => Failure::Check(error.to_string()),
+        _ => Failure::because(error),
+    }
+}
+
+/// Index of the axis with this name.
+fn axis_of(machine: &Machine, name: &str, path: &Path) -> Result<usize, Failure> {
+    let found = machine.axes.iter().position(|axis| axis.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        Failure::from(miette::miette!(
+            help = format!("the axes are {}", names.join(", ")),
+            "{}: no axis `{name}`",
+            path.display()
+        ))
+    })
+}

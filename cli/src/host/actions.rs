@@ -1,0 +1,226 @@
+//! What `posicast host` lets a stage do.
+
+use super::{Port, TraceArgs, axis_of, failure};
+use crate::design::DesignReport;
+use crate::failure::Failure;
+use crate::machine;
+use crate::moves::PerAxis;
+use crate::output;
+use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
+use posicast_model::machine_file::Machine;
+use posicast_system::output::{self as files, OutputFiles};
+use std::path::Path;
+
+/// Most counts of an amplitude, which has 8 fraction bits of 16.
+const MOST_COUNTS: f64 = 255.99;
+
+pub(super) fn move_axes<'m>(
+    machine: &'m Machine,
+    (distance, speed): (&PerAxis, Option<&PerAxis>),
+    [clears_faults, holds]: [bool; 2],
+    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+) -> Result<(), Failure> {
+    distance.only_for(machine, "move")?;
+    if let Some(speed) = speed {
+        speed.only_for(machine, "--speed")?;
+    }
+    let moves = machine.axes.iter().enumerate().filter_map(|(axis, section)| {
+        Some(HostMove {
+            axis,
+            distance: distance.of(section)?,
+            speed: speed.and_then(|speed| speed.of(section)),
+        })
+    });
+    let moves: Vec<HostMove> = moves.collect();
+    let nothing = moves.iter().find(|of| !of.distance.is_finite() || of.distance == 0.0);
+    if let Some(nothing) = nothing {
+        return Err(Failure::from(miette::miette!(
+            help = "give a distance other than 0, or leave the axis out",
+            "move: {} for axis {} is no distance",
+            nothing.distance,
+            machine.axes[nothing.axis].name
+        )));
+    }
+    let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
+    let mut stage = open()?;
+    stage.switch_on(&axes, clears_faults).map_err(failure)?;
+    let moved = stage.move_axes(&moves);
+    // Whatever happened, the axes end as the user wants them: off. A fault has switched them off already.
+    let off = match holds && moved.is_ok() {
+        true => Ok(()),
+        false => stage.switch_off(&axes),
+    };
+    moved.and(off).map_err(failure)?;
+    super::text::status(&mut stage, false)
+}
+
+/// Refuses a name for the trace that cannot be written.
+pub(super) fn check_output(args: &TraceArgs) -> Result<(), Failure> {
+    is_vcd(&args.output)?;
+    outputs(args).map(drop)
+}
+
+fn outputs(args: &TraceArgs) -> Result<OutputFiles, Failure> {
+    let mut outputs = OutputFiles::new(args.force);
+    outputs.input("--machine", &args.line.machine);
+    outputs.claim("-o", &args.output).map_err(Failure::because)?;
+    Ok(outputs)
+}
+
+fn is_vcd(path: &Path) -> Result<bool, Failure> {
+    match path.extension().and_then(|end| end.to_str()) {
+        Some("csv") => Ok(false),
+        Some("vcd") => Ok(true),
+        _ => Err(Failure::from(miette::miette!(
+            help = "give it a name that ends in .csv or .vcd",
+            "-o {}: a trace is written as CSV or VCD",
+            path.display()
+        ))),
+    }
+}
+
+pub(super) fn trace<'m>(
+    machine: &'m Machine,
+    args: &TraceArgs,
+    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+) -> Result<(), Failure> {
+    let path = args.line.machine.as_path();
+    let axis = axis_of(machine, &args.axis, path)?;
+    let section = &machine.axes[axis];
+    if section.trace.is_none() {
+        return Err(Failure::from(miette::miette!(
+            help = "add [axis.trace] to the axis, and generate and build the stage anew",
+            "{}: axis {} has no trace memory",
+            path.display(),
+            args.axis
+        )));
+    }
+    let on_scale = section.scale.is_some();
+    let names: &[&str] = match (args.shake, on_scale) {
+        (None, _) => &["command_position", "shaped_position", "captured_position", "error"],
+        (Some(_), true) => &["captured_position", "deviation"],
+        (Some(_), false) => &["command", "captured_position"],
+    };
+    let shake = args
+        .shake
+        .map(|counts| shake(machine, axis, (counts, args.bit), path))
+        .transpose()?;
+    let request = TraceRequest {
+        axis,
+        signals: match args.signals.as_slice() {
+            [] => names.iter().map(|name| (*name).to_owned()).collect(),
+            signals => signals.to_vec(),
+        },
+        every_ticks: args.every.unwrap_or(if shake.is_some() && on_scale { 2 } else { 1 }),
+        shake,
+    };
+    let mut stage = open()?;
+    let trace = match request.shake {
+        None => stage.trace(&request).map_err(failure)?,
+        Some(_) => {
+            stage.switch_on(&[axis], args.faults.clear_faults).map_err(failure)?;
+            let trace = stage.trace(&request);
+            let off = stage.switch_off(&[axis]);
+            let trace = trace.map_err(failure)?;
+            off.map_err(failure)?;
+            trace
+        }
+    };
+    write(args, &trace)
+}
+
+/// The test signal, as far as the machine file allows it.
+fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Path) -> Result<Shake, Failure> {
+    let section = &machine.axes[axis];
+    let limit = section
+        .limits
+        .and_then(|limits| limits.excitation)
+        .map(|limit| limit * section.loop_counts_per_unit());
+    let most = limit.unwrap_or(4.0).min(MOST_COUNTS);
+    // The hardware would clamp it without a word.
+    if !(counts > 0.0 && counts <= most * (1.0 + 1e-9)) {
+        return Err(machine::at_key(
+            path,
+            axis,
+            "axis.limits.excitation",
+            format_args!("--shake {counts}: above 0, at most {most:.2} counts by this key (without it 4)"),
+        ));
+    }
+    let ticks = bit_s * machine.clock.sample_hz;
+    if !(0.5..=65_535.0).contains(&ticks) {
+        return Err(Failure::from(miette::miette!(
+            help = "about a fifth of the period of the mode is a good choice",
+            "--bit {bit_s}: {} s to {} s are possible",
+            1.0 / machine.clock.sample_hz,
+            65_535.0 / machine.clock.sample_hz
+        )));
+    }
+    Ok(Shake {
+        amplitude_counts: counts,
+        bit_ticks: ticks.round() as u32,
+    })
+}
+
+fn write(args: &TraceArgs, trace: &RecordedTrace) -> Result<(), Failure> {
+    let outputs = outputs(args)?;
+    let text = match is_vcd(&args.output)? {
+        false => trace.csv(),
+        true => {
+            let mut bytes = Vec::new();
+            trace.vcd(&mut bytes).map_err(Failure::because)?;
+            String::from_utf8_lossy(&bytes).into_owned()
+        }
+    };
+    files::write_text(&args.output, text.as_str()).map_err(Failure::because)?;
+    let names: Vec<&str> = trace.signals.iter().map(|signal| signal.name.as_str()).collect();
+    let next = match args.shake.is_some() && !is_vcd(&args.output)? {
+        true => format!("next: posicast identify {}\n", output::shell_word(&args.output)),
+        false => String::new(),
+    };
+    output::print_beside(
+        &outputs,
+        &format!(
+            "axis {}: {} rows of {}, {} s apart, in {}\n{next}",
+            trace.axis,
+            trace.rows(),
+            names.join(", "),
+            trace.row_s,
+            args.output.display()
+        ),
+    )
+}
+
+pub(super) fn load<'m>(
+    machine: &'m Machine,
+    axis: &str,
+    from: &Path,
+    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+) -> Result<(), Failure> {
+    let index = axis_of(machine, axis, from)?;
+    let other = machine::read(from)?.machine;
+    let of_other = axis_of(&other, axis, from)?;
+    if other.clock.sample_hz != machine.clock.sample_hz {
+        return Err(machine::at_key(
+            from,
+            0,
+            "clock.sample_hz",
+            format_args!(
+                "{} Hz, and {} Hz in the stage: a table is for one sample rate",
+                other.clock.sample_hz, machine.clock.sample_hz
+            ),
+        ));
+    }
+    let report = DesignReport::new(&other, from)?;
+    let table = &report.design.axes[of_other].table;
+    let mut stage = open()?;
+    let bank = stage.load_table(index, table).map_err(|error| match error {
+        HostError::Table { .. } => Failure::because(error).in_file(from),
+        error => failure(error),
+    })?;
+    output::print(&format!(
+        "axis {axis}: {} taps of {}, read back and in use, in bank {bank} until the next reset; the longest delay is {} samples\n",
+        table.taps().len(),
+        from.display(),
+        table.longest_delay_samples()
+    ))
+}

@@ -1,0 +1,102 @@
+//! The state of a stage, for people and for programs.
+
+use super::{Port, failure};
+use crate::failure::Failure;
+use crate::output::{self, Table, UnitDocument};
+use posicast_host::{AxisStatus, causes};
+use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::rtl::axis::SupervisorState;
+use serde::Serialize;
+
+/// `host status --json`: positions in m or rad.
+#[derive(Serialize)]
+struct Document {
+    machine: String,
+    axes: Vec<AxisDocument>,
+}
+
+#[derive(Serialize)]
+struct AxisDocument {
+    name: String,
+    #[serde(flatten)]
+    unit: UnitDocument,
+    state: &'static str,
+    causes: Vec<&'static str>,
+    position: f64,
+    velocity: f64,
+    command: f64,
+    shaped: f64,
+    error: f64,
+    homed: bool,
+    waiting_entries: u32,
+    table_bank: u32,
+}
+
+/// Reads and prints the state of all axes.
+pub(super) fn status(stage: &mut Port<'_>, json: bool) -> Result<(), Failure> {
+    let all = stage.status().map_err(failure)?;
+    let machine = stage.machine();
+    match json {
+        true => output::print_json(&document(machine, &all)),
+        false => output::print(&text(machine, &all)),
+    }
+}
+
+fn state(status: &AxisStatus) -> &'static str {
+    status.state.map_or("UNKNOWN", SupervisorState::name)
+}
+
+fn document(machine: &Machine, all: &[AxisStatus]) -> Document {
+    let axis = |(status, axis): (&AxisStatus, &AxisSection)| {
+        let si = |counts: f64| counts / axis.loop_counts_per_unit();
+        AxisDocument {
+            name: axis.name.clone(),
+            unit: UnitDocument::new(axis.unit),
+            state: state(status),
+            causes: causes(status.causes),
+            position: si(status.position),
+            velocity: si(status.velocity) * machine.clock.sample_hz,
+            command: si(status.command),
+            shaped: si(status.shaped),
+            error: si(status.error),
+            homed: status.homed,
+            waiting_entries: status.waiting,
+            table_bank: status.table_bank,
+        }
+    };
+    Document {
+        machine: machine.name.clone(),
+        axes: all.iter().zip(&machine.axes).map(axis).collect(),
+    }
+}
+
+fn text(machine: &Machine, all: &[AxisStatus]) -> String {
+    let mut table = Table::new(&[
+        "axis",
+        "state",
+        "causes",
+        ">position",
+        ">command",
+        ">error",
+        "homed",
+        "table",
+    ]);
+    for (status, axis) in all.iter().zip(&machine.axes) {
+        let show = |counts: f64| axis.unit.as_in_file(counts / axis.loop_counts_per_unit(), "");
+        let causes = causes(status.causes).join(", ");
+        table.row([
+            axis.name.clone(),
+            state(status).to_owned(),
+            if causes.is_empty() { "none".to_owned() } else { causes },
+            show(status.position),
+            show(status.command),
+            show(status.error),
+            if status.homed { "yes" } else { "no" }.to_owned(),
+            match status.table_bank {
+                0 => "the machine's".to_owned(),
+                bank => format!("bank {bank}"),
+            },
+        ]);
+    }
+    format!("{}\n{}", machine.name, table.text("  "))
+}

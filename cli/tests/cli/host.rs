@@ -1,0 +1,213 @@
+//! `posicast host`, on the model of the stage with its machine behind a pseudo-terminal.
+
+use super::support::{example, json, posicast, scratch};
+use posicast_model::design::design_machine;
+use posicast_model::hardware::Hardware;
+use posicast_model::machine_file;
+use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::rtl::linked_stage::address_limit;
+use posicast_testbench::linked_bench::LinkedBench;
+use posicast_testbench::stage_bench::StageBench;
+use serialport::{SerialPort, TTYPort};
+use std::path::Path;
+use std::process::Output;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// The example with a line, and for X a trace and room for a test signal.
+fn machine() -> String {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let text = text.replacen("[axis.pwm]", "[axis.trace]\nsamples = 256\n[axis.pwm]", 1);
+    let text = text.replacen("[axis.limits]", "[axis.limits]\nexcitation = 100e-6\n", 1);
+    format!("{text}[link]\nbaud = 3_000_000\n")
+}
+
+/// A stage with its machine at a port, until it is dropped.
+struct Served {
+    port: String,
+    ends: Arc<AtomicBool>,
+    thread: Option<JoinHandle<[i64; 2]>>,
+}
+
+impl Served {
+    fn new(text: &str) -> Self {
+        let (mut far, near) = TTYPort::pair().unwrap();
+        let port = near.name().unwrap();
+        // One program holds a port: the command opens it again.
+        drop(near);
+        far.set_timeout(Duration::from_millis(2)).unwrap();
+        let ends = Arc::new(AtomicBool::new(false));
+        let (text, until) = (text.to_owned(), Arc::clone(&ends));
+        // Model and plants are made in their thread.
+        let thread = std::thread::spawn(move || {
+            let machine = machine_file::parse("machine.toml", &text).unwrap();
+            let design = design_machine(&machine).unwrap();
+            let hardware = Hardware::of(&machine, &design).unwrap();
+            let stage = hardware.stage().unwrap().unwrap();
+            let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+            let plants = machine.axes.iter().map(plant).collect();
+            let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
+            let limit = address_limit(&stage.component);
+            let mut linked = LinkedBench::new(bench, &machine.link.unwrap(), &machine.clock, limit);
+            linked.serve(far, &until).unwrap();
+            [0, 1].map(|axis| linked.bench.plant(axis).count())
+        });
+        Self {
+            port,
+            ends,
+            thread: Some(thread),
+        }
+    }
+
+    /// Ends it, and returns where the axes of the machine are, in counts.
+    fn end(mut self) -> [i64; 2] {
+        self.ends.store(true, Ordering::Relaxed);
+        self.thread.take().unwrap().join().unwrap()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.ends.store(true, Ordering::Relaxed);
+    }
+}
+
+fn host(port: &str, machine: &Path, words: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = posicast();
+    command.args(["host", port]).args(words);
+    // The simulation is slower than a stage.
+    command.arg("--machine").arg(machine).args(["--timeout", "4000"]);
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+#[test]
+fn cli_host_shows_moves_records_and_loads() {
+    let text = machine();
+    let (folder, file) = scratch(&text);
+    let served = Served::new(&text);
+    let run = |words: &[&str]| host(&served.port, &file, words);
+    let (code, said, error) = run(&["status", "--json"]);
+    assert_eq!(code, Some(0), "{error}");
+    let x = &json(said.as_bytes())["axes"][0];
+    assert_eq!(
+        (x["state"].as_str(), x["causes"][0].as_str()),
+        (Some("OFF"), Some("pwm-tripped"))
+    );
+
+    let (code, said, error) = run(&["move", "x=0.001,y=-0.0005"]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(said.contains("x     READY  none") && said.contains("0.001 m"), "{said}");
+    let (code, _, error) = run(&["move", "x=0.2"]);
+    assert_eq!(code, Some(2));
+    assert!(
+        error.contains("beyond its soft limits of -100000 and 100000"),
+        "{error}"
+    );
+
+    let csv = folder.path().join("x.csv");
+    let (code, said, error) = run(&["trace", "x", "--shake", "60", "-o", csv.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(said.contains("128 rows of command, captured_position"), "{said}");
+    let log = std::fs::read_to_string(&csv).unwrap();
+    // The second line says that posicast wrote the file.
+    assert!(
+        log.starts_with("time_s,drive_command,captured_position\n# written by posicast"),
+        "{log}"
+    );
+    assert_eq!(log.lines().count(), 130);
+    // 128 rows are too few for a mode, but enough for a reader.
+    let identified = posicast().arg("identify").arg(&csv).output().unwrap();
+    assert_ne!(
+        identified.status.code(),
+        Some(2),
+        "{}",
+        String::from_utf8_lossy(&identified.stderr)
+    );
+    let vcd = folder.path().join("x.vcd");
+    let (code, _, error) = run(&["trace", "x", "--signals", "error", "-o", vcd.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(std::fs::read_to_string(&vcd).unwrap().contains("error"));
+
+    let other = folder.path().join("zv.toml");
+    std::fs::write(&other, text.replacen("kind = \"zvd\"", "kind = \"zv\"", 1)).unwrap();
+    let (code, said, error) = run(&["load", "x", other.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(said.contains("read back and in use, in bank 1"), "{said}");
+
+    // Only the comment differs: it is another file.
+    std::fs::write(&other, format!("{text}# changed\n")).unwrap();
+    let (code, said, error) = host(&served.port, &other, &["move", "x=0.001"]);
+    assert_eq!((code, said.as_str()), (Some(2), ""));
+    assert!(
+        error.contains("was made from a machine file with the checksum") && error.contains("and this one has"),
+        "{error}"
+    );
+    let [x, y] = served.end();
+    assert!((x - 1000).abs() < 70 && (y + 500).abs() <= 2, "{x} {y}");
+}
+
+#[test]
+fn cli_host_says_what_is_missing() {
+    let text = machine();
+    let (folder, file) = scratch(&text);
+    let fails = |port: &str, machine: &Path, words: &[&str], code: i32, expected: &str| {
+        let mut command = posicast();
+        let command = command.args(["host", port]).args(words).arg("--machine").arg(machine);
+        let output = command.args(["--timeout", "5"]).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{words:?}: {error}");
+        assert!(error.contains(expected), "{words:?}: {error}");
+        assert!(output.stdout.is_empty());
+    };
+    fails("/dev/no-such-port", &file, &["status"], 3, "/dev/no-such-port: ");
+    // A port at which nobody answers: another baud rate looks like this.
+    let (_far, near) = TTYPort::pair().unwrap();
+    let port = near.name().unwrap();
+    drop(near);
+    fails(
+        &port,
+        &file,
+        &["status"],
+        3,
+        "3000000 baud: no reply in 5 attempts of 5 ms, 0 damaged: is the stage powered, is the baud rate",
+    );
+    fails(
+        &port,
+        &file,
+        &["status", "--baud", "115200"],
+        3,
+        "115200 baud: no reply",
+    );
+    let plain = folder.path().join("plain.toml");
+    std::fs::write(&plain, std::fs::read_to_string(example("xy-stage.toml")).unwrap()).unwrap();
+    fails(&port, &plain, &["status"], 2, "the machine has no [link]");
+    fails(&port, &file, &["move", "z=1"], 2, "no axis `z`");
+    fails(&port, &file, &["move", "x=0"], 2, "0 for axis x is no distance");
+    fails(
+        &port,
+        &file,
+        &["trace", "y", "-o", "y.csv"],
+        2,
+        "axis y has no trace memory",
+    );
+    fails(
+        &port,
+        &file,
+        &["trace", "x", "-o", "x.txt"],
+        2,
+        "a trace is written as CSV or VCD",
+    );
+    let csv = folder.path().join("x.csv");
+    fails(
+        &port,
+        &file,
+        &["trace", "x", "--shake", "200", "-o", csv.to_str().unwrap()],
+        2,
+        "at most 100.00 counts",
+    );
+    assert!(!csv.exists());
+}

@@ -1,0 +1,155 @@
+//! The stage with its bridge in Verilog: a module that joins the two.
+//!
+//! The reference is `posicast_model::rtl::linked_stage`. It is text, not a composition: the widths of the two buses differ.
+
+use crate::emit::print::{self, Lines};
+use crate::emit::{EmitError, Header, Module, Parameter, Type, add};
+use crate::{component, uart_bridge};
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::linked_stage::ports;
+use posicast_model::rtl::uart_bridge::{SILENCE_BITS, STEP_BITS, UartBridgeConfig};
+use posicast_model::rtl::{Direction, Port};
+
+/// Width of the bridge's addresses.
+const ADDRESS_BITS: u32 = 16;
+
+/// All Verilog modules, sub-modules first, the top last. The top is called `name`, the stage in it `stage_name`; modules whose contents
+/// depend on the machine begin with `prefix`.
+///
+/// # Errors
+/// [`EmitError`] where a name is not a valid Verilog name.
+pub fn emit(
+    stage: &Component,
+    config: &UartBridgeConfig,
+    (name, stage_name, prefix): (&str, &str, &str),
+) -> Result<Vec<Module>, EmitError> {
+    let mut modules = component::emit(stage, stage_name, prefix)?;
+    let bridge = uart_bridge::emit(prefix)?;
+    let bridge_name = bridge.last().map_or_else(String::new, |module| module.name.clone());
+    add(&mut modules, bridge)?;
+    let top = Module {
+        name: name.to_owned(),
+        text: print::file(
+            name,
+            &header(name, config),
+            &body(stage, config, stage_name, &bridge_name),
+        ),
+        ports: ports(stage),
+        clocked: true,
+    };
+    add(&mut modules, vec![top])?;
+    Ok(modules)
+}
+
+fn header(name: &str, config: &UartBridgeConfig) -> String {
+    let parameter = |name: &str, value: String, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value,
+        meaning: meaning.to_owned(),
+    };
+    let header = Header {
+        about: "The stage with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
+                See docs/uart_bridge.md."
+            .to_owned(),
+        ports: Vec::new(),
+        parameters: vec![
+            parameter(
+                "baud",
+                config.baud().to_string(),
+                "bits per second: 8 data bits, no parity, 1 stop bit",
+            ),
+            parameter(
+                "address_limit",
+                config.address_limit().to_string(),
+                "word addresses below it exist",
+            ),
+        ],
+    };
+    print::data_header(name, &header, "machine file")
+}
+
+fn body(stage: &Component, config: &UartBridgeConfig, stage_name: &str, bridge_name: &str) -> String {
+    let bits = |width, value: u64| Type { width, signed: false }.literal(value);
+    let mut list = vec![("input  wire", bit(), "clk".to_owned())];
+    list.extend(ports(stage).iter().map(|port| {
+        let keyword = match port.direction {
+            Direction::Input => "input  wire",
+            Direction::Output => "output wire",
+        };
+        (keyword, of_port(port), port.name.clone())
+    }));
+    let list = print::port_list(&list);
+    let address_bits = stage.map().address_bits();
+    let pin = |port: &str, net: &str| (port.to_owned(), net.to_owned());
+    let mut lines = Lines::default();
+    lines.nest(list.trim_end(), "endmodule", |lines| {
+        lines.line(&format!("wire [{}:0] avm_address;", ADDRESS_BITS - 1));
+        lines.line("wire avm_read;");
+        lines.line("wire avm_write;");
+        lines.line("wire [31:0] avm_writedata;");
+        lines.line("wire [31:0] avm_readdata;");
+        lines.line("wire busy;");
+        lines.line("wire frame_dropped;");
+        lines.line("");
+        lines.line("// The registers answer a read one clock later.");
+        lines.line("reg read_before = 1'b0;");
+        lines.line("always @(posedge clk) begin");
+        lines.line("    read_before <= avm_read & ~rst;");
+        lines.line("end");
+        lines.line("");
+        let pins = [
+            pin("clk", "clk"),
+            pin("rst", "rst"),
+            pin("uart_rx", "uart_rx"),
+            pin("baud_step", &bits(STEP_BITS, config.baud_step().into())),
+            pin("silence_limit", &bits(SILENCE_BITS, config.silence_limit().into())),
+            pin("address_limit", &bits(ADDRESS_BITS, config.address_limit().into())),
+            pin("avm_readdata", "avm_readdata"),
+            pin("avm_waitrequest", "avm_read & ~read_before"),
+            pin("uart_tx", "uart_tx"),
+            pin("avm_address", "avm_address"),
+            pin("avm_read", "avm_read"),
+            pin("avm_write", "avm_write"),
+            pin("avm_writedata", "avm_writedata"),
+            pin("busy", "busy"),
+            pin("frame_dropped", "frame_dropped"),
+        ];
+        print::instance(lines, bridge_name, "u_uart_bridge", &pins);
+        lines.line("");
+        let pins = stage.composition().ports().iter().map(|port| {
+            let net = match port.name.as_str() {
+                "avs_address" => format!("avm_address[{}:0]", address_bits - 1),
+                "avs_read" => "avm_read".to_owned(),
+                "avs_write" => "avm_write".to_owned(),
+                "avs_byteenable" => bits(4, 0xf),
+                "avs_writedata" => "avm_writedata".to_owned(),
+                "avs_readdata" => "avm_readdata".to_owned(),
+                name => name.to_owned(),
+            };
+            (port.name.clone(), net)
+        });
+        let pins: Vec<_> = std::iter::once(pin("clk", "clk")).chain(pins).collect();
+        print::instance(lines, stage_name, "u_stage", &pins);
+        lines.line("");
+        lines.line("// No address beyond address_limit comes out of the bridge.");
+        lines.line(&format!(
+            "wire unused = &{{1'b0, busy, frame_dropped, avm_address[{}:{address_bits}]}};",
+            ADDRESS_BITS - 1
+        ));
+    });
+    lines.text
+}
+
+fn bit() -> Type {
+    Type {
+        width: 1,
+        signed: false,
+    }
+}
+
+fn of_port(port: &Port) -> Type {
+    Type {
+        width: port.width,
+        signed: port.signed,
+    }
+}

@@ -1,0 +1,131 @@
+//! Why a stage does not do what a host asks for.
+
+use crate::LinkError;
+use posicast_model::motion::{AxisMoveError, PlanError};
+
+/// Why a stage does not do what a host asks for.
+#[derive(Debug, thiserror::Error)]
+pub enum HostError {
+    /// The link fails.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// There are registers, but not those of a stage.
+    #[error("word 0 reads {found:#010x}, and that of a stage {:#010x} (STGE): something else is at this port", u32::from_le_bytes(*b"STGE"))]
+    NoStage {
+        /// Word 0.
+        found: u32,
+    },
+    /// The registers have another version.
+    #[error(
+        "the stage has version {}.{} of the registers, and this posicast needs {}.{}: use the posicast that generated the stage, or \
+         generate the stage anew", .found >> 16, .found & 0xffff, .expected >> 16, .expected & 0xffff
+    )]
+    Version {
+        /// Version of the stage.
+        found: u32,
+        /// Version of the machine file's stage.
+        expected: u32,
+    },
+    /// The stage was made from another machine file.
+    #[error(
+        "the stage was made from a machine file with the checksum {found:08x}, and this one has {expected:08x}: name the machine.toml of \
+         the folder from which the FPGA was built, or generate and build the stage anew (every change of the file changes its checksum)"
+    )]
+    Machine {
+        /// Checksum in the stage.
+        found: u32,
+        /// Checksum of the machine file.
+        expected: u32,
+    },
+    /// A constant of the build differs.
+    #[error(
+        "{register} of the stage is {found}, and {expected} by the machine file: use the posicast that generated the stage, or generate \
+         the stage anew"
+    )]
+    Constant {
+        /// Name of the register.
+        register: String,
+        /// In the stage.
+        found: u32,
+        /// By the machine file.
+        expected: u32,
+    },
+    /// The stage has no such register.
+    #[error("this stage has no register {0}: its machine file lacks the part that has it ([axis.trace] for a trace)")]
+    NoRegister(String),
+    /// An axis has a fault, or stops because of one.
+    #[error("axis {axis} is in {state} because of {causes}: remove the cause, then clear the fault")]
+    Fault {
+        /// Name of the axis.
+        axis: String,
+        /// Its state.
+        state: &'static str,
+        /// Names of the causes.
+        causes: String,
+    },
+    /// An axis moves.
+    #[error("axis {0} moves: wait until it stands")]
+    Busy(String),
+    /// Something did not happen in time.
+    #[error("axis {axis} is in {state} and did not {wanted} in time")]
+    Late {
+        /// Name of the axis.
+        axis: String,
+        /// What was awaited.
+        wanted: &'static str,
+        /// Its state.
+        state: &'static str,
+    },
+    /// Time stands still in the stage.
+    #[error("the registers answer, but their time stands still: has the stage a clock, or is it in reset?")]
+    Standstill,
+    /// A move does not fit the machine.
+    #[error("axis {axis}: {source}")]
+    Move {
+        /// Name of the axis.
+        axis: String,
+        /// The reason.
+        source: AxisMoveError,
+    },
+    /// A move cannot be planned.
+    #[error("axis {axis}: {source}")]
+    Plan {
+        /// Name of the axis.
+        axis: String,
+        /// The reason.
+        source: PlanError,
+    },
+    /// A move ends beyond the soft limits.
+    #[error(
+        "axis {axis}: the move ends at {end} counts since reset, beyond its soft limits of {minus} and {plus}: give a shorter one"
+    )]
+    Beyond {
+        /// Name of the axis.
+        axis: String,
+        /// End of the move.
+        end: f64,
+        /// Lower limit.
+        minus: f64,
+        /// Upper limit.
+        plus: f64,
+    },
+    /// The stage refused something.
+    #[error("axis {axis}: the stage refuses {what}")]
+    Refused {
+        /// Name of the axis.
+        axis: String,
+        /// What was refused, and what to do.
+        what: &'static str,
+    },
+    /// A trace was asked for that there is not.
+    #[error("{0}")]
+    Trace(String),
+    /// A tap table does not fit the stage.
+    #[error("axis {axis}: {what}")]
+    Table {
+        /// Name of the axis.
+        axis: String,
+        /// What does not fit, and what to do.
+        what: String,
+    },
+}

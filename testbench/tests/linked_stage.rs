@@ -1,0 +1,138 @@
+//! The stage with its serial line: the Verilog of both, joined, compared with the model, and what a host at the line sees.
+
+use posicast_model::design::design_machine;
+use posicast_model::hardware;
+use posicast_model::link::{Reply, Request};
+use posicast_model::machine_file::{self, Machine};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::linked_stage::{LinkedStage, address_limit};
+use posicast_testbench::blocks::{LinkedStageBlock, Sources, check};
+
+/// Clocks of a bit at 3,000,000 baud and 50 MHz, times three.
+const THREE_BITS: u64 = 50;
+
+fn machine() -> Machine {
+    let text = include_str!("../../examples/xy-stage.toml");
+    machine_file::parse("xy-stage.toml", &format!("{text}[link]\nbaud = 3_000_000\n")).unwrap()
+}
+
+fn block() -> LinkedStageBlock {
+    let machine = machine();
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap())
+        .unwrap()
+        .unwrap();
+    let component = Component::stage(&stage.config).unwrap();
+    let config = machine
+        .link
+        .unwrap()
+        .bridge(&machine.clock, address_limit(&component))
+        .unwrap();
+    let axes = ["x", "y"].map(str::to_owned);
+    LinkedStageBlock::new(&component, (config, 50e6), &axes, ["xy_link", "xy_stage", "xy"])
+}
+
+/// A few requests in the simulator that compiles fast; the long test has many.
+#[test]
+fn lockstep_a_host_at_the_line_of_a_stage() {
+    let block = block();
+    let sources = Sources::write(&block).unwrap();
+    assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
+    let mut device = sources.icarus(&block).unwrap();
+    let report = check(&block, &mut device, 10_000, 1, &mut |_| {}).unwrap();
+    assert_eq!(report.mismatches(), 0, "{:?}", report.blocks);
+}
+
+#[test]
+fn long_lockstep_a_host_at_the_line_of_a_stage() {
+    let block = block();
+    let sources = Sources::write(&block).unwrap();
+    let mut device = sources.verilated(&block, 1).unwrap();
+    let report = check(&block, &mut device, 400_000, 1, &mut |_| {}).unwrap();
+    assert_eq!(report.mismatches(), 0, "{:?}", report.blocks);
+    // A read that is taken in its first clock is that of the word before.
+    let wrong = sources
+        .rewritten(|_, text| text.replace("(avm_read & ~read_before)", "(1'b0)"))
+        .unwrap();
+    let mut device = wrong.verilated(&block, 1).unwrap();
+    let report = check(&block, &mut device, 400_000, 1, &mut |_| {}).unwrap();
+    assert!(report.mismatches() > 0);
+}
+
+/// A line with a host at it: sends a request, and returns the reply and the clocks from the first bit of the request to the last of the
+/// reply.
+fn ask(linked: &mut LinkedStage, request: &Request, sequence: u8) -> (Reply, u64) {
+    let inputs = linked
+        .ports()
+        .iter()
+        .filter(|port| port.direction == posicast_model::rtl::Direction::Input)
+        .count();
+    let mut idle = vec![0; inputs];
+    idle[1] = 1;
+    let mut outputs = vec![0; linked.ports().len() - inputs];
+    let mut clocks = 0;
+    let mut tx = Vec::new();
+    let mut step = |level: bool, tx: &mut Vec<bool>| {
+        idle[1] = level.into();
+        linked.step(&idle, &mut outputs).unwrap();
+        tx.push(outputs[0] != 0);
+        clocks += 1;
+    };
+    let mut third = 0;
+    for byte in request.encode(sequence).unwrap() {
+        let bits = 0x200 | u32::from(byte) << 1;
+        for bit in 0..10 {
+            third += THREE_BITS;
+            let wait = third / 3;
+            third %= 3;
+            (0..wait).for_each(|_| step(bits >> bit & 1 != 0, &mut tx));
+        }
+    }
+    (0..40_000).for_each(|_| step(true, &mut tx));
+    // A receiver of its own: the middle of each bit, from the falling edge.
+    let (mut at, mut bytes, mut last) = (0, Vec::new(), 0);
+    while at < tx.len() {
+        if tx[at] {
+            at += 1;
+            continue;
+        }
+        let level = |bit: u64| tx[at + ((2 * bit + 1) * THREE_BITS / 6) as usize];
+        bytes.push((0..8).fold(0_u8, |byte, bit| byte | u8::from(level(1 + bit)) << bit));
+        assert!(level(9), "a stop bit");
+        at += (19 * THREE_BITS / 6) as usize;
+        last = at as u64;
+    }
+    let end = bytes.pop();
+    assert_eq!(end, Some(0));
+    (Reply::decode(&bytes).unwrap(), last)
+}
+
+#[test]
+fn golden_a_host_reads_the_constants_and_writes_a_register() {
+    let machine = machine();
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap())
+        .unwrap()
+        .unwrap();
+    let component = Component::stage(&stage.config).unwrap();
+    let config = machine
+        .link
+        .unwrap()
+        .bridge(&machine.clock, address_limit(&component))
+        .unwrap();
+    let mut linked = LinkedStage::new(&component, config, 1);
+    let (reply, _) = ask(&mut linked, &Request::Read { address: 0, count: 7 }, 0);
+    let crc = machine.link.unwrap().machine_crc;
+    let letters = u32::from_le_bytes(*b"STGE");
+    assert_eq!(reply.words[..4], [letters, 0x2_0002, 2, 5000]);
+    assert_eq!(reply.words[6], crc);
+    // The interrupt enables, word 13 of the stage's map.
+    let (reply, clocks) = ask(&mut linked, &Request::WriteList(vec![(0x0d, 0x1234)]), 1);
+    assert!(reply.status.is_ok());
+    // The datasheet: 2500 clocks on the line, 57 in the bridge, 1667 for the reply; a stop bit's rest is not awaited here.
+    assert!((4180..4260).contains(&clocks), "{clocks}");
+    let (reply, _) = ask(&mut linked, &Request::ReadList(vec![0x0d, 0x00]), 2);
+    assert_eq!(reply.words, [0x1234, letters]);
+    // Beyond the windows of the stage and its two axes.
+    let (reply, _) = ask(&mut linked, &Request::ReadList(vec![0x300]), 3);
+    assert_eq!(reply.status, posicast_model::link::LinkStatus::WrongAddress);
+}
