@@ -35,6 +35,7 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
             "kind",
             ">duration ms",
             ">worst residual %",
+            ">least there %",
             ">taps",
             ">partial sums",
             ">delay ms",
@@ -46,6 +47,7 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
                 c.kind.clone(),
                 format!("{:.4}", 1e3 * c.duration_s),
                 percent(c.worst_residual),
+                c.least_residual.map_or_else(String::new, percent),
                 c.taps.to_string(),
                 format!("{:.3} … {:.3}", c.partial_sums.min, c.partial_sums.max),
                 format!("{:.4}", 1e3 * c.delay_s),
@@ -57,7 +59,8 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
             let _ = writeln!(text, "  no {}: {}", missing.kind, missing.reason);
         }
     }
-    text + "\n* no other kind is as good in duration, worst residual and taps, and better in one of them\n"
+    text + "\n* no other kind is as good in duration, worst residual and taps, and better in one of them\n\
+            least there: what the best shaper without negative amplitudes leaves in the duration of a smooth kind\n"
 }
 
 #[derive(Serialize)]
@@ -81,6 +84,8 @@ struct KindDocument<'a> {
     pareto: bool,
     duration_s: f64,
     worst_residual: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    least_residual: Option<f64>,
     taps: usize,
     partial_sum_min: f64,
     partial_sum_max: f64,
@@ -106,6 +111,7 @@ impl<'a> Document<'a> {
                     pareto: c.pareto,
                     duration_s: c.duration_s,
                     worst_residual: c.worst_residual,
+                    least_residual: c.least_residual,
                     taps: c.taps,
                     partial_sum_min: c.partial_sums.min,
                     partial_sum_max: c.partial_sums.max,

@@ -6,13 +6,16 @@ mod document;
 mod error_table;
 mod family;
 mod front;
+mod given_move;
 mod sensitivity;
+mod together;
 
 use crate::compare;
 use crate::control::{self, AxisControl};
 use crate::failure::Failure;
 use crate::guards;
 use crate::machine;
+use crate::moves::PerAxis;
 use crate::output::{self, Table, UnitDocument, percent};
 use crate::plot;
 use crate::sopc;
@@ -42,7 +45,9 @@ use document::{
 use error_table::ErrorTableReport;
 use family::FamilyReport;
 use front::FrontReport;
+use given_move::MoveReport;
 pub(crate) use sensitivity::sensitivity_panels;
+use together::TogetherReport;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
 #[derive(clap::Args)]
@@ -68,6 +73,14 @@ pub(crate) struct Args {
     /// Show what more duration buys an optimal shaper: fewer taps, less residual, at what delay
     #[arg(long, conflicts_with = "compare")]
     front: bool,
+    /// Compare a move of this distance, in the axis's unit (40, or x=40,y=-20), with one whose jerk time is a period of a mode
+    #[arg(
+        long = "move",
+        value_name = "DISTANCE",
+        allow_negative_numbers = true,
+        conflicts_with = "compare"
+    )]
+    distance: Option<PerAxis>,
     /// Compare every kind of shaper on each axis instead: duration, worst residual, taps
     #[arg(long, conflicts_with = "plot")]
     compare: bool,
@@ -98,6 +111,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         Vec::new()
     };
+    let moves = match &args.distance {
+        Some(distance) => given_move::of_axes(&report, distance)?,
+        None => Vec::new(),
+    };
     if let Some(path) = &args.plot {
         let mut panels = sensitivity_panels(&machine, &report.design);
         panels.extend(report.family_panels());
@@ -108,10 +125,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let mut document = report.json();
         document.fronts = fronts.iter().map(FrontReport::json).collect();
+        document.moves = moves.iter().map(MoveReport::json).collect();
         output::print_json(&document)
     } else {
         let fronts: String = fronts.iter().map(FrontReport::text).collect();
-        output::print_beside(&outputs, &(report.text() + &fronts))
+        let moves: String = moves.iter().map(MoveReport::text).collect();
+        output::print_beside(&outputs, &(report.text() + &fronts + &moves))
     }
 }
 
@@ -203,7 +222,12 @@ impl<'a> DesignReport<'a> {
             name: self.machine.name.clone(),
             axes,
             fronts: Vec::new(),
-            stage: self.design.stage.as_ref().map(StageDocument::new),
+            moves: Vec::new(),
+            stage: self
+                .design
+                .stage
+                .as_ref()
+                .map(|stage| StageDocument::new(stage, &self.design)),
         }
     }
 
@@ -221,7 +245,8 @@ impl<'a> DesignReport<'a> {
             text.push('\n');
             text += &axis.text(self.design.sample_hz);
         }
-        text + &delay::text(self.machine, &self.design)
+        text += &delay::text(self.machine, &self.design);
+        text + &TogetherReport::new(&self.design).map_or_else(String::new, |together| together.text())
     }
 }
 

@@ -123,6 +123,8 @@ pub(crate) struct Panel {
     pub(crate) curves: Vec<Curve>,
     /// Shown range of the vertical axis; `None`: everything. Curves are cut at its ends.
     pub(crate) y_range: Option<(f64, f64)>,
+    /// Whether the vertical axis counts something: only whole numbers are then written beside it.
+    pub(crate) y_is_whole: bool,
     /// A band drawn under the curves.
     pub(crate) band: Option<Band>,
     /// Ranges drawn under the curves, from bottom to top.
@@ -264,7 +266,12 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .axis_desc_style(("sans-serif", TEXT_SIZE))
         .label_style(("sans-serif", TEXT_SIZE))
         .x_label_formatter(&|value| axis_label(*value))
-        .y_label_formatter(&|value| axis_label(*value))
+        .y_label_formatter(
+            &|value| match panel.y_is_whole && (value - value.round()).abs() > 1e-9 {
+                true => String::new(),
+                false => axis_label(*value),
+            },
+        )
         .bold_line_style(GRID)
         .max_light_lines(0)
         .draw()?;

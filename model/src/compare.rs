@@ -11,7 +11,9 @@ use crate::design::kind::ShaperKind;
 use crate::design::{DesignError, design_axis, optimal};
 use crate::digitise::{DigitiseError, digitise};
 use crate::impulse::PartialSums;
-use crate::machine_file::{AxisMode, AxisSection, Machine, ShaperChoice};
+use crate::machine_file::{AxisMode, AxisSection, DEFAULT_TOLERANCE, Machine, ShaperChoice};
+use crate::taps::TapTable;
+use posicast_optimal::{Band, Command, Request, least_ratio_at};
 
 /// Relative difference below which two costs are equal: kinds that give the same shaper for one mode differ by
 /// rounding.
@@ -19,6 +21,9 @@ const EQUAL: f64 = 1e-6;
 
 /// Default of the relative frequency error of the modes: ±10 %.
 pub const DEFAULT_BAND: f64 = 0.1;
+
+/// Longest duration in samples for which the least residual is computed: a cone program with a variable per sample.
+pub const LONGEST_SOLVED: u32 = 800;
 
 /// Figures of a kind of shaper on one axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +40,9 @@ pub struct Candidate {
     pub worst_residual: f64,
     /// Number of taps of the integer table.
     pub taps: usize,
+    /// For a smooth kind, the least worst residual of any shaper without negative amplitudes that ends with its last tap, for the same
+    /// band; `None` for the other kinds, and for durations of more than [`LONGEST_SOLVED`] samples.
+    pub least_residual: Option<f64>,
     /// Range of the shaped unit step.
     pub partial_sums: PartialSums,
     /// Whether no other kind is at least as good in everything and better in something.
@@ -148,9 +156,32 @@ fn candidate(machine: &Machine, axis: &AxisSection, in_file: bool, band: f64) ->
         delay_s: design.impulses.delay_s(),
         worst_residual: residuals.fold(0.0, f64::max),
         taps: taps.len(),
+        least_residual: least_residual(axis, table, sample_hz, band),
         partial_sums: design.impulses.partial_sums(),
         pareto: false,
     })
+}
+
+/// The least worst residual at the duration of a smooth kind.
+fn least_residual(axis: &AxisSection, table: &TapTable, sample_hz: f64, band: f64) -> Option<f64> {
+    let samples = table.longest_delay_samples();
+    let mut kinds = axis.modes.iter().map(|mode| axis.kind_of(mode));
+    if samples > LONGEST_SOLVED || !kinds.all(ShaperKind::is_smooth) || axis.modes.is_empty() {
+        return None;
+    }
+    let given = optimal::request(axis, sample_hz);
+    let bands = axis.modes.iter().map(|mode| Band {
+        frequency_hz: [1.0 - band, 1.0 + band].map(|factor| factor * mode.mode.frequency_hz),
+        damping: [mode.mode.damping; 2],
+        tolerance: DEFAULT_TOLERANCE,
+    });
+    let request = Request {
+        bands: bands.collect(),
+        command: Command::Positive,
+        ..given
+    };
+    let ratio = least_ratio_at(&request, samples).ok()?;
+    Some(ratio * DEFAULT_TOLERANCE)
 }
 
 fn mark_pareto(candidates: &mut [Candidate]) {
@@ -230,6 +261,7 @@ mod tests {
             delay_s: 0.0,
             worst_residual,
             taps,
+            least_residual: None,
             partial_sums: PartialSums { min: 0.0, max: 1.0 },
             pareto: false,
         };
@@ -250,6 +282,22 @@ mod tests {
         let machine = machine("[axis.shaper]\nkind = \"ei\"\ntolerance = 0.02", MODE);
         let worst = |band| find(&compare(&machine, band)[0], "ei").worst_residual;
         assert!(worst(0.01) < 0.021 && worst(0.1) < worst(0.2) && worst(0.2) < worst(0.5));
+    }
+
+    #[test]
+    fn unit_no_smooth_kind_leaves_less_than_the_least_at_its_duration() {
+        let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
+        let found = compare(&machine, 0.1).remove(0);
+        for candidate in &found.candidates {
+            let is_smooth = candidate.kind.starts_with("smooth_");
+            assert_eq!(candidate.least_residual.is_some(), is_smooth, "{}", candidate.kind);
+            if let Some(least) = candidate.least_residual {
+                assert!(least <= candidate.worst_residual * (1.0 + 1e-3) + 1e-4, "{candidate:?}");
+            }
+        }
+        // At 0.8 periods three impulses do far better than a kernel with two humps.
+        let zv = find(&found, "smooth_zv");
+        assert!(zv.least_residual.unwrap() < 0.7 * zv.worst_residual, "{zv:?}");
     }
 
     #[test]

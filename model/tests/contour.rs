@@ -40,6 +40,7 @@ fn stage(kind: &str, matched: bool) -> Machine {
     let stage = StageSection {
         extra_delay_s: 0.0,
         contour_speed: None,
+        arrive_together: false,
     };
     Machine {
         stage: matched.then_some(stage),

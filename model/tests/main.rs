@@ -45,6 +45,7 @@ mod shaper_motion;
 mod shaper_prop;
 mod shaper_protocol;
 mod sliding_mode;
+mod smooth;
 mod stage;
 mod stiction;
 mod supervision;

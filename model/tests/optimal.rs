@@ -3,7 +3,10 @@
 
 use crate::support::machine;
 use posicast_model::analysis::{residual_vibration, tap_impulses};
-use posicast_model::certify::{ShorterError, certify_axis, check_shorter, measure_corners, residual_bound};
+use posicast_model::certify::{
+    CheckedShorter, ShorterError, certify_axis, check_delay, check_shorter, check_together, measure_corners,
+    residual_bound,
+};
 use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{AxisTables, DesignError, Findings, MachineDesign, blame, design_axis, design_machine};
 use posicast_model::machine_file::{Machine, parse};
@@ -47,6 +50,7 @@ fn unit_the_integer_table_is_certified_over_the_bands() {
         (OPTIMAL, ONE_BAND),
         (OPTIMAL, TWO_BANDS),
         ("kind = \"optimal\"\ncommand = [-1, 1]", TWO_BANDS),
+        ("kind = \"optimal\"\namplitude_bounds = [0, 0.2]", TWO_BANDS),
         ("kind = \"optimal\"\nprefer = \"least-residual\"", ONE_BAND),
         (
             "kind = \"optimal\"\nprefer = \"least-delay\"\ntolerance = 0.02",
@@ -173,6 +177,83 @@ fn unit_a_bound_with_a_stage_holds_with_the_folded_delay() {
     assert!(design.axes[0].delay.added_samples > 0.0);
 }
 
+/// Two axes that arrive together, or with delays that are only made equal.
+fn two_axes(arrive_together: bool) -> Machine {
+    let axis = |name: &str, mode: &str| {
+        format!(
+            "[[axis]]\nname = \"{name}\"\ncounts_per_unit = 1e5\n[axis.shaper]\nkind = \"optimal\"\n[[axis.mode]]\n{mode}\n"
+        )
+    };
+    let text = format!(
+        "name = \"two\"\n[clock]\nfrequency_hz = 1_000_000\nsample_hz = 1_000\n[stage]\narrive_together = {arrive_together}\n{}{}",
+        axis("x", "frequency_hz = 31\ndamping = 0.02\nfrequency_band = 0.1"),
+        axis("y", "frequency_hz = 18\ndamping = 0.05\nfrequency_band = 0.1"),
+    );
+    parse("two.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn unit_axes_that_arrive_together_have_one_delay_without_padding() {
+    let machine = two_axes(true);
+    let design = design_machine(&machine).unwrap();
+    let together = design.together.as_ref().unwrap();
+    let checked = check_together(&together.partners, &together.found);
+    let Some(Ok(CheckedShorter::Alone { axis: 1, bound })) = checked.shorter else {
+        panic!("{:?}", checked.shorter);
+    };
+    assert_eq!(bound.samples + 1, together.found.samples);
+    let least = checked.least_delay_samples.unwrap().unwrap();
+    assert!(
+        least <= together.found.delay_samples + 1e-6 && least > together.found.delay_samples - 0.5,
+        "{least} {}",
+        together.found.delay_samples
+    );
+    for (axis, tables) in machine.axes.iter().zip(&design.axes) {
+        assert!(tables.delay.added_samples.abs() < 1e-9, "{:?}", tables.delay);
+        let total = tables.delay.designed_s() * design.sample_hz;
+        assert!((total - together.found.delay_samples).abs() < 1e-6, "{total}");
+        assert!(tables.table.longest_delay_samples() <= together.found.samples);
+        let certificate = certify_axis(axis, tables, design.sample_hz);
+        let mode = certificate.modes[0];
+        assert!(
+            mode.residual.bound <= mode.tolerance + 2.0 / 65_536.0,
+            "{certificate:?}"
+        );
+    }
+    // Delayed instead, the axes are no earlier, and the fraction of a sample costs taps.
+    let apart = design_machine(&two_axes(false)).unwrap();
+    assert!(apart.together.is_none());
+    let total = |design: &MachineDesign| design.axes[0].delay.designed_s();
+    assert!(total(&design) <= total(&apart) + 1e-9);
+    assert!(design.axes[0].table.taps().len() < apart.axes[0].table.taps().len());
+}
+
+#[test]
+fn unit_a_delay_bound_holds_for_any_weights_and_for_the_shaper_itself() {
+    let machine = two_axes(true);
+    let design = design_machine(&machine).unwrap();
+    let together = design.together.unwrap();
+    let (bound, axis) = (together.found.earlier.unwrap(), together.found.latest_axis);
+    let partner = &together.partners[axis];
+    let best = check_delay(&partner.request, &bound).unwrap();
+    let own = together.found.delay_samples - partner.lag_samples;
+    assert!(best <= own + 1e-6);
+    for factor in [0.0, 0.5, 1.5, -1.0] {
+        let mut other = bound.clone();
+        for point in &mut other.points {
+            point.weight = point.weight.map(|part| factor * part);
+        }
+        let found = check_delay(&partner.request, &other).unwrap();
+        assert!(found < best, "{factor}: {found} {best}");
+    }
+    let mut outside = bound;
+    outside.points[0].frequency_hz *= 2.0;
+    assert_eq!(
+        check_delay(&partner.request, &outside),
+        Err(ShorterError::Point { index: 0 })
+    );
+}
+
 #[test]
 fn unit_what_cannot_be_is_blamed_on_its_key_with_a_remedy() {
     let blamed = |shaper: &str, modes: &[(f64, f64, &str)]| {
@@ -186,6 +267,12 @@ fn unit_what_cannot_be_is_blamed_on_its_key_with_a_remedy() {
     assert_eq!(key, "axis.shaper.taps");
     assert!(
         remedy.contains("allow `taps = ") && text.contains("with 2 taps"),
+        "{remedy} {text}"
+    );
+    let (key, _, remedy, text) = blamed("kind = \"optimal\"\namplitude_bounds = [0, 0.00005]", ONE_BAND);
+    assert_eq!(key, "axis.shaper.amplitude_bounds");
+    assert!(
+        remedy.contains("0.000061") && text.contains("at 16383 samples"),
         "{remedy} {text}"
     );
     // Half a period of 25 s does not fit the longest ring at 1 kHz.

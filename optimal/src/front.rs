@@ -2,6 +2,7 @@
 
 use crate::prefer::fewest_at;
 use crate::refine::{Points, least_ratio, peaks};
+use crate::search::check;
 use crate::{OptimalError, Prefer, Request, Tap, shortest};
 
 /// A duration, and what it gains.
@@ -9,10 +10,21 @@ use crate::{OptimalError, Prefer, Request, Tap, shortest};
 pub struct FrontPoint {
     /// Duration in samples.
     pub samples: u32,
-    /// Few taps that meet every tolerance.
+    /// Few taps that meet every tolerance, of this duration or of a shorter one.
     pub taps: Vec<Tap>,
     /// Smallest worst ratio of residual to tolerance that was found at this duration, with any number of taps.
     pub least_ratio: f64,
+}
+
+/// Returns the smallest worst ratio of residual to tolerance that any shaper of at most `samples` samples has, with any number
+/// of taps, to a part in ten thousand.
+///
+/// # Errors
+/// [`OptimalError`] for bands or tolerances that are out of range, or where the solver does not converge.
+pub fn least_ratio_at(request: &Request, samples: u32) -> Result<f64, OptimalError> {
+    check(request)?;
+    let all: Vec<u32> = (0..=samples).collect();
+    least_ratio(request, &all, &mut Points::new(request))
 }
 
 /// Returns what each of these durations gains; a duration after the first for which the solver does not converge is
@@ -29,6 +41,7 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
     let mut front = Vec::with_capacity(durations.len());
     // A shaper of one duration is also one of each longer duration.
     let mut least = f64::INFINITY;
+    let mut fewest: Vec<Tap> = Vec::new();
     for &samples in durations {
         let all: Vec<u32> = (0..=samples).collect();
         let taps = match fewest_at(&request, samples, &mut points) {
@@ -46,9 +59,12 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
             other => other?,
         };
         least = ratio.min(least);
+        if fewest.is_empty() || taps.len() < fewest.len() {
+            fewest = taps;
+        }
         front.push(FrontPoint {
             samples,
-            taps,
+            taps: fewest.clone(),
             least_ratio: least,
         });
     }

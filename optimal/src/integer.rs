@@ -1,7 +1,7 @@
 //! Rounds to integers, and moves units between taps until the residual is within the tolerances again.
 //!
-//! Amplitudes that may not be negative are rounded by largest remainder, and partial sums with bounds one by one. So
-//! the bounds of the command hold for the integers too, and their sum is exactly `2^F`. If the residual of the integers
+//! Amplitudes that may not be negative or have bounds are rounded by largest remainder, and partial sums with bounds one
+//! by one. So the bounds of the command hold for the integers too, and their sum is exactly `2^F`. If the residual of the integers
 //! is then beyond a tolerance somewhere in a band, one unit after the other moves from a tap to another, the best of
 //! all such moves each time.
 
@@ -26,7 +26,8 @@ type Units = (u32, i64);
 pub fn round_taps(request: &Request, taps: &[Tap], fraction: u32) -> Vec<(u32, i64)> {
     let unity = 1i64 << fraction;
     let mut units = match request.command {
-        Command::Positive => by_remainder(taps, unity),
+        Command::Positive => by_remainder(taps, unity, (i64::MIN, i64::MAX)),
+        Command::Amplitudes { low, high } => by_remainder(taps, unity, in_units(low, high, unity)),
         Command::PartialSums { low, high } => by_sums(taps, unity, low, high),
     };
     units.retain(|(_, units)| *units != 0);
@@ -61,23 +62,47 @@ fn as_taps(units: &[Units], unity: i64) -> Vec<Tap> {
         .collect()
 }
 
-/// Rounds down, then adds a unit to the largest remainders; every tap has at least a unit.
-fn by_remainder(taps: &[Tap], unity: i64) -> Vec<Units> {
+/// Returns bounds in whole units, none of them beyond the given ones.
+fn in_units(low: f64, high: f64, unity: i64) -> (i64, i64) {
+    ((low * unity as f64).ceil() as i64, (high * unity as f64).floor() as i64)
+}
+
+/// Rounds down, then adds a unit to the largest remainders, first of the taps that have room below the upper bound.
+///
+/// Where the integers within the bounds do not reach the sum, some of them are a unit above.
+fn by_remainder(taps: &[Tap], unity: i64, (low, high): (i64, i64)) -> Vec<Units> {
     let exact = |tap: &Tap| tap.1 * unity as f64;
-    let mut units: Vec<Units> = taps.iter().map(|tap| (tap.0, exact(tap).floor() as i64)).collect();
+    let floor = |tap: &Tap| (exact(tap).floor() as i64).clamp(low, high);
+    let mut units: Vec<Units> = taps.iter().map(|tap| (tap.0, floor(tap))).collect();
     let missing = unity - units.iter().map(|(_, units)| units).sum::<i64>();
     let mut order: Vec<usize> = (0..taps.len()).collect();
     let remainder = |index: &usize| exact(&taps[*index]) - exact(&taps[*index]).floor();
     order.sort_by(|a, b| remainder(b).total_cmp(&remainder(a)));
-    for index in order.iter().cycle().take(missing.clamp(0, taps.len() as i64) as usize) {
-        units[*index].1 += 1;
+    // A clamped floor can be a unit above the exact amplitude, so the sum may also be too large.
+    let step = missing.signum();
+    let mut left = missing.unsigned_abs();
+    // In order of the remainders, and again, as long as a tap has room; then without regard to the bounds.
+    for regards_bounds in [true, false] {
+        loop {
+            let before = left;
+            for index in &order {
+                let moved = units[*index].1 + step;
+                if left > 0 && (!regards_bounds || (low..=high).contains(&moved)) {
+                    units[*index].1 = moved;
+                    left -= 1;
+                }
+            }
+            if left == 0 || left == before {
+                break;
+            }
+        }
     }
     units
 }
 
 /// Rounds each partial sum to the nearest integer within the bounds; the last is `2^F`.
 fn by_sums(taps: &[Tap], unity: i64, low: f64, high: f64) -> Vec<Units> {
-    let (low, high) = ((low * unity as f64).ceil() as i64, (high * unity as f64).floor() as i64);
+    let (low, high) = in_units(low, high, unity);
     let (mut sum, mut before) = (0.0, 0);
     let last = taps.len().saturating_sub(1);
     let mut units = Vec::with_capacity(taps.len());
@@ -158,6 +183,10 @@ fn excess(ratios: impl Iterator<Item = Complex64>) -> f64 {
 fn may_move(request: &Request, units: &[Units], from: usize, to: usize, unity: i64) -> bool {
     match request.command {
         Command::Positive => units[from].1 > 1,
+        Command::Amplitudes { low, high } => {
+            let (low, high) = in_units(low, high, unity);
+            units[from].1 != 1 && units[to].1 != -1 && units[from].1 > low && units[to].1 < high
+        }
         Command::PartialSums { low, high } => {
             let between = from.min(to)..from.max(to);
             let change = if from < to { -1 } else { 1 };

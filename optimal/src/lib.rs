@@ -16,7 +16,8 @@
 //! bands ─► search: bisection over N ─► refine: worst points of the bands join the program ─► program ─► cone solver
 //!            │
 //!            ├─► LowerBound: the multipliers of N − 1, with which plain arithmetic proves that no shorter shaper exists
-//!            └─► prefer: fewest taps, least residual or least delay at that N
+//!            ├─► prefer: fewest taps, least residual or least delay at that N
+//!            └─► together: shapers of several axes with one delay
 //! ```
 //!
 //! `V` is the modulus of an analytic function of `p`, so its maximum over a band lies on the band's edge ([`Band`]):
@@ -33,11 +34,13 @@ mod prefer;
 mod program;
 mod refine;
 mod search;
+mod together;
 
 pub use band::Band;
-pub use front::{FrontPoint, front};
+pub use front::{FrontPoint, front, least_ratio_at};
 pub use integer::round_taps;
 pub use search::{Shortest, shortest};
+pub use together::{Partner, Shorter, Together, TogetherError, together};
 
 /// Bounds of the shaped command.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +54,32 @@ pub enum Command {
         /// Upper bound, at least 1.
         high: f64,
     },
+    /// Each amplitude, a jump of the shaped unit step, stays within these bounds.
+    Amplitudes {
+        /// Lower bound, at most 0: a sample may also have no amplitude.
+        low: f64,
+        /// Upper bound, above 0.
+        high: f64,
+    },
+}
+
+impl Command {
+    /// Returns whether no amplitude may be negative.
+    pub fn is_positive(self) -> bool {
+        match self {
+            Self::Positive => true,
+            Self::PartialSums { .. } => false,
+            Self::Amplitudes { low, .. } => low >= 0.0,
+        }
+    }
+
+    /// Returns whether amplitudes on this many samples can have the sum 1.
+    pub(crate) fn reaches_one(self, samples: usize) -> bool {
+        match self {
+            Self::Positive | Self::PartialSums { .. } => samples > 0,
+            Self::Amplitudes { high, .. } => samples as f64 * high >= 1.0,
+        }
+    }
 }
 
 /// Choice among the shapers of least duration.
@@ -93,7 +122,8 @@ pub type Tap = (u32, f64);
 ///
 /// With `c_p` the sum `Σ a_i z_p^(N−i)` and weights `y_p`, of which `Σ tolerance_p |y_p| = 1`, the largest ratio of a
 /// residual to its tolerance is at least `Re Σ ȳ_p c_p`; and that is at least its minimum over all amplitudes that the
-/// command allows, which is found sample by sample.
+/// command allows, which is found sample by sample. Without points the bound is infinite, and says that amplitudes on so
+/// few samples do not sum to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowerBound {
     /// `N`.
@@ -104,7 +134,25 @@ pub struct LowerBound {
     pub ratio: f64,
 }
 
-/// A point of a band, with its weight in a [`LowerBound`].
+/// A bound of the mean delay `Σ a_i i` of every shaper of at most `samples` samples that meets a request, as weights of
+/// the residuals at some points of the bands.
+///
+/// With `c_p` and `y_p` as in [`LowerBound`], but not scaled, `Σ a_i i ≥ Σ a_i i + Re Σ ȳ_p c_p − Σ tolerance_p |y_p|` for
+/// every shaper within the tolerances, and the right side has a minimum over all amplitudes that the command allows. For
+/// an upper bound, `−i` takes the place of `i`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DelayBound {
+    /// Longest duration in samples of the shapers that it is about.
+    pub samples: u32,
+    /// Whether it is an upper bound.
+    pub is_upper: bool,
+    /// The points.
+    pub points: Vec<WeightedPoint>,
+    /// The bound in samples, as the solver found it.
+    pub delay_samples: f64,
+}
+
+/// A point of a band, with its weight in a [`LowerBound`] or a [`DelayBound`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightedPoint {
     /// Index of the band.
@@ -143,6 +191,14 @@ pub enum OptimalError {
         /// The tolerance.
         tolerance: f64,
     },
+    /// Amplitudes within the bounds do not sum to 1.
+    #[error("amplitudes of at most {high} at {samples} samples sum to less than 1")]
+    Amplitudes {
+        /// Upper bound of the amplitudes.
+        high: f64,
+        /// Samples of the longest duration that is tried.
+        samples: u32,
+    },
     /// No shaper within the longest duration meets the tolerances.
     #[error(
         "no shaper of up to {longest_samples} samples ({:.6} s) stays within the tolerances: the best leaves {ratio:.4} times what is allowed",
@@ -170,6 +226,17 @@ pub enum OptimalError {
         samples: u32,
         /// The longest duration that was tried.
         longest_samples: u32,
+    },
+    /// The axes of a joint design have no common delay.
+    #[error(
+        "no shapers of up to {longest_samples} samples have one delay: the earliest that one axis can be is {gap_samples:.3} samples later than the \
+         latest that another can be"
+    )]
+    Apart {
+        /// The longest duration that was tried.
+        longest_samples: u32,
+        /// Samples between the two ranges of delays.
+        gap_samples: f64,
     },
     /// The solver ended without a solution.
     #[error("the cone program of {samples} samples did not converge: {status}")]

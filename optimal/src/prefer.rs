@@ -19,7 +19,7 @@ const REWEIGHTS: i32 = 6;
 /// Reweighting drives amplitudes below this to 0.
 const NOTHING: f64 = 1e-3;
 /// Amplitudes below this count as 0.
-const NONE: f64 = 1e-5;
+pub(crate) const NONE: f64 = 1e-5;
 /// Longest duration at which a budget of taps is tried, as a multiple of the least duration.
 const BUDGET_REACH: u32 = 4;
 
@@ -34,7 +34,7 @@ pub(crate) fn choose(request: &Request, held: Vec<Tap>, points: &mut Points) -> 
 }
 
 /// Returns the levels of the tolerances that are tried: with room for rounding first, the full tolerances last.
-fn levels(request: &Request) -> [f64; 4] {
+pub(crate) fn levels(request: &Request) -> [f64; 4] {
     let tolerance = request
         .bands
         .iter()
@@ -44,7 +44,7 @@ fn levels(request: &Request) -> [f64; 4] {
 }
 
 /// Returns the preferred taps at a duration, from amplitudes on all its samples that meet the tolerances.
-fn preferred(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
+pub(crate) fn preferred(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
     let spread = spread(request, held.last().map_or(0, |tap| tap.0));
     for level in levels(request) {
         let found = match request.prefer {
@@ -67,7 +67,7 @@ fn spread(request: &Request, samples: u32) -> Vec<Point> {
 }
 
 /// Returns the samples of the taps that are not 0, and the first and the last sample.
-fn support(taps: &[Tap], least: f64) -> Vec<u32> {
+pub(crate) fn support(taps: &[Tap], least: f64) -> Vec<u32> {
     let ends = [taps.first(), taps.last()].map(|tap| tap.map(|tap| tap.0));
     let kept = taps
         .iter()
@@ -131,8 +131,12 @@ fn fewest_taps(
 /// Leaves out taps as long as the others meet the tolerances, the smallest first. A tap that cannot be left out of many
 /// taps cannot be left out of fewer, so each is tried once.
 fn leave_out(request: &Request, mut taps: Vec<Tap>, points: &mut Points, level: f64) -> Result<Vec<Tap>, OptimalError> {
-    let ends = [taps.first(), taps.last()].map(|tap| tap.map(|tap| tap.0));
-    let mut tried: Vec<u32> = ends.into_iter().flatten().collect();
+    // With a required delay the duration is a limit only: the first and the last sample may be left out as well.
+    let ends = match request.delay_samples {
+        Some(_) => [None, None],
+        None => [taps.first(), taps.last()],
+    };
+    let mut tried: Vec<u32> = ends.into_iter().flatten().map(|tap| tap.0).collect();
     loop {
         let untried = taps.iter().filter(|tap| !tried.contains(&tap.0));
         let Some(&(smallest, _)) = untried.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else {

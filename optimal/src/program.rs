@@ -1,7 +1,8 @@
 //! The cone program of a shaper on chosen samples, at chosen points of the bands.
 //!
-//! With [`Command::Positive`] the variables are the amplitudes. With [`Command::PartialSums`] they are the partial sums
-//! `s_j`, so that each bound is one of a single variable: `a_j = s_j − s_{j−1}`, the last sum is 1.
+//! With [`Command::Positive`] and [`Command::Amplitudes`] the variables are the amplitudes. With
+//! [`Command::PartialSums`] they are the partial sums `s_j`, so that each bound is one of a single variable: `a_j = s_j −
+//! s_{j−1}`, the last sum is 1.
 
 use crate::band::Point;
 use crate::cone::{ConeProgram, Solution, Unsolved};
@@ -17,6 +18,8 @@ pub(crate) enum Objective<'a> {
     Weighted(&'a [f64]),
     /// `Σ a_i i`.
     Delay,
+    /// `−Σ a_i i`.
+    Latest,
     /// The mean square of the ratios at these points.
     Squares(&'a [Point]),
 }
@@ -37,6 +40,8 @@ pub(crate) struct Found {
     pub(crate) taps: Vec<Tap>,
     /// Weights of the points, as of a [`LowerBound`](crate::LowerBound), not yet of sum 1.
     pub(crate) weights: Vec<Complex64>,
+    /// The largest ratio at the points, if it is the objective.
+    pub(crate) ratio: Option<f64>,
 }
 
 /// A linear function of the variables.
@@ -46,7 +51,7 @@ impl Program<'_> {
     /// The variables of the amplitudes are the first ones.
     fn variables(&self) -> usize {
         match self.request.command {
-            Command::Positive => self.samples.len(),
+            Command::Positive | Command::Amplitudes { .. } => self.samples.len(),
             Command::PartialSums { .. } => self.samples.len() - 1,
         }
     }
@@ -57,7 +62,9 @@ impl Program<'_> {
         T: Copy + std::ops::Sub<Output = T> + Default,
     {
         match self.request.command {
-            Command::Positive => (factors.iter().copied().enumerate().collect(), T::default()),
+            Command::Positive | Command::Amplitudes { .. } => {
+                (factors.iter().copied().enumerate().collect(), T::default())
+            }
             Command::PartialSums { .. } => {
                 let terms = factors.windows(2).map(|pair| pair[0] - pair[1]).enumerate();
                 (terms.collect(), factors.last().copied().unwrap_or_default())
@@ -90,7 +97,8 @@ impl Program<'_> {
         };
         let linear = match (objective, self.request.command) {
             (Objective::Delay, _) => of_delay(1.0),
-            (Objective::Weighted(weights), Command::Positive) => weights.to_vec(),
+            (Objective::Latest, _) => of_delay(-1.0),
+            (Objective::Weighted(weights), command) if command.is_positive() => weights.to_vec(),
             _ => vec![0.0; self.variables()],
         };
         let scale = linear.iter().fold(0.0f64, |most, value| most.max(value.abs())).max(1.0);
@@ -99,9 +107,9 @@ impl Program<'_> {
         }
         self.bounds(&mut program);
         if let Some(delay) = self.request.delay_samples {
-            let scale = delays.last().copied().unwrap_or(1.0).max(1.0);
-            let terms = delay_terms.iter().map(|(j, value)| (*j, value / scale));
-            program.equal(terms.collect::<Terms>(), (delay - delay_constant) / scale);
+            let whole = delays.last().copied().unwrap_or(1.0).max(1.0);
+            let terms = delay_terms.iter().map(|(j, value)| (*j, value / whole));
+            program.equal(terms.collect::<Terms>(), (delay - delay_constant) / whole);
         }
         let ratio = match objective {
             Objective::Ratio => Some(program.variable(1.0, 0.0)),
@@ -136,11 +144,12 @@ impl Program<'_> {
             .collect();
         let solution = program.solve()?;
         let weights = rows.iter().zip(self.points).map(|(row, point)| {
-            let [re, im] = [1, 2].map(|part| -solution.z[row + part] / point.tolerance);
+            let [re, im] = [1, 2].map(|part| -scale * solution.z[row + part] / point.tolerance);
             Complex64::new(re, im)
         });
         Ok(Found {
             weights: weights.collect(),
+            ratio: ratio.map(|variable| solution.x[variable]),
             taps: self.taps(&solution),
         })
     }
@@ -160,23 +169,31 @@ impl Program<'_> {
                     program.at_most([(j, -1.0)], -low);
                 }
             }
+            Command::Amplitudes { low, high } => {
+                program.equal((0..self.variables()).map(|j| (j, 1.0)), 1.0);
+                for j in 0..self.variables() {
+                    program.at_most([(j, 1.0)], high);
+                    program.at_most([(j, -1.0)], -low);
+                }
+            }
         }
     }
 
     /// Adds `Σ weight |a|` of amplitudes that may be negative: a variable at least as large as each of them and as its
     /// negative.
     fn magnitudes(&self, program: &mut ConeProgram, weights: &[f64]) {
-        if self.request.command == Command::Positive {
+        if self.request.command.is_positive() {
             return;
         }
+        let of_sums = matches!(self.request.command, Command::PartialSums { .. });
         let scale = weights.iter().fold(1.0f64, |most, value| most.max(*value));
         let last = self.samples.len() - 1;
         for (j, weight) in weights.iter().enumerate() {
             let size = program.variable(weight / scale, 0.0);
             for sign in [1.0, -1.0] {
-                let own = (j < last).then_some((j, sign));
-                let before = j.checked_sub(1).map(|before| (before, -sign));
-                let constant = if j == last { sign } else { 0.0 };
+                let own = (j < last || !of_sums).then_some((j, sign));
+                let before = j.checked_sub(1).filter(|_| of_sums).map(|before| (before, -sign));
+                let constant = if j == last && of_sums { sign } else { 0.0 };
                 program.at_most(own.into_iter().chain(before).chain([(size, -1.0)]), -constant);
             }
         }
@@ -201,9 +218,24 @@ impl Program<'_> {
                 })
                 .collect()
             }
+            Command::Amplitudes { low, high } => within(x, low, high),
         };
         self.samples.iter().copied().zip(amplitudes).collect()
     }
+}
+
+/// Clamps amplitudes to bounds; what is then missing from the sum 1 is shared by the room that each of them has.
+fn within(x: &[f64], low: f64, high: f64) -> Vec<f64> {
+    let clamped: Vec<f64> = x.iter().map(|value| value.clamp(low, high)).collect();
+    let missing = 1.0 - clamped.iter().sum::<f64>();
+    let end = if missing > 0.0 { high } else { low };
+    let room: f64 = clamped.iter().map(|value| (end - value).abs()).sum();
+    let share = if room > 0.0 {
+        (missing.abs() / room).min(1.0)
+    } else {
+        0.0
+    };
+    clamped.iter().map(|value| value + share * (end - value)).collect()
 }
 
 /// Returns `z^(N−i)` for each sample `i` of a list whose last is `N`.

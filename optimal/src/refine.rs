@@ -4,7 +4,7 @@
 use crate::band::Point;
 use crate::cone::Unsolved;
 use crate::program::{Found, Objective, Program, powers};
-use crate::{Command, LowerBound, OptimalError, Request, Tap, WeightedPoint};
+use crate::{Command, DelayBound, LowerBound, OptimalError, Request, Tap, WeightedPoint};
 use num_complex::Complex64;
 
 /// Slack of a tolerance, as of every insensitivity.
@@ -67,6 +67,9 @@ pub(crate) fn refine(
 ) -> Result<Refined, OptimalError> {
     let limit = (level * (1.0 + SLACK)).min(1.0 + SLACK);
     let mut last = f64::INFINITY;
+    if !request.command.reaches_one(samples.len()) {
+        return Ok(Refined::Beyond(Some(too_few(samples))));
+    }
     for _ in 0..ROUNDS {
         let Some(found) = solve_once(request, samples, points, objective, level)? else {
             return Ok(Refined::Beyond(None));
@@ -76,6 +79,10 @@ pub(crate) fn refine(
             if bound.ratio > level {
                 return Ok(Refined::Beyond(Some(bound)));
             }
+        }
+        // With a required delay there is no such bound; the least ratio at some of the points is one as well.
+        if request.delay_samples.is_some() && found.ratio.is_some_and(|ratio| ratio > level * (1.0 + 10.0 * SLACK)) {
+            return Ok(Refined::Beyond(None));
         }
         let peaks = peaks(request, &found.taps);
         let worst = peaks.first().map_or(0.0, |peak| peak.0);
@@ -90,6 +97,31 @@ pub(crate) fn refine(
         points.join(&peaks, level);
     }
     Ok(Refined::Beyond(None))
+}
+
+/// Finds the shaper of least or of greatest mean delay on `samples` within a level of the tolerances, with the bound that
+/// proves it; `None` if the level cannot be met.
+pub(crate) fn extreme_delay(
+    request: &Request,
+    samples: &[u32],
+    points: &mut Points,
+    latest: bool,
+    level: f64,
+) -> Result<Option<(Vec<Tap>, DelayBound)>, OptimalError> {
+    let objective = if latest { Objective::Latest } else { Objective::Delay };
+    let limit = (level * (1.0 + SLACK)).min(1.0 + SLACK);
+    for _ in 0..ROUNDS {
+        let Some(found) = solve_once(request, samples, points, objective, level)? else {
+            return Ok(None);
+        };
+        let bound = delay_bound(request, samples, &points.points, &found.weights, latest);
+        let peaks = peaks(request, &found.taps);
+        if peaks.first().is_none_or(|peak| peak.0 <= limit) {
+            return Ok(Some((found.taps, bound)));
+        }
+        points.join(&peaks, level);
+    }
+    Ok(None)
 }
 
 /// Relative accuracy of the smallest worst ratio.
@@ -138,6 +170,9 @@ fn solve_once(
     objective: Objective<'_>,
     level: f64,
 ) -> Result<Option<Found>, OptimalError> {
+    if !request.command.reaches_one(samples.len()) {
+        return Ok(None);
+    }
     let program = Program {
         request,
         samples,
@@ -178,14 +213,93 @@ pub(crate) fn significant(taps: &[Tap]) -> Vec<Tap> {
     kept.copied().collect()
 }
 
+/// Returns the bound that says that amplitudes on these samples do not sum to 1.
+fn too_few(samples: &[u32]) -> LowerBound {
+    LowerBound {
+        samples: samples.last().copied().unwrap_or(0),
+        points: Vec::new(),
+        ratio: f64::INFINITY,
+    }
+}
+
+/// Returns the least `Σ a_i gain_i` of amplitudes within bounds and of sum 1: each sample at the lower bound, and what is
+/// then missing where the gain is least.
+fn least_over_amplitudes(gains: &[f64], low: f64, high: f64) -> f64 {
+    let mut order = gains.to_vec();
+    order.sort_by(f64::total_cmp);
+    let mut missing = 1.0 - low * order.len() as f64;
+    let mut least = 0.0;
+    for gain in order {
+        let more = missing.clamp(0.0, high - low);
+        missing -= more;
+        least += gain * (low + more);
+    }
+    least
+}
+
+/// Returns the bound of the delay that the weights of a program prove, for amplitudes on its samples.
+fn delay_bound(
+    request: &Request,
+    samples: &[u32],
+    points: &[Point],
+    weights: &[Complex64],
+    is_upper: bool,
+) -> DelayBound {
+    let sign = if is_upper { -1.0 } else { 1.0 };
+    let kept: Vec<(&Complex64, &Point)> = weights
+        .iter()
+        .zip(points)
+        .filter(|(weight, _)| weight.norm() > 0.0)
+        .collect();
+    let mut gains: Vec<f64> = samples.iter().map(|sample| sign * f64::from(*sample)).collect();
+    let mut allowed = 0.0;
+    for (weight, point) in &kept {
+        for (gain, power) in gains.iter_mut().zip(powers(samples, point.z(request.sample_hz))) {
+            *gain += (weight.conj() * power).re;
+        }
+        allowed += weight.norm() * point.tolerance;
+    }
+    DelayBound {
+        samples: samples.last().copied().unwrap_or(0),
+        is_upper,
+        points: kept
+            .into_iter()
+            .map(|(weight, point)| weighted(point, *weight))
+            .collect(),
+        delay_samples: sign * (least_gain(request.command, &gains) - allowed),
+    }
+}
+
+fn weighted(point: &Point, weight: Complex64) -> WeightedPoint {
+    WeightedPoint {
+        band: point.band,
+        frequency_hz: point.frequency_hz,
+        damping: point.damping,
+        weight: [weight.re, weight.im],
+    }
+}
+
+/// Returns the least `Σ a_i gain_i` of all amplitudes that the command allows.
+fn least_gain(command: Command, gains: &[f64]) -> f64 {
+    match command {
+        Command::Positive => gains.iter().copied().fold(f64::INFINITY, f64::min),
+        Command::PartialSums { low, high } => {
+            let steps = gains.windows(2).map(|pair| pair[0] - pair[1]);
+            let least: f64 = steps.map(|step| (low * step).min(high * step)).sum();
+            least + gains.last().copied().unwrap_or(0.0)
+        }
+        Command::Amplitudes { low, high } => least_over_amplitudes(gains, low, high),
+    }
+}
+
 /// Returns the bound that the weights of a program prove, for amplitudes on its samples.
 fn lower_bound(request: &Request, samples: &[u32], points: &[Point], weights: &[Complex64]) -> LowerBound {
-    let weighted = weights.iter().zip(points);
-    let all: f64 = weighted
+    let pairs = weights.iter().zip(points);
+    let all: f64 = pairs
         .clone()
         .map(|(weight, point)| weight.norm() * point.tolerance)
         .sum();
-    let kept: Vec<(Complex64, &Point)> = weighted
+    let kept: Vec<(Complex64, &Point)> = pairs
         .filter(|(weight, point)| weight.norm() * point.tolerance > IDLE * all)
         .map(|(weight, point)| (*weight, point))
         .collect();
@@ -197,23 +311,10 @@ fn lower_bound(request: &Request, samples: &[u32], points: &[Point], weights: &[
             *gain += (weight * power).re;
         }
     }
-    let ratio = match request.command {
-        Command::Positive => gains.iter().copied().fold(f64::INFINITY, f64::min),
-        Command::PartialSums { low, high } => {
-            let steps = gains.windows(2).map(|pair| pair[0] - pair[1]);
-            let least: f64 = steps.map(|step| (low * step).min(high * step)).sum();
-            least + gains.last().copied().unwrap_or(0.0)
-        }
-    };
-    let points = kept.iter().map(|(weight, point)| WeightedPoint {
-        band: point.band,
-        frequency_hz: point.frequency_hz,
-        damping: point.damping,
-        weight: [weight.re / all, weight.im / all],
-    });
+    let points = kept.iter().map(|(weight, point)| weighted(point, weight / all));
     LowerBound {
         samples: samples.last().copied().unwrap_or(0),
         points: points.collect(),
-        ratio,
+        ratio: least_gain(request.command, &gains),
     }
 }

@@ -7,7 +7,7 @@
 use crate::prefer;
 use crate::program::Objective;
 use crate::refine::{Points, Refined, refine};
-use crate::{LowerBound, OptimalError, Request, Tap};
+use crate::{Command, LowerBound, OptimalError, Request, Tap};
 
 /// The shortest shaper, with its proof.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,8 +40,17 @@ pub fn shortest(request: &Request) -> Result<Shortest, OptimalError> {
     })
 }
 
-fn check(request: &Request) -> Result<(), OptimalError> {
+pub(crate) fn check(request: &Request) -> Result<(), OptimalError> {
     let half_sample_hz = request.sample_hz / 2.0;
+    let most_samples = request.longest_samples.saturating_add(1);
+    if let (Command::Amplitudes { high, .. }, false) =
+        (request.command, request.command.reaches_one(most_samples as usize))
+    {
+        return Err(OptimalError::Amplitudes {
+            high,
+            samples: most_samples,
+        });
+    }
     for (index, band) in request.bands.iter().enumerate() {
         let [low_hz, high_hz] = band.frequency_hz;
         let rings = band.damping.iter().all(|damping| (0.0..1.0).contains(damping));

@@ -69,7 +69,9 @@ impl<'a> CertificateReport<'a> {
 
     fn shorter_text(&self, optimal: &Optimal) -> String {
         let mut text = self.least_text(optimal);
-        if self.samples > optimal.least_samples {
+        if optimal.is_together {
+            text += "  this is about the axis alone; its taps are those of the joint design below\n";
+        } else if self.samples > optimal.least_samples {
             let more = self.samples - optimal.least_samples;
             let _ = writeln!(
                 text,
@@ -86,6 +88,12 @@ impl<'a> CertificateReport<'a> {
         let milliseconds = |samples: u32| f64::from(samples) / self.sample_hz * 1e3;
         let least = optimal.least_samples;
         match &self.certificate.shorter {
+            Some(Ok(bound)) if bound.points == 0 => format!(
+                "\n  least duration {least} samples, {:.4} ms. Proof, checked: amplitudes within the bounds on at most {} samples do not \
+                 sum to 1\n",
+                milliseconds(least),
+                bound.samples + 1,
+            ),
             Some(Ok(bound)) => format!(
                 "\n  least duration {least} samples, {:.4} ms. Proof, checked: every shaper of at most {} samples leaves, at one of {} of \
                  the bands, at least {:.6} of what is tolerated there\n",
@@ -125,7 +133,7 @@ impl<'a> CertificateReport<'a> {
             least_duration_s: f64::from(optimal.least_samples) / self.sample_hz,
             proven: checked.is_some(),
             excluded_samples: checked.map(|bound| bound.samples),
-            excluded_ratio: checked.map(|bound| bound.ratio),
+            excluded_ratio: checked.map(|bound| bound.ratio).filter(|ratio| ratio.is_finite()),
             points: points
                 .map(|point| PointDocument {
                     mode: point.band + 1,

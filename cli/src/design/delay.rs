@@ -1,5 +1,6 @@
 //! The delays of a stage's axes, for people and for programs.
 
+use super::together::{TogetherDocument, TogetherReport};
 use crate::output::Table;
 use posicast_model::design::{AxisDelay, MachineDesign, StageDelay};
 use posicast_model::machine_file::Machine;
@@ -62,15 +63,18 @@ pub(super) struct StageDocument {
     contour_speed: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mismatch_um: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    together: Option<TogetherDocument>,
 }
 
 impl StageDocument {
-    pub(super) fn new(stage: &StageDelay) -> Self {
+    pub(super) fn new(stage: &StageDelay, design: &MachineDesign) -> Self {
         Self {
             total_delay_s: stage.total_s,
             mismatch_s: stage.mismatch_s,
             contour_speed: stage.contour_speed,
             mismatch_um: stage.mismatch_um(),
+            together: TogetherReport::new(design).map(|together| together.json()),
         }
     }
 }

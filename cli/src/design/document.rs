@@ -5,6 +5,7 @@ use super::delay::{DelayDocument, StageDocument};
 use super::error_table::ErrorTableDocument;
 use super::family::FamilyDocument;
 use super::front::FrontDocument;
+use super::given_move::MoveDocument;
 use crate::control::ControlDocument;
 use crate::output::UnitDocument;
 use posicast_model::design::periodic::Solution;
@@ -20,6 +21,8 @@ pub(crate) struct Document {
     pub(super) axes: Vec<AxisDocument>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) fronts: Vec<FrontDocument>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) moves: Vec<MoveDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) stage: Option<StageDocument>,
 }

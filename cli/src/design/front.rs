@@ -9,6 +9,9 @@ use posicast_model::design::Findings;
 use posicast_model::design::front::{FrontFigures, design_front};
 use serde::Serialize;
 
+/// Label of an axis that counts taps.
+const TAPS: &str = "taps";
+
 /// The front of an axis.
 pub(super) struct FrontReport {
     axis: String,
@@ -74,28 +77,48 @@ impl FrontReport {
     }
 
     pub(super) fn panels(&self, machine: &str) -> Vec<Panel> {
-        let panel = |what: &str, y_label: &str, value: &dyn Fn(&FrontFigures) -> f64| Panel {
-            title: format!("{machine}, axis {}: {what} against duration", self.axis),
-            x_label: "duration, ms".into(),
-            y_label: y_label.into(),
-            curves: vec![Curve::new(
-                what.to_owned(),
-                self.figures
-                    .iter()
-                    .map(|figures| (1e3 * figures.duration_s, value(figures)))
-                    .collect(),
-            )],
-            ..Panel::default()
+        // A shaper holds for every longer duration too, until a better one is found: steps. The residual only has points.
+        let panel = |what: &str, y_label: &str, in_steps: bool, value: &dyn Fn(&FrontFigures) -> f64| {
+            let mut points: Vec<(f64, f64)> = Vec::new();
+            for figures in &self.figures {
+                let point = (1e3 * figures.duration_s, value(figures));
+                if let Some(last) = points.last().copied().filter(|_| in_steps) {
+                    points.push((point.0, last.1));
+                }
+                points.push(point);
+            }
+            Panel {
+                title: format!("{machine}, axis {}: {what} against duration", self.axis),
+                x_label: "duration, ms".into(),
+                y_label: y_label.into(),
+                y_is_whole: y_label == TAPS,
+                curves: vec![Curve::new(what.to_owned(), points)],
+                ..Panel::default()
+            }
         };
-        vec![
-            panel("fewest taps found", "taps", &|figures| figures.taps as f64),
-            panel("mean delay of the fewest taps", "mean delay, ms", &|figures| {
+        let mut panels = vec![
+            panel("fewest taps found", TAPS, true, &|figures| figures.taps as f64),
+            panel("mean delay of the fewest taps", "mean delay, ms", true, &|figures| {
                 1e3 * figures.delay_s
             }),
-            panel("least residual", "residual vibration over the bands, %", &|figures| {
-                100.0 * figures.least_ratio * self.tolerance
-            }),
-        ]
+            panel(
+                "least residual",
+                "residual vibration over the bands, %",
+                false,
+                &|figures| 100.0 * figures.least_ratio * self.tolerance,
+            ),
+        ];
+        // Without negative amplitudes the command never exceeds the step.
+        if self.figures.iter().any(|figures| figures.peak_command > 1.0 + 1e-6) {
+            let peak = &|figures: &FrontFigures| figures.peak_command;
+            panels.push(panel(
+                "peak command of the fewest taps",
+                "largest part of the step",
+                true,
+                peak,
+            ));
+        }
+        panels
     }
 
     pub(super) fn json(&self) -> FrontDocument {

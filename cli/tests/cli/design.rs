@@ -3,6 +3,8 @@
 use crate::cli::support::{example, json, one_axis, posicast, scratch};
 use predicates::prelude::PredicateBooleanExt;
 
+const MODE: &str = "frequency_hz = 40.0\ndamping = 0.01";
+
 #[test]
 fn cli_design_gives_the_published_shaper_of_the_xy_stage() {
     let output = posicast()
@@ -214,4 +216,75 @@ fn cli_design_says_what_a_mode_from_data_sheets_comes_from() {
     let stiffness = mode["mechanics"]["stiffness_n_per_m"].as_f64().unwrap();
     let frequency_hz = (stiffness / 38.0).sqrt() / std::f64::consts::TAU;
     assert!((mode["frequency_hz"].as_f64().unwrap() / frequency_hz - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn cli_design_sets_a_known_move_beside_one_whose_jerk_time_is_a_period() {
+    // d/v 250 ms, v/a 50 ms, a/j 13.3 ms; a period of 40 ms in place of a/j.
+    let limits = "[axis.limits]\nvelocity = 0.2\nacceleration = 4\njerk = 300\n";
+    let said = |kind: &str, more: &[&str]| {
+        let text = one_axis(&format!("kind = \"{kind}\""), "frequency_hz = 25.0\ndamping = 0.0\n") + limits;
+        let (_folder, file) = scratch(&text);
+        let output = posicast()
+            .arg("design")
+            .arg(&file)
+            .args(["--move", "0.05"])
+            .args(more)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    for (kind, shaper_s, better) in [("zvd", 0.04, "period"), ("zv", 0.02, "shaper")] {
+        let found = &json(&said(kind, &["--json"]))["moves"][0];
+        let number = |way: &serde_json::Value, key: &str| way[key].as_f64().unwrap();
+        let (shaped, period) = (&found["shaped"], &found["by_period"][0]);
+        assert!((number(shaped, "command_s") - (0.25 + 0.05 + 4.0 / 300.0)).abs() < 1e-12);
+        assert!((number(shaped, "shaper_s") - shaper_s).abs() < 1e-9);
+        assert!((number(period, "total_s") - 0.34).abs() < 1e-12);
+        assert!((number(period, "jerk") - 100.0).abs() < 1e-9);
+        assert!(number(period, "residual") < 1e-12);
+        assert_eq!(found["better"], better);
+    }
+    let text = String::from_utf8(said("zvd", &[])).unwrap();
+    assert!(text.contains("jerk time of 40.000 ms, mode 1"), "{text}");
+    assert!(
+        text.lines()
+            .any(|line| line.contains("jerk time") && line.ends_with("better")),
+        "{text}"
+    );
+    let (_folder, file) = scratch(&one_axis("kind = \"zv\"", MODE));
+    let refused = posicast()
+        .arg("design")
+        .arg(&file)
+        .args(["--move", "0"])
+        .assert()
+        .code(2);
+    refused.stderr(predicates::str::contains(
+        "--move, axis `x`: a move of 0 causes no motion",
+    ));
+}
+
+#[test]
+fn cli_design_compares_smooth_kinds_with_the_best_at_their_duration() {
+    let (_folder, file) = scratch(&one_axis("kind = \"zv\"", MODE));
+    let compare = posicast()
+        .arg("design")
+        .arg(&file)
+        .args(["--compare", "--json"])
+        .assert()
+        .success();
+    let document = json(&compare.get_output().stdout);
+    let kinds = document["axes"][0]["kinds"].as_array().unwrap();
+    let smooth: Vec<_> = kinds
+        .iter()
+        .filter(|kind| kind["kind"].as_str().unwrap().starts_with("smooth_"))
+        .collect();
+    assert_eq!(smooth.len(), 3);
+    for kind in smooth {
+        let [least, worst] = ["least_residual", "worst_residual"].map(|key| kind[key].as_f64().unwrap());
+        assert!(least < worst, "{kind}");
+    }
+    let text = posicast().arg("design").arg(&file).arg("--compare").assert().success();
+    text.stdout(predicates::str::contains("least there: what the best shaper"));
 }

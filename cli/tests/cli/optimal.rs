@@ -156,3 +156,59 @@ fn cli_reproduce_beyond_sets_the_shortest_beside_the_papers() {
         }
     }
 }
+
+#[test]
+fn cli_axes_that_arrive_together_are_designed_as_one() {
+    let axis = |name: &str, mode: &str| {
+        format!(
+            "[[axis]]\nname = \"{name}\"\ncounts_per_unit = 1_000_000\n[axis.shaper]\nkind = \"optimal\"\n[[axis.mode]]\n{mode}\n"
+        )
+    };
+    let text = format!(
+        "name = \"two\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 2_000\n[stage]\narrive_together = true\n{}{}",
+        axis("x", "frequency_hz = 62\ndamping = 0.02\nfrequency_band = 0.1"),
+        axis("y", "frequency_hz = 36\ndamping = 0.05\nfrequency_band = 0.1"),
+    );
+    let (_folder, file) = scratch(&text);
+    let document = json(
+        &posicast()
+            .arg("design")
+            .arg(&file)
+            .arg("--json")
+            .assert()
+            .success()
+            .get_output()
+            .stdout,
+    );
+    let together = &document["stage"]["together"];
+    assert_eq!(
+        (&together["proven"], &together["decisive_axis"]),
+        (&true.into(), &"y".into())
+    );
+    let number = |key: &str| together[key].as_f64().unwrap();
+    assert_eq!(number("excluded_samples") + 1.0, number("samples"));
+    assert!(number("least_delay_s") <= number("delay_s") + 1e-9 && number("least_delay_s") > 0.99 * number("delay_s"));
+    for axis in document["axes"].as_array().unwrap() {
+        let delay = &axis["delay"];
+        assert!(delay["added_samples"].as_f64().unwrap().abs() < 1e-9, "{delay}");
+        let designed = delay["total_s"].as_f64().unwrap() - delay["rounding_s"].as_f64().unwrap();
+        assert!((designed - number("delay_s")).abs() < 1e-9, "{delay}");
+    }
+    let said = posicast().arg("design").arg(&file).assert().success();
+    said.stdout(
+        predicate::str::contains("designed together: least common duration")
+            .and(predicate::str::contains(
+                "proof, checked: axis y has no shaper of at most",
+            ))
+            .and(predicate::str::contains(
+                "proof, checked: every shaper of axis y of this duration is at least",
+            )),
+    );
+    let (_folder, file) = scratch(&text.replacen("\"optimal\"", "\"zvd\"", 1));
+    posicast()
+        .arg("design")
+        .arg(&file)
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("stage.arrive_together").and(predicate::str::contains("axis x of kind zvd")));
+}

@@ -9,10 +9,12 @@
 mod axis;
 mod residual;
 mod shorter;
+mod together;
 
 pub use axis::{AxisCertificate, CornerFigures, ModeCertificate, certify_axis, measure_corners};
 pub use residual::{ResidualBound, residual_bound};
 pub use shorter::{CheckedBound, ShorterError, check_shorter};
+pub use together::{CheckedShorter, CheckedTogether, check_delay, check_together};
 
 /// Half the distance from 1 to the next number.
 const UNIT: f64 = f64::EPSILON / 2.0;

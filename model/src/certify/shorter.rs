@@ -9,7 +9,8 @@
 //!
 //! and the left side is `Σ a_i h_i` with `h_i = Σ Re(ȳ_p z_p^(N−i))`. Amplitudes of sum 1 that are not negative have `Σ
 //! a_i h_i ≥ min h_i`. With partial sums `s_i` of which the last is 1, `Σ a_i h_i = h_N + Σ s_i (h_i − h_{i+1})`, and
-//! each term is least at a bound of `s_i`. So the least left side over all allowed commands, divided by `Σ |y_p|
+//! each term is least at a bound of `s_i`. With amplitudes within bounds and any `μ`, `Σ a_i h_i = μ + Σ a_i (h_i − μ)`,
+//! and each term is least at a bound of `a_i`; the best `μ` is one of the `h_i`. So the least left side over all allowed commands, divided by `Σ |y_p|
 //! tolerance_p`, is a lower bound of the largest ratio of residual to tolerance. Above 1 it says that every shaper of
 //! `N` samples breaks a tolerance, and with it every shorter one: it would be one of `N` samples whose last amplitudes
 //! are 0, and vibration only decays.
@@ -18,7 +19,7 @@
 
 use super::{UNIT, exponential_error};
 use crate::mode::Mode;
-use posicast_optimal::{Command, LowerBound, Request};
+use posicast_optimal::{Command, LowerBound, Request, WeightedPoint};
 
 /// A bound that was checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,15 +58,11 @@ pub enum ShorterError {
 /// # Errors
 /// [`ShorterError`].
 pub fn check_shorter(request: &Request, proof: &LowerBound) -> Result<CheckedBound, ShorterError> {
-    let gains = Gains::of(request, proof)?;
-    let least = match request.command {
-        Command::Positive => {
-            let gains = gains.values.iter().map(|(gain, error)| gain - error);
-            gains.fold(f64::INFINITY, f64::min)
-        }
-        Command::PartialSums { low, high } => gains.least_over_sums(low, high),
-    };
-    let ratio = least / gains.norm * (1.0 - 8.0 * UNIT);
+    if let (Command::Amplitudes { high, .. }, true) = (request.command, proof.points.is_empty()) {
+        return too_few(high, proof.samples);
+    }
+    let gains = Gains::of(request, proof.samples, &proof.points)?;
+    let ratio = gains.least(request.command) / gains.norm * (1.0 - 8.0 * UNIT);
     if ratio > 1.0 {
         Ok(CheckedBound {
             samples: proof.samples,
@@ -80,19 +77,32 @@ pub fn check_shorter(request: &Request, proof: &LowerBound) -> Result<CheckedBou
     }
 }
 
+/// Checks that amplitudes of at most `high` on the samples of a duration do not sum to 1.
+fn too_few(high: f64, samples: u32) -> Result<CheckedBound, ShorterError> {
+    let most = (f64::from(samples) + 1.0) * high * (1.0 + 4.0 * UNIT);
+    match most < 1.0 {
+        true => Ok(CheckedBound {
+            samples,
+            ratio: f64::INFINITY,
+            points: 0,
+        }),
+        false => Err(ShorterError::Loose { samples, ratio: 0.0 }),
+    }
+}
+
 /// `h_i` with a bound of its error, and `Σ |y_p| tolerance_p`, rounded up.
-struct Gains {
-    values: Vec<(f64, f64)>,
-    norm: f64,
+pub(super) struct Gains {
+    pub(super) values: Vec<(f64, f64)>,
+    pub(super) norm: f64,
 }
 
 impl Gains {
-    fn of(request: &Request, proof: &LowerBound) -> Result<Self, ShorterError> {
-        let mut values = vec![(0.0, 0.0); proof.samples as usize + 1];
+    pub(super) fn of(request: &Request, samples: u32, points: &[WeightedPoint]) -> Result<Self, ShorterError> {
+        let mut values = vec![(0.0, 0.0); samples as usize + 1];
         let mut norm = 0.0;
         // Each sum below rounds once per point.
-        let adding = 4.0 * (proof.points.len() as f64 + 1.0) * UNIT;
-        for (index, point) in proof.points.iter().enumerate() {
+        let adding = 4.0 * (points.len() as f64 + 1.0) * UNIT;
+        for (index, point) in points.iter().enumerate() {
             let [re, im] = point.weight;
             let within = |value: f64, [low, high]: [f64; 2]| low <= value && value <= high;
             let band = request
@@ -113,7 +123,7 @@ impl Gains {
                 mode.omega_damped() / request.sample_hz,
             );
             let radius = mode.omega() / request.sample_hz;
-            for (sample, (gain, error)) in (0..=proof.samples).rev().zip(values.iter_mut()) {
+            for (sample, (gain, error)) in (0..=samples).rev().zip(values.iter_mut()) {
                 let remaining = f64::from(sample);
                 let (sin, cos) = (turn * remaining).sin_cos();
                 *gain += (-decay * remaining).exp() * (re * cos - im * sin);
@@ -122,6 +132,18 @@ impl Gains {
         }
         norm *= 1.0 + adding;
         Ok(Self { values, norm })
+    }
+
+    /// Least `Σ a_i h_i` of all amplitudes that a command allows.
+    pub(super) fn least(&self, command: Command) -> f64 {
+        match command {
+            Command::Positive => {
+                let gains = self.values.iter().map(|(gain, error)| gain - error);
+                gains.fold(f64::INFINITY, f64::min)
+            }
+            Command::PartialSums { low, high } => self.least_over_sums(low, high),
+            Command::Amplitudes { low, high } => self.least_over_amplitudes(low, high),
+        }
     }
 
     /// Least `h_N + Σ s_i (h_i − h_{i+1})` with every `s_i` within the bounds.
@@ -139,6 +161,26 @@ impl Gains {
         let rounding = 4.0 * (self.values.len() as f64 + 1.0) * UNIT * (size + last.abs());
         least + last - rounding
     }
+
+    /// Least `Σ a_i h_i` with every `a_i` within the bounds, and the sum 1: `μ + Σ min(low (h_i − μ), high (h_i − μ))` at
+    /// the `μ` where it is largest, which is the `h_i` up to which the samples at `high` are enough.
+    fn least_over_amplitudes(&self, low: f64, high: f64) -> f64 {
+        let mut order: Vec<f64> = self.values.iter().map(|(gain, _)| *gain).collect();
+        order.sort_by(f64::total_cmp);
+        let count = order.len() as f64;
+        let enough = ((1.0 - low * count) / (high - low)).floor().clamp(0.0, count - 1.0);
+        let Some(&level) = order.get(enough as usize) else {
+            return f64::NEG_INFINITY;
+        };
+        let (mut least, mut size) = (level, level.abs());
+        for (gain, error) in &self.values {
+            let step = gain - level;
+            let terms = [low, high].map(|bound| bound * step - bound.abs() * error * (1.0 + 4.0 * UNIT));
+            least += terms[0].min(terms[1]);
+            size += bound_size(low, high) * (step.abs() + error);
+        }
+        least - 4.0 * (count + 1.0) * UNIT * size
+    }
 }
 
 fn bound_size(low: f64, high: f64) -> f64 {
@@ -148,7 +190,7 @@ fn bound_size(low: f64, high: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_optimal::{Band, Prefer, WeightedPoint};
+    use posicast_optimal::{Band, Prefer};
 
     /// One undamped mode of 4 samples per period, exactly known, amplitudes not negative.
     fn request(tolerance: f64) -> Request {
@@ -203,6 +245,54 @@ mod tests {
         let mut no_band = proof(1, 1.0);
         no_band.points[0].band = 1;
         assert!(check_shorter(&request(0.05), &no_band).is_err());
+    }
+
+    #[test]
+    fn unit_bounded_amplitudes_leave_what_their_bound_makes_them() {
+        let bounded = |high: f64, tolerance| Request {
+            command: Command::Amplitudes { low: -high, high },
+            ..request(tolerance)
+        };
+        // Two amplitudes of at most ½ are both ½, as those that leave least are without a bound.
+        let exact = 0.5f64.sqrt() / 0.05;
+        for high in [0.5, 0.8] {
+            let found = check_shorter(&bounded(high, 0.05), &proof(1, 1.0)).unwrap();
+            assert!((found.ratio - exact).abs() < 1e-11, "{found:?}");
+        }
+        // Of three at 0, 90 and 180°, (a, 1 − 2a, a) leaves 1 − 2a: with a ≤ 0.4 that is 0.2.
+        let third = LowerBound {
+            samples: 2,
+            points: vec![WeightedPoint {
+                band: 0,
+                frequency_hz: 1.0,
+                damping: 0.0,
+                weight: [0.0, -1.0],
+            }],
+            ratio: 9.9,
+        };
+        let found = check_shorter(&bounded(0.4, 0.05), &third).unwrap();
+        assert!((found.ratio - 0.2 / 0.05).abs() < 1e-11, "{found:?}");
+        assert!(check_shorter(&bounded(0.5, 0.05), &third).is_err());
+        assert!(check_shorter(&bounded(0.4, 0.21), &third).is_err());
+    }
+
+    #[test]
+    fn unit_too_few_bounded_amplitudes_do_not_sum_to_one() {
+        let bounded = Request {
+            command: Command::Amplitudes { low: 0.0, high: 0.1 },
+            ..request(0.05)
+        };
+        let of = |samples| LowerBound {
+            samples,
+            points: Vec::new(),
+            ratio: f64::INFINITY,
+        };
+        assert_eq!(check_shorter(&bounded, &of(8)).unwrap().points, 0);
+        assert!(check_shorter(&bounded, &of(9)).is_err());
+        assert!(
+            check_shorter(&request(0.05), &of(1)).is_err(),
+            "without points and without a bound"
+        );
     }
 
     #[test]

@@ -69,10 +69,11 @@ fn row(
     in_file: bool,
     matched: bool,
 ) -> Result<ContourRow, ContourError> {
-    let equal = machine.stage.unwrap_or(StageSection {
-        extra_delay_s: 0.0,
-        contour_speed: None,
-    });
+    // Other kinds cannot be designed as one.
+    let equal = StageSection {
+        arrive_together: in_file && machine.stage.is_some_and(|stage| stage.arrive_together),
+        ..machine.stage.unwrap_or_default()
+    };
     let machine = Machine {
         stage: matched.then_some(equal),
         ..machine.clone()

@@ -166,6 +166,16 @@ fn of_optimal(machine: &Machine, axis: usize, error: &OptimalError) -> DesignBla
             );
             (None, "axis.shaper", remedy)
         }
+        OptimalError::Apart { .. } => (
+            None,
+            "axis.shaper",
+            "remove `arrive_together` from [stage], which then delays the earlier axes".to_owned(),
+        ),
+        OptimalError::Amplitudes { samples, .. } => {
+            let least = short(1.0 / f64::from(*samples));
+            let remedy = format!("allow amplitudes of {least} or more: the sum must be 1");
+            (None, "axis.shaper.amplitude_bounds", remedy)
+        }
         OptimalError::TapBudget { fewest, .. } => {
             let remedy = format!("allow `taps = {fewest}`, raise `tolerance`, or narrow the bands");
             (None, "axis.shaper.taps", remedy)

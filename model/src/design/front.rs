@@ -5,14 +5,14 @@ use super::{DesignError, JointError};
 use posicast_optimal::{FrontPoint, front};
 
 /// Durations that are looked at, as parts of the least one: its last tenth closely, and beyond it what a longer one would buy.
-const DURATIONS: [f64; 6] = [1.0, 1.02, 1.05, 1.11, 1.25, 1.5];
+const DURATIONS: [f64; 10] = [1.0, 1.02, 1.04, 1.06, 1.08, 1.11, 1.18, 1.25, 1.35, 1.5];
 
 /// A duration, and what it buys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrontFigures {
     /// Duration in seconds.
     pub duration_s: f64,
-    /// Fewest taps found that hold the tolerances over the bands.
+    /// Fewest taps found within this duration that hold the tolerances over the bands.
     pub taps: usize,
     /// Largest magnitude of a partial sum of these: what a step asks of the drive.
     pub peak_command: f64,

@@ -29,6 +29,9 @@ pub enum ShaperKind {
     Antisymmetric,
     Simultaneous,
     Periodic,
+    SmoothZv,
+    SmoothZvd,
+    SmoothEi,
     Optimal,
     Custom,
     None,
@@ -36,7 +39,7 @@ pub enum ShaperKind {
 
 impl ShaperKind {
     /// All kinds with their names in the machine file.
-    pub const ALL: [(ShaperKind, &'static str); 26] = [
+    pub const ALL: [(ShaperKind, &'static str); 29] = [
         (ShaperKind::Zv, "zv"),
         (ShaperKind::Zvd, "zvd"),
         (ShaperKind::Zvdd, "zvdd"),
@@ -60,6 +63,9 @@ impl ShaperKind {
         (ShaperKind::Antisymmetric, "antisymmetric"),
         (ShaperKind::Simultaneous, "simultaneous"),
         (ShaperKind::Periodic, "periodic"),
+        (ShaperKind::SmoothZv, "smooth_zv"),
+        (ShaperKind::SmoothZvd, "smooth_zvd"),
+        (ShaperKind::SmoothEi, "smooth_ei"),
         (ShaperKind::Optimal, "optimal"),
         (ShaperKind::Custom, "custom"),
         (ShaperKind::None, "none"),
@@ -106,9 +112,20 @@ impl ShaperKind {
                 | ShaperKind::Antisymmetric
                 | ShaperKind::Simultaneous
                 | ShaperKind::Periodic
+                | ShaperKind::SmoothZv
+                | ShaperKind::SmoothZvd
+                | ShaperKind::SmoothEi
                 | ShaperKind::Optimal
                 | ShaperKind::Custom
                 | ShaperKind::None
+        )
+    }
+
+    /// Whether the command is convolved with a continuous kernel, which has no impulses before it is sampled.
+    pub fn is_smooth(self) -> bool {
+        matches!(
+            self,
+            ShaperKind::SmoothZv | ShaperKind::SmoothZvd | ShaperKind::SmoothEi
         )
     }
 

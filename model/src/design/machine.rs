@@ -2,6 +2,7 @@
 
 use super::family::{self, TableFamily};
 use super::matching::{self, AxisDelay, StageDelay};
+use super::optimal::TogetherDesign;
 use super::{AxisDesign, DesignError, design_axis, optimal};
 use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
 use crate::digitise::{Digitised, digitise, quantising_error};
@@ -22,6 +23,8 @@ pub struct MachineDesign {
     pub families: Vec<TableFamily>,
     /// Remaining difference between the axes' delays, where the file has `[stage]`.
     pub stage: Option<StageDelay>,
+    /// The joint design, where the file asks for one.
+    pub together: Option<TogetherDesign>,
 }
 
 /// The shaper of one axis at its three stages: continuous impulses, real taps, integer taps.
@@ -66,8 +69,15 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
     let how = machine.fixed_point.digitise;
     let mut designs = Vec::with_capacity(machine.axes.len());
     let mut families = Vec::with_capacity(machine.axes.len());
+    let mut made: Vec<AxisDesign> = Vec::with_capacity(machine.axes.len());
     for axis in &machine.axes {
-        let design = design_axis(axis, sample_hz)?;
+        made.push(design_axis(axis, sample_hz)?);
+    }
+    let together = match machine.stage.is_some_and(|stage| stage.arrive_together) {
+        true => optimal::arrive_together(&machine.axes, &mut made, sample_hz)?,
+        false => None,
+    };
+    for (axis, design) in machine.axes.iter().zip(made) {
         let digitised = digitise(&design, how, sample_hz)?;
         designs.push((axis, design, digitised));
         families.push(family::candidates(axis, how, sample_hz)?);
@@ -111,6 +121,7 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
         stage: StageDelay::of_machine(machine, &delays),
         axes,
         families: made,
+        together,
     })
 }
 

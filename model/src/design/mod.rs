@@ -5,8 +5,8 @@
 //! Axis ─► design_axis ─► AxisDesign (float, exact) ─► digitise ─► quantise ─► TapTable     design_machine does all axes
 //! ```
 //!
-//! One file per kind of design. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`]; for all modes of
-//! an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`optimal`], [`custom`]. Every design is checked by its own
+//! One file per kind of design. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`], [`smooth`]; for all
+//! modes of an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`optimal`], [`custom`]. Every design is checked by its own
 //! residual before it is returned: what leaves this module does at the mode what its kind promises, or is an error that
 //! says where the kind ends.
 
@@ -33,6 +33,7 @@ mod path;
 pub mod periodic;
 pub mod ratios;
 pub mod simultaneous;
+pub mod smooth;
 mod time_optimal;
 pub mod vibrationless;
 pub mod zv;
@@ -51,6 +52,7 @@ use crate::impulse::ImpulseSequence;
 use crate::machine_file::{AxisMode, AxisSection};
 use crate::mode::Mode;
 use kind::ShaperKind;
+use smooth::Kernel;
 
 /// Largest number of impulses of a convolution. A tap table holds 256, so more than this is a mistake in the machine
 /// file.
@@ -97,7 +99,8 @@ pub struct ShaperPart {
     pub impulses: ImpulseSequence,
 }
 
-/// Designs the shaper of one axis for samples at `sample_hz`: `optimal` has its impulses on them, the others do not look at them.
+/// Designs the shaper of one axis for samples at `sample_hz`: `optimal` and the smooth kinds have their impulses on them, the others do not
+/// look at them.
 ///
 /// # Errors
 /// [`DesignError`] where a kind is not built, does not exist for a mode, or is given what it cannot take.
@@ -109,7 +112,7 @@ pub fn design_axis(axis: &AxisSection, sample_hz: f64) -> Result<AxisDesign, Des
             (impulses, ShaperParts::Joint { reference }, findings)
         }
         None => {
-            let (impulses, parts) = per_mode(axis)?;
+            let (impulses, parts) = per_mode(axis, sample_hz)?;
             (impulses, parts, Findings::None)
         }
     };
@@ -123,18 +126,23 @@ pub fn design_axis(axis: &AxisSection, sample_hz: f64) -> Result<AxisDesign, Des
 }
 
 /// Designs one shaper per mode and convolves them.
-fn per_mode(axis: &AxisSection) -> Result<(ImpulseSequence, ShaperParts), DesignError> {
+fn per_mode(axis: &AxisSection, sample_hz: f64) -> Result<(ImpulseSequence, ShaperParts), DesignError> {
     if axis.modes.is_empty() {
         return Err(DesignError::NoModes {
             axis: axis.name.clone(),
             kind: axis.kind_name(),
         });
     }
+    let cell_s = cell_s(axis, sample_hz)?;
     let mut whole = ImpulseSequence::unity();
     let mut parts = Vec::with_capacity(axis.modes.len());
     for axis_mode in &axis.modes {
-        let impulses = mode_impulses(axis, axis_mode)?;
-        let count = whole.impulses().len() * impulses.impulses().len();
+        let impulses = mode_impulses(axis, axis_mode, cell_s)?;
+        // Impulses on one grid coincide in their convolution, which has few more than its factors.
+        let count = match axis.kind_of(axis_mode).is_smooth() {
+            true => whole.impulses().len(),
+            false => whole.impulses().len() * impulses.impulses().len(),
+        };
         if count > IMPULSES_MAX {
             return Err(DesignError::TooManyImpulses {
                 axis: axis.name.clone(),
@@ -154,9 +162,20 @@ fn per_mode(axis: &AxisSection) -> Result<(ImpulseSequence, ShaperParts), Design
     Ok((whole, ShaperParts::PerMode(parts)))
 }
 
+/// Length in seconds of the cells in which the smooth kernels of an axis are sampled: one for all, so that they coincide.
+fn cell_s(axis: &AxisSection, sample_hz: f64) -> Result<f64, DesignError> {
+    let smooth = axis.modes.iter().filter(|mode| axis.kind_of(mode).is_smooth());
+    let kernels = smooth.map(|mode| Kernel::new(axis.kind_of(mode), &mode.mode, axis.tolerance_of(mode)));
+    let kernels: Vec<Kernel> = kernels.collect::<Result<_, _>>()?;
+    Ok(smooth::samples_per_cell(&kernels, sample_hz) / sample_hz)
+}
+
 /// Designs the impulses of one mode's shaper, and checks them at the mode.
-fn mode_impulses(axis: &AxisSection, axis_mode: &AxisMode) -> Result<ImpulseSequence, DesignError> {
+fn mode_impulses(axis: &AxisSection, axis_mode: &AxisMode, cell_s: f64) -> Result<ImpulseSequence, DesignError> {
     let (kind, mode) = (axis.kind_of(axis_mode), axis_mode.mode);
+    if kind.is_smooth() {
+        return Kernel::new(kind, &mode, axis.tolerance_of(axis_mode))?.sampled(kind, cell_s);
+    }
     // A shaper that serves all modes of an axis cannot be one factor of a convolution.
     if kind.treats_modes_together() && kind != ShaperKind::None {
         return Err(DesignError::JointKindOfOneMode {
@@ -187,8 +206,8 @@ pub struct ModeSettings {
 /// Designs the shaper of one mode, and checks it at the mode.
 ///
 /// # Errors
-/// [`DesignError`] where the kind is not built or treats modes together, does not exist for the mode, or misses its
-/// promise.
+/// [`DesignError`] where the kind is not built, treats modes together or is a smooth one, which needs the sample grid
+/// ([`smooth::Kernel`]), does not exist for the mode, or misses its promise.
 pub fn design_mode(kind: ShaperKind, mode: &Mode, settings: &ModeSettings) -> Result<ImpulseSequence, DesignError> {
     let tolerance = settings.tolerance;
     let (impulses, promised) = match kind {

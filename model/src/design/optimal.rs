@@ -4,22 +4,37 @@
 //! proof. Here the machine file's modes become its bands, its taps become impulses, and its rounding replaces that by largest remainder:
 //! units move between taps until the residual of the *integer* table is within every tolerance over the whole bands.
 
+use super::kind::ShaperKind;
+use super::matching::mode_lag_s;
 use super::{AxisDesign, DesignError, Findings, JointError};
 use crate::digitise::{DELAY_MAX_SAMPLES, Digitised, TAPS_MAX, quantise};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::machine_file::AxisSection;
 use crate::taps::{Tap, TapTable};
-use posicast_optimal::{Band, Command, LowerBound, Request, round_taps, shortest};
+use posicast_optimal::{
+    Band, Command, LowerBound, Partner, Request, Shortest, Together, round_taps, shortest, together,
+};
 
 /// What the design of `optimal` found beside its impulses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimal {
     /// What was asked for.
     pub request: Request,
-    /// Least duration in samples, whatever the number of taps.
+    /// Least duration in samples, whatever the number of taps and whatever the other axes.
     pub least_samples: u32,
     /// Why one sample less does not do.
     pub shorter: Option<LowerBound>,
+    /// Whether the taps are those of a joint design, which may last longer.
+    pub is_together: bool,
+}
+
+/// The joint design of all axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TogetherDesign {
+    /// What was asked for: the axes, each with its shortest shaper alone.
+    pub partners: Vec<Partner>,
+    /// What was found, with its proofs.
+    pub found: Together,
 }
 
 /// What the machine file asks for.
@@ -56,20 +71,81 @@ pub fn design(axis: &AxisSection, sample_hz: f64) -> Result<(ImpulseSequence, Op
     }
     let request = request(axis, sample_hz);
     let found = shortest(&request).map_err(JointError::from)?;
-    let impulses = found.taps.iter().map(|&(sample, amplitude)| Impulse {
-        time_s: f64::from(sample) / sample_hz,
-        amplitude,
-    });
-    let impulses = ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::NoSequence {
-        what: format!("axis {}: shaper \"optimal\"", axis.name),
-        cause,
-    })?;
+    let impulses = of_taps(&axis.name, &found.taps, sample_hz)?;
     let findings = Optimal {
         request,
         least_samples: found.least_samples,
         shorter: found.shorter,
+        is_together: false,
     };
     Ok((impulses, findings))
+}
+
+fn of_taps(axis: &str, taps: &[(u32, f64)], sample_hz: f64) -> Result<ImpulseSequence, DesignError> {
+    // A sequence begins at 0; a shaper that has to be late may begin with samples without an amplitude.
+    let begin = taps.first().filter(|tap| tap.0 > 0).map(|_| (0, 0.0));
+    let impulses = begin
+        .into_iter()
+        .chain(taps.iter().copied())
+        .map(|(sample, amplitude)| Impulse {
+            time_s: f64::from(sample) / sample_hz,
+            amplitude,
+        });
+    ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::NoSequence {
+        what: format!("axis {axis}: shaper \"optimal\""),
+        cause,
+    })
+}
+
+/// Designs the `optimal` shapers of all axes as one, in place of those that they have alone.
+///
+/// # Errors
+/// [`DesignError::JointOfAxis`] with the axis and the cause.
+pub(crate) fn arrive_together(
+    axes: &[AxisSection],
+    designs: &mut [AxisDesign],
+    sample_hz: f64,
+) -> Result<Option<TogetherDesign>, DesignError> {
+    let partners: Option<Vec<Partner>> = axes
+        .iter()
+        .zip(designs.iter())
+        .map(|(axis, design)| partner(axis, design, sample_hz))
+        .collect();
+    let Some(partners) = partners else {
+        return Ok(None);
+    };
+    let found = together(&partners).map_err(|error| DesignError::JointOfAxis {
+        axis: designs
+            .get(error.axis)
+            .map_or_else(String::new, |design| design.name.clone()),
+        kind: ShaperKind::Optimal,
+        cause: Box::new(JointError::from(error.cause).into()),
+    })?;
+    for (design, taps) in designs.iter_mut().zip(&found.taps) {
+        design.impulses = of_taps(&design.name, taps, sample_hz)?;
+        if let Findings::Optimal(optimal) = &mut design.findings {
+            optimal.is_together = true;
+        }
+    }
+    Ok(Some(TogetherDesign { partners, found }))
+}
+
+fn partner(axis: &AxisSection, design: &AxisDesign, sample_hz: f64) -> Option<Partner> {
+    let Findings::Optimal(optimal) = &design.findings else {
+        return None;
+    };
+    let taps = design.impulses.impulses().iter();
+    Some(Partner {
+        request: optimal.request.clone(),
+        alone: Shortest {
+            taps: taps
+                .map(|impulse| ((impulse.time_s * sample_hz).round() as u32, impulse.amplitude))
+                .collect(),
+            least_samples: optimal.least_samples,
+            shorter: optimal.shorter.clone(),
+        },
+        lag_samples: mode_lag_s(axis) * sample_hz,
+    })
 }
 
 /// The integer tables of shapers with one `F`: by largest remainder, those of `optimal` by their residual.

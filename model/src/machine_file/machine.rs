@@ -131,7 +131,11 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     let target = root.table("target").and_then(|table| read_target(&table));
     root.require("axis", format_args!("1 to {MAX_AXES} tables [[axis]]"));
     let axes = read_axes(root, clock, fixed_point);
-    let stage = root.table("stage").map(|table| stage::read(&table));
+    let stage = root.table("stage").map(|table| {
+        let stage = stage::read(&table);
+        stage::check(&table, &stage, axes.as_deref().unwrap_or_default());
+        stage
+    });
     let link = read_link(root, clock, axes.as_deref());
     Some(Machine {
         name: name?,

@@ -41,6 +41,7 @@ const PREFERENCES: [(&str, Prefer); 3] = [
 const BASES: [ShaperKind; 3] = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi];
 
 const COMMAND: &str = "command";
+const AMPLITUDE_BOUNDS: &str = "amplitude_bounds";
 const TAPS: &str = "taps";
 const PREFER: &str = "prefer";
 
@@ -96,6 +97,11 @@ pub(super) const KEYS: &[Key] = &[
     )
     .default(Default::Word(POSITIVE)),
     Key::new(
+        AMPLITUDE_BOUNDS,
+        Values::PlainPair(SUMS),
+        "Bounds of each amplitude of `optimal`, in steps, in place of `command`: [low, high] with low at most 0 and high above 0.",
+    ),
+    Key::new(
         TAPS,
         Values::Integer(2, TAPS_MAX as u32),
         "Most taps of `optimal`: met by a longer duration where it must be.",
@@ -124,8 +130,9 @@ pub(super) const ORDER: Key = Key::new(
 /// The kinds that have an order.
 const ORDER_KINDS: &[ShaperKind] = &[ShaperKind::ChebyshevEi, ShaperKind::Vibrationless];
 /// The keys that serve some kinds only, with those kinds.
-const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 10] = [
+const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 11] = [
     (COMMAND, &[ShaperKind::Optimal]),
+    (AMPLITUDE_BOUNDS, &[ShaperKind::Optimal]),
     (TAPS, &[ShaperKind::Optimal]),
     (PREFER, &[ShaperKind::Optimal]),
     ("order", ORDER_KINDS),
@@ -186,12 +193,13 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
     let method = table.choice("method", &METHODS).map(str::to_owned);
     let ratio_tolerance = table.number("ratio_tolerance", RATIO_TOLERANCE);
     let command = read_command(table);
+    let amplitudes = read_amplitude_bounds(table);
     let taps = table.integer(TAPS, 2, TAPS_MAX as u32);
     let prefer = table.choice(PREFER, &PREFERENCES.map(|(name, _)| name));
     let prefer = PREFERENCES.into_iter().find(|(name, _)| Some(*name) == prefer);
     let kind = kind?;
     Some(ShaperChoice {
-        command,
+        command: amplitudes.or(command),
         taps,
         prefer: prefer.map(|(_, prefer)| prefer),
         kind,
@@ -222,6 +230,27 @@ fn read_command(table: &Table<'_, '_>) -> Option<Command> {
         allowed,
         "such as `command = [-1, 1]`, or `command = \"positive\"`",
     );
+    None
+}
+
+/// The bounds of each amplitude; 0 lies within them, because most samples have none.
+fn read_amplitude_bounds(table: &Table<'_, '_>) -> Option<Command> {
+    let [low, high] = table.numbers::<2>(AMPLITUDE_BOUNDS, SUMS)?;
+    if table.has(COMMAND) {
+        let found = format!("{AMPLITUDE_BOUNDS} beside {COMMAND}");
+        let allowed = format!("one of {AMPLITUDE_BOUNDS} and {COMMAND}");
+        let remedy = format!(
+            "remove `{COMMAND}`; `{AMPLITUDE_BOUNDS} = [0, {}]` is a positive command too",
+            short(high)
+        );
+        table.contradiction(AMPLITUDE_BOUNDS, found, allowed, remedy);
+        return None;
+    }
+    if low <= 0.0 && high > 0.0 {
+        return Some(Command::Amplitudes { low, high });
+    }
+    let allowed = "[low, high] with low at most 0 and high above 0";
+    table.refuse(AMPLITUDE_BOUNDS, allowed, "such as `amplitude_bounds = [0, 0.3]`");
     None
 }
 

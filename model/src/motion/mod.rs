@@ -2,6 +2,7 @@
 //!
 //! - [`Profile`]: a point-to-point move in up to seven segments, as fast as the limits allow;
 //! - [`AxisMove`]: the move that `run` and `simulate` use where no command file is given: its distance and velocity;
+//! - [`compare_move`]: one move behind a shaper, beside one whose jerk time is a period of a mode;
 //! - [`Trajectory`]: steps, ramps, trapezoids and such moves as cubics of time, which a shaper keeps exact;
 //! - [`resample`]: a command given as points in time, on the sample grid;
 //! - [`command_words`]: positions as Q`command_fraction` counts, rounded half up; a position that does not fit is an
@@ -13,6 +14,7 @@
 //! The planner works in counts and ticks. Everything else has positions in metres or radians and times in seconds.
 
 mod axis_move;
+mod by_period;
 mod command;
 mod planner;
 mod profile;
@@ -21,6 +23,7 @@ mod trajectory;
 mod words;
 
 pub use axis_move::{AxisMove, AxisMoveError};
+pub use by_period::{BetterMove, MoveComparison, MoveFigures, PeriodMove, compare_move};
 pub use command::{PointsError, resample, settle_s};
 pub use planner::{POINTS_MAX, PlanError, plan_circle, plan_move, plan_places, plan_to_and_fro};
 pub(crate) use profile::motion_limits;

@@ -153,6 +153,10 @@ impl Example {
         let sums = impulses.partial_sums();
         let may = match self.command {
             Command::Positive => impulses.impulses().iter().all(|impulse| impulse.amplitude >= 0.0),
+            Command::Amplitudes { low, high } => impulses
+                .impulses()
+                .iter()
+                .all(|impulse| (low - SLACK..=high + SLACK).contains(&impulse.amplitude)),
             Command::PartialSums { low, high } => sums.min >= low - SLACK && sums.max <= high + SLACK,
         };
         let within =

@@ -46,6 +46,7 @@ fn unit_every_key_yields_its_value() {
     let stage = StageSection {
         extra_delay_s: 0.0,
         contour_speed: Some(0.1),
+        arrive_together: false,
     };
     assert_eq!(machine.stage, Some(stage));
 }
@@ -67,6 +68,7 @@ fn unit_what_is_left_out_has_its_default() {
     let nothing = StageSection {
         extra_delay_s: 0.0,
         contour_speed: None,
+        arrive_together: false,
     };
     assert_eq!(stage, Some(nothing));
 }

@@ -162,6 +162,8 @@ fn unit_a_command_is_positive_or_has_bounds_round_its_end() {
         "command = [0, 1.2]",
         "taps = 256",
         "prefer = \"least-delay\"",
+        "amplitude_bounds = [0, 0.3]",
+        "amplitude_bounds = [-0.5, 1.5]",
     ] {
         right(&optimal(right_one));
     }
@@ -176,6 +178,17 @@ fn unit_a_command_is_positive_or_has_bounds_round_its_end() {
         );
         assert_eq!(wrong(&optimal(&format!("command = {command}"))).to_string(), expected);
     }
+    for bounds in ["[0.1, 0.5]", "[-1, 0]"] {
+        let expected = format!(
+            "m.toml:12: axis.shaper.amplitude_bounds of axis x: found {bounds}; allowed: [low, high] with low at most 0 and high above 0"
+        );
+        assert_eq!(
+            wrong(&optimal(&format!("amplitude_bounds = {bounds}"))).to_string(),
+            expected
+        );
+    }
+    let both = wrong(&optimal("amplitude_bounds = [0, 0.3]\ncommand = \"positive\"")).to_string();
+    assert!(both.contains("allowed: one of amplitude_bounds and command"), "{both}");
     let expected = format!("{place}: found \"negative\"; allowed: positive");
     assert_eq!(wrong(&optimal("command = \"negative\"")).to_string(), expected);
     let expected = "m.toml:12: axis.shaper.taps of axis x: found 1; allowed: a whole number, 2 to 256";
@@ -184,6 +197,19 @@ fn unit_a_command_is_positive_or_has_bounds_round_its_end() {
     assert_eq!(
         wrong(&SMALL.replace("\"zvd\"", "\"zvd\"\ntaps = 4")).to_string(),
         expected
+    );
+}
+
+#[test]
+fn unit_axes_that_arrive_together_all_have_optimal_shapers() {
+    let together = |kind: &str| SMALL.replace("\"zvd\"", kind) + "[stage]\narrive_together = true\n";
+    assert!(right(&together("\"optimal\"")).stage.unwrap().arrive_together);
+    let error = wrong(&together("\"zvd\"")).to_string();
+    assert!(
+        error.contains(
+            "stage.arrive_together: found arrive_together with axis x of kind zvd; allowed: kind = \"optimal\""
+        ),
+        "{error}"
     );
 }
 

@@ -25,7 +25,7 @@ mod tables;
 use posicast_model::contour::{Contour, ContourError};
 use posicast_model::design::{MachineDesign, TableFamily, design_machine};
 use posicast_model::hardware::{self, MachineStageError};
-use posicast_model::machine_file::{Machine, StageSection};
+use posicast_model::machine_file::Machine;
 use posicast_model::motion::{AxisMove, PlanError};
 use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -194,12 +194,8 @@ impl<'a> StageRun<'a> {
     /// [`StageRunError::Design`] where a table cannot hold the delay that it needs; [`StageRunError::MachineStage`]
     /// where the stage cannot be made.
     pub fn with_delays(machine: &'a Machine, equal: bool, seed: u64) -> Result<Option<Self>, StageRunError> {
-        let own = machine.stage.unwrap_or(StageSection {
-            extra_delay_s: 0.0,
-            contour_speed: None,
-        });
         let other = Machine {
-            stage: equal.then_some(own),
+            stage: equal.then_some(machine.stage.unwrap_or_default()),
             ..machine.clone()
         };
         let design = designed(&other)?;
