@@ -53,6 +53,7 @@ mod picture;
 mod result;
 mod rule;
 pub mod sample;
+mod scopes;
 mod side;
 mod svg;
 mod text;
