@@ -216,6 +216,7 @@ fn cli_files_are_written_and_only_ours_are_replaced() {
         &["--junit", &junit, "--html", &junit],
         &["--junit", two.folder.path().to_str().unwrap()],
         &["--junit", &two.at("no/j.xml")],
+        &["--merged", &two.at("m.fst")],
     ] {
         let output = wavecmp(&[&[&*two.a, &*two.b], wrong].concat());
         assert_eq!(output.status.code(), Some(2), "{wrong:?}");

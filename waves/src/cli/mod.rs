@@ -184,6 +184,15 @@ fn claim(args: &Args, host: &mut dyn CommandHost) -> Result<(), CliError> {
             )));
         }
     }
+    if let Some(path) = merged
+        .as_ref()
+        .filter(|path| path.extension().is_none_or(|end| end != "vcd"))
+    {
+        return Err(CliError::Usage(format!(
+            "--merged {}: what is written is a VCD: give a name that ends in .vcd",
+            path.display()
+        )));
+    }
     let mut files: Vec<(&str, PathBuf)> = Vec::new();
     files.extend(junit.iter().map(|path| ("--junit", path.clone())));
     files.extend(html.iter().map(|path| ("--html", path.clone())));
