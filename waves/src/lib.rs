@@ -34,6 +34,7 @@ pub mod diff;
 mod error;
 pub mod files;
 pub mod merge;
+mod pile;
 mod reader;
 pub mod unit;
 pub mod wording;

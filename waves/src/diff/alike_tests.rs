@@ -149,3 +149,87 @@ fn unit_stretches_that_are_the_same_are_found() {
         assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
     }
 }
+
+/// Signals of one bit, with id codes of one to three characters.
+const BITS: usize = 12;
+
+/// Writes rows of changes of single bits; `reversed` has other id codes and another order at each time.
+fn text_of_bits(rows: &[Vec<(usize, char)>], reversed: bool) -> String {
+    let id = |at: usize| {
+        let at = if reversed { BITS - at } else { at };
+        format!("{}{}", char::from(b'!' + at as u8), &["", "~", "a!"][at % 3])
+    };
+    let mut text = format!(
+        "$timescale 1ns $end\n$scope module t $end\n$var wire 1 {} clk $end\n",
+        id(BITS)
+    );
+    for at in 0..BITS {
+        let _ = writeln!(text, "$var wire 1 {} s{at} $end", id(at));
+    }
+    let _ = write!(text, "$upscope $end\n$enddefinitions $end\n#0\n0{}\n", id(BITS));
+    for (clock, row) in rows.iter().enumerate() {
+        let mut lines: Vec<String> = row.iter().map(|(at, digit)| format!("{digit}{}\n", id(*at))).collect();
+        lines.push(format!("1{}\n", id(BITS)));
+        if reversed {
+            lines.reverse();
+        }
+        let _ = write!(
+            text,
+            "#{}\n{}#{}\n0{}\n",
+            10 * clock + 5,
+            lines.concat(),
+            10 * clock + 10,
+            id(BITS)
+        );
+    }
+    text
+}
+
+/// Returns how many samples differ of each signal, computed a signal and a sample at a time.
+fn counted(rows: [&[Vec<(usize, char)>]; 2]) -> Vec<(String, u64)> {
+    let mut values = [['x'; BITS]; 2];
+    let mut counts = [0; BITS];
+    for clock in 0..rows[0].len() {
+        for (at, count) in counts.iter_mut().enumerate() {
+            *count += u64::from(values[0][at] != values[1][at]);
+        }
+        for (values, rows) in values.iter_mut().zip(rows) {
+            for (at, digit) in &rows[clock] {
+                values[*at] = *digit;
+            }
+        }
+    }
+    let named = counts.iter().enumerate().filter(|(_, count)| **count > 0);
+    named.map(|(at, count)| (format!("t.s{at}"), *count)).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn prop_single_bits_differ_at_the_samples_at_which_they_differ_one_by_one(
+        rows in prop::collection::vec(prop::collection::btree_map(0..BITS, prop::sample::select(vec!['0', '1', 'x']), 0..8), 1..60),
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0..BITS, prop::sample::select(vec!['0', '1', 'x'])), 0..4),
+        reversed: bool,
+    ) {
+        let rows: Vec<Vec<(usize, char)>> = rows.into_iter().map(|row| row.into_iter().collect()).collect();
+        let mut other = rows.clone();
+        for (row, signal, digit) in edits {
+            let row = &mut other[row.index(rows.len())];
+            row.retain(|(at, _)| *at != signal);
+            row.push((signal, digit));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.vcd", "b.vcd"].map(|name| folder.path().join(name));
+        std::fs::write(&a, text_of_bits(&rows, false)).unwrap();
+        std::fs::write(&b, text_of_bits(&other, reversed)).unwrap();
+        for [first, second] in [[&a, &b], [&b, &a]] {
+            let result = compare_by(first, second, &DiffOptions::default(), &mut |_| {}, false).unwrap();
+            let mut found: Vec<_> = result.differences.iter().map(|found| (found.signal.clone(), found.count)).collect();
+            let mut expected = counted([&rows, &other]);
+            found.sort();
+            expected.sort();
+            prop_assert_eq!(found, expected);
+        }
+    }
+}

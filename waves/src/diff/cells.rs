@@ -1,13 +1,15 @@
 //! Keeps both values side by side of the pairs that are compared word by word, which are nearly all.
 //!
 //! A change costs one comparison, and a sample at which all are equal again costs nothing. Changes since the last
-//! sample are noted with the value at that sample.
+//! sample are noted with the value at that sample. Signals of one bit, of which most designs have the most, and which
+//! change the most, have both values in one byte.
 
 use super::matching::Pair;
 use super::rule::Rule;
 use super::side::Side;
 use super::touched::Lists;
-use crate::reader::Kind;
+use crate::pile::Pile;
+use crate::reader::{Changed, Changes, Kind};
 
 /// Marks a slot without a cell; its pairs are compared the general way.
 pub(super) const GENERAL: u32 = u32::MAX;
@@ -23,15 +25,36 @@ pub(super) struct Cell {
 
 /// A cell that became equal or different, and the first file's value before that.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Noted {
-    pub(super) cell: u32,
-    pub(super) before: Words,
+struct Noted {
+    cell: u32,
+    before: Words,
+}
+
+/// The same for a cell of one bit, and below it both digits before that.
+#[derive(Debug, Clone, Copy, Default)]
+struct NotedBit(u32);
+
+impl NotedBit {
+    fn cell(self) -> u32 {
+        self.0 >> 4
+    }
+}
+
+/// A pair of slots of which each has the other as its only partner.
+pub(super) struct Partners {
+    pub(super) slots: [u32; 2],
+    pub(super) width: u32,
+    /// The pairs of signals that have these slots.
+    pub(super) pairs: Vec<u32>,
 }
 
 /// The cells of a comparison.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
-    pub(super) cells: Vec<Cell>,
+    /// The cells of one bit: the first file's digit in bits 0 and 1, the second's in bits 2 and 3.
+    bits: Vec<u8>,
+    /// The cells of more bits, whose numbers begin after those.
+    wide: Vec<Cell>,
     /// Cell of each slot, for both files; empty if there are no cells.
     pub(super) of_slot: [Vec<u32>; 2],
     /// The pairs of each cell.
@@ -40,7 +63,75 @@ pub(super) struct Cells {
     unequal: usize,
     /// Cells whose pairs count as different since the last sample.
     pub(super) different: usize,
-    pub(super) noted: Vec<Noted>,
+    noted_bits: Pile<NotedBit>,
+    noted: Vec<Noted>,
+}
+
+/// What a digit of a file does to a cell of one bit, by the cell's digits and, above them, the new one: the digits after
+/// that, and these flags.
+static STEPS: [[u8; 64]; 2] = {
+    let mut steps = [[0; 64]; 2];
+    let mut at = 0;
+    while at < 128 {
+        let (side, both, digit) = (at / 64, at % 16, at / 16 % 4);
+        let after = both & !(3 << (2 * side)) | digit << (2 * side);
+        let [was_equal, is_equal] = [both / 4 == both % 4, after / 4 == after % 4];
+        let flags = match (was_equal, is_equal) {
+            (true, false) => CHANGED | BECAME_UNEQUAL,
+            (false, true) => CHANGED | BECAME_EQUAL,
+            _ => 0,
+        };
+        steps[side][at % 64] = after as u8 | flags;
+        at += 1;
+    }
+    steps
+};
+/// The cells of one bit while changes are taken.
+struct Bits<'a> {
+    both: &'a mut [u8],
+    /// Places for notes, at least one for each change, and how many have been taken.
+    notes: &'a mut [NotedBit],
+    count: usize,
+    unequal: usize,
+    /// The flag of what is noted.
+    noted_if: u8,
+}
+
+impl Bits<'_> {
+    /// Changes the digit of one file; returns `false` if it is no such cell.
+    #[inline(always)] // a call for each change takes as long as the rest of it
+    fn set<const SIDE: usize>(&mut self, cell: u32, digit: u8) -> bool {
+        let (Some(both), Some(note)) = (self.both.get_mut(cell as usize), self.notes.get_mut(self.count)) else {
+            return false;
+        };
+        let step = STEPS[SIDE][usize::from(*both & 15 | digit << 4) & 63];
+        // It is noted without a branch: in the first place that is left, which counts if there was something to note.
+        *note = NotedBit(cell << 4 | u32::from(*both));
+        *both = step & 15;
+        self.count += usize::from(step & self.noted_if != 0);
+        self.unequal += usize::from(step & BECAME_UNEQUAL != 0);
+        self.unequal -= usize::from(step & BECAME_EQUAL != 0);
+        true
+    }
+}
+
+const CHANGED: u8 = 1 << 4;
+const BECAME_UNEQUAL: u8 = 1 << 5;
+const BECAME_EQUAL: u8 = 1 << 6;
+
+/// Returns the words of a digit, which is in bits 0 and 1.
+#[inline]
+fn words_of(digit: u8) -> &'static Words {
+    static WORDS: [Words; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+    &WORDS[usize::from(digit & 3)]
+}
+
+/// Returns the digit of the words of one bit.
+fn digit_of(words: &[u64]) -> u8 {
+    match words {
+        [bit, unknown] => (unknown << 1 | bit) as u8 & 3,
+        _ => 0,
+    }
 }
 
 /// Compares word by word: a comparison of whole arrays reads them in one piece, which must wait until the pieces that were
@@ -51,26 +142,34 @@ fn same(a: Words, b: Words) -> bool {
 }
 
 impl Cells {
-    /// Creates cells for these pairs of slots, each with the numbers of its pairs, all without a value.
-    pub(super) fn new(slots: [usize; 2], cells: &[([u32; 2], u32, Vec<u32>)]) -> Self {
+    /// Creates cells for these partners, those of one bit first, all without a value.
+    pub(super) fn new(slots: [usize; 2], cells: &[Partners]) -> Self {
+        const UNKNOWN: u8 = 0b1010;
         let mut of_slot = slots.map(|count| vec![GENERAL; count]);
         let mut entries = Vec::new();
-        let mut values = Vec::new();
-        for (at, (slots, width, pairs)) in (0..).zip(cells) {
-            for (of_slot, slot) in of_slot.iter_mut().zip(slots) {
-                of_slot[*slot as usize] = at;
+        let (mut bits, mut wide) = (Vec::new(), Vec::new());
+        for (at, partners) in (0..).zip(cells) {
+            for (of_slot, slot) in of_slot.iter_mut().zip(partners.slots) {
+                of_slot[slot as usize] = at;
             }
-            entries.extend(pairs.iter().map(|pair| (at, *pair)));
-            let unknown = [0, u64::MAX >> (64 - width)];
-            values.push(Cell { of: [unknown; 2] });
+            entries.extend(partners.pairs.iter().map(|pair| (at, *pair)));
+            if partners.width == 1 {
+                bits.push(UNKNOWN);
+            } else {
+                let unknown = [0, u64::MAX >> (64 - partners.width)];
+                wide.push(Cell { of: [unknown; 2] });
+            }
         }
-        let noted = (0..cells.len() as u32).map(|cell| Noted {
+        let noted_bits = (0..bits.len() as u32).map(|cell| NotedBit(cell << 4 | u32::from(UNKNOWN)));
+        let noted = (bits.len() as u32..).zip(&wide).map(|(cell, values)| Noted {
             cell,
-            before: values[cell as usize].of[0],
+            before: values.of[0],
         });
         Self {
+            noted_bits: Pile::from(noted_bits.collect::<Vec<_>>()),
             noted: noted.collect(),
-            cells: values,
+            bits,
+            wide,
             of_slot,
             pairs: Lists::new(cells.len(), &entries),
             unequal: 0,
@@ -84,37 +183,98 @@ impl Cells {
         self.of_slot[side].get(slot as usize).copied().unwrap_or(GENERAL)
     }
 
-    /// Changes the value of one file.
-    #[inline]
-    pub(super) fn set(&mut self, side: usize, at: u32, words: Words) {
-        let cell = &mut self.cells[at as usize];
-        let before = cell.of[0];
-        let was_equal = same(before, cell.of[1]);
-        let is_equal = same(words, cell.of[1 - side]);
-        cell.of[side] = words;
-        if was_equal == is_equal {
-            // Both values of an equal cell cannot change at once; of a different one, the difference continues.
-            return;
+    /// Returns the values of both files.
+    pub(super) fn both(&self, at: u32) -> [&Words; 2] {
+        match self.bits.get(at as usize) {
+            Some(both) => [words_of(*both), words_of(both >> 2)],
+            None => self.wide[at as usize - self.bits.len()].of.each_ref(),
         }
-        if is_equal {
-            self.unequal -= 1;
-            if self.different == 0 {
-                return;
+    }
+
+    /// Changes the values of one file. `other` takes the changes of slots without a cell.
+    ///
+    /// Both values of an equal cell cannot change at once; of a different one, the difference continues.
+    pub(super) fn take(&mut self, side: usize, changes: Changes<'_>, other: impl FnMut(u32, Changed<'_>)) {
+        match side {
+            0 => self.take_of::<0>(changes, other),
+            _ => self.take_of::<1>(changes, other),
+        }
+    }
+
+    fn take_of<const SIDE: usize>(&mut self, mut changes: Changes<'_>, mut other: impl FnMut(u32, Changed<'_>)) {
+        // What the loop needs is in variables of its own: after each byte written, the fields would be read again.
+        let of_slot = &self.of_slot[SIDE][..];
+        let cell_of = |slot: u32| of_slot.get(slot as usize).copied().unwrap_or(GENERAL);
+        let was_different = self.different > 0;
+        let mut bits = Bits {
+            both: &mut self.bits[..],
+            notes: self.noted_bits.room(changes.len()),
+            count: 0,
+            unequal: self.unequal,
+            noted_if: if was_different { CHANGED } else { BECAME_UNEQUAL },
+        };
+        loop {
+            if let Some((slot, digit)) = changes.next_digit() {
+                if !bits.set::<SIDE>(cell_of(slot), digit) {
+                    other(slot, Changed::Digit(digit));
+                }
+                continue;
             }
-        } else {
-            self.unequal += 1;
+            let Some((slot, changed)) = changes.next() else { break };
+            let at = cell_of(slot);
+            if let (Some(cell), Some(words)) = (
+                self.wide.get_mut((at as usize).wrapping_sub(bits.both.len())),
+                changed.pair(),
+            ) {
+                let before = cell.of[0];
+                let was_equal = same(before, cell.of[1]);
+                let is_equal = same(words, cell.of[1 - SIDE]);
+                cell.of[SIDE] = words;
+                if was_equal != is_equal {
+                    bits.unequal = bits.unequal + usize::from(was_equal) - usize::from(is_equal);
+                    if was_equal || was_different {
+                        self.noted.push(Noted { cell: at, before });
+                    }
+                }
+            } else if !bits.set::<SIDE>(at, digit_of(changed.words())) {
+                other(slot, changed);
+            }
         }
-        self.noted.push(Noted { cell: at, before });
-        if self.noted.len() > 4 * self.cells.len() + 1024 {
+        self.unequal = bits.unequal;
+        let count = bits.count;
+        self.noted_bits.grow(count);
+        if self.noted.len() + self.noted_bits.len() > 4 * self.count() + 1024 {
             self.press();
         }
     }
 
+    /// Returns the cells that became equal or different since the last sample; a cell may be among them several times.
+    pub(super) fn noted(&self) -> impl Iterator<Item = u32> {
+        let bits = self.noted_bits.as_slice().iter().map(|noted| noted.cell());
+        bits.chain(self.noted.iter().map(|noted| noted.cell))
+    }
+
+    /// Forgets what was noted, at a sample.
+    #[inline]
+    pub(super) fn forget_noted(&mut self) {
+        self.noted_bits.truncate(0);
+        self.noted.clear();
+    }
+
+    fn count(&self) -> usize {
+        self.bits.len() + self.wide.len()
+    }
+
     /// Changes the values of both files to the same.
     pub(super) fn set_both(&mut self, at: u32, words: Words) {
-        let cell = &mut self.cells[at as usize];
-        self.unequal -= usize::from(cell.of[0] != cell.of[1]);
-        cell.of = [words; 2];
+        self.unequal -= usize::from(!self.is_equal(at));
+        match self.bits.get_mut(at as usize) {
+            Some(both) => *both = digit_of(&words) * 0b101,
+            None => {
+                let place = at as usize - self.bits.len();
+                self.wide[place].of = [words; 2];
+            }
+        }
     }
 
     /// Returns whether all cells are equal and were equal at the last sample.
@@ -124,21 +284,25 @@ impl Cells {
     }
 
     pub(super) fn is_equal(&self, at: u32) -> bool {
-        let cell = &self.cells[at as usize];
-        cell.of[0] == cell.of[1]
+        let [a, b] = self.both(at);
+        a == b
     }
 
     /// Returns the first file's value at the last sample.
     pub(super) fn before(&self, at: u32) -> Words {
+        if let Some(noted) = self.noted_bits.as_slice().iter().find(|noted| noted.cell() == at) {
+            return *words_of(noted.0 as u8);
+        }
         let noted = self.noted.iter().find(|noted| noted.cell == at);
-        noted.map_or(self.cells[at as usize].of[0], |noted| noted.before)
+        noted.map_or(*self.both(at)[0], |noted| noted.before)
     }
 
     /// Keeps only the first note of each cell, since there may be no sample for a long time.
     fn press(&mut self) {
-        let mut seen = vec![false; self.cells.len()];
-        self.noted
-            .retain(|noted| !std::mem::replace(&mut seen[noted.cell as usize], true));
+        let mut seen = vec![false; self.count()];
+        let mut is_first = |cell: u32| !std::mem::replace(&mut seen[cell as usize], true);
+        self.noted_bits.retain(|noted| is_first(noted.cell()));
+        self.noted.retain(|noted| is_first(noted.cell));
     }
 }
 
@@ -169,21 +333,27 @@ pub(super) fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u
             is_general[side][slot as usize] |= !simple || *known != partner;
         }
     }
-    let mut cells: Vec<([u32; 2], u32, Vec<u32>)> = Vec::new();
+    let mut cells: Vec<Partners> = Vec::new();
     let mut of_slot = std::collections::HashMap::new();
-    for (at, (pair, _)) in (0..).zip(pairs) {
-        let (Some(slot_a), Some(slot_b), Some(width)) = (pair.a, pair.b, width(pair)) else {
-            continue;
-        };
-        if is_general[0][slot_a as usize] || is_general[1][slot_b as usize] {
-            continue;
+    for of_one_bit in [true, false] {
+        for (at, (pair, _)) in (0..).zip(pairs) {
+            let (Some(slot_a), Some(slot_b), Some(width)) = (pair.a, pair.b, width(pair)) else {
+                continue;
+            };
+            if (width == 1) != of_one_bit || is_general[0][slot_a as usize] || is_general[1][slot_b as usize] {
+                continue;
+            }
+            let cell = *of_slot.entry(slot_a).or_insert_with(|| {
+                cells.push(Partners {
+                    slots: [slot_a, slot_b],
+                    width,
+                    pairs: Vec::new(),
+                });
+                cells.len() - 1
+            });
+            cells[cell].pairs.push(at);
+            cell_of[at as usize] = cell as u32;
         }
-        let cell = *of_slot.entry(slot_a).or_insert_with(|| {
-            cells.push(([slot_a, slot_b], width, Vec::new()));
-            cells.len() - 1
-        });
-        cells[cell].2.push(at);
-        cell_of[at as usize] = cell as u32;
     }
     (Cells::new(slots, &cells), cell_of)
 }

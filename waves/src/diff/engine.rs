@@ -204,13 +204,12 @@ impl<'a> Engine<'a> {
         let mut ended: Vec<u32> = Vec::new();
         if !touched.cells.all_equal() {
             let cells = &touched.cells;
-            for noted in &cells.noted {
-                let equal = cells.is_equal(noted.cell);
+            for cell in cells.noted() {
+                let equal = cells.is_equal(cell);
                 let list = if equal { &mut ended } else { &mut diverged };
-                let pairs = cells.pairs.get(noted.cell).iter();
+                let pairs = cells.pairs.get(cell).iter();
                 list.extend(pairs.filter(|pair| equal == hot[**pair as usize].different));
             }
-            // A cell may be noted several times.
             for list in [&mut ended, &mut diverged] {
                 list.sort_unstable();
                 list.dedup();
@@ -245,7 +244,7 @@ impl<'a> Engine<'a> {
             self.begin(*at as usize, time_fs);
         }
         self.gather(&diverged, time_fs);
-        self.touched.cells.noted.clear();
+        self.touched.cells.forget_noted();
         self.samples += 1;
         if self.samples.is_multiple_of(PROGRESS_SAMPLES) {
             progress(Progress {
@@ -258,8 +257,9 @@ impl<'a> Engine<'a> {
 
     pub(super) fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {
         let pair = self.hot[at];
-        if let (Some(cell), Some(slot)) = (self.touched.cells.cells.get(pair.cell as usize), pair.a) {
-            let [a, b] = cell.of.each_ref().map(|words| value(self.a.values.kind(slot), words));
+        if let (true, Some(slot)) = (pair.cell != GENERAL, pair.a) {
+            let both = self.touched.cells.both(pair.cell);
+            let [a, b] = both.map(|words| value(self.a.values.kind(slot), words));
             return (Some(a), Some(b));
         }
         (

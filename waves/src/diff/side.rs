@@ -13,11 +13,10 @@ mod settle;
 use std::collections::VecDeque;
 
 use self::settle::Settle;
-use super::cells::GENERAL;
 use super::clocking::Slots;
 use super::delay::DelayLine;
 use super::names::Group;
-use super::touched::{Lists, Touched};
+use super::touched::{Listed, Lists, Touched};
 use crate::WaveError;
 use crate::reader::{Feed, Kind, Step, Values};
 
@@ -44,7 +43,6 @@ pub(super) struct Side {
     feed: Feed,
     pub(super) values: Values,
     unit_fs: u128,
-    step: Option<Step>,
     pairs: Lists,
     /// Parts by slot; empty if no slot needs them.
     parts: Vec<Vec<PartOf>>,
@@ -129,7 +127,6 @@ impl Side {
             feed,
             values,
             unit_fs: u128::from(unit_fs),
-            step: None,
             pairs,
             parts,
             delayed,
@@ -172,15 +169,14 @@ impl Side {
 
     /// Reads the first step.
     pub(super) fn start(&mut self) -> Result<(), WaveError> {
-        self.step = self.feed.next_step()?;
-        Ok(())
+        self.feed.advance()
     }
 
     /// Advances to the next edge of the clock after the reset's release; the values are then those just before it.
     ///
     /// The reader marks edges: a step is examined only to take its changes in.
     pub(super) fn next_edge(&mut self, touched: &mut Touched) -> Result<Option<ClockEdge>, WaveError> {
-        while let Some(step) = self.step {
+        while let Some(step) = self.feed.step() {
             if step.edge && !std::mem::take(&mut self.at_edge) {
                 if self.reset.is_none_or(|reset| self.is_released(reset)) {
                     self.reset = None;
@@ -194,7 +190,7 @@ impl Side {
             self.off = step.off;
             self.gap |= step.off;
             self.take_in(touched);
-            self.step = self.feed.next_step()?;
+            self.feed.advance()?;
         }
         Ok(None)
     }
@@ -205,7 +201,7 @@ impl Side {
 
     /// Returns the time of the next step, or of a value that takes effect.
     pub(super) fn next_time(&self) -> Option<u128> {
-        let step = self.step.map(|step| u128::from(step.time) * self.unit_fs);
+        let step = self.feed.step().map(|step| u128::from(step.time) * self.unit_fs);
         let settled = self
             .settle
             .as_ref()
@@ -224,14 +220,14 @@ impl Side {
 
     /// Returns whether the file has ended.
     pub(super) fn has_ended(&self) -> bool {
-        self.step.is_none()
+        self.feed.step().is_none()
     }
 
     /// Takes in everything at this time, which must not be after [`Side::next_time`]. Returns whether anything
     /// happened.
     pub(super) fn advance_to(&mut self, time_fs: u128, touched: &mut Touched) -> Result<bool, WaveError> {
         let mut happened = self.take_in_settled(time_fs, touched);
-        if let Some(step) = self.step
+        if let Some(step) = self.feed.step()
             && u128::from(step.time) * self.unit_fs == time_fs
         {
             self.off = step.off;
@@ -241,7 +237,7 @@ impl Side {
                 self.take_in(touched);
                 happened = true;
             }
-            self.step = self.feed.next_step()?;
+            self.feed.advance()?;
         }
         self.pend(time_fs)?;
         Ok(self.release(time_fs, touched) | happened)
@@ -261,23 +257,17 @@ impl Side {
         let number = *number;
         let (pairs, parts, delayed) = (&*pairs, &**parts, &**delayed);
         let plain = parts.is_empty() && lines.is_empty();
-        feed.each_changed(|slot, changed| {
-            let cell = touched.cells.of(number, slot);
-            if cell != GENERAL
-                && let Some(pair) = changed.pair()
-            {
-                touched.cells.set(number, cell, pair);
-                return;
-            }
+        let Touched { cells, listed, .. } = touched;
+        cells.take(number, feed.changes(), |slot, changed| {
             if !values.set(slot, changed.words()) {
                 return;
             }
             for pair in pairs.get(slot) {
-                touched.touch(*pair);
+                listed.touch(*pair);
             }
             if !plain {
                 let derived = Derived { pairs, parts, delayed };
-                derived.follow(slot, values, lines, touched);
+                derived.follow(slot, values, lines, listed);
             }
         });
     }
@@ -289,7 +279,7 @@ impl Side {
 
     /// Returns the current step.
     pub(super) fn step(&self) -> Option<Step> {
-        self.step
+        self.feed.step().copied()
     }
 
     pub(super) fn feed(&self) -> &Feed {
@@ -310,7 +300,7 @@ impl Side {
     /// an edge.
     pub(super) fn go_on(&mut self, feed: Feed, at_edge: bool) -> Result<(), WaveError> {
         self.feed = feed;
-        self.step = self.feed.next_step()?;
+        self.feed.advance()?;
         self.at_edge = at_edge;
         Ok(())
     }
@@ -329,7 +319,7 @@ struct Derived<'a> {
 }
 
 impl Derived<'_> {
-    fn follow(&self, slot: u32, values: &mut Values, lines: &mut [DelayLine], touched: &mut Touched) {
+    fn follow(&self, slot: u32, values: &mut Values, lines: &mut [DelayLine], listed: &mut Listed) {
         for (line, place) in self.delayed.get(slot as usize).into_iter().flatten() {
             lines[*line as usize].mark(*place);
         }
@@ -341,9 +331,9 @@ impl Derived<'_> {
                 values.set_bit(part.whole, part.low + bit, digit);
             }
             for pair in self.pairs.get(part.whole) {
-                touched.touch(*pair);
+                listed.touch(*pair);
             }
-            self.follow(part.whole, values, lines, touched);
+            self.follow(part.whole, values, lines, listed);
         }
     }
 }

@@ -5,8 +5,7 @@ use super::cells::Cells;
 /// Pairs to compare again.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
-    flags: Vec<bool>,
-    list: Vec<u32>,
+    pub(super) listed: Listed,
     /// Whether each pair waits for a delayed value to arrive.
     pub(super) waiting: Vec<bool>,
     /// The pairs that are simpler than that.
@@ -17,31 +16,43 @@ impl Touched {
     /// Creates a set of this many pairs, all to be compared.
     pub(super) fn new(pairs: usize) -> Self {
         Self {
-            flags: vec![true; pairs],
-            list: (0..pairs as u32).collect(),
+            listed: Listed {
+                flags: vec![true; pairs],
+                list: (0..pairs as u32).collect(),
+            },
             waiting: vec![false; pairs],
             cells: Cells::default(),
         }
     }
 
-    #[inline]
-    pub(super) fn touch(&mut self, pair: u32) {
-        if !std::mem::replace(&mut self.flags[pair as usize], true) {
-            self.list.push(pair);
-        }
-    }
-
     /// Leaves the pairs that are cells to `cells`, which compares them together.
     pub(super) fn leave_to(&mut self, cells: Cells, is_cell: impl Fn(u32) -> bool) {
-        self.list.retain(|pair| !is_cell(*pair));
+        self.listed.list.retain(|pair| !is_cell(*pair));
         self.cells = cells;
     }
 
     /// Calls `each` for the pairs affected since, and clears the set.
     pub(super) fn drain(&mut self, mut each: impl FnMut(u32)) {
-        for pair in self.list.drain(..) {
-            self.flags[pair as usize] = false;
+        let Listed { flags, list } = &mut self.listed;
+        for pair in list.drain(..) {
+            flags[pair as usize] = false;
             each(pair);
+        }
+    }
+}
+
+/// The pairs that were affected since the last sample, each once.
+#[derive(Debug, Default)]
+pub(super) struct Listed {
+    flags: Vec<bool>,
+    list: Vec<u32>,
+}
+
+impl Listed {
+    #[inline]
+    pub(super) fn touch(&mut self, pair: u32) {
+        if !std::mem::replace(&mut self.flags[pair as usize], true) {
+            self.list.push(pair);
         }
     }
 }

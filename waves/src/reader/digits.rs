@@ -8,7 +8,7 @@
 //! | `z` | 1 | 1 |
 
 /// Meaning of a byte: bit 0 is the value, bit 1 unknown, [`NO_DIGIT`] for any other byte.
-const DIGITS: [u8; 256] = {
+pub(super) static DIGITS: [u8; 256] = {
     let mut table = [NO_DIGIT; 256];
     let digits = [
         (b"0Ll", 0),
@@ -30,6 +30,8 @@ const DIGITS: [u8; 256] = {
     table
 };
 const NO_DIGIT: u8 = 0xff;
+/// The digit `x`.
+pub(super) const UNKNOWN: u8 = 2;
 
 /// Returns the digit of a byte: bit 0 is the value, bit 1 tells whether it is unknown.
 pub(super) fn digit(byte: u8) -> Option<u8> {
@@ -95,29 +97,37 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
 /// Returns the decimal number at `at` and the position after it; `None` without a digit, or beyond 64 bits.
 #[inline]
 pub(super) fn decimal(data: &[u8], at: usize) -> Option<(u64, usize)> {
-    const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
+    const ZEROS: u128 = u128::from_le_bytes([b'0'; 16]);
     /// With this added, a byte from 10 on has its upper bit set.
-    const ABOVE_9: u64 = u64::from_le_bytes([0x80 - 10; 8]);
-    const HIGH: u64 = u64::from_le_bytes([0x80; 8]);
-    const POWERS: [u64; 9] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
-    let (mut number, mut end) = (0u64, at);
-    // Eight digits at a time; only the first byte that is no digit is sure to be found.
-    while let Some(eight) = data.get(end..end + 8) {
-        let mut bytes = [0; 8];
-        bytes.copy_from_slice(eight);
-        let digits = u64::from_le_bytes(bytes) ^ ZEROS;
-        let count = ((digits.wrapping_add(ABOVE_9) | digits) & HIGH).trailing_zeros() / 8;
-        // Zeros go before the digits in place of what comes after them.
-        let digits = digits.unbounded_shl(64 - 8 * count);
-        let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
-        let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
-        let value = fours.wrapping_mul(10_000).wrapping_add(fours >> 32) & 0xffff_ffff;
-        number = number.checked_mul(POWERS[count as usize])?.checked_add(value)?;
-        end += count as usize;
-        if count < 8 {
-            return (end > at).then_some((number, end));
-        }
+    const ABOVE_9: u128 = u128::from_le_bytes([0x80 - 10; 16]);
+    const HIGH: u128 = u128::from_le_bytes([0x80; 16]);
+    let Some(sixteen) = data.get(at..at + 16) else {
+        return decimal_by_digit(data, at);
+    };
+    let mut bytes = [0; 16];
+    bytes.copy_from_slice(sixteen);
+    let digits = u128::from_le_bytes(bytes) ^ ZEROS;
+    // Only the first byte that is no digit is sure to be found.
+    let count = ((digits.wrapping_add(ABOVE_9) | digits) & HIGH).trailing_zeros() / 8;
+    if count == 0 || count == 16 {
+        return decimal_by_digit(data, at);
     }
+    // Zeros go before the digits in place of what comes after them.
+    let digits = digits << (128 - 8 * count);
+    let [upper, lower] = [digits as u64, (digits >> 64) as u64].map(eight_digits);
+    Some((upper * 100_000_000 + lower, at + count as usize))
+}
+
+/// Returns the number that eight digits make, each in a byte from 0 to 9.
+#[inline]
+fn eight_digits(digits: u64) -> u64 {
+    let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
+    let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
+    fours.wrapping_mul(10_000).wrapping_add(fours >> 32) & 0xffff_ffff
+}
+
+fn decimal_by_digit(data: &[u8], at: usize) -> Option<(u64, usize)> {
+    let (mut number, mut end) = (0u64, at);
     while let Some(digit @ 0..=9) = data.get(end).map(|byte| byte.wrapping_sub(b'0')) {
         number = number.checked_mul(10)?.checked_add(digit.into())?;
         end += 1;
@@ -211,7 +221,7 @@ mod tests {
         }
 
         #[test]
-        fn prop_a_decimal_number_ends_where_it_ends(zeros in "0{0,12}", number: u64, next in 0u8..=255, rest in any::<[u8; 9]>()) {
+        fn prop_a_decimal_number_ends_where_it_ends(zeros in "0{0,12}", number: u64, next in 0u8..=255, rest in any::<[u8; 17]>()) {
             prop_assume!(!next.is_ascii_digit());
             let digits = format!("{zeros}{number}");
             for behind in 0..=rest.len() {

@@ -14,7 +14,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-use super::batch::{Batch, Changed, Gatherer, Step};
+use super::batch::{Batch, Changes, Step};
+use super::gatherer::Gatherer;
 use super::section::Ended;
 use super::twin::Reopen;
 use super::words::truncated;
@@ -36,9 +37,9 @@ pub(crate) struct Feed {
     batch: Batch,
     /// Number of words of each slot's values.
     lengths: Vec<u32>,
-    /// The current step, and the start of its changes.
+    /// The current step, and the start of its changes and of their words.
     step: usize,
-    first: usize,
+    first: (usize, usize),
     started: bool,
     ended: bool,
     unterminated: bool,
@@ -92,7 +93,7 @@ impl Feed {
             batch: Batch::default(),
             lengths,
             step: 0,
-            first: 0,
+            first: (0, 0),
             started: false,
             ended: false,
             unterminated: false,
@@ -117,22 +118,33 @@ impl Feed {
     /// The error that the reader found after the steps that it has handed over.
     #[inline]
     pub(crate) fn next_step(&mut self) -> Result<Option<Step>, WaveError> {
+        self.advance()?;
+        Ok(self.step().copied())
+    }
+
+    /// Returns the current step; `None` before the first and at the end of the file.
+    #[inline]
+    pub(crate) fn step(&self) -> Option<&Step> {
+        self.batch.steps.get(self.step)
+    }
+
+    /// Goes to the next step, or to the end of the file.
+    ///
+    /// # Errors
+    /// As [`Feed::next_step`].
+    #[inline]
+    pub(crate) fn advance(&mut self) -> Result<(), WaveError> {
         if self.started
             && let Some(step) = self.batch.steps.get(self.step)
         {
-            self.first = step.end as usize;
+            self.first = (step.end as usize, step.words_end as usize);
             self.step += 1;
         }
         self.started = true;
-        loop {
-            if let Some(step) = self.batch.steps.get(self.step) {
-                return Ok(Some(*step));
-            }
-            if self.ended {
-                return Ok(None);
-            }
+        while self.batch.steps.get(self.step).is_none() && !self.ended {
             self.next_batch()?;
         }
+        Ok(())
     }
 
     fn next_batch(&mut self) -> Result<(), WaveError> {
@@ -142,7 +154,7 @@ impl Feed {
                 // The first batch, which never held anything, is one too many; so is one that the reader no longer
                 // takes.
                 let _ = self.empty.try_send(used);
-                (self.step, self.first) = (0, 0);
+                (self.step, self.first) = (0, (0, 0));
             }
             Ok(Message::Ended { unterminated, cut }) => {
                 (self.ended, self.unterminated, self.cut) = (true, unterminated, cut);
@@ -164,21 +176,23 @@ impl Feed {
         Ok(())
     }
 
-    /// Returns the changes of the current step: slot and words.
+    /// Calls `each` with the changes of the current step: slot and words.
     #[inline]
     pub(crate) fn each_change(&self, mut each: impl FnMut(u32, &[u64])) {
-        self.each_changed(|slot, changed| each(slot, changed.words()));
+        for (slot, changed) in self.changes() {
+            each(slot, changed.words());
+        }
     }
 
-    /// As [`Feed::each_change`], with short values by themselves.
+    /// Returns the changes of the current step.
     #[inline]
-    pub(crate) fn each_changed(&self, each: impl FnMut(u32, Changed<'_>)) {
+    pub(crate) fn changes(&self) -> Changes<'_> {
         let end = self
             .batch
             .steps
             .get(self.step)
-            .map_or(self.first, |step| step.end as usize);
-        self.batch.each(self.first, end, &self.lengths, each);
+            .map_or(self.first.0, |step| step.end as usize);
+        self.batch.changes(self.first, end, &self.lengths)
     }
 
     /// Returns the number of bytes of the file that were read so far.

@@ -16,10 +16,11 @@ use fst_reader::{
     FstFilter, FstHierarchyEntry, FstReader, FstSignalHandle, FstSignalValue, FstVarType, ReadSignalsError,
 };
 
-use super::batch::{Gatherer, NOWHERE};
+use super::batch::NOWHERE;
 use super::digits::pack;
 use super::fst_blocks::{Blocks, Stop};
 use super::fst_file::{self, Bytes, Cut, PACKED};
+use super::gatherer::Gatherer;
 use super::header::{Declarations, Kind};
 use super::section::Ended;
 use super::values::pack_text;

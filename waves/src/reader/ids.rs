@@ -82,6 +82,11 @@ impl Ids {
         self.others.get(&number).copied()
     }
 
+    /// Returns the largest number in the table.
+    pub(super) fn most(&self) -> Option<u64> {
+        (self.table.len() as u64).checked_sub(1)
+    }
+
     /// Returns the slot of the id code at `at`, if there is one, and the position after the id code.
     #[inline(always)] // a call for each change takes as long as the rest of it
     pub(super) fn slot_at(&self, data: &[u8], at: usize) -> (Option<u32>, usize) {

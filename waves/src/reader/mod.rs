@@ -23,8 +23,10 @@ mod feed;
 mod fst;
 mod fst_blocks;
 mod fst_file;
+mod gatherer;
 mod header;
 mod ids;
+mod lines;
 mod piece;
 mod put;
 mod section;
@@ -40,12 +42,13 @@ use std::sync::Arc;
 
 use vcd::{Command, IdCode, ParseError, Parser, VarType};
 
-use self::batch::Gatherer;
-pub(crate) use self::batch::{NOWHERE, Step, Watch};
+pub(crate) use self::batch::{Changed, Changes, NOWHERE, Step};
 use self::counted::Counted;
 use self::dialect::Dialect;
 pub(crate) use self::feed::Feed;
 use self::fst::FstValues;
+use self::gatherer::Gatherer;
+pub(crate) use self::gatherer::Watch;
 pub(crate) use self::header::{Declarations, Kind, Named};
 use self::ids::Ids;
 use self::section::Section;

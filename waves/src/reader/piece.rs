@@ -4,15 +4,20 @@ use std::io;
 
 use memchr::memmem::Finder;
 
-use super::batch::{Batch, Gatherer};
+use super::batch::Batch;
 use super::digits::{decimal, digit, known_run};
+use super::gatherer::Gatherer;
 use super::header::Kind;
 use super::ids::Ids;
+use super::lines::Lines;
 use super::put::{put_digits, put_real, put_text};
 use super::twin::{Twins, read_at};
 
-/// Number of bytes of a piece; fewer in tests, whose files are short.
-const PIECE: u64 = if cfg!(test) { 200 } else { 1 << 19 };
+/// Number of bytes of a piece, and per signal: what is done once for a piece goes by the signal. Fewer in tests, whose
+/// files are short.
+const PIECE: u64 = if cfg!(test) { 200 } else { 1 << 18 };
+const PER_SIGNAL: u64 = if cfg!(test) { 0 } else { 16 };
+const MOST_PIECE: u64 = 1 << 21;
 /// Number of bytes after a piece within which its last time usually ends; and the largest such number.
 const SLACK: usize = if cfg!(test) { 50 } else { 1 << 14 };
 const MOST_SLACK: usize = 1 << 23;
@@ -21,16 +26,15 @@ const NO_LINE: u32 = u32::MAX;
 /// Contents of a piece.
 #[derive(Default)]
 pub(super) struct Piece {
-    /// Latest values just before the last sample, and the changes after it.
-    pub(super) settled: Batch,
-    pub(super) rest: Batch,
+    /// Latest values: at its end, or just before its last sample.
+    pub(super) values: Batch,
     pub(super) samples: u64,
     pub(super) times: [Option<u64>; 2],
     /// The clock after the first step in which it changes, and that step's time; whether this is an edge depends on the
     /// piece before.
-    pub(super) open_edge: Option<([u64; 2], u64)>,
+    pub(super) open_edge: Option<(u8, u64)>,
     /// The clock at the end.
-    pub(super) clock: [u64; 2],
+    pub(super) clock: u8,
     /// First and last time.
     pub(super) first: u64,
     pub(super) last: u64,
@@ -46,19 +50,29 @@ pub(super) enum Found {
     End,
 }
 
+/// Up to where the values of a piece are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum UpTo {
+    /// Its end, which is quick.
+    End,
+    /// Its last sample, at which a stretch ends.
+    LastSample,
+}
+
 /// Work of a thread that parses pieces.
 pub(super) struct Worker<'a> {
     twins: &'a Twins,
     places: [u64; 2],
     /// Width by slot, 0 for a real number, a text or an event; or [`STOP`].
     widths: Vec<u32>,
+    common: Lines,
+    piece_bytes: u64,
     gatherer: Gatherer,
     time_begins: Finder<'static>,
     buffers: [Vec<u8>; 2],
-    /// Beginning of the latest line before the last sample, by slot; and the slots that have one.
+    /// Beginning of the latest line by slot.
     lines: Vec<u32>,
-    touched: Vec<u32>,
-    /// Changes after the last sample: slot and line.
+    /// Changes after the last sample, if values are wanted up to there: slot and line.
     open: Vec<(u32, u32)>,
 }
 
@@ -76,22 +90,28 @@ impl<'a> Worker<'a> {
             twins,
             places,
             widths: kinds.iter().zip(stop).map(width).collect(),
+            common: Lines::new(
+                &twins.files[0].ids,
+                kinds,
+                twins.files[0].watch.map(|watch| watch.slot),
+                |slot| stop[slot as usize],
+            ),
+            piece_bytes: (PER_SIGNAL * kinds.len() as u64).clamp(PIECE, MOST_PIECE),
             gatherer: Gatherer::new(kinds.clone(), None),
             time_begins: Finder::new(b"\n#"),
             buffers: Default::default(),
             lines: vec![NO_LINE; kinds.len()],
-            touched: Vec::new(),
             open: Vec::new(),
         }
     }
 
     /// Reads piece `number`, from the first time that begins at or after its first byte, to the first one at or after
     /// its last.
-    pub(super) fn piece(&mut self, number: u64) -> io::Result<Found> {
-        let begin = number * PIECE;
+    pub(super) fn piece(&mut self, number: u64, up_to: UpTo) -> io::Result<Found> {
+        let begin = number * self.piece_bytes;
         // The line break before it shows whether a time begins at its first byte.
         let first = begin.saturating_sub(1);
-        let length = (begin + PIECE - first) as usize;
+        let length = (begin + self.piece_bytes - first) as usize;
         let mut slack = SLACK;
         let (end, count_b) = loop {
             let wanted = length + slack;
@@ -124,42 +144,56 @@ impl<'a> Worker<'a> {
             }
         };
         let buffer = std::mem::take(&mut self.buffers[0]);
-        let found = self.parse(&buffer, from, end).map(|mut piece| {
+        let found = match up_to {
+            UpTo::End => self.parse::<false>(&buffer, from, end),
+            UpTo::LastSample => self.parse::<true>(&buffer, from, end),
+        };
+        let found = found.and_then(|mut piece| {
             piece.place += first;
-            self.settle(&buffer, &mut piece)?;
+            piece.values = self.values(&buffer)?;
             Some(piece)
         });
         self.buffers[0] = buffer;
-        self.lines_forgotten();
-        Ok(found
-            .flatten()
-            .map_or(Found::End, |piece| Found::Piece(Box::new(piece))))
-    }
-
-    fn lines_forgotten(&mut self) {
-        for slot in self.touched.drain(..) {
-            self.lines[slot as usize] = NO_LINE;
-        }
+        self.lines.fill(NO_LINE);
         self.open.clear();
+        Ok(found.map_or(Found::End, |piece| Found::Piece(Box::new(piece))))
     }
 
-    /// Reads the lines from `from` to `end`, which are places of times. Returns `None` if any is not plain.
-    fn parse(&mut self, data: &[u8], from: usize, end: usize) -> Option<Piece> {
+    /// Reads the lines from `from` to `end`, which are places of times, and keeps the latest of each signal; with
+    /// `UP_TO_SAMPLE`, only those before the last sample. Returns `None` if any is not plain.
+    fn parse<const UP_TO_SAMPLE: bool>(&mut self, data: &[u8], from: usize, end: usize) -> Option<Piece> {
         let twins = self.twins;
         let watch = twins.files[0].watch;
         let clock_slot = watch.map_or(u32::MAX, |watch| watch.slot);
         let ids = &*twins.files[0].ids;
         let mut piece = Piece::default();
         let mut time: Option<u64> = None;
-        let (mut time_at, mut step_from) = (from, 0);
+        let (mut time_at, mut step_at, mut step_from) = (from, from, 0);
         // The clock before the current step, if it is known, and now.
-        let mut clock: [Option<[u64; 2]>; 2] = [None; 2];
+        let mut clock: [Option<u8>; 2] = [None; 2];
         let mut at = from;
         loop {
+            loop {
+                let (slot, end, next) = if let Some(line) = self.common.bit(data, at) {
+                    if line.is_clock {
+                        clock[1] = Some(line.digit);
+                    }
+                    (line.slot, line.end, line.next)
+                } else if let Some(line) = self.common.word(data, at) {
+                    (line.slot, line.end, line.next)
+                } else {
+                    break;
+                };
+                if end != b'\n' {
+                    return None;
+                }
+                self.keep::<UP_TO_SAMPLE>(slot, at);
+                at = next;
+            }
             let first = if at < end { data[at] } else { b'#' };
             match first {
                 b'#' => {
-                    if let (Some(time), true) = (time, self.open.len() > step_from) {
+                    if let (Some(time), true) = (time, at > step_at) {
                         match watch {
                             None => {
                                 piece.samples += 1;
@@ -194,13 +228,9 @@ impl<'a> Worker<'a> {
                     }
                     time = Some(number);
                     time_at = at;
-                    if watch.is_none() {
-                        // Every time is a sample, so the changes so far lie before one.
-                        let count = self.open.len();
-                        self.settle_lines(count);
-                    }
                     step_from = self.open.len();
                     at = next + 1;
+                    step_at = at;
                 }
                 b'b' => {
                     let (_, mut digits_end) = known_run(data, at + 1);
@@ -216,7 +246,7 @@ impl<'a> Worker<'a> {
                     if width == STOP || digits > width as usize || slot == clock_slot {
                         return None;
                     }
-                    self.open.push((slot, at as u32));
+                    self.keep::<UP_TO_SAMPLE>(slot, at);
                     at = next;
                 }
                 b'r' | b's' => {
@@ -231,7 +261,7 @@ impl<'a> Worker<'a> {
                     if !right || data[at + length] != b' ' || self.widths[slot as usize] == STOP {
                         return None;
                     }
-                    self.open.push((slot, at as u32));
+                    self.keep::<UP_TO_SAMPLE>(slot, at);
                     at = next;
                 }
                 byte => {
@@ -241,9 +271,9 @@ impl<'a> Worker<'a> {
                         return None;
                     }
                     if slot == clock_slot {
-                        clock[1] = Some([u64::from(digit & 1), u64::from(digit >> 1)]);
+                        clock[1] = Some(digit);
                     }
-                    self.open.push((slot, at as u32));
+                    self.keep::<UP_TO_SAMPLE>(slot, at);
                     at = next;
                 }
             }
@@ -252,8 +282,7 @@ impl<'a> Worker<'a> {
         piece.clock = clock[1].unwrap_or_default();
         match watch {
             None => {
-                let count = self.open.len();
-                self.settle_lines(count);
+                self.settle_lines(self.open.len());
                 piece.place = end as u64;
             }
             // A piece without an edge does not tell where the samples are.
@@ -263,29 +292,32 @@ impl<'a> Worker<'a> {
         Some(piece)
     }
 
-    /// Settles the first `count` open changes, which lie before a sample.
-    fn settle_lines(&mut self, count: usize) {
-        for (slot, line) in self.open.drain(..count) {
-            let known = &mut self.lines[slot as usize];
-            if *known == NO_LINE {
-                self.touched.push(slot);
-            }
-            *known = line;
+    /// Keeps a line that changes a slot.
+    #[inline]
+    fn keep<const UP_TO_SAMPLE: bool>(&mut self, slot: u32, line: usize) {
+        if UP_TO_SAMPLE {
+            self.open.push((slot, line as u32));
+        } else {
+            self.lines[slot as usize] = line as u32;
         }
     }
 
-    /// Returns the values of the lines.
-    fn settle(&mut self, data: &[u8], piece: &mut Piece) -> Option<()> {
+    /// Settles the first `count` open changes, which lie before a sample.
+    fn settle_lines(&mut self, count: usize) {
+        for (slot, line) in self.open.drain(..count) {
+            self.lines[slot as usize] = line;
+        }
+    }
+
+    /// Returns the values of the lines that were kept.
+    fn values(&mut self, data: &[u8]) -> Option<Batch> {
         self.gatherer.take(Batch::default());
-        for slot in &self.touched {
-            put_line(&mut self.gatherer, *slot, &data[self.lines[*slot as usize] as usize..])?;
+        for (slot, line) in (0..).zip(&self.lines) {
+            if *line != NO_LINE {
+                put_line(&mut self.gatherer, slot, &data[*line as usize..])?;
+            }
         }
-        piece.settled = self.gatherer.take(Batch::default());
-        for (slot, line) in &self.open {
-            put_line(&mut self.gatherer, *slot, &data[*line as usize..])?;
-        }
-        piece.rest = self.gatherer.take(Batch::default());
-        Some(())
+        Some(self.gatherer.take(Batch::default()))
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Each function returns an error for a value that does not fit the declaration of its signal.
 
-use super::batch::Gatherer;
 use super::digits::{digit, pack};
+use super::gatherer::Gatherer;
 use super::header::Kind;
 use super::values::pack_text;
 

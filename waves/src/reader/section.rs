@@ -14,11 +14,13 @@ use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::batch::{Gatherer, NOWHERE};
+use super::batch::NOWHERE;
 use super::counted::Counted;
 use super::digits::{decimal, digit};
+use super::gatherer::Gatherer;
 use super::header::Kind;
 use super::ids::Ids;
+use super::lines::Lines;
 use super::put::{put_digits, put_real, put_text, shown};
 use super::words::{Fault, leading_word, line_of, skip_space, truncated, unknown_id, word_end};
 use crate::WaveError;
@@ -126,8 +128,9 @@ impl Section {
         gatherer: &mut Gatherer,
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
     ) -> Result<Ended, WaveError> {
+        let lines = Lines::new(&self.ids, gatherer.kinds(), gatherer.watched(), |_| false);
         loop {
-            let pause = self.parse(gatherer, hand_over);
+            let pause = self.parse(&lines, gatherer, hand_over);
             let pause = pause.map_err(|fault| self.problem(&fault))?;
             gatherer.batch.bytes = self.start + self.from as u64;
             match pause {
@@ -217,13 +220,17 @@ impl Section {
     /// Handles all commands that are completely in the buffer.
     fn parse(
         &mut self,
+        lines: &Lines,
         gatherer: &mut Gatherer,
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
     ) -> Result<Pause, Fault> {
         let data = &self.buffer[..self.to];
         let ids = &*self.ids;
         loop {
-            let at = skip_space(data, self.from);
+            let mut at = skip_space(data, self.from);
+            if !self.in_comment {
+                at = skip_space(data, gatherer.put_lines(lines, data, at));
+            }
             self.from = at;
             let Some(first) = data.get(at).copied() else {
                 return Ok(Pause::More);
@@ -361,6 +368,10 @@ impl Section {
     }
 
     fn problem(&self, fault: &Fault) -> WaveError {
+        let unread = self.buffer.get(fault.at..self.to.saturating_sub(1)).unwrap_or_default();
+        if self.at_end && self.cut.is_none() && self.last_byte != b'\n' && memchr::memchr(b'\n', unread).is_none() {
+            return self.truncated("in the middle of a line");
+        }
         let byte = self.start + fault.at as u64;
         let line = if self.is_plain { line_of(&self.path, byte) } else { None };
         WaveError::Damaged {

@@ -2,10 +2,11 @@
 //!
 //! ```text
 //!  file     … #10 … 1! … #20 … │ #30 … 1! … #40 … │ #50 …       pieces end where a time begins; each thread takes the next one
-//!  piece              values just before its last sample │ those after it │ number of samples, and their times
+//!  piece              values at its end │ number of samples, and their times
 //! ```
 //!
-//! A piece is parsed without knowledge of what came before it: whether its first change of the clock is an edge is
+//! Of a piece, the latest values at its end are enough, except of the last one, which is parsed again, up to its last
+//! sample. A piece is parsed without knowledge of what came before it: whether its first change of the clock is an edge is
 //! decided when the pieces are put in order. Only the plainest form of a VCD is read here, with one change per line, as
 //! every simulator writes it. A stretch ends before a piece that has anything else in it, in which the files differ,
 //! with the end of the file, or with a possible error; from there the two files are read separately again, as in
@@ -19,12 +20,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::sync_channel;
 
-use super::batch::{Batch, Gatherer, Watch};
 use super::counted::Counted;
 use super::feed::Feed;
+use super::gatherer::{Gatherer, Watch};
 use super::header::Kind;
 use super::ids::Ids;
-use super::piece::{Found, Piece, Worker};
+use super::piece::{Found, Piece, UpTo, Worker};
 use super::section::Section;
 use crate::WaveError;
 
@@ -145,7 +146,7 @@ impl Twins {
                         if number >= limit.load(Ordering::Relaxed) {
                             return;
                         }
-                        let found = worker.piece(number).unwrap_or(Found::End);
+                        let found = worker.piece(number, UpTo::End).unwrap_or(Found::End);
                         if matches!(found, Found::End) {
                             limit.fetch_min(number, Ordering::Relaxed);
                         }
@@ -159,21 +160,36 @@ impl Twins {
             let mut waiting = BTreeMap::new();
             let mut joined = Joined::new(self, places);
             let mut wanted = 0;
+            // The effect of a piece depends on whether it is the last one.
+            let mut latest: Option<(u64, Box<Piece>)> = None;
             'pieces: for (number, found) in receive {
                 waiting.insert(number, found);
                 while let Some(found) = waiting.remove(&wanted) {
                     wanted += 1;
-                    let goes_on = match found {
-                        Found::Nothing => true,
-                        Found::Piece(piece) => joined.join(*piece, apply),
-                        Found::End => false,
-                    };
-                    if !goes_on {
-                        limit.store(0, Ordering::Relaxed);
-                        break 'pieces;
+                    match found {
+                        Found::Nothing => {}
+                        Found::Piece(piece) if latest.as_ref().is_none_or(|(_, latest)| latest.last < piece.first) => {
+                            if let Some((_, before)) = latest.replace((wanted - 1, piece)) {
+                                joined.join(&before, apply);
+                            }
+                        }
+                        Found::Piece(_) | Found::End => {
+                            limit.store(0, Ordering::Relaxed);
+                            break 'pieces;
+                        }
                     }
                     progress(&joined.stretch);
                 }
+            }
+            if let Some((number, mut last)) = latest {
+                if self.files[0].watch.is_some() {
+                    match Worker::new(self, places, stop).piece(number, UpTo::LastSample) {
+                        Ok(Found::Piece(piece)) => last = piece,
+                        // The file has been written to in the meantime.
+                        _ => return None,
+                    }
+                }
+                joined.join(&last, apply);
             }
             joined.pieces.then_some(joined.stretch)
         })
@@ -185,9 +201,7 @@ struct Joined<'a> {
     twins: &'a Twins,
     from: [u64; 2],
     stretch: Stretch,
-    rest: Batch,
-    clock: Option<[u64; 2]>,
-    last: Option<u64>,
+    clock: Option<u8>,
     pieces: bool,
 }
 
@@ -197,18 +211,13 @@ impl<'a> Joined<'a> {
             twins,
             from,
             stretch: Stretch::default(),
-            rest: Batch::default(),
             clock: None,
-            last: None,
             pieces: false,
         }
     }
 
-    /// Adds the next piece; returns `false` if it does not continue the previous one.
-    fn join(&mut self, piece: Piece, apply: &mut dyn FnMut(u32, &[u64])) -> bool {
-        if self.last.is_some_and(|last| piece.first <= last) {
-            return false;
-        }
+    /// Adds the next piece.
+    fn join(&mut self, piece: &Piece, apply: &mut dyn FnMut(u32, &[u64])) {
         let stretch = &mut self.stretch;
         let mut sampled_before = stretch.times[0];
         if let (Some(watch), Some((after, time))) = (self.twins.files[0].watch, piece.open_edge) {
@@ -223,12 +232,10 @@ impl<'a> Joined<'a> {
             }
             self.clock = Some(piece.clock);
         }
-        for batch in [&self.rest, &piece.settled] {
-            batch.each(0, batch.changes.len(), &self.twins.lengths, |slot, changed| {
-                apply(slot, changed.words());
-            });
+        let values = &piece.values;
+        for (slot, changed) in values.changes((0, 0), values.changes.len(), &self.twins.lengths) {
+            apply(slot, changed.words());
         }
-        self.rest = piece.rest;
         stretch.samples += piece.samples;
         let [last, before] = [piece.times[0], piece.times[1].or(sampled_before)];
         if last.is_some() {
@@ -240,9 +247,7 @@ impl<'a> Joined<'a> {
             Some(_) => piece.times[0].unwrap_or(1).saturating_sub(1),
             None => piece.last,
         };
-        self.last = Some(piece.last);
         self.pieces = true;
-        true
     }
 }
 

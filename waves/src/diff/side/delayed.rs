@@ -9,6 +9,9 @@ const DELAYED_WORDS: usize = 1 << 21;
 impl Side {
     /// Puts the changes since the last call into the delay lines. `now` counts samples, or femtoseconds.
     pub(in crate::diff) fn pend(&mut self, now: u128) -> Result<(), WaveError> {
+        if self.lines.is_empty() {
+            return Ok(());
+        }
         for line in &mut self.lines {
             for place in line.changed.drain(..) {
                 line.is_changed[place as usize] = false;
@@ -41,7 +44,7 @@ impl Side {
                 self.values.set(shown, &words);
                 for pair in self.pairs.get(shown) {
                     touched.waiting[*pair as usize] = false;
-                    touched.touch(*pair);
+                    touched.listed.touch(*pair);
                 }
             }
         }

@@ -52,14 +52,14 @@ impl Side {
             happened = true;
             if self.values.set(slot, settle.next.words(slot)) {
                 for pair in self.pairs.get(slot) {
-                    touched.touch(*pair);
+                    touched.listed.touch(*pair);
                 }
                 let derived = Derived {
                     pairs: &self.pairs,
                     parts: &self.parts,
                     delayed: &self.delayed,
                 };
-                derived.follow(slot, &mut self.values, &mut self.lines, touched);
+                derived.follow(slot, &mut self.values, &mut self.lines, &mut touched.listed);
             }
         }
         happened

@@ -23,9 +23,10 @@ use self::chains::Chains;
 use self::layout::{Layout, forms};
 pub(super) use self::lengths::problem;
 use self::packing::varint;
-use super::batch::{Gatherer, NOWHERE};
+use super::batch::NOWHERE;
 use super::digits::pack;
 use super::fst_file::Bytes;
+use super::gatherer::Gatherer;
 use super::header::Kind;
 use super::values::pack_text;
 
