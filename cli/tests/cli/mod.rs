@@ -1,5 +1,6 @@
 //! The command line from outside: exit status, standard output, standard error, files.
 
+pub(crate) mod followed;
 mod sopc;
 mod stage;
 pub(crate) mod support;
@@ -13,6 +14,7 @@ mod design;
 mod diff;
 mod doctor;
 mod error_table;
+mod examples;
 mod folder;
 mod fuzz;
 mod hal;

@@ -27,7 +27,7 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
 fn unit_every_link_of_the_pages_leads_to_a_file() {
     let root = root();
     let mut all = pages(&root);
-    for folder in ["docs", "docs/tutorial", "waves"] {
+    for folder in ["docs", "docs/tutorial", "docs/examples", "waves"] {
         all.extend(pages(&root.join(folder)));
     }
     let mut followed = 0;
@@ -46,11 +46,13 @@ fn unit_the_book_has_every_page() {
     let docs = root().join("docs");
     let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
     let chapters: Vec<&str> = links(&summary).collect();
-    for page in pages(&docs) {
-        let name = page.file_name().unwrap().to_str().unwrap();
-        assert!(
-            name == "SUMMARY.md" || chapters.contains(&name),
-            "docs/SUMMARY.md lacks {name}"
-        );
+    for folder in ["", "tutorial/", "examples/"] {
+        for page in pages(&docs.join(folder)) {
+            let name = format!("{folder}{}", page.file_name().unwrap().to_str().unwrap());
+            assert!(
+                name == "SUMMARY.md" || chapters.contains(&name.as_str()),
+                "docs/SUMMARY.md lacks {name}"
+            );
+        }
     }
 }
