@@ -63,8 +63,9 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
             least there: what the best shaper without negative amplitudes leaves in the duration of a smooth kind\n"
 }
 
+/// `design --compare --json`, and `kinds` in `report.json`.
 #[derive(Serialize)]
-struct Document<'a> {
+pub(crate) struct Document<'a> {
     name: &'a str,
     band_percent: f64,
     axes: Vec<AxisDocument<'a>>,
@@ -99,7 +100,7 @@ struct MissingDocument<'a> {
 }
 
 impl<'a> Document<'a> {
-    fn new(machine: &'a Machine, band_percent: f64, comparisons: &'a [KindComparison]) -> Self {
+    pub(crate) fn new(machine: &'a Machine, band_percent: f64, comparisons: &'a [KindComparison]) -> Self {
         let axes = comparisons.iter().map(|comparison| AxisDocument {
             name: &comparison.axis,
             kinds: comparison

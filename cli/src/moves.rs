@@ -1,6 +1,7 @@
 //! The motion of the axes in a simulation: a command file, or a move of each axis that the command line may change.
 
 use crate::failure::Failure;
+use crate::output::shell_word;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{AxisMove, AxisMoveError};
 use std::path::PathBuf;
@@ -34,6 +35,19 @@ impl MotionArgs {
             (None, Some(PerAxis::All(speed))) => Ok(Some(*speed)),
             (None, None) => Ok(None),
         }
+    }
+
+    /// These options as words of a command line.
+    pub(crate) fn command_line(&self) -> Vec<String> {
+        let command = self
+            .command
+            .as_deref()
+            .map(|path| format!("--command {}", shell_word(path)));
+        let figures = [("--move", &self.distance), ("--speed", &self.speed)];
+        let figures = figures
+            .into_iter()
+            .filter_map(|(option, figures)| Some(format!("{option} {}", figures.as_ref()?.text())));
+        command.into_iter().chain(figures).collect()
     }
 
     /// The move of each axis. With a command file, moves are only for the closed loop.
@@ -90,6 +104,17 @@ impl PerAxis {
                 .iter()
                 .find(|(name, _)| *name == axis.name)
                 .map(|(_, figure)| *figure),
+        }
+    }
+
+    /// As on the command line.
+    fn text(&self) -> String {
+        match self {
+            Self::All(figure) => figure.to_string(),
+            Self::Named(figures) => {
+                let figures = figures.iter().map(|(name, figure)| format!("{name}={figure}"));
+                figures.collect::<Vec<_>>().join(",")
+            }
         }
     }
 

@@ -1,17 +1,22 @@
 //! SVG plots of curves that the model computed: a stack of panels, each with a legend above its curves.
 
+mod chart;
+mod inline;
 mod legend;
+mod map;
 
 use crate::failure::Failure;
+use chart::{Frame, draw_chart, looks};
 use legend::Legend;
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use posicast_model::unit::{ShownUnit, time_unit};
 use std::path::Path;
 
+pub(crate) use inline::{Inline, inline, style_rules};
+pub(crate) use map::{Level, Map, inline_map};
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Style of a curve.
@@ -28,6 +33,8 @@ enum Look {
     Dashed,
     /// Dashed and dark red, for a level that must not be exceeded.
     Limit,
+    /// Dots in a colour of their own, with no line between them.
+    Dots,
 }
 
 /// A named curve.
@@ -57,6 +64,11 @@ impl Curve {
     /// Another form of the curve before it.
     pub(crate) fn beside(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self::of(Look::Dashed, name, points)
+    }
+
+    /// Single points.
+    pub(crate) fn dots(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self::of(Look::Dots, name, points)
     }
 
     /// A reference curve.
@@ -100,6 +112,14 @@ pub(crate) struct Mark {
     pub(crate) at: f64,
 }
 
+/// A word beside a point of the chart.
+pub(crate) struct Note {
+    /// The word.
+    pub(crate) text: String,
+    /// The point, in the values of the axes.
+    pub(crate) at: (f64, f64),
+}
+
 /// The unit of the time axis for a plot of this duration: the one that gives at least two of it.
 pub(crate) fn time_axis(duration_s: f64) -> ShownUnit {
     time_unit(duration_s / 2.0)
@@ -131,6 +151,8 @@ pub(crate) struct Panel {
     pub(crate) x_ranges: Vec<Range>,
     /// Marks drawn as vertical lines.
     pub(crate) marks: Vec<Mark>,
+    /// Words beside points of the chart.
+    pub(crate) notes: Vec<Note>,
 }
 
 const PANEL_SIZE: (u32, u32) = (900, 400);
@@ -206,20 +228,9 @@ fn draw(panels: &[Panel], text: &mut String) -> Drawn {
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
-    let points = || panel.curves.iter().flat_map(|c| c.points.iter());
-    let (x_low, x_high) = span(points().map(|p| p.0).chain(panel.marks.iter().map(|mark| mark.at)));
-    let (y_low, y_high) = panel.y_range.unwrap_or_else(|| {
-        let (low, high) = span(points().map(|p| p.1));
-        let margin = 0.05 * (high - low);
-        (low - margin, high + margin)
-    });
+    let frame = Frame::of(panel);
     let looks = looks(&panel.curves);
-    let legend = Legend::new(
-        panel,
-        &looks,
-        (y_low, y_high),
-        area.dim_in_pixel().0 as i32 - 2 * MARGIN,
-    );
+    let legend = Legend::new(panel, &looks, frame.y, area.dim_in_pixel().0 as i32 - 2 * MARGIN);
     area.draw(&Text::new(
         panel.title.clone(),
         (MARGIN, MARGIN),
@@ -228,157 +239,8 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let first_row = MARGIN + TITLE_SIZE + 10;
     legend.draw(area, (MARGIN, first_row))?;
     let (_, below) = area.split_vertically(first_row + legend.height());
-    let mut chart = ChartBuilder::on(&below)
-        .margin(8)
-        .margin_right(32)
-        .x_label_area_size(44)
-        .y_label_area_size(76)
-        .build_cartesian_2d(x_low..x_high, y_low..y_high)?;
-    if let Some(band) = &panel.band {
-        let (low, high) = (band.range.0.max(y_low), band.range.1.min(y_high));
-        if low < high {
-            chart.draw_series(std::iter::once(Rectangle::new(
-                [(x_low, low), (x_high, high)],
-                BAND.filled(),
-            )))?;
-        }
-        let ends = [band.range.0, band.range.1];
-        for end in ends.into_iter().filter(|end| (y_low..=y_high).contains(end)) {
-            draw_line(
-                &mut chart,
-                vec![(x_low, end), (x_high, end)],
-                BAND_END.stroke_width(1),
-                false,
-            )?;
-        }
-    }
-    for range in &panel.x_ranges {
-        // However narrow it is, it must be visible.
-        let thin = 0.001 * (x_high - x_low);
-        let (low, high) = (range.ends.0 - thin, range.ends.1 + thin);
-        let corners = [(low.max(x_low), y_low), (high.min(x_high), y_high)];
-        chart.draw_series(std::iter::once(Rectangle::new(corners, BAND.filled())))?;
-    }
-    chart
-        .configure_mesh()
-        .x_desc(&panel.x_label)
-        .y_desc(&panel.y_label)
-        .axis_desc_style(("sans-serif", TEXT_SIZE))
-        .label_style(("sans-serif", TEXT_SIZE))
-        .x_label_formatter(&|value| axis_label(*value))
-        .y_label_formatter(
-            &|value| match panel.y_is_whole && (value - value.round()).abs() > 1e-9 {
-                true => String::new(),
-                false => axis_label(*value),
-            },
-        )
-        .bold_line_style(GRID)
-        .max_light_lines(0)
-        .draw()?;
-    // The first of the coloured curves lies on top of the others, and levels lie on top of all.
-    let mut order: Vec<_> = panel.curves.iter().zip(looks).rev().collect();
-    order.sort_by_key(|(curve, _)| curve.look);
-    for (curve, (style, is_dashed)) in order {
-        for part in cut(&curve.points, y_low, y_high) {
-            draw_line(&mut chart, part, style, is_dashed)?;
-        }
-    }
-    for mark in &panel.marks {
-        draw_line(
-            &mut chart,
-            vec![(mark.at, y_low), (mark.at, y_high)],
-            DARK_RED.stroke_width(1),
-            true,
-        )?;
-    }
+    draw_chart(&below, panel, &frame, TEXT_SIZE)?;
     Ok(())
-}
-
-fn draw_line(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, style: ShapeStyle, is_dashed: bool) -> Drawn {
-    if is_dashed {
-        chart.draw_series(DashedLineSeries::new(points, DASH.0, DASH.1, style))?;
-    } else {
-        chart.draw_series(LineSeries::new(points, style))?;
-    }
-    Ok(())
-}
-
-/// Colour and width of each curve, and whether it is dashed.
-fn looks(curves: &[Curve]) -> Vec<(ShapeStyle, bool)> {
-    let mut next = 0;
-    let mut colour = COLOURS[0];
-    let look = |curve: &Curve| match curve.look {
-        Look::Own => {
-            colour = COLOURS[next % COLOURS.len()];
-            next += 1;
-            (colour.stroke_width(2), false)
-        }
-        Look::Under => {
-            colour = COLOURS[next % COLOURS.len()];
-            next += 1;
-            (shade(colour, PALE, 255).stroke_width(UNDER_WIDTH), false)
-        }
-        Look::Dashed => {
-            // Black has no darker shade.
-            let end = if colour == RGBColor(0, 0, 0) { 255 } else { 0 };
-            (shade(colour, DARK, end).stroke_width(2), true)
-        }
-        Look::Reference => (GREY.stroke_width(1), false),
-        Look::Limit => (DARK_RED.stroke_width(1), true),
-    };
-    curves.iter().map(look).collect()
-}
-
-/// A colour, this part of the way to black (0) or white (255).
-fn shade(colour: RGBColor, part: f64, end: u8) -> RGBColor {
-    let mixed = |channel: u8| (f64::from(channel) * (1.0 - part) + f64::from(end) * part).round() as u8;
-    RGBColor(mixed(colour.0), mixed(colour.1), mixed(colour.2))
-}
-
-/// The parts of a curve between `low` and `high`, each up to where it crosses one of them.
-fn cut(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
-    let is_inside = |(_, y): &(f64, f64)| (low..=high).contains(y);
-    let crossing = |inside: (f64, f64), outside: (f64, f64)| {
-        let level = outside.1.clamp(low, high);
-        let part = (level - inside.1) / (outside.1 - inside.1);
-        (inside.0 + part * (outside.0 - inside.0), level)
-    };
-    let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
-    let mut before: Option<(f64, f64)> = None;
-    for &point in points.iter().filter(|(_, y)| y.is_finite()) {
-        match (before.filter(|before| !is_inside(before)), is_inside(&point)) {
-            (Some(outside), true) => parts.push(vec![crossing(point, outside), point]),
-            (None, true) if before.is_none() => parts.push(vec![point]),
-            (None, inside) => {
-                if let (Some(part), Some(before)) = (parts.last_mut(), before) {
-                    part.push(if inside { point } else { crossing(before, point) });
-                }
-            }
-            (Some(_), false) => {}
-        }
-        before = Some(point);
-    }
-    parts
-}
-
-/// A number on an axis: without the digits that only binary fractions have, and never "-0".
-fn axis_label(value: f64) -> String {
-    let rounded = (value * 1e6).round() / 1e6;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
-}
-
-/// Smallest and largest finite value; the span is never empty.
-fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values
-        .filter(|v| v.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(v), high.max(v))
-        });
-    match (low <= high, low < high) {
-        (false, _) => (0.0, 1.0),
-        (true, false) => (low - 0.5, high + 0.5),
-        (true, true) => (low, high),
-    }
 }
 
 #[cfg(test)]
@@ -412,31 +274,6 @@ mod tests {
     }
 
     #[test]
-    fn unit_eight_curves_have_eight_colours_and_a_dashed_one_a_shade_that_shows_on_its_neighbour() {
-        let curve = |_| [Curve::new("", Vec::new()), Curve::beside("", Vec::new())];
-        let curves: Vec<_> = (0..8).flat_map(curve).collect();
-        let mut colours: Vec<_> = looks(&curves).iter().map(|(style, _)| style.color.rgb()).collect();
-        let light = |(r, g, b): (u8, u8, u8)| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
-        for pair in colours.chunks(2) {
-            let (light_of, shade) = (light(pair[0]), light(pair[1]));
-            assert!((light_of - shade).abs() > 50.0, "{pair:?}");
-        }
-        colours.sort_unstable();
-        colours.dedup();
-        assert_eq!(colours.len(), 16);
-    }
-
-    #[test]
-    fn unit_a_curve_that_lies_exactly_on_another_is_still_seen() {
-        let line = || vec![(0.0, 0.0), (1.0, 1.0)];
-        let looks = looks(&[Curve::new("shaped", line()), Curve::under("load", line())]);
-        let [on_top, under] = [&looks[0].0, &looks[1].0];
-        assert!(under.stroke_width >= on_top.stroke_width + 2);
-        // It is drawn before the other.
-        assert!(Look::Under < Look::Own && Look::Own < Look::Dashed);
-    }
-
-    #[test]
     fn unit_a_band_that_is_wider_than_the_picture_fills_it_and_a_thin_one_has_ends() {
         let drawn = |range: (f64, f64)| {
             let panel = Panel {
@@ -460,32 +297,9 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_curve_is_cut_where_it_leaves_the_range() {
-        let points = [(0.0, -1.0), (1.0, 1.0), (2.0, 3.0), (3.0, 3.0), (4.0, 1.0)];
-        let parts = cut(&points, 0.0, 2.0);
-        assert_eq!(
-            parts,
-            [vec![(0.5, 0.0), (1.0, 1.0), (1.5, 2.0)], vec![(3.5, 2.0), (4.0, 1.0)]]
-        );
-        assert_eq!(cut(&points, -1.0, 3.0), [points.to_vec()]);
-    }
-
-    #[test]
     fn unit_a_long_picture_shows_seconds() {
         let labels = [0.001, 0.3, 30.0].map(|duration_s| label("time", time_axis(duration_s)));
         assert_eq!(labels, ["time, µs", "time, ms", "time, s"]);
         assert_eq!(time_axis(0.3).of(0.25), 250.0);
-    }
-
-    #[test]
-    fn unit_an_axis_label_is_short_and_zero_has_no_sign() {
-        let labels = [-0.0, 0.1 + 0.2, -1.5, 12000.0].map(axis_label);
-        assert_eq!(labels, ["0", "0.3", "-1.5", "12000"]);
-    }
-
-    #[test]
-    fn unit_empty_and_constant_curves_still_have_a_span() {
-        assert_eq!(span([].into_iter()), (0.0, 1.0));
-        assert_eq!(span([f64::NAN, 2.0].into_iter()), (1.5, 2.5));
     }
 }

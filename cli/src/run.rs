@@ -7,6 +7,9 @@
 mod advice;
 mod checks;
 mod closed_loop;
+mod excerpt;
+mod gain;
+mod page;
 mod pictures;
 mod report;
 mod summary;
@@ -27,11 +30,12 @@ use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
 use crate::{driver, generate, output, progress, sopc, verilog};
 use closed_loop::ClosedLoop;
+use posicast_model::compare::{DEFAULT_BAND, compare};
 use posicast_model::machine_file::Machine;
 use posicast_synth::yosys::{Estimate, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources};
 use report::RunReport;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The whole way: design, Verilog, simulation, comparison, estimate, verdict
 #[derive(clap::Args)]
@@ -75,6 +79,25 @@ pub(crate) struct Args {
     /// Print one JSON document on standard output
     #[arg(long, conflicts_with_all = ["verbose", "quiet"])]
     json: bool,
+}
+
+impl Args {
+    /// The command line that repeats the run on the machine file in the output folder.
+    fn command_line(&self) -> String {
+        let mut words = vec!["posicast run machine.toml".to_owned()];
+        words.extend(self.motion.command_line());
+        let mut option =
+            |name: &str, value: Option<String>| words.extend(value.map(|value| format!("--{name} {value}")));
+        option("radius", self.radius.map(|radius| radius.to_string()));
+        option(
+            "contour",
+            self.contour.as_deref().map(|path| output::shell_word(Path::new(path))),
+        );
+        option("simulator", self.simulator.map(|simulator| simulator.to_string()));
+        option("cycles", self.cycles.map(|cycles| cycles.to_string()));
+        option("seed", (self.seed != DEFAULT_SEED).then(|| self.seed.to_string()));
+        words.join(" ")
+    }
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -163,23 +186,23 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     checks.extend(checks::all(simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
-    for (name, panels) in closed_loop.iter().flat_map(ClosedLoop::pictures) {
-        let picture = plot::svg(&panels)?;
+    let of_loop: Vec<_> = closed_loop.iter().flat_map(ClosedLoop::pictures).collect();
+    for (name, panels) in &of_loop {
+        let picture = plot::svg(panels)?;
         package
             .add_evidence(name, picture.as_bytes())
             .map_err(Failure::because)?;
     }
     let mut sensitivity = design::sensitivity_panels(machine, &design.design);
     sensitivity.extend(design.family_panels());
+    let response = pictures::response_panels(machine, &design.design, &axes, &waves)?;
     package
         .add_evidence("plots/sensitivity.svg", plot::svg(&sensitivity)?.as_bytes())
         .map_err(Failure::because)?;
     package
-        .add_evidence(
-            "plots/response.svg",
-            plot::svg(&pictures::response_panels(machine, &design.design, &axes)?)?.as_bytes(),
-        )
+        .add_evidence("plots/response.svg", plot::svg(&response)?.as_bytes())
         .map_err(Failure::because)?;
+    let kinds = compare(machine, DEFAULT_BAND);
     let report = RunReport {
         machine,
         design: &design,
@@ -192,10 +215,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         estimate: estimate.as_ref(),
         closed_loop: closed_loop.as_ref(),
         checks: &checks,
+        words: &words,
+        gains: gain::of_axes(machine, &words, &axes, |axis| {
+            closed_loop.as_ref().and_then(|of| of.gain(axis))
+        }),
+        kinds: &kinds,
+        command: args.command_line(),
     };
     let document = report.json();
     package
         .add_evidence("report.json", output::json_text(&document)?.as_bytes())
+        .map_err(Failure::because)?;
+    let page = report.page(&page::Extra {
+        closed_loop: of_loop,
+        sensitivity,
+        response,
+    })?;
+    package
+        .add_evidence("report.html", page.as_bytes())
         .map_err(Failure::because)?;
     let root = package.root().to_owned();
     let committed = package.commit().map_err(Failure::because)?;

@@ -1,4 +1,4 @@
-//! `posicast schema`: writes the machine file's JSON Schema for editors.
+//! `posicast schema`: writes the JSON Schema of the machine file, for editors, or that of a run's report, for programs.
 
 use crate::failure::Failure;
 use crate::output::{self, shell_word};
@@ -6,16 +6,20 @@ use posicast_model::machine_file;
 use posicast_system::output::{self as files, OutputFiles};
 use std::path::{Path, PathBuf};
 
-/// The JSON Schema of the machine file, for editors that complete and check TOML
+/// The JSON Schema of the machine file, for editors that complete and check TOML; with --report, that of report.json
 #[derive(clap::Args)]
 #[command(after_help = "\
-Example:
+Examples:
   posicast schema -o posicast-machine.schema.json
+  posicast schema --report -o posicast-report.schema.json
 
 Machine files that `posicast new` writes name a file posicast-machine.schema.json beside them. Editors with Taplo (Even Better
 TOML) then complete keys, show what they mean and mark what is out of range. Of what keys must agree on the schema knows
 little: `posicast design` checks everything.")]
 pub(crate) struct Args {
+    /// Write the schema of `report.json` and of `run --json` instead
+    #[arg(long)]
+    report: bool,
     /// File to write [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -24,6 +28,8 @@ pub(crate) struct Args {
     force: bool,
 }
 
+/// The schema of a run's report; the tests of the command line check reports with it.
+const REPORT: &str = include_str!("../../docs/report.schema.json");
 /// Name of the schema's file in the first line of machine files that `posicast new` writes.
 const FILE: &str = "posicast-machine.schema.json";
 
@@ -34,7 +40,10 @@ pub(crate) fn hint(machine: &Path) -> String {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let text = output::json_text(&machine_file::schema())?;
+    let text = match args.report {
+        true => REPORT.to_owned(),
+        false => output::json_text(&machine_file::schema())?,
+    };
     let Some(path) = &args.output else {
         return output::print(&text);
     };

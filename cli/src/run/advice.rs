@@ -173,7 +173,7 @@ const TOO_SHORT: Advice = Advice {
 };
 
 /// The advice for a check that failed, by its name, or because it was too short.
-fn for_failed(check: &Check) -> Option<&'static Advice> {
+pub(crate) fn for_failed(check: &Check) -> Option<&'static Advice> {
     match check.is_too_short() {
         true => Some(&TOO_SHORT),
         false => for_check(check.name),

@@ -21,7 +21,7 @@ use wavecmp::diff::{Comparison, DiffVerdict};
 const MEASURED_ROUNDING: f64 = 1e-9;
 
 /// One check and how it went.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct Check {
     /// Description of the check in a few words.
     pub(crate) name: &'static str,
@@ -30,8 +30,28 @@ pub(crate) struct Check {
     /// The figures of the check; for a failed one the place where it failed first.
     pub(crate) detail: String,
     /// How much of what the check is about was compared.
-    #[serde(skip)]
     pub(crate) coverage: Coverage,
+}
+
+/// A check in `report.json`.
+#[derive(Serialize)]
+struct CheckDocument<'a> {
+    name: &'a str,
+    passed: bool,
+    verdict: String,
+    detail: &'a str,
+}
+
+impl Serialize for Check {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let document = CheckDocument {
+            name: self.name,
+            passed: self.passed,
+            verdict: self.verdict().trim().to_lowercase(),
+            detail: &self.detail,
+        };
+        document.serialize(serializer)
+    }
 }
 
 /// How much of what a check is about was compared.

@@ -1,5 +1,6 @@
 //! Plots of the shapers on the simulated machine.
 
+use super::waves::Waves;
 use crate::failure::Failure;
 use crate::plot::{Band, Curve, Panel, label, time_axis};
 use crate::simulate::si_per_lsb;
@@ -7,8 +8,8 @@ use posicast_model::analysis::{settled_from, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::plant::Plant;
 use posicast_model::plant::response::step_response;
+use posicast_model::plant::{Plant, SampledPlant};
 use posicast_model::simulation::AxisSimulation;
 use posicast_model::unit::{ShownUnit, trimmed};
 
@@ -23,14 +24,20 @@ pub(crate) fn response_panels(
     machine: &Machine,
     design: &MachineDesign,
     axes: &[AxisSimulation],
+    waves: &Waves,
 ) -> Result<Vec<Panel>, Failure> {
     let mut panels = Vec::new();
-    for ((axis, tables), run) in machine.axes.iter().zip(&design.axes).zip(axes) {
+    let runs = axes.iter().zip(&waves.unwrapped);
+    for ((axis, tables), (run, words)) in machine.axes.iter().zip(&design.axes).zip(runs) {
         if axis.modes.is_empty() {
             continue;
         }
         panels.push(step_panel(&machine.name, axis, tables, design.sample_hz)?);
-        panels.push(move_panel(machine, axis, tables, run));
+        let followed = Followed {
+            name: waves.device,
+            positions: follow(machine, axis, words)?,
+        };
+        panels.push(move_panel(machine, axis, tables, run, &followed));
     }
     Ok(panels)
 }
@@ -108,9 +115,29 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
     })
 }
 
+/// The machine that follows the words of the simulated hardware.
+struct Followed {
+    name: &'static str,
+    positions: Vec<f64>,
+}
+
+/// Positions of an axis's machine that follows these words, in LSB.
+fn follow(machine: &Machine, axis: &AxisSection, words: &[i64]) -> Result<Vec<f64>, Failure> {
+    let plant = Plant::of_axis(axis).map_err(Failure::because)?;
+    let start = words.first().map_or(0.0, |word| *word as f64);
+    let mut plant = SampledPlant::new(&plant, machine.clock.sample_period_s(), start);
+    Ok(words.iter().map(|word| plant.step(*word as f64)).collect())
+}
+
 /// The machine near its target, from the end of the unshaped command on. The deviations after the shaped command's
 /// end determine the shown range of the vertical axis, which has at least the band of a count.
-fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &AxisSimulation) -> Panel {
+fn move_panel(
+    machine: &Machine,
+    axis: &AxisSection,
+    tables: &AxisTables,
+    run: &AxisSimulation,
+    followed: &Followed,
+) -> Panel {
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target);
     let arrived = moving.map_or(0, |last| last + 1);
@@ -124,7 +151,7 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
     let largest = later.map(f64::abs).fold(0.0, f64::max);
     let unit = axis.unit.for_size(largest.max(1.0 / axis.loop_counts_per_unit()));
     let time = time_axis(run.shaped.len() as f64 / machine.clock.sample_hz);
-    let [unshaped, shaped] = both.map(|positions| {
+    let [unshaped, shaped, rtl] = [both[0], both[1], &followed.positions].map(|positions| {
         let points = positions.iter().enumerate().skip(from);
         points
             .map(|(n, position)| (time.of(n as f64 / machine.clock.sample_hz), unit.of(off(position))))
@@ -141,6 +168,7 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
         curves: vec![
             Curve::reference(with_settling("unshaped", &unshaped, count, time, slowest_s), unshaped),
             Curve::new(with_settling("shaped", &shaped, count, time, slowest_s), shaped),
+            Curve::beside(with_settling(followed.name, &rtl, count, time, slowest_s), rtl),
         ],
         y_range: Some((-1.1 * shown, 1.1 * shown)),
         band: Some(Band {

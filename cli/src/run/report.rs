@@ -2,15 +2,18 @@
 
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageDocument};
+use super::gain::Gain;
 use super::summary;
 use super::waves::Waves;
 use crate::bench::Simulator;
+use crate::compare;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::output::{Table, UnitDocument, percent};
 use crate::simulate::si_per_lsb;
 use crate::synth;
 use posicast_model::analysis::tap_impulses;
+use posicast_model::compare::{DEFAULT_BAND, KindComparison};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -37,7 +40,18 @@ pub(crate) struct RunReport<'a> {
     pub(crate) estimate: Option<&'a Estimate>,
     pub(crate) closed_loop: Option<&'a ClosedLoop<'a>>,
     pub(crate) checks: &'a [Check],
+    /// The command of the move, per axis.
+    pub(crate) words: &'a [Vec<i64>],
+    /// What each shaper costs and gains.
+    pub(crate) gains: Vec<Gain>,
+    /// All kinds of shaper on the axes.
+    pub(crate) kinds: &'a [KindComparison],
+    /// The command line of the run, to be called in the output folder.
+    pub(crate) command: String,
 }
+
+/// Version of the document: raised when a key is removed or gets another meaning. `docs/report.schema.json` describes it.
+const REPORT_VERSION: u32 = 1;
 
 /// Figures of one axis on the simulated machine.
 pub(crate) struct OnPlant {
@@ -213,9 +227,13 @@ impl RunReport<'_> {
                 samples: self.waves.samples[index],
                 largest_difference_lsb: self.waves.largest_difference_lsb[index],
                 bound_lsb: self.axes[index].bound_lsb,
+                gain: &self.gains[index],
             }
         });
         Document {
+            report_version: REPORT_VERSION,
+            posicast: env!("CARGO_PKG_VERSION"),
+            command: &self.command,
             name: self.machine.name.clone(),
             result: if self.checks.iter().all(|c| c.passed) {
                 "pass"
@@ -231,6 +249,7 @@ impl RunReport<'_> {
             rtl_against_float: &self.waves.float,
             synth: self.estimate,
             stage: self.closed_loop.map(ClosedLoop::json),
+            kinds: compare::Document::new(self.machine, 100.0 * DEFAULT_BAND, self.kinds),
             checks: self.checks,
         }
     }
@@ -239,23 +258,27 @@ impl RunReport<'_> {
 /// `run --json` and `report.json`.
 #[derive(Serialize)]
 pub(crate) struct Document<'a> {
+    report_version: u32,
+    posicast: &'static str,
+    command: &'a str,
     name: String,
     result: &'static str,
     simulator: Simulator,
     seed: u64,
     design: design::Document,
-    axes: Vec<AxisDocument>,
+    axes: Vec<AxisDocument<'a>>,
     verify: &'a LockstepReport,
     model_against_rtl: &'a Comparison,
     rtl_against_float: &'a Comparison,
     synth: Option<&'a Estimate>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stage: Option<StageDocument>,
+    kinds: compare::Document<'a>,
     checks: &'a [Check],
 }
 
 #[derive(Serialize)]
-struct AxisDocument {
+struct AxisDocument<'a> {
     name: String,
     #[serde(flatten)]
     unit: UnitDocument,
@@ -265,6 +288,7 @@ struct AxisDocument {
     samples: usize,
     largest_difference_lsb: f64,
     bound_lsb: f64,
+    gain: &'a Gain,
 }
 
 #[derive(Serialize)]

@@ -1,11 +1,13 @@
 //! The shapers' lock step, and the waveforms of the move: model, RTL and float design.
 
+use super::excerpt::{self, Excerpt};
 use crate::bench::{self, Bench, Simulator};
 use crate::failure::Failure;
 use crate::progress;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::Machine;
+use posicast_model::rtl::shaper::wrap;
 use posicast_model::simulation::{AxisSimulation, largest_difference};
 use posicast_synth::package::Package;
 use posicast_testbench::blocks::{Block, MachineShapers, Sources};
@@ -28,6 +30,12 @@ pub(super) struct Waves {
     pub(super) float: Comparison,
     /// Largest difference between RTL and float design per axis, in LSB.
     pub(super) largest_difference_lsb: Vec<f64>,
+    /// What was simulated, in a word.
+    pub(super) device: &'static str,
+    /// Its shaped words per axis; those of a modulo axis with the whole turns of the model's.
+    pub(super) unwrapped: Vec<Vec<i64>>,
+    /// The sample in which the first axis makes its largest step.
+    pub(super) excerpt: Option<Excerpt>,
 }
 
 /// A machine's shapers compared with their model, with random stimuli and during the move.
@@ -83,6 +91,10 @@ impl Job<'_> {
         let trace = command
             .record(device.as_mut(), &rtl_vcd, scope)
             .map_err(bench::failure)?;
+        let excerpt = match self.top.words().first() {
+            Some(words) => excerpt::read(&rtl_vcd, excerpt::largest_step(words))?,
+            None => None,
+        };
         let word_bits = self.machine.fixed_point.command_bits;
         let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float_words(word_bits)).collect();
         command
@@ -118,6 +130,17 @@ impl Job<'_> {
                 .zip(&float)
                 .map(|(shaped, float)| largest_difference(shaped, float))
                 .collect(),
+            device: match self.simulator {
+                Simulator::Rusthdl => "RustHDL description",
+                Simulator::Verilator | Simulator::Icarus => "RTL",
+            },
+            unwrapped: trace
+                .shaped
+                .iter()
+                .zip(axes)
+                .map(|(words, axis)| unwrapped(words, axis, word_bits))
+                .collect(),
+            excerpt,
         };
         let parts = [("model", &model_vcd), ("rtl", &rtl_vcd), ("float", &float_vcd)];
         let parts = parts.map(|(scope, path)| MergePart { scope, path });
@@ -125,4 +148,12 @@ impl Job<'_> {
         spinner.finish_and_clear();
         Ok(waves)
     }
+}
+
+/// The words of the hardware with as many whole turns as the model's have.
+fn unwrapped(words: &[i64], axis: &AxisSimulation, word_bits: u32) -> Vec<i64> {
+    let pairs = words.iter().zip(&axis.shaped);
+    pairs
+        .map(|(word, model)| model + wrap(word - model, word_bits))
+        .collect()
 }

@@ -29,6 +29,7 @@ mod optimal;
 mod outputs;
 mod pages;
 mod replay;
+mod report;
 mod schema;
 #[cfg(target_os = "linux")]
 mod signals;

@@ -14,6 +14,17 @@ fn standard_output_has_the_committed_schema() {
 }
 
 #[test]
+fn with_report_it_has_the_committed_schema_of_the_report() {
+    let output = posicast().args(["schema", "--report"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let committed = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/report.schema.json");
+    assert_eq!(
+        String::from_utf8(output.stdout).unwrap(),
+        std::fs::read_to_string(committed).unwrap()
+    );
+}
+
+#[test]
 fn a_file_is_replaced_only_if_it_is_ours() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("posicast-machine.schema.json");

@@ -90,7 +90,7 @@ to overwrite a file that was edited, and says which.
     let _ = writeln!(text, "| `{}.core` | the Verilog for FuseSoC |", design.machine);
     text.push_str(
         "| `report.json` | the design in numbers; after `posicast run` its whole report |\n\
-         | `wave/`, `plots/` | after `posicast run`: waveforms and pictures of its checks |\n\
+         | `report.html`, `wave/`, `plots/` | after `posicast run`: the report to open in a browser, waveforms and pictures of its checks |\n\
          | `posicast.json` | which files are posicast's |\n\n\
          `wave/`, `plots/` and the report of a run are about the machine file and the Verilog here. Once either changes, \
          `posicast generate`\nremoves them and says so.\n",

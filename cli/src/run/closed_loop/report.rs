@@ -3,6 +3,8 @@
 use super::contours::{ContourDocument, Contours};
 use super::{Circles, ClosedLoop};
 use crate::output::{Table, UnitDocument};
+use crate::run::gain::{Gain, GainSource, Track};
+use crate::run::pictures::slowest_period_s;
 use posicast_model::plant::axis::ErrorFigures;
 use posicast_model::unit::AxisUnit;
 use posicast_testbench::lockstep::report::Mismatch;
@@ -75,6 +77,34 @@ impl ClosedLoop<'_> {
     pub(crate) fn ringing(&self, axis: usize) -> Option<[f64; 2]> {
         let of = |moved: &Moved| Some(moved.axes.get(axis)?.residual.peak);
         Some([of(&self.unshaped)?, of(&self.shaped)?])
+    }
+
+    /// What an axis's shaper costs and gains in the move; `None` if a move was not made to its end.
+    pub(crate) fn gain(&self, index: usize) -> Option<Gain> {
+        let axis = self.machine.axes.get(index)?;
+        let count = 1.0 / axis.loop_counts_per_unit();
+        let of = |moved: &Moved| {
+            if moved.trouble.is_some() {
+                return None;
+            }
+            let samples = moved.samples.get(index)?;
+            // Where the load rests is what the ringing is about.
+            let rest = samples.last()?.load - moved.ringing(index).last()?;
+            let command: Vec<f64> = samples.iter().map(|sample| sample.command).collect();
+            let shaped: Vec<f64> = samples.iter().map(|sample| sample.shaped).collect();
+            let off: Vec<f64> = samples.iter().map(|sample| sample.load - rest).collect();
+            Some((command, shaped, off))
+        };
+        let (unshaped, shaped) = (of(&self.unshaped)?, of(&self.shaped)?);
+        let [unshaped, shaped] = [&unshaped, &shaped].map(|(command, shaped, off)| Track { command, shaped, off });
+        Some(Gain::new(
+            GainSource::ClosedLoop,
+            count,
+            self.machine.clock.sample_hz,
+            slowest_period_s(axis),
+            &unshaped,
+            &shaped,
+        ))
     }
 
     /// Largest error of an axis during its move, in m or rad.
