@@ -121,7 +121,10 @@ pub(super) fn draw_chart(
             true,
         )?;
     }
-    let note = |note: &super::Note| Text::new(note.text.clone(), note.at, ("sans-serif", text_size).into_font());
+    let note = |note: &super::Note| {
+        let beside = (DOT + 3, -text_size / 2);
+        EmptyElement::at(note.at) + Text::new(note.text.clone(), beside, ("sans-serif", text_size).into_font())
+    };
     chart.draw_series(panel.notes.iter().map(note))?;
     let (x, y) = chart.plotting_area().get_pixel_range();
     Ok([x.start, x.end, y.start, y.end])

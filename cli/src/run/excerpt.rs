@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(of("recording"), None);
         assert!(read(&path, 2).ok().unwrap().is_none(), "there is no third strobe");
         let drawn = figure(&excerpt).into_string();
-        assert!(drawn.contains(">x_y<") && drawn.contains("30 ns"), "{drawn}");
+        assert!(drawn.contains(">x_y<") && drawn.contains("30.0 ns"), "{drawn}");
     }
 
     #[test]

@@ -110,25 +110,27 @@ fn text_of(html: &Html, selector: &str) -> String {
 #[test]
 fn cli_the_page_of_a_run_says_what_its_document_says() {
     let machine =
-        one_axis("kind = \"zvd\"", "frequency_hz = 50.0\ndamping = 0.01").replace("\"x\"", "\"x\"\nunit = \"mm\"");
-    let machine = machine.replace("counts_per_unit = 1_000_000", "counts_per_unit = 1_000");
+        one_axis("kind = \"zvd\"", "frequency_hz = 50.0\ndamping = 0.2").replace("\"x\"", "\"x\"\nunit = \"mm\"");
+    let machine = machine.replace("counts_per_unit = 1_000_000", "counts_per_unit = 4");
     let (folder, file) = scratch(&machine);
-    let report = Report::of(
-        &file,
-        &folder.path().join("out"),
-        &["--simulator", "icarus", "--move", "20"],
-    );
+    let command = folder.path().join("ramp.csv");
+    std::fs::write(&command, "time_s,position\n0,0\n0.03,20\n").unwrap();
+    let words = ["--simulator", "icarus", "--command", command.to_str().unwrap()];
+    let report = Report::of(&file, &folder.path().join("out"), &words);
     let html = report.checked();
     assert_eq!(report.status, Some(0));
     let heading = text_of(&html, "h1");
     assert!(heading.starts_with("PASS"), "{heading}");
 
-    // The ZVD of 50 Hz and 1 % lasts a damped period, 20.001 ms; its integer taps end on the sample after that.
+    // The ZVD of 50 Hz and 20 % lasts a damped period, 20 ms / √0.96 = 20.41 ms. At the end of the ramp the load begins to ring by
+    // 667 mm/s / 314 rad/s = 2.1 mm, which falls to a count, 0.25 mm, after ln(8.5) / 62.8 = 34 ms, give or take half a period.
     let gain = &report.document["axes"][0]["gain"];
-    let later = gain["later_s"].as_f64().unwrap();
-    assert!((later - 0.0201).abs() < 1.1e-4, "{gain}");
+    let of = |name: &str| gain[name].as_f64().unwrap();
+    assert!((of("later_s") - 0.0204).abs() < 2.1e-4, "{gain}");
+    assert!((of("settled_unshaped_s") - 0.064).abs() < 0.01, "{gain}");
+    assert!(of("settled_s") < of("arrival_s") && gain["of"] == "open-loop", "{gain}");
     assert!(
-        gain["sooner_s"].as_f64().unwrap() > 0.05 && gain["of"] == "open-loop",
+        (of("sooner_s") - (of("settled_unshaped_s") - of("settled_s"))).abs() < 1e-12,
         "{gain}"
     );
     let sentence = text_of(&html, ".gains li");
@@ -154,11 +156,7 @@ fn cli_the_page_of_a_run_says_what_its_document_says() {
         "each part with pictures names its command"
     );
     assert!(text_of(&html, ".waves text").contains("x_valid"));
-    assert!(
-        report
-            .page
-            .contains("posicast run machine.toml --move 20 --simulator icarus")
-    );
+    assert!(text_of(&html, "header code").ends_with("ramp.csv --simulator icarus"));
     assert!(text_of(&html, "main").contains("nothing ran on hardware"));
 }
 

@@ -158,7 +158,7 @@ pub(super) fn kinds(of: &KindComparison, band_percent: f64) -> Panel {
         });
         if is_free {
             notes.push(Note {
-                text: format!(" {}", kind.kind),
+                text: kind.kind.clone(),
                 at,
             });
         }
