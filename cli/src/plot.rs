@@ -6,7 +6,7 @@ mod legend;
 mod map;
 
 use crate::failure::Failure;
-use chart::{Frame, draw_chart, looks};
+use chart::{Frame, Points, draw_chart, looks};
 use legend::Legend;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -239,7 +239,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let first_row = MARGIN + TITLE_SIZE + 10;
     legend.draw(area, (MARGIN, first_row))?;
     let (_, below) = area.split_vertically(first_row + legend.height());
-    draw_chart(&below, panel, &frame, TEXT_SIZE)?;
+    draw_chart(&below, panel, &frame, (TEXT_SIZE, Points::All))?;
     Ok(())
 }
 

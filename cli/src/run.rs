@@ -195,12 +195,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let mut sensitivity = design::sensitivity_panels(machine, &design.design);
     sensitivity.extend(design.family_panels());
-    let response = pictures::response_panels(machine, &design.design, &axes, &waves)?;
+    let of_model = pictures::response_panels(machine, &design.design, &axes, None)?;
+    let response = pictures::response_panels(machine, &design.design, &axes, Some(&waves))?;
     package
         .add_evidence("plots/sensitivity.svg", plot::svg(&sensitivity)?.as_bytes())
         .map_err(Failure::because)?;
     package
-        .add_evidence("plots/response.svg", plot::svg(&response)?.as_bytes())
+        .add_evidence("plots/response.svg", plot::svg(&of_model)?.as_bytes())
         .map_err(Failure::because)?;
     let kinds = compare(machine, DEFAULT_BAND);
     let report = RunReport {

@@ -35,6 +35,14 @@ impl Frame {
     }
 }
 
+/// Which points of a curve are drawn.
+#[derive(Clone, Copy)]
+pub(super) enum Points {
+    All,
+    /// What the picture can show of them: a page has many pictures.
+    Thinned,
+}
+
 /// Position of a chart inside its picture, in pixels: left, right, top and bottom.
 pub(super) type Edges = [i32; 4];
 
@@ -43,7 +51,7 @@ pub(super) fn draw_chart(
     area: &Area<'_>,
     panel: &Panel,
     frame: &Frame,
-    text_size: i32,
+    (text_size, shown): (i32, Points),
 ) -> Result<Edges, Box<dyn std::error::Error>> {
     let Frame {
         x: (x_low, x_high),
@@ -110,7 +118,11 @@ pub(super) fn draw_chart(
             continue;
         }
         for part in cut(&curve.points, y_low, y_high) {
-            draw_line(&mut chart, thinned(&part, (x_low, x_high)), style, is_dashed)?;
+            let part = match shown {
+                Points::All => part,
+                Points::Thinned => thinned(&part, (x_low, x_high)),
+            };
+            draw_line(&mut chart, part, style, is_dashed)?;
         }
     }
     for mark in &panel.marks {

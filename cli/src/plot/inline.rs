@@ -1,6 +1,6 @@
 //! A panel as a picture inside a page: the page has its title and its legend, and chooses the colours by its style sheet.
 
-use super::chart::{Edges, Frame, dashed, draw_chart, looks, under};
+use super::chart::{Edges, Frame, Points, dashed, draw_chart, looks, under};
 use super::{BAND, BAND_END, COLOURS, DARK_RED, Drawn, GREY, GRID, Look, Panel};
 use crate::failure::Failure;
 use plotters::prelude::*;
@@ -110,7 +110,7 @@ pub(crate) fn inline(panel: &Panel) -> Picture {
     let mut edges = [0; 4];
     let drawn = (|| -> Drawn {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        edges = draw_chart(&root, panel, &frame, TEXT_SIZE)?;
+        edges = draw_chart(&root, panel, &frame, (TEXT_SIZE, Points::Thinned))?;
         root.present()?;
         Ok(())
     })();

@@ -19,25 +19,28 @@ const RESPONSE_POINTS: usize = 1200;
 /// Fraction of a step within which a response counts as settled.
 const SETTLED: f64 = 0.02;
 
-/// Step responses and the end of the move, two panels per axis.
+/// Step responses and the end of the move, two panels per axis; with the simulated hardware's samples if its waves are given.
 pub(crate) fn response_panels(
     machine: &Machine,
     design: &MachineDesign,
     axes: &[AxisSimulation],
-    waves: &Waves,
+    waves: Option<&Waves>,
 ) -> Result<Vec<Panel>, Failure> {
     let mut panels = Vec::new();
-    let runs = axes.iter().zip(&waves.unwrapped);
-    for ((axis, tables), (run, words)) in machine.axes.iter().zip(&design.axes).zip(runs) {
+    let runs = axes.iter().enumerate();
+    for ((axis, tables), (index, run)) in machine.axes.iter().zip(&design.axes).zip(runs) {
         if axis.modes.is_empty() {
             continue;
         }
         panels.push(step_panel(&machine.name, axis, tables, design.sample_hz)?);
-        let followed = Followed {
-            name: waves.device,
-            positions: follow(machine, axis, words)?,
+        let followed = |waves: &Waves| -> Result<Followed, Failure> {
+            Ok(Followed {
+                name: waves.device,
+                positions: follow(machine, axis, &waves.unwrapped[index])?,
+            })
         };
-        panels.push(move_panel(machine, axis, tables, run, &followed));
+        let followed = waves.map(followed).transpose()?;
+        panels.push(move_panel(machine, axis, tables, run, followed.as_ref()));
     }
     Ok(panels)
 }
@@ -136,7 +139,7 @@ fn move_panel(
     axis: &AxisSection,
     tables: &AxisTables,
     run: &AxisSimulation,
-    followed: &Followed,
+    followed: Option<&Followed>,
 ) -> Panel {
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target);
@@ -151,25 +154,33 @@ fn move_panel(
     let largest = later.map(f64::abs).fold(0.0, f64::max);
     let unit = axis.unit.for_size(largest.max(1.0 / axis.loop_counts_per_unit()));
     let time = time_axis(run.shaped.len() as f64 / machine.clock.sample_hz);
-    let [unshaped, shaped, rtl] = [both[0], both[1], &followed.positions].map(|positions| {
+    let points = |positions: &[f64]| {
         let points = positions.iter().enumerate().skip(from);
         points
             .map(|(n, position)| (time.of(n as f64 / machine.clock.sample_hz), unit.of(off(position))))
             .collect::<Vec<_>>()
-    });
+    };
+    let [unshaped, shaped] = both.map(|positions| points(positions));
     let slowest_s = slowest_period_s(axis);
     let count = unit.of(1.0 / axis.loop_counts_per_unit());
     // What stays within a count from the start on does not leave the picture.
     let shown = unit.of(largest).max(count);
+    let mut curves = vec![
+        Curve::reference(with_settling("unshaped", &unshaped, count, time, slowest_s), unshaped),
+        Curve::new(with_settling("shaped", &shaped, count, time, slowest_s), shaped),
+    ];
+    if let Some(followed) = followed {
+        let rtl = points(&followed.positions);
+        curves.push(Curve::beside(
+            with_settling(followed.name, &rtl, count, time, slowest_s),
+            rtl,
+        ));
+    }
     Panel {
         title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
         x_label: label("time", time),
         y_label: label("deviation from target", unit),
-        curves: vec![
-            Curve::reference(with_settling("unshaped", &unshaped, count, time, slowest_s), unshaped),
-            Curve::new(with_settling("shaped", &shaped, count, time, slowest_s), shaped),
-            Curve::beside(with_settling(followed.name, &rtl, count, time, slowest_s), rtl),
-        ],
+        curves,
         y_range: Some((-1.1 * shown, 1.1 * shown)),
         band: Some(Band {
             name: "±1 count".into(),
