@@ -1,6 +1,6 @@
 //! `posicast host`, on the model of the stage with its machine behind a pseudo-terminal.
 
-use super::support::{example, json, posicast, scratch};
+use super::support::{example, generate, json, posicast, scratch};
 use posicast_model::design::design_machine;
 use posicast_model::hardware::Hardware;
 use posicast_model::machine_file;
@@ -210,4 +210,29 @@ fn cli_host_says_what_is_missing() {
         "at most 100.00 counts",
     );
     assert!(!csv.exists());
+}
+
+#[test]
+fn cli_generate_writes_the_stage_with_its_line() {
+    let (folder, file) = scratch(&machine());
+    let output = folder.path().join("out");
+    generate(&file, &output);
+    let read = |name: &str| std::fs::read_to_string(output.join(name)).unwrap();
+    for (list, line) in [
+        ("filelist.f", "rtl/xy_stage_link.v"),
+        ("filelist.f", "rtl/posicast_uart_bridge.v"),
+        ("xy_stage.qip", "rtl/xy_stage_link.v"),
+        ("xy_stage.core", "rtl/xy_stage_link.v"),
+        ("README.md", "the stage and its serial line of 3000000 baud"),
+        ("docs/uart_bridge.md", "# uart_bridge"),
+    ] {
+        assert!(read(list).contains(line), "{list}: {line}");
+    }
+    let top = read("rtl/xy_stage_link.v");
+    // 8 · 3,000,000 / 50,000,000 in 65,536ths; 10 ms in eighths of a bit; the windows of the stage and its two axes.
+    for constant in ["(16'd31457)", "(20'd240000)", "(16'd768)"] {
+        assert!(top.contains(constant), "{constant}: {top}");
+    }
+    // The checksum of the file is in the stage, and the machine file in the folder is the same file.
+    assert_eq!(read("machine.toml"), machine());
 }
