@@ -225,6 +225,25 @@ fn unit_a_table_is_loaded_read_back_and_used() {
     assert_eq!(line.linked.bench.read("y_status").unwrap() >> 17 & 3, 0);
 }
 
+/// The clocks of `docs/hosts.md`, within 2 %.
+#[test]
+fn unit_calls_take_the_clocks_of_the_page() {
+    let machine = machine();
+    let stage = stage(&machine);
+    let clocks = |calls: fn(&mut HostedStage<'_, Line>)| {
+        let mut host = open(&machine, &stage);
+        calls(&mut host);
+        host.into_link().into_line().linked.bench.now()
+    };
+    let opened = clocks(|_| {});
+    let status = clocks(|host| drop(host.status().unwrap())) - opened;
+    let kick = clocks(|host| host.kick().unwrap()) - opened;
+    let found = [opened, status, kick];
+    let expected = [12_900, 23_000, 5_250];
+    let near = |(found, expected): (&u64, &u64)| found.abs_diff(*expected) <= expected / 50;
+    assert!(found.iter().zip(&expected).all(near), "{found:?}");
+}
+
 /// Constants of the stage, one of them changed.
 struct Constants(Vec<u32>);
 

@@ -148,6 +148,8 @@ struct World {
     /// The frame that the present host is sending.
     frame: Vec<u8>,
     sent: Vec<Sent>,
+    /// Requests of hosts that have ended.
+    closed: usize,
     faults: u64,
     last_byte: u64,
 }
@@ -449,6 +451,7 @@ impl Ground {
             coming: Vec::new(),
             frame: Vec::new(),
             sent: Vec::new(),
+            closed: 0,
             faults: 0,
             last_byte: 0,
         }));
@@ -586,10 +589,11 @@ impl Ground {
 /// A host has ended: with success, all of its requests were answered; else all but the last.
 fn close(world: &Rc<RefCell<World>>, well: bool) {
     let mut world = world.borrow_mut();
-    let count = world.sent.len();
-    for (at, sent) in world.sent.iter_mut().enumerate() {
-        sent.open = sent.open && at + 1 == count && !well;
+    let (from, count) = (world.closed, world.sent.len());
+    for (at, sent) in world.sent.iter_mut().enumerate().skip(from) {
+        sent.open = at + 1 == count && !well;
     }
+    world.closed = count;
     // The next host's first request is never taken for a repetition of this one's last.
     if let Some(last) = world.sent.last_mut()
         && last.open
