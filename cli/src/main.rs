@@ -7,6 +7,7 @@
 mod allowance;
 mod bench;
 mod blocks;
+mod campaign;
 mod command;
 mod compare;
 mod completions;
@@ -82,6 +83,7 @@ enum Command {
     /// Compare two waveforms (VCD or FST), sampled at the clock
     #[command(after_help = diff::EXAMPLES)]
     Diff(Box<diff::Args>),
+    Campaign(campaign::Args),
     Synth(synth::Args),
     Identify(identify::Args),
     Host(host::Args),
@@ -107,6 +109,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Campaign(args) => campaign::run(&args),
         Command::Synth(args) => synth::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Host(args) => host::run(&args),

@@ -59,11 +59,13 @@ pub(crate) fn doubtful(text: &str) -> String {
 }
 
 /// Words with which a line of a message or verdict may begin, with their colours.
-const BEGINNINGS: [(&str, Style); 5] = [
+const BEGINNINGS: [(&str, Style); 7] = [
     ("warning:", YELLOW),
     ("error:", RED),
     ("match:", BOLD_GREEN),
     ("MISMATCH", RED),
+    ("PASS:", BOLD_GREEN),
+    ("FAIL:", RED),
     ("NO VERDICT", YELLOW),
 ];
 

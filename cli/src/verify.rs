@@ -118,8 +118,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The blocks to compare with their models.
-struct Job {
-    blocks: Vec<(Box<dyn Block>, Sources)>,
+pub(crate) struct Job {
+    /// Name of the machine.
+    pub(crate) machine: String,
+    pub(crate) blocks: Vec<(Box<dyn Block>, Sources)>,
     /// The differences between the files of the folder and what posicast generates, where the source is a folder.
     folder: Option<Folder>,
 }
@@ -127,7 +129,7 @@ struct Job {
 impl Job {
     /// The blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` is that
     /// of [`Folder`].
-    fn new(source: &Path, names: &[String], edits_accepted: bool) -> Result<Self, Failure> {
+    pub(crate) fn new(source: &Path, names: &[String], edits_accepted: bool) -> Result<Self, Failure> {
         let (machine, path, folder) = if source.is_dir() {
             let contents = package::read(source).map_err(Failure::because)?;
             let machine = machine::parse(&contents.machine_path, &contents.machine_toml)?;
@@ -180,9 +182,16 @@ impl Job {
         let chosen = choose(list, names, source)?.into_iter();
         let blocks = chosen.map(|block| sources(block.as_ref()).map(|sources| (block, sources)));
         Ok(Self {
+            machine: machine.name.clone(),
             blocks: blocks.collect::<Result<_, _>>()?,
             folder: compared,
         })
+    }
+
+    /// Why the folder's files are no match whatever a simulation says; `None` where they may be one.
+    pub(crate) fn folder_fails(&self) -> Option<String> {
+        let folder = self.folder.as_ref().filter(|folder| folder.fails());
+        folder.map(Folder::text)
     }
 
     /// Removes blocks that RustHDL's simulator cannot run, with a note; it is an error if nothing is left.

@@ -46,6 +46,7 @@ pub mod page;
 pub mod recording;
 pub mod register_tests;
 pub mod replay;
+pub mod shard;
 pub mod stage_bench;
 pub mod stage_run;
 pub mod stimuli;

@@ -6,8 +6,10 @@
 //! ```
 //!
 //! Exit status 1: a figure is larger than the one in `docs/area.md`, or a row is missing there. So area cannot grow
-//! unnoticed; where growth is intended, `--write` makes it part of the change. Smaller figures pass. Needs Yosys;
-//! takes a minute.
+//! unnoticed; where growth is intended, `--write` makes it part of the change. Smaller figures pass. Needs Yosys.
+//!
+//! The page has a checksum of each row's Verilog. A row of the same Verilog keeps its figures and is not measured; `--again`,
+//! alone or with `--write`, measures all rows, which takes some minutes.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "its purpose")]
 
 mod table;
@@ -26,6 +28,8 @@ use std::thread;
 /// Figures of a row.
 struct Measured {
     row: AreaRow,
+    /// Checksum of its Verilog.
+    checksum: String,
     resources: Resources,
     /// LUTs as Yosys maps alone, without carry chain and synchronous clear. `None` for the whole stage, where it takes
     /// minutes, and where the page is not written, because the figure is for readers and not compared.
@@ -35,20 +39,42 @@ struct Measured {
 type Failure = Box<dyn Error + Send + Sync>;
 
 fn main() -> Result<ExitCode, Failure> {
-    let write = match std::env::args().skip(1).collect::<Vec<_>>().as_slice() {
-        [] => false,
-        [option] if option == "--write" => true,
-        _ => return Err("the only option is --write".into()),
-    };
+    let options: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(other) = options
+        .iter()
+        .find(|option| !["--write", "--again"].contains(&option.as_str()))
+    {
+        return Err(format!("{other} is not an option: there are --write and --again").into());
+    }
+    let has = |option: &str| options.iter().any(|given| given == option);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/area.md");
+    let written = table::Written::of(&std::fs::read_to_string(&path)?);
     let yosys = Yosys::installed()?;
-    let page = table::page(yosys.version(), &measure_all(&yosys, areas()?, write)?);
-    print!("{page}");
-    if write {
-        std::fs::write(&path, page)?;
+    let rows = areas()?;
+    let count = rows.len();
+    let is_known = |row: &AreaRow| !has("--again") && written.is_of(row);
+    let (known, changed): (Vec<_>, Vec<_>) = rows.into_iter().enumerate().partition(|(_, row)| is_known(row));
+    eprintln!(
+        "{} of {count} rows are of the Verilog in docs/area.md; {} are measured",
+        known.len(),
+        changed.len()
+    );
+    let measured = measure_all(&yosys, changed, has("--write"))?;
+    if has("--write") {
+        let mut lines: Vec<_> = known
+            .iter()
+            .filter_map(|(at, row)| Some((*at, written.line(row)?)))
+            .collect();
+        lines.extend(measured.iter().map(|(at, one)| (*at, table::line(one))));
+        lines.sort();
+        std::fs::write(&path, table::page(yosys.version(), &lines))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let grown = table::grown(&std::fs::read_to_string(&path)?, &page);
+    let mut grown = Vec::new();
+    for (_, one) in &measured {
+        println!("{}", table::line(one));
+        grown.extend(written.grown(one));
+    }
     for line in &grown {
         eprintln!("{line}");
     }
@@ -59,10 +85,10 @@ fn main() -> Result<ExitCode, Failure> {
     Ok(ExitCode::FAILURE)
 }
 
-/// Measures the rows, one per core at a time, and returns them in their order.
-fn measure_all(yosys: &Yosys, rows: Vec<AreaRow>, write: bool) -> Result<Vec<Measured>, Failure> {
+/// Measures the rows, one per core at a time, and returns them in their order, each with its place in the table.
+fn measure_all(yosys: &Yosys, rows: Vec<(usize, AreaRow)>, write: bool) -> Result<Vec<(usize, Measured)>, Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
-    let waiting = Mutex::new(rows.into_iter().enumerate());
+    let waiting = Mutex::new(rows.into_iter());
     let next = || waiting.lock().map_or(None, |mut rows| rows.next());
     let measure_next = || {
         iter::from_fn(next)
@@ -79,7 +105,7 @@ fn measure_all(yosys: &Yosys, rows: Vec<AreaRow>, write: bool) -> Result<Vec<Mea
     .flatten()
     .collect();
     measured.sort_by_key(|(at, _)| *at);
-    Ok(measured.into_iter().map(|(_, row)| row).collect())
+    Ok(measured)
 }
 
 fn measure(yosys: &Yosys, row: AreaRow, write: bool) -> Result<Measured, Failure> {
@@ -99,6 +125,7 @@ fn measure(yosys: &Yosys, row: AreaRow, write: bool) -> Result<Measured, Failure
     };
     let by_yosys = (write && row.block != table::STAGE).then(|| estimate(Mapping::Luts));
     Ok(Measured {
+        checksum: table::checksum(&row),
         resources: estimate(Mapping::LogicElement)?.total,
         luts_by_yosys: by_yosys.transpose()?.map(|estimate| estimate.total.luts),
         row,

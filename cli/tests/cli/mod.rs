@@ -8,6 +8,7 @@ mod verdict;
 mod verify;
 
 mod bad_input;
+mod campaign;
 mod completions;
 mod contour;
 mod design;

@@ -18,6 +18,7 @@
 //! them among the properties. If an engine does not find a proof, a counterexample of at most [`SEARCHED_CLOCKS`] is
 //! searched.
 
+mod fingerprint;
 mod names;
 mod task;
 mod tool;

@@ -15,9 +15,9 @@ pub const SEARCHED_CLOCKS: u32 = 60;
 const COVERED_CLOCKS: u32 = 540;
 
 /// Name of the file with the assertions, and the commands that leave only these.
-const ASSERTS: (&str, &str) = ("asserts", "delete t:$cover");
+pub(super) const ASSERTS: (&str, &str) = ("asserts", "delete t:$cover");
 /// Name of the file with the covers, and the commands that leave only these.
-const COVERS: (&str, &str) = ("covers", "delete t:$assert\ntechmap -map reached.v");
+pub(super) const COVERS: (&str, &str) = ("covers", "delete t:$assert\ntechmap -map reached.v");
 
 pub(crate) const YOSYS: Tool = Tool {
     name: "yosys",
@@ -138,61 +138,9 @@ impl<'a> Bench<'a> {
 
     /// Writes the Verilog, and the engines' input files: one for each of `kinds`.
     fn prepare(&self, kinds: &[(&str, &str)]) -> Result<(), Error> {
-        let mut script = String::new();
-        for module in &self.task.modules {
-            let file = format!("{}.v", module.name);
-            let begun = |text: String, (register, value): &(&str, &str)| {
-                text.replace(&format!(" {register} = 32'd0;"), &format!(" {register} = {value};"))
-            };
-            let text = self.task.begins.iter().fold(module.text.clone(), begun);
-            self.write(&file, &text)?;
-            let _ = writeln!(script, "read_verilog {file}");
+        for (name, text) in input_files(self.task, kinds) {
+            self.write(&name, &text)?;
         }
-        let peeks = peeks(&self.task.properties);
-        let properties = format!("{}_properties", self.task.name);
-        self.write("properties.sv", &self.task.properties)?;
-        self.write("reached.v", include_str!("../../formal/reached.v"))?;
-        self.write(
-            "formal_top.sv",
-            &formal_top(&self.task.top, &properties, &self.task.ports, &peeks),
-        )?;
-        script.push_str(
-            "read_verilog -formal -sv properties.sv formal_top.sv\n\
-             hierarchy -check -top formal_top\nproc\nflatten\n",
-        );
-        if self.task.keeps_memories {
-            script.push_str("memory\n");
-        }
-        // A path that is not in the block is refused: the peek would be free, and nothing could be proven.
-        for peek in &peeks {
-            let path = format!("formal_top/dut.{}", peek.path);
-            let _ = writeln!(script, "select -assert-any {path}\nsetattr -set keep 1 {path}");
-        }
-        script.push_str("opt_clean\ncd formal_top\n");
-        for peek in &peeks {
-            let _ = writeln!(script, "connect -set {} dut.{}", peek.name, peek.path);
-        }
-        script.push_str("cd ..\nsetattr -unset keep formal_top/w:dut.*\n");
-        // Memories are removed: the output of a block RAM is free in every clock.
-        let multipliers = if self.task.leaves_products_open {
-            "delete t:$mul\n"
-        } else {
-            ""
-        };
-        script.push_str(multipliers);
-        script.push_str(
-            "memory -nomap\ndelete t:$mem_v2\nasync2sync\nsetundef -undriven -anyseq\nopt\ndffunmap\nopt_clean\n\
-             write_ilang design.il\ndesign -save whole\n",
-        );
-        let bits = "delete -output\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n";
-        for (name, only) in kinds {
-            let _ = write!(
-                script,
-                "design -load whole\n{only}\n{bits}tee -o {name}.txt select -list t:$assert\n\
-                 write_aiger -I -B -zinit -no-startoffset -map {name}.aim {name}.aig\n"
-            );
-        }
-        self.write("prepare.ys", &script)?;
         let mut yosys = YOSYS.command_in(self.folder);
         yosys.args(["-q", "prepare.ys"]);
         YOSYS.run(&mut yosys, "reading block and properties").map(drop)
@@ -292,6 +240,65 @@ impl<'a> Bench<'a> {
     fn seconds(&self) -> u64 {
         self.limit.as_secs().max(1)
     }
+}
+
+/// All that Yosys is given for a task, as file names and texts: the Verilog, the properties, the top that joins them, and the
+/// script that makes of them the engines' input, one file for each of `kinds`.
+pub(super) fn input_files(task: &Task, kinds: &[(&str, &str)]) -> Vec<(String, String)> {
+    let mut files = Vec::new();
+    let mut script = String::new();
+    for module in &task.modules {
+        let file = format!("{}.v", module.name);
+        let begun = |text: String, (register, value): &(&str, &str)| {
+            text.replace(&format!(" {register} = 32'd0;"), &format!(" {register} = {value};"))
+        };
+        let _ = writeln!(script, "read_verilog {file}");
+        files.push((file, task.begins.iter().fold(module.text.clone(), begun)));
+    }
+    let peeks = peeks(&task.properties);
+    let properties = format!("{}_properties", task.name);
+    script.push_str(
+        "read_verilog -formal -sv properties.sv formal_top.sv\n\
+         hierarchy -check -top formal_top\nproc\nflatten\n",
+    );
+    if task.keeps_memories {
+        script.push_str("memory\n");
+    }
+    // A path that is not in the block is refused: the peek would be free, and nothing could be proven.
+    for peek in &peeks {
+        let path = format!("formal_top/dut.{}", peek.path);
+        let _ = writeln!(script, "select -assert-any {path}\nsetattr -set keep 1 {path}");
+    }
+    script.push_str("opt_clean\ncd formal_top\n");
+    for peek in &peeks {
+        let _ = writeln!(script, "connect -set {} dut.{}", peek.name, peek.path);
+    }
+    script.push_str("cd ..\nsetattr -unset keep formal_top/w:dut.*\n");
+    if task.leaves_products_open {
+        script.push_str("delete t:$mul\n");
+    }
+    // Memories are removed: the output of a block RAM is free in every clock.
+    script.push_str(
+        "memory -nomap\ndelete t:$mem_v2\nasync2sync\nsetundef -undriven -anyseq\nopt\ndffunmap\nopt_clean\n\
+         write_ilang design.il\ndesign -save whole\n",
+    );
+    let bits = "delete -output\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n";
+    for (name, only) in kinds {
+        let _ = write!(
+            script,
+            "design -load whole\n{only}\n{bits}tee -o {name}.txt select -list t:$assert\n\
+             write_aiger -I -B -zinit -no-startoffset -map {name}.aim {name}.aig\n"
+        );
+    }
+    let top = formal_top(&task.top, &properties, &task.ports, &peeks);
+    files.push(("formal_top.sv".to_owned(), top));
+    files.push(("properties.sv".to_owned(), task.properties.clone()));
+    files.push((
+        "reached.v".to_owned(),
+        include_str!("../../formal/reached.v").to_owned(),
+    ));
+    files.push(("prepare.ys".to_owned(), script));
+    files
 }
 
 /// ABC's output for these commands, run in `folder`.

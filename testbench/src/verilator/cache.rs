@@ -35,6 +35,18 @@ pub(super) fn holds(object: &Path) -> bool {
     true
 }
 
+/// Waits until no other process builds this object, and keeps them waiting until the result is dropped. `None` where the file system
+/// has no locks: both then build, which only takes longer.
+pub(super) fn lock(object: &Path) -> Option<File> {
+    let file = File::options()
+        .create(true)
+        .append(true)
+        .open(object.with_extension("lock"))
+        .ok()?;
+    file.lock().ok()?;
+    Some(file)
+}
+
 /// Removes old entries. Failures do not matter: another process may be doing the same.
 pub(super) fn tidy(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -42,7 +54,7 @@ pub(super) fn tidy(folder: &Path) {
         let name = name.to_string_lossy();
         let modified = entry.metadata().and_then(|data| data.modified());
         let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
-        let is_ours = name.starts_with("verilator-") && (name.ends_with(".so") || name.ends_with(".o"));
+        let is_ours = name.starts_with("verilator-") && [".so", ".o", ".lock"].iter().any(|end| name.ends_with(end));
         if is_ours && age > KEPT {
             let _ = fs::remove_file(entry.path());
         } else if name.starts_with(BUILD_PREFIX) && age > ABANDONED {

@@ -7,8 +7,9 @@
 //!
 //! - **Cache.** There is one shared object per content of the sources, ports, harness, Verilator version and flags,
 //!   in `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It
-//!   is built in a folder of its own and renamed when complete, so that parallel builds never see half a file. An
-//!   object that was not used for 30 days is removed. Verilator's own C++ is compiled once and kept there too.
+//!   is built in a folder of its own and renamed when complete, so that parallel builds never see half a file, and
+//!   under a lock, so that one builds it and the others wait. An object that was not used for 30 days is removed.
+//!   Verilator's own C++ is compiled once and kept there too.
 //! - **Random start.** Registers without a reset value and memories start with random contents, by the seed: a block
 //!   that works only because a simulator clears its memory fails here.
 //! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
@@ -19,6 +20,7 @@ mod cache;
 mod dynamic;
 mod harness;
 mod runtime;
+mod unity;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -42,7 +44,7 @@ const MAKE: Tool = Tool {
     purpose: "it compiles Verilator's output",
     remedy: "Install it together with a C++ compiler (Debian: apt-get install make g++)",
 };
-/// The compiler takes 8 s for a stage, and 24 s with `-O2`, which a million clocks do not win back.
+/// More optimisation of what runs in every clock takes longer than a million clocks win back.
 const MAKE_FLAGS: [&str; 3] = ["OPT_FAST=-O1", "OPT_SLOW=-O0", "OPT_GLOBAL=-O1"];
 /// Arguments of `verilator --cc`. `--no-gnu-unique` keeps the statics of two loaded simulations apart.
 const FLAGS: [&str; 12] = [
@@ -196,6 +198,11 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     }
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create the cache folder"))?;
     cache::tidy(folder);
+    // Another process may be building the same: it is then waited for.
+    let _lock = cache::lock(&object);
+    if cache::holds(&object) {
+        return Ok(object);
+    }
     let work = scratch::Folder::new_in(cache::BUILD_PREFIX, folder)
         .map_err(Error::file(folder, "create a folder to build in"))?;
 
@@ -218,15 +225,16 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read Verilator's output"))?;
     let members = harness::members(source, &harness::declared_ports(&header))?;
     let coverage = if counts { harness::COVERAGE } else { "" };
-    write(
-        "harness.cpp",
-        &(harness::source_text(source.ports, &members) + coverage),
-    )?;
+    let classes = unity::Classes::of(work.path()).map_err(Error::file(work.path(), "list Verilator's output"))?;
+    let harness = harness::source_text(source.ports, &members) + coverage;
+    write("harness.cpp", &(harness + &unity::includes(&classes.fast)))?;
+    write(unity::SLOW, &unity::includes(&classes.slow))?;
     let runtime = runtime::Runtime::new(folder, &runtime_hash(version()?, counts));
     runtime.lend(work.path());
     let mut make = MAKE.command_in(work.path());
     make.args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
-        .args(MAKE_FLAGS);
+        .args(MAKE_FLAGS)
+        .args(unity::MAKE_VARIABLES);
     // A make that runs this process may have set these; they would change flags, or claim its job slots.
     make.env_remove("MAKEFLAGS")
         .env_remove("MAKELEVEL")

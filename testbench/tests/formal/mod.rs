@@ -1,8 +1,11 @@
 //! Runs the quick proofs, and checks that each property file fails on a block with a deliberate fault.
+//!
+//! A result that stands in `formal/results.txt` for the same fingerprint of the task is not computed again: see [`results`].
 
 mod blocks;
 mod bus;
 mod controller;
+mod results;
 mod shapers;
 mod supervisor;
 
@@ -16,10 +19,15 @@ const LIMIT: Duration = Duration::from_secs(120);
 
 #[track_caller]
 pub(crate) fn proven(name: &str, size: usize) {
-    let folder = tempfile::tempdir().unwrap();
-    let outcome = run(&proofs_named(name).unwrap()[size], folder.path(), LIMIT).unwrap();
-    assert!(outcome.is_good(), "{outcome:?}");
-    assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
+    let task = &proofs_named(name).unwrap()[size];
+    let result = results::known_or(task, "proven", || {
+        let folder = tempfile::tempdir().unwrap();
+        let outcome = run(task, folder.path(), LIMIT).unwrap();
+        assert!(outcome.is_good(), "{outcome:?}");
+        assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
+        format!("{} assertions, {} covers", outcome.assertions, outcome.covers.len())
+    });
+    assert!(result.ends_with(" covers"), "{result}");
 }
 
 /// Replaces the first `from` in the block's Verilog by `to`, and requires a counterexample to a property whose name
@@ -27,25 +35,29 @@ pub(crate) fn proven(name: &str, size: usize) {
 #[track_caller]
 pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
     let task = broken(name, from, to);
-    let folder = tempfile::tempdir().unwrap();
-    match search(&task, folder.path(), LIMIT).unwrap() {
-        ProofVerdict::Counterexample { property, waveform, .. } => {
-            assert!(property.starts_with(expected), "`{to}`: {property}");
-            assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
+    let property = results::known_or(&task, "counterexample", || {
+        let folder = tempfile::tempdir().unwrap();
+        match search(&task, folder.path(), LIMIT).unwrap() {
+            ProofVerdict::Counterexample { property, waveform, .. } => {
+                assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
+                property
+            }
+            other => panic!("`{to}` is not found: {other:?}"),
         }
-        other => panic!("`{to}` is not found: {other:?}"),
-    }
+    });
+    assert!(property.starts_with(expected), "`{to}`: {property}");
 }
 
 /// As [`fails`], for a counterexample that is further from the reset than the search goes: the proof of the broken
 /// block must not succeed, whereas that of the block does.
 #[track_caller]
 pub(crate) fn is_no_longer_proven(name: &str, from: &str, to: &str) {
-    let folder = tempfile::tempdir().unwrap();
-    assert!(
-        !proves(&broken(name, from, to), folder.path(), LIMIT).unwrap(),
-        "`{to}`"
-    );
+    let task = broken(name, from, to);
+    results::known_or(&task, "no proof", || {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(!proves(&task, folder.path(), LIMIT).unwrap(), "`{to}`");
+        "none found".to_owned()
+    });
 }
 
 #[track_caller]

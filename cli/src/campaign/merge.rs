@@ -1,0 +1,84 @@
+//! `posicast campaign merge`: the shards of a campaign as one result.
+
+use super::{MOST_SHOWN, of_failure, table, verdict};
+use crate::failure::Failure;
+use crate::output;
+use posicast_testbench::shard::{self, MergeError, Merged, ShardDocument};
+use posicast_testbench::wording::counted;
+use std::path::PathBuf;
+
+/// Join the shards of a campaign: one table, and what failed
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Folder with the shards' files, and no other files `*.json`
+    folder: PathBuf,
+    /// Print one JSON document on standard output, which does not depend on the number of shards
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let documents = shard::read_folder(&args.folder).map_err(of_merge)?;
+    let costs = costs(documents.iter().map(|(_, document)| document));
+    let repeat = documents
+        .first()
+        .map_or_else(String::new, |(_, document)| document.repeat.clone());
+    let merged = shard::merge(documents).map_err(of_merge)?;
+    match args.json {
+        true => output::print_json(&merged)?,
+        false => output::print_styled(&text(&merged, &costs, &repeat))?,
+    }
+    verdict(merged.failures.len(), merged.results.len())
+}
+
+/// A missing shard is a check that fails; files of something else are bad input.
+fn of_merge(error: MergeError) -> Failure {
+    match error {
+        MergeError::Missing { .. } => Failure::Check(format!("no verdict: {error}; run them, then merge again")),
+        MergeError::Empty(_) => Failure::from(miette::miette!(
+            help = "name the folder into which the shards were written with --json",
+            "{error}"
+        )),
+        _ => Failure::because(error),
+    }
+}
+
+/// What the shards took, in a sentence.
+fn costs<'a>(documents: impl Iterator<Item = &'a ShardDocument>) -> String {
+    let (mut count, mut sum, mut longest, mut overhead) = (0, 0.0, 0.0_f64, 0.0_f64);
+    for document in documents {
+        count += 1;
+        sum += document.seconds;
+        longest = longest.max(document.seconds);
+        overhead = overhead.max(document.overhead_seconds);
+    }
+    format!(
+        "{} of {sum:.1} s in all, the longest {longest:.1} s; beside their work at most {overhead:.2} s each",
+        counted(count, "shard")
+    )
+}
+
+fn text(merged: &Merged, costs: &str, repeat: &str) -> String {
+    let mut text = table(&merged.rows);
+    for result in merged.failures.iter().take(MOST_SHOWN) {
+        text += &of_failure(result);
+    }
+    if let Some(first) = merged.failures.first() {
+        text += &format!("the first one alone: {repeat} --unit {}\n", first.unit);
+    }
+    let head = &merged.head;
+    let machine = head
+        .machine
+        .as_ref()
+        .map_or_else(String::new, |machine| format!(" of {}", machine.name));
+    text += &format!("{costs}\n");
+    text += &format!(
+        "{} {}{machine}, seed {}: {}, {} failed\n",
+        crate::style::message(if merged.failures.is_empty() { "PASS:" } else { "FAIL:" }),
+        head.kind,
+        head.seed,
+        counted(merged.results.len() as u64, "unit"),
+        merged.failures.len()
+    );
+    text
+}

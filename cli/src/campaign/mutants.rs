@@ -1,0 +1,110 @@
+//! `posicast campaign mutants`: mutants of the blocks, some of one block a unit.
+
+use super::{Outcome, Part, Units, figures};
+use crate::bench;
+use crate::failure::Failure;
+use posicast_model::spelling::did_you_mean;
+use posicast_system::scratch::{Folder, PREFIX};
+use posicast_testbench::mutation::{self, MutationOptions, MutationRow, Subject};
+use posicast_testbench::shard::MachineFileHash;
+use serde_json::{Map, Value};
+
+/// Put mutants into the blocks, and see whether lock step or proofs notice each
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Only the blocks of this name; may be given several times
+    #[arg(long = "block", value_name = "NAME")]
+    blocks: Vec<String>,
+    /// Number of mutants of each block, in whole units; a block with fewer places for them has fewer
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    mutants: u64,
+    #[command(flatten)]
+    pub(super) part: Part,
+}
+
+/// Number of mutants of a unit: most blocks take seconds for them, the largest minutes.
+const UNIT_MUTANTS: u64 = 10;
+
+struct Mutants {
+    subjects: Vec<Subject>,
+    units_per_block: u64,
+}
+
+pub(super) fn of(args: &Args) -> Result<impl Units + use<>, Failure> {
+    let mut subjects = mutation::all().map_err(bench::failure)?;
+    let mut names: Vec<&str> = subjects.iter().map(|subject| subject.block().name()).collect();
+    names.dedup();
+    if let Some(unknown) = args.blocks.iter().find(|name| !names.contains(&name.as_str())) {
+        let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
+        return Err(Failure::from(miette::miette!(
+            help = format!("{near}choose from: {}", names.join(", ")),
+            "--block {unknown}: there is no block of this name with mutants"
+        )));
+    }
+    let wanted = |name: &str| args.blocks.is_empty() || args.blocks.iter().any(|chosen| chosen == name);
+    subjects.retain(|subject| wanted(subject.block().name()));
+    Ok(Mutants {
+        subjects,
+        units_per_block: args.mutants.div_ceil(UNIT_MUTANTS),
+    })
+}
+
+impl Mutants {
+    fn subject(&self, unit: u64) -> &Subject {
+        &self.subjects[(unit % self.subjects.len() as u64) as usize]
+    }
+}
+
+impl Units for Mutants {
+    fn kind(&self) -> &'static str {
+        "mutants"
+    }
+
+    fn machine(&self) -> Option<MachineFileHash> {
+        None
+    }
+
+    fn options(&self) -> Map<String, Value> {
+        let of_subject = |subject: &Subject| Value::from(format!("{} {}", subject.block().name(), subject.size()));
+        let mut options = figures([
+            ("unit_mutants", UNIT_MUTANTS),
+            ("units_per_block", self.units_per_block),
+        ]);
+        let blocks = self.subjects.iter().map(of_subject).collect();
+        options.insert("blocks".to_owned(), Value::Array(blocks));
+        options
+    }
+
+    fn count(&self) -> u64 {
+        self.units_per_block.saturating_mul(self.subjects.len() as u64)
+    }
+
+    fn name(&self, unit: u64) -> String {
+        let subject = self.subject(unit);
+        format!("{}, {}", subject.block().name(), subject.size())
+    }
+
+    fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {
+        let options = MutationOptions {
+            mutants: UNIT_MUTANTS as usize,
+            seed: seed.wrapping_add(unit / self.subjects.len() as u64),
+            ..MutationOptions::default()
+        };
+        let folder = Folder::new(PREFIX).map_err(Failure::because)?;
+        let subject = self.subject(unit);
+        let fates = mutation::run(subject, &options, &folder.path().join("work")).map_err(bench::failure)?;
+        let row = MutationRow::new(subject, &fates);
+        let counts = [
+            ("mutants", row.mutants),
+            ("lock step", row.lockstep),
+            ("property", row.property),
+            ("equivalent", row.equivalent),
+            ("unknown", row.unknown.len()),
+        ];
+        Ok(Outcome {
+            figures: figures(counts.map(|(name, count)| (name, count as u64))),
+            failure: (!row.unknown.is_empty())
+                .then(|| format!("neither noticed nor equivalent: {}", row.unknown.join("; "))),
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! The file of a shard.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::Shard;
+
+/// Version of the format of the files.
+pub const FORMAT: u32 = 1;
+
+/// What makes two shards parts of the same campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CampaignHead {
+    /// Version of the files' format, [`FORMAT`].
+    pub posicast_campaign: u32,
+    /// The program's version, with its commit.
+    pub version: String,
+    /// Kind of campaign: `lock-step`, `faults`, `mutants`, `sweep`.
+    pub kind: String,
+    /// The machine, for a campaign about one.
+    pub machine: Option<MachineFileHash>,
+    /// Seed of the campaign; that of a unit follows from it.
+    pub seed: u64,
+    /// All that decides what the units are and do, by the names of the options.
+    pub options: Map<String, Value>,
+    /// Number of units of the whole campaign.
+    pub units: u64,
+}
+
+/// A machine file, by its contents.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MachineFileHash {
+    /// Name of the machine.
+    pub name: String,
+    /// SHA-256 of the file, in hexadecimal digits.
+    pub sha256: String,
+}
+
+/// Result of a unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UnitResult {
+    /// Number of the unit, from 0.
+    pub unit: u64,
+    /// What was looked at. Units of the same name are one row of the table, in which numbers are added.
+    pub name: String,
+    /// Figures by the names of their columns: numbers, and texts for what is the same in all units of the name.
+    pub figures: Map<String, Value>,
+    /// What is wrong; `None` where everything holds.
+    pub failure: Option<String>,
+}
+
+/// The file of a shard.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShardDocument {
+    /// The campaign.
+    #[serde(flatten)]
+    pub head: CampaignHead,
+    /// Which part of it.
+    pub shard: Shard,
+    /// The command that does unit N alone, after which `--unit N` is written.
+    pub repeat: String,
+    /// Duration of the units in seconds.
+    pub seconds: f64,
+    /// Duration of all else, such as reading the machine, in seconds.
+    pub overhead_seconds: f64,
+    /// Results of its units, in their order.
+    pub results: Vec<UnitResult>,
+}
+
+/// A file that is not that of a shard.
+#[derive(Debug, thiserror::Error)]
+pub enum DocumentError {
+    /// It cannot be read or written.
+    #[error("{}: cannot {doing}: {cause}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// Why it failed.
+        cause: std::io::Error,
+    },
+    /// Its contents are something else.
+    #[error("{}: is not the file of a shard that this posicast reads: {reason}", path.display())]
+    Other {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl ShardDocument {
+    /// Reads a file; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`DocumentError`] for a file that cannot be read, or that is something else.
+    pub fn read(path: &Path) -> Result<Option<Self>, DocumentError> {
+        let text = match std::fs::read(path) {
+            Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
+            text => text.map_err(|cause| of_file(path, "read it", cause))?,
+        };
+        let other = |reason: String| DocumentError::Other {
+            path: path.to_owned(),
+            reason,
+        };
+        let document: Self = serde_json::from_slice(&text).map_err(|error| other(error.to_string()))?;
+        match document.head.posicast_campaign {
+            FORMAT => Ok(Some(document)),
+            format => Err(other(format!("its format is {format}, not {FORMAT}"))),
+        }
+    }
+
+    /// Writes the file, all at once: it is never there in part.
+    ///
+    /// # Errors
+    /// [`DocumentError::File`].
+    pub fn write(&self, path: &Path) -> Result<(), DocumentError> {
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let cannot = |cause| of_file(path, "write it", cause);
+        std::fs::create_dir_all(folder).map_err(cannot)?;
+        let mut text = serde_json::to_vec_pretty(self).map_err(|error| cannot(error.into()))?;
+        text.push(b'\n');
+        let part = folder.join(format!(".{}.{}", self.shard.number(), std::process::id()));
+        let written = std::fs::write(&part, &text).and_then(|()| std::fs::rename(&part, path));
+        written.map_err(|cause| {
+            // The part is of no use; that it stays where it cannot be removed either is not worth another error.
+            let _ = std::fs::remove_file(&part);
+            cannot(cause)
+        })
+    }
+}
+
+pub(super) fn of_file(path: &Path, doing: &'static str, cause: std::io::Error) -> DocumentError {
+    DocumentError::File {
+        path: path.to_owned(),
+        doing,
+        cause,
+    }
+}

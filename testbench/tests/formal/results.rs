@@ -1,0 +1,58 @@
+//! The results of proofs that were computed already, in `formal/results.txt`.
+//!
+//! A proof takes seconds to a minute, and its result changes only with what Yosys is given. So the file has a line for each task:
+//! its fingerprint, the block, what was asked, and the answer. A task whose Verilog, properties or scripts changed is not in the
+//! file, and is computed. `POSICAST_PROVE_AGAIN=1` computes all, as `scripts/verify-all` does. `scripts/record-proofs` writes the
+//! file: it names another one in `POSICAST_RECORD_PROOFS`, to which each test appends its line.
+
+use std::fs::File;
+use std::io::Write as _;
+
+use posicast_testbench::formal::Task;
+
+const RESULTS: &str = include_str!("../../formal/results.txt");
+
+/// The answer to what is `asked` of a task: that of the file, or else that of `compute`.
+pub(crate) fn known_or(task: &Task, asked: &str, compute: impl FnOnce() -> String) -> String {
+    let begin = format!("{} {} | {asked} | ", task.fingerprint(), task.name);
+    let again = std::env::var_os("POSICAST_PROVE_AGAIN").is_some();
+    let known = RESULTS.lines().find_map(|line| line.strip_prefix(&begin));
+    let answer = match known {
+        Some(answer) if !again => answer.to_owned(),
+        _ => compute(),
+    };
+    if let Some(path) = std::env::var_os("POSICAST_RECORD_PROOFS") {
+        let mut file = File::options().append(true).create(true).open(path).unwrap();
+        file.write_all(format!("{begin}{answer}\n").as_bytes()).unwrap();
+    }
+    answer
+}
+
+#[test]
+fn unit_a_fingerprint_changes_with_verilog_properties_and_engine() {
+    let proof = || {
+        posicast_testbench::blocks::proofs_named("group")
+            .unwrap()
+            .swap_remove(0)
+    };
+    let same = proof().fingerprint();
+    assert_eq!(proof().fingerprint(), same);
+    let mut verilog = proof();
+    verilog.modules[0].text.push('\n');
+    let mut engine = proof();
+    engine.engine = posicast_testbench::formal::Engine::Induction { clocks: 7 };
+    let other_properties = posicast_testbench::blocks::proofs_named("divider")
+        .unwrap()
+        .swap_remove(0);
+    for other in [verilog, engine, other_properties] {
+        assert_ne!(other.fingerprint(), same);
+    }
+}
+
+#[test]
+fn unit_each_result_has_a_line_of_its_own() {
+    let mut lines: Vec<&str> = RESULTS.lines().collect();
+    lines.dedup();
+    assert!(lines.is_sorted() && lines.len() == RESULTS.lines().count());
+    assert!(lines.iter().all(|line| line.split(" | ").count() == 3));
+}
