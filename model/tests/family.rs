@@ -307,3 +307,22 @@ fn unit_files_that_contradict_themselves_are_refused() {
         );
     }
 }
+
+/// For slight damping the humps of a two-hump EI exceed the tolerance by a few thousandths, and a table covers less than its neighbour
+/// without damping.
+#[test]
+fn unit_tables_of_very_different_reach_still_overlap() {
+    for damping in [0.01, 0.02, 0.03, 0.0404] {
+        let points = [format!(
+            "[[-1.0, 20.6, {damping}], [0.2, 35.45, 0.0], [3.0, 50.3, 0.0]]"
+        )];
+        let machine = machine("kind = \"two-hump-ei\"", "[axis.family]\nnominal = 2.5036", &points);
+        let family = family(&machine);
+        let covers: Vec<[f64; 2]> = family.members.iter().map(|member| member.covers).collect();
+        assert_eq!((covers[0][0], covers[covers.len() - 1][1]), (-1.0, 3.0), "{covers:?}");
+        assert!(
+            covers.is_sorted_by(|one, next| next[0] < one[1] && one[1] < next[1]),
+            "{covers:?}"
+        );
+    }
+}

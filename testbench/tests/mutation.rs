@@ -66,7 +66,7 @@ fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
 
 /// The rows that check a folder, on the stage of the example machine, with the default clocks and seed.
 #[test]
-fn mutate_every_named_mutant_inside_the_stage_is_found() {
+fn long_mutate_every_named_mutant_inside_the_stage_is_found() {
     let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let config = stage.unwrap().unwrap().config;

@@ -321,8 +321,7 @@ impl Search<'_> {
             false => (1, 0),
         };
         let edge = from.covers[far];
-        let way = (edge - from.value).abs();
-        let overlaps = |candidate: &Candidate| {
+        let overlaps = |candidate: &Candidate, way: f64| {
             // At full speed, the command that went into a table must have left it before its range ends.
             let passed =
                 PARTS * self.fastest_per_s() * from.longest_s(self.sample_hz).max(candidate.longest_s(self.sample_hz));
@@ -333,12 +332,17 @@ impl Search<'_> {
             }
         };
         let last = self.at(end)?;
-        if overlaps(&last) {
+        let mut way = (edge - from.value).abs();
+        if overlaps(&last, way) {
             return Ok(last);
         }
-        // A table at the edge itself overlaps this one, unless the tolerance of the two is very small.
+        // A table at the edge itself overlaps this one, unless it reaches much less far: the humps of a two-hump EI exceed the tolerance
+        // by a few thousandths for some damping ratios, and its range then ends before them.
         let mut best = self.at(edge)?;
-        if !overlaps(&best) {
+        if !overlaps(&best, way) {
+            way = way.min((edge - best.covers[near]).abs());
+        }
+        if !overlaps(&best, way) {
             return Err(DesignError::FamilyUncovered {
                 axis: self.axis.name.clone(),
                 value: self.family.show(edge, self.axis.unit),
@@ -347,7 +351,7 @@ impl Search<'_> {
         let mut beyond = end;
         for _ in 0..VALUE_BISECTIONS {
             let candidate = self.at(f64::midpoint(best.value, beyond))?;
-            match overlaps(&candidate) {
+            match overlaps(&candidate, way) {
                 true => best = candidate,
                 false => beyond = candidate.value,
             }

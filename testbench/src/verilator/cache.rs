@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+use posicast_system::interrupt::{self, Leftover, Listed};
+
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 /// A simulation that was not used for this long is removed, and built again when it is needed.
 const KEPT: Duration = DAY.saturating_mul(30);
@@ -35,16 +37,39 @@ pub(super) fn holds(object: &Path) -> bool {
     true
 }
 
-/// Waits until no other process builds this object, and keeps them waiting until the result is dropped. `None` where the file system
-/// has no locks: both then build, which only takes longer.
-pub(super) fn lock(object: &Path) -> Option<File> {
-    let file = File::options()
-        .create(true)
-        .append(true)
-        .open(object.with_extension("lock"))
+/// A file that keeps other processes from building the same object. It is removed when this value is dropped, and when a signal ends the
+/// process. A process that comes just then may make it anew: both then build, which only takes longer.
+#[derive(Debug)]
+pub(super) struct Lock {
+    path: PathBuf,
+    file: File,
+    _listed: Listed,
+}
+
+impl Lock {
+    /// Waits until no other process builds this object. `None` where the file system has no locks.
+    pub(super) fn wait_for(object: &Path) -> Option<Self> {
+        let path = object.with_extension("lock");
+        let (file, listed) = interrupt::listed(|| {
+            let file = File::options().create(true).append(true).open(&path)?;
+            Ok::<_, std::io::Error>((file, vec![Leftover::File(path.clone())]))
+        })
         .ok()?;
-    file.lock().ok()?;
-    Some(file)
+        let lock = Self {
+            path,
+            file,
+            _listed: listed,
+        };
+        lock.file.lock().ok()?;
+        Some(lock)
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Another process may have removed it already.
+        let _ = fs::remove_file(&self.path);
+    }
 }
 
 /// Removes old entries. Failures do not matter: another process may be doing the same.

@@ -199,7 +199,7 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create the cache folder"))?;
     cache::tidy(folder);
     // Another process may be building the same: it is then waited for.
-    let _lock = cache::lock(&object);
+    let _lock = cache::Lock::wait_for(&object);
     if cache::holds(&object) {
         return Ok(object);
     }
