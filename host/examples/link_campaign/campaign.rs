@@ -46,9 +46,8 @@ const REPLY: Duration = Duration::from_micros(200);
 const READ: Duration = Duration::from_micros(250);
 /// Clocks after the last host in which the machine must have come to rest: the watchdog, a quick stop, the brake.
 const AFTER_CLOCKS: u64 = 700 * TICK_CLOCKS;
-/// Counts by which an axis may be beyond its way: from the velocity limit, 5 counts per tick, a quick stop at 800 m/s² takes 39, three ticks
-/// before it 15, and the modes ring.
-const BEYOND_COUNTS: i64 = 80;
+/// Counts by which an axis may be beyond its way: a quick stop from 2 counts per tick at 800 m/s² takes 6, and the modes ring.
+const BEYOND_COUNTS: i64 = 40;
 /// Counts by which an axis may miss its target.
 const ON_TARGET: i64 = 2;
 
@@ -462,19 +461,7 @@ impl Ground {
             _ => self.life(&world, &moves),
         };
         let mut alive = first.is_ok();
-        // A move begins at the command, which the machine may still follow; without a command where the machine stands.
-        let places = || {
-            let world = world.borrow();
-            let bench = &world.linked.bench;
-            [0, 1].map(|axis| {
-                let name = &self.bed.machine.axes[axis].name;
-                let net = |net: &str| bench.net(&format!("{name}_{net}")).unwrap_or_default() as u32;
-                match net("state") == state::HOLD {
-                    true => i64::from(net("command_position") as i32).div_euclid(256),
-                    false => bench.plant(axis).count(),
-                }
-            })
-        };
+        let places = || [0, 1].map(|axis| world.borrow().linked.bench.plant(axis).count());
         let mut starts = [0; 2];
         close(&world, first.is_ok());
         if matches!(kind, Kind::HostRestarts | Kind::RestartWithBytes) {

@@ -1,7 +1,7 @@
 //! The fault campaign of the host link, as a table.
 //!
 //! ```text
-//! cargo run --release -p posicast-host --example link_campaign -- [CASES] [SEED] [FIRST]
+//! cargo run --release -p posicast-host --example link_campaign -- [CASES] [SEED]
 //! ```
 
 #![allow(clippy::print_stdout, reason = "this is a program")]
@@ -16,15 +16,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut numbers = std::env::args().skip(1).map(|word| word.parse::<u64>());
     let cases = numbers.next().transpose()?.unwrap_or(1000);
     let seed = numbers.next().transpose()?.unwrap_or(1);
-    let first = numbers.next().transpose()?.unwrap_or(0);
     campaign::comparison_finds_wrong_writes();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let (next, all) = (AtomicU64::new(first), Mutex::new(Vec::new()));
+    let (next, all) = (AtomicU64::new(0), Mutex::new(Vec::new()));
     let work = || -> Result<(), String> {
         let ground = Ground::new()?;
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= first + cases {
+            if number >= cases {
                 return Ok(());
             }
             let outcome = ground
