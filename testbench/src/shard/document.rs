@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use posicast_system::output;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -119,21 +120,12 @@ impl ShardDocument {
     /// # Errors
     /// [`DocumentError::File`].
     pub fn write(&self, path: &Path) -> Result<(), DocumentError> {
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
         let cannot = |cause| of_file(path, "write it", cause);
-        std::fs::create_dir_all(folder).map_err(cannot)?;
-        let mut text = serde_json::to_vec_pretty(self).map_err(|error| cannot(error.into()))?;
-        text.push(b'\n');
-        let part = folder.join(format!(".{}.{}", self.shard.number(), std::process::id()));
-        let written = std::fs::write(&part, &text).and_then(|()| std::fs::rename(&part, path));
-        written.map_err(|cause| {
-            // The part is of no use; that it stays where it cannot be removed either is not worth another error.
-            let _ = std::fs::remove_file(&part);
-            cannot(cause)
-        })
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(cannot)?;
+        }
+        let text = serde_json::to_string_pretty(self).map_err(|error| cannot(error.into()))?;
+        output::write_text(path, &(text + "\n")).map_err(cannot)
     }
 }
 
