@@ -106,7 +106,7 @@ impl RunReport<'_> {
                         @for part in self.parts(&figures, extra)? { (shown(&part)) }
                     }
                     footer {
-                        p { "Figures in sentences and tables are those of " code { "report.json" } ". Commands are called in the folder that holds this page." }
+                        p { "Figures in sentences and tables are those of " code { "report.json" } ". Commands are called in the folder that holds this page, with the files that they name beside it." }
                     }
                     script { (PreEscaped(SCRIPT)) }
                 }

@@ -83,7 +83,7 @@ impl RunReport<'_> {
         Ok(Part {
             title: "Impulses and command",
             about: "The shaper convolves the command with its impulses: what goes in, and what comes out.".to_owned(),
-            command: "posicast design machine.toml; posicast simulate machine.toml".to_owned(),
+            command: format!("posicast design machine.toml; {}", simulated(&self.command)),
             pictures: drawn(&panels)?,
             more: html! {},
         })
@@ -153,5 +153,33 @@ impl RunReport<'_> {
             pictures: vec![excerpt::figure(excerpt)],
             more: html! {},
         })
+    }
+}
+
+/// The command of a run as one of `simulate`, which has no simulator.
+fn simulated(run: &str) -> String {
+    let mut words = Vec::new();
+    let mut given = run.split(' ');
+    while let Some(word) = given.next() {
+        match word {
+            "run" => words.push("simulate"),
+            "--simulator" | "--cycles" | "--seed" => drop(given.next()),
+            _ => words.push(word),
+        }
+    }
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::simulated;
+
+    #[test]
+    fn unit_a_simulation_has_the_moves_of_the_run() {
+        let run = "posicast run machine.toml --move x=0.1 --simulator icarus --cycles 5 --seed 2 --command 'a b.csv'";
+        assert_eq!(
+            simulated(run),
+            "posicast simulate machine.toml --move x=0.1 --command 'a b.csv'"
+        );
     }
 }

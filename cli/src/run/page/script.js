@@ -22,7 +22,7 @@ for (const figure of document.querySelectorAll("figure.chart")) {
     cross.setAttribute("d", "");
   };
   picture.addEventListener("pointerleave", leave);
-  picture.addEventListener("pointermove", (event) => {
+  const show = (event) => {
     const box = picture.getBoundingClientRect();
     const scale = picture.viewBox.baseVal.width / box.width;
     const [x, y] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
@@ -32,5 +32,7 @@ for (const figure of document.querySelectorAll("figure.chart")) {
     const level = value((bottom - y) / (bottom - top), y0, y1);
     output.textContent = `${figure.dataset.x}: ${at} · ${figure.dataset.y}: ${level}`;
     cross.setAttribute("d", `M${x} ${top}V${bottom}M${left} ${y}H${right}`);
-  });
+  };
+  picture.addEventListener("pointerdown", show);
+  picture.addEventListener("pointermove", show);
 }
