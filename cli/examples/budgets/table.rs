@@ -133,7 +133,7 @@ impl Written {
         self.0.get(&name(row)).cloned()
     }
 
-    /// Whether the page has this row, measured with the same Verilog, and for the same budget and note.
+    /// Whether the page has this row, with the same Verilog and the same note.
     pub(crate) fn is_of(&self, row: &AreaRow) -> bool {
         let end = format!("| {} | {} |", row.note, checksum(row));
         self.line(row).is_some_and(|line| line.ends_with(&end))
