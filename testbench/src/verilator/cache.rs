@@ -79,7 +79,8 @@ pub(super) fn tidy(folder: &Path) {
         let name = name.to_string_lossy();
         let modified = entry.metadata().and_then(|data| data.modified());
         let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
-        let is_ours = name.starts_with("verilator-") && [".so", ".o", ".lock"].iter().any(|end| name.ends_with(end));
+        let is_ours =
+            name.starts_with("verilator-") && [".so", ".o", ".gch", ".lock"].iter().any(|end| name.ends_with(end));
         if is_ours && age > KEPT {
             let _ = fs::remove_file(entry.path());
         } else if name.starts_with(BUILD_PREFIX) && age > ABANDONED {
@@ -103,14 +104,15 @@ mod tests {
         };
         let old = make("verilator-1.so", 31);
         let old_object = make("verilator-1-verilated.o", 31);
+        let old_headers = make("verilator-1-harness_headers.h.gch", 31);
         let used = make("verilator-2.so", 31);
         let recent = make("verilator-3.so", 29);
         let foreign = make("thesis.tex", 1000);
         assert!(holds(&used) && !holds(&folder.path().join("absent.so")));
         tidy(folder.path());
         assert_eq!(
-            [old, old_object, used, recent, foreign].map(|path| path.exists()),
-            [false, false, true, true, true]
+            [old, old_object, old_headers, used, recent, foreign].map(|path| path.exists()),
+            [false, false, false, true, true, true]
         );
     }
 }

@@ -13,7 +13,7 @@ use crate::Error;
 /// Name of the class that Verilator writes.
 pub(super) const CLASS: &str = "Vdevice";
 
-/// Included first: the simulation's own output goes to standard error, because standard output is ours.
+/// Included first into Verilator's own files: the simulation's output goes to standard error, because standard output is ours.
 pub(super) const PRINT: &str = r#"#include <cstdio>
 #define VL_PRINTF(...) std::fprintf(stderr, __VA_ARGS__)
 #define VL_USER_FATAL
@@ -21,13 +21,32 @@ pub(super) const PRINT: &str = r#"#include <cstdio>
 #define VL_USER_FINISH
 "#;
 
-/// The harness; `@INPUTS@` and `@OUTPUTS@` become one assignment per port.
-pub(super) const TEMPLATE: &str = r#"#include <cstdint>
+/// Included first into the harness: the headers that are compiled beforehand. A compiler that refuses their compiled form reads them.
+pub(super) const HEADERS: &str = r#"#include "harness_print.h"
+#include <cstdint>
 #include <exception>
 #include <stdexcept>
 #include <string>
-#include "Vdevice.h"
 #include "verilated.h"
+"#;
+
+/// Makefile beside Verilator's. The compiled headers are an order-only prerequisite, as those from the cache are older than the build.
+pub(super) const MAKEFILE: &str = r"include Vdevice.mk
+
+FIRST = harness_print.h
+harness.o: private FIRST = harness_headers.h
+CPPFLAGS += -include $(FIRST)
+
+harness.o: | harness_headers.h.gch
+harness_headers.h.gch:
+	$(CXX) $(CXXFLAGS) $(CPPFLAGS) $(OPT_FAST) -x c++-header -o $@ harness_headers.h
+";
+
+/// Name of the headers' compiled form in a build folder.
+pub(super) const COMPILED_HEADERS: &str = "harness_headers.h.gch";
+
+/// The harness; `@INPUTS@` and `@OUTPUTS@` become one assignment per port.
+pub(super) const TEMPLATE: &str = r#"#include "Vdevice.h"
 
 #define EXPORT extern "C" __attribute__((visibility("default")))
 

@@ -9,7 +9,7 @@
 //!   in `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It
 //!   is built in a folder of its own and renamed when complete, so that parallel builds never see half a file, and
 //!   under a lock, so that one builds it and the others wait. An object that was not used for 30 days is removed.
-//!   Verilator's own C++ is compiled once and kept there too.
+//!   Verilator's own C++ and its headers (50 MB) are compiled once and kept there too.
 //! - **Random start.** Registers without a reset value and memories start with random contents, by the seed: a block
 //!   that works only because a simulator clears its memory fails here.
 //! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
@@ -57,7 +57,7 @@ const FLAGS: [&str; 12] = [
     "--prefix",
     harness::CLASS,
     "-CFLAGS",
-    "-fPIC -fno-gnu-unique -include harness_print.h",
+    "-fPIC -fno-gnu-unique -Wno-attributes",
     "-LDFLAGS",
     "-shared -Wl,-Bsymbolic",
 ];
@@ -212,6 +212,8 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     };
     write("harness.cpp", "")?;
     write("harness_print.h", harness::PRINT)?;
+    write("harness_headers.h", harness::HEADERS)?;
+    write("simulation.mk", harness::MAKEFILE)?;
     let mut verilate = VERILATOR.command_in(work.path());
     verilate
         .args(FLAGS)
@@ -227,12 +229,11 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     let coverage = if counts { harness::COVERAGE } else { "" };
     let classes = unity::Classes::of(work.path()).map_err(Error::file(work.path(), "list Verilator's output"))?;
     let harness = harness::source_text(source.ports, &members) + coverage;
-    write("harness.cpp", &(harness + &unity::includes(&classes.fast)))?;
-    write(unity::SLOW, &unity::includes(&classes.slow))?;
+    write("harness.cpp", &(harness + &classes.includes()))?;
     let runtime = runtime::Runtime::new(folder, &runtime_hash(version()?, counts));
     runtime.lend(work.path());
     let mut make = MAKE.command_in(work.path());
-    make.args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
+    make.args(["-s", "-f", "simulation.mk"])
         .args(MAKE_FLAGS)
         .args(unity::MAKE_VARIABLES);
     // A make that runs this process may have set these; they would change flags, or claim its job slots.
@@ -279,11 +280,13 @@ fn runtime_hash(version: &str, counts: bool) -> String {
 struct ContentHash(Sha256);
 
 impl ContentHash {
-    /// Hashes version, flags, and the file that every C++ file includes.
+    /// Hashes version, flags, makefile, and the files that every C++ file includes.
     fn of_tools(version: &str, counts: bool) -> Self {
         let mut hash = Self(Sha256::new());
         hash.add(version.as_bytes());
-        hash.add(harness::PRINT.as_bytes());
+        for text in [harness::PRINT, harness::HEADERS, harness::MAKEFILE] {
+            hash.add(text.as_bytes());
+        }
         for flag in FLAGS.iter().chain(&MAKE_FLAGS).chain(coverage_flags(counts)) {
             hash.add(flag.as_bytes());
         }

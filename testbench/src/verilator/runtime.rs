@@ -1,19 +1,22 @@
-//! Verilator's own C++, which is the same in every simulation: it is compiled once and taken from the cache.
+//! Verilator's own C++, which is the same in every simulation: it is compiled once and taken from the cache, and so are its headers.
 //!
-//! Compiling `verilated.cpp` and its companions takes longer than compiling a small block.
+//! Compiling `verilated.cpp` and its companions, or reading their headers, takes longer than compiling a small block.
 
 use std::fs;
 use std::io;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
-/// The objects of one version of Verilator, compiled with one set of flags.
+use super::harness::COMPILED_HEADERS;
+
+/// The objects and compiled headers of one version of Verilator, compiled with one set of flags.
 pub(super) struct Runtime {
     folder: PathBuf,
     prefix: String,
 }
 
 impl Runtime {
-    /// The objects in a cache folder. The key represents everything on which they depend.
+    /// What a cache folder has. The key represents everything on which it depends.
     pub(super) fn new(folder: &Path, key: &str) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -21,23 +24,32 @@ impl Runtime {
         }
     }
 
-    /// Copies the existing objects into a build folder, where `make` finds them newer than their sources.
+    /// Gives a build folder what exists: the objects as copies, which `make` finds newer than their sources, and the headers, which
+    /// are large, as a link.
     pub(super) fn lend(&self, work: &Path) {
-        for (name, path) in objects(&self.folder, &self.prefix) {
-            // If the copy fails, `make` compiles the object again.
-            let _ = fs::copy(&path, work.join(name));
+        for (name, path) in files(&self.folder) {
+            let Some(name) = name.strip_prefix(&self.prefix) else {
+                continue;
+            };
+            // If one of them fails, `make` compiles it again.
+            if name == COMPILED_HEADERS {
+                let _ = path.canonicalize().and_then(|path| symlink(path, work.join(name)));
+            } else {
+                let _ = fs::copy(&path, work.join(name));
+            }
             super::cache::holds(&path);
         }
     }
 
-    /// Keeps the objects that a build has made.
+    /// Keeps what a build has compiled.
     ///
     /// # Errors
     /// [`io::Error`] where the cache cannot be written.
     pub(super) fn keep(&self, work: &Path) -> io::Result<()> {
-        for (name, path) in objects(work, "verilated") {
-            let kept = self.folder.join(format!("{}verilated{name}", self.prefix));
-            if !kept.exists() {
+        for (name, path) in files(work) {
+            let is_kept = name == COMPILED_HEADERS || (name.starts_with("verilated") && name.ends_with(".o"));
+            let kept = self.folder.join(format!("{}{name}", self.prefix));
+            if is_kept && !kept.exists() {
                 fs::rename(path, kept)?;
             }
         }
@@ -45,14 +57,8 @@ impl Runtime {
     }
 }
 
-/// Object files whose names have this prefix: the rest of the name, and the path.
-fn objects(folder: &Path, prefix: &str) -> Vec<(String, PathBuf)> {
+/// Names and paths of the files in a folder.
+fn files(folder: &Path) -> impl Iterator<Item = (String, PathBuf)> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries
-        .filter_map(|entry| {
-            let name = entry.file_name().into_string().ok()?;
-            let rest = name.strip_prefix(prefix)?;
-            rest.ends_with(".o").then(|| (rest.to_owned(), entry.path()))
-        })
-        .collect()
+    entries.filter_map(|entry| Some((entry.file_name().into_string().ok()?, entry.path())))
 }

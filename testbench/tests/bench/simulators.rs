@@ -207,6 +207,11 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
     };
     build_another("32'd1").unwrap();
     assert_eq!(kept("so").len(), 2);
+    // Its headers are compiled once; a compiler that refuses their compiled form reads them.
+    let headers = kept("gch");
+    assert_eq!(headers.len(), 1);
+    std::fs::write(&headers[0].0, "no headers").unwrap();
+    same_as_model(&mut build_another("32'h0").unwrap(), 100);
     // Verilator's own C++ is not compiled again: its objects are reused.
     let runtime = kept("o");
     assert!(!runtime.is_empty());
