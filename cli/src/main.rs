@@ -25,6 +25,7 @@ mod hal;
 mod hardware;
 mod host;
 mod identify;
+mod input;
 mod kit;
 mod machine;
 mod man;

@@ -1,6 +1,7 @@
 //! The motion of the axes in a simulation: a command file, or a move of each axis that the command line may change.
 
 use crate::failure::Failure;
+use crate::input;
 use crate::output::shell_word;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{AxisMove, AxisMoveError};
@@ -37,12 +38,10 @@ impl MotionArgs {
         }
     }
 
-    /// These options as words of a command line.
+    /// These options as words of a command line in the output folder, which has a copy of the command file.
     pub(crate) fn command_line(&self) -> Vec<String> {
-        let command = self
-            .command
-            .as_deref()
-            .map(|path| format!("--command {}", shell_word(path)));
+        let command = self.command.as_deref();
+        let command = command.map(|path| format!("--command {}", shell_word(&input::in_folder(path))));
         let figures = [("--move", &self.distance), ("--speed", &self.speed)];
         let figures = figures
             .into_iter()

@@ -4,16 +4,19 @@ mod chart;
 mod inline;
 mod legend;
 mod map;
+mod names;
+mod series;
 
 use crate::failure::Failure;
-use chart::{Frame, Points, draw_chart, looks};
+use chart::{Frame, draw_chart, looks};
 use legend::Legend;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use posicast_model::unit::{ShownUnit, time_unit};
+use series::For;
 use std::path::Path;
 
-pub(crate) use inline::{Inline, inline, style_rules};
+pub(crate) use inline::{Inline, LegendEntry, inline, style_rules};
 pub(crate) use map::{Level, Map, inline_map};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -112,12 +115,24 @@ pub(crate) struct Mark {
     pub(crate) at: f64,
 }
 
-/// A word beside a point of the chart.
+/// The name of a point of the chart.
 pub(crate) struct Note {
-    /// The word.
+    /// The name.
     pub(crate) text: String,
     /// The point, in the values of the axes.
     pub(crate) at: (f64, f64),
+    /// When the name is written beside the point; the page's pointer shows it in any case.
+    pub(crate) writing: Writing,
+}
+
+/// When a name is written into the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Writing {
+    /// Also on top of something else.
+    Always,
+    /// Where there is room for it.
+    WhereFree,
+    Never,
 }
 
 /// The unit of the time axis for a plot of this duration: the one that gives at least two of it.
@@ -151,7 +166,7 @@ pub(crate) struct Panel {
     pub(crate) x_ranges: Vec<Range>,
     /// Marks drawn as vertical lines.
     pub(crate) marks: Vec<Mark>,
-    /// Words beside points of the chart.
+    /// Names of points of the chart, the most important first.
     pub(crate) notes: Vec<Note>,
 }
 
@@ -239,7 +254,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let first_row = MARGIN + TITLE_SIZE + 10;
     legend.draw(area, (MARGIN, first_row))?;
     let (_, below) = area.split_vertically(first_row + legend.height());
-    draw_chart(&below, panel, &frame, (TEXT_SIZE, Points::All))?;
+    draw_chart(&below, panel, &frame, TEXT_SIZE, For::File)?;
     Ok(())
 }
 

@@ -22,6 +22,7 @@ use crate::contour::ContourArgs;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::hardware::Built;
+use crate::input;
 use crate::kit;
 use crate::machine;
 use crate::moves::{self, MotionArgs};
@@ -82,16 +83,17 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// The command line that repeats the run on the machine file in the output folder.
+    /// The command line that repeats the run in the output folder, which has the machine file and the files that options name.
     fn command_line(&self) -> String {
         let mut words = vec!["posicast run machine.toml".to_owned()];
         words.extend(self.motion.command_line());
         let mut option =
             |name: &str, value: Option<String>| words.extend(value.map(|value| format!("--{name} {value}")));
         option("radius", self.radius.map(|radius| radius.to_string()));
+        let contour = self.contour.as_deref().map(Path::new);
         option(
             "contour",
-            self.contour.as_deref().map(|path| output::shell_word(Path::new(path))),
+            contour.map(|path| output::shell_word(&input::in_folder(path))),
         );
         option("simulator", self.simulator.map(|simulator| simulator.to_string()));
         option("cycles", self.cycles.map(|cycles| cycles.to_string()));
@@ -118,6 +120,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => closed_loop::circle(machine, args.radius, built.stage.is_some())?,
     };
     let command = args.motion.command.as_deref();
+    let inputs = [command, args.contour.as_deref().map(Path::new)];
+    let inputs = inputs.into_iter().flatten().filter_map(input::copy);
+    let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
     let words = command::words(machine, &design.design, command, &moves)?;
     let simulator = Simulator::choose(args.simulator)?;
     if built.stage.is_some() {
@@ -138,6 +143,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let package = generate::open(args.output.as_deref(), &file)?;
     let mut package = package.with_evidence().map_err(Failure::because)?;
+    for (name, bytes) in &inputs {
+        package.add_evidence(name, bytes).map_err(Failure::because)?;
+    }
     let files = verilog::add_sources(&mut package, &file, &modules)?;
     kit::add(&mut package, &kit)?;
     sopc::add(

@@ -28,8 +28,11 @@ pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Fai
     if board.family() != family {
         let device = board.family().device().name;
         let allowed = board.family();
-        return Err(refused(&format_args!(
-            "{board} has an {device}, of family {allowed}, and target.family is {family}: change one of them"
+        let message = format!("{board} has an {device}, of family {allowed}, and target.family is {family}");
+        return Err(Failure::from(miette::miette!(
+            help = format!("write `family = \"{allowed}\"`, or leave out `board` if the device is on another"),
+            "{}",
+            machine::place(path, 0, BOARD_KEY, message)
         )));
     }
     Ok(Some(board))

@@ -203,6 +203,12 @@ impl AxisUnit {
         })
     }
 
+    /// Writes figures in m or rad that a sentence compares, with three significant digits: all in the unit of the largest.
+    pub fn show_compared<const N: usize>(self, figures: [f64; N]) -> [String; N] {
+        let unit = self.for_largest(figures);
+        figures.map(|figure| unit.show(figure, 3))
+    }
+
     fn space(self) -> &'static str {
         space(self.symbol())
     }
@@ -354,6 +360,8 @@ mod tests {
             texts,
             ["0.180 µm", "0.0203 µm", "NaN µm", "0 µm", "0.404 nm", "11.4 µm"]
         );
+        let texts = AxisUnit::Milliradian.show_compared([2.41e-3, 0.4e-6, 19.2e-6]);
+        assert_eq!(texts, ["2.41 mrad", "4.00e-4 mrad", "0.0192 mrad"]);
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! The chart of a panel: its curves in a frame with axes.
 
+use super::names::{self, Name};
+use super::series::For;
 use super::{
     Area, BAND, BAND_END, COLOURS, Curve, DARK, DARK_RED, DASH, Drawn, GREY, GRID, Look, PALE, Panel, UNDER_WIDTH,
+    Writing,
 };
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -9,7 +12,9 @@ use plotters::prelude::*;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Radius of a dot, in pixels.
-const DOT: i32 = 4;
+pub(super) const DOT: i32 = 4;
+/// Most numbers along an axis of a picture on a page, whose texts are large.
+pub(super) const NUMBERS: usize = 6;
 /// Number of columns that a curve's points are thinned to: more than a chart has pixels.
 const COLUMNS: usize = 1000;
 
@@ -35,14 +40,6 @@ impl Frame {
     }
 }
 
-/// Which points of a curve are drawn.
-#[derive(Clone, Copy)]
-pub(super) enum Points {
-    All,
-    /// What the picture can show of them: a page has many pictures.
-    Thinned,
-}
-
 /// Position of a chart inside its picture, in pixels: left, right, top and bottom.
 pub(super) type Edges = [i32; 4];
 
@@ -51,7 +48,8 @@ pub(super) fn draw_chart(
     area: &Area<'_>,
     panel: &Panel,
     frame: &Frame,
-    (text_size, shown): (i32, Points),
+    text_size: i32,
+    drawn_for: For<'_>,
 ) -> Result<Edges, Box<dyn std::error::Error>> {
     let Frame {
         x: (x_low, x_high),
@@ -65,81 +63,109 @@ pub(super) fn draw_chart(
         .y_label_area_size(58 + 18 * text_size / 13)
         .build_cartesian_2d(x_low..x_high, y_low..y_high)?;
     if let Some(band) = &panel.band {
-        let (low, high) = (band.range.0.max(y_low), band.range.1.min(y_high));
-        if low < high {
-            chart.draw_series(std::iter::once(Rectangle::new(
-                [(x_low, low), (x_high, high)],
-                BAND.filled(),
-            )))?;
-        }
-        let ends = [band.range.0, band.range.1];
-        for end in ends.into_iter().filter(|end| (y_low..=y_high).contains(end)) {
-            draw_line(
-                &mut chart,
-                vec![(x_low, end), (x_high, end)],
-                BAND_END.stroke_width(1),
-                false,
-            )?;
-        }
+        drawn_for.series(area, &band.name, || draw_band(&mut chart, band.range, frame))?;
     }
     for range in &panel.x_ranges {
         // However narrow it is, it must be visible.
         let thin = 0.001 * (x_high - x_low);
         let (low, high) = (range.ends.0 - thin, range.ends.1 + thin);
         let corners = [(low.max(x_low), y_low), (high.min(x_high), y_high)];
-        chart.draw_series(std::iter::once(Rectangle::new(corners, BAND.filled())))?;
+        drawn_for.series(area, &range.name, || {
+            chart.draw_series(std::iter::once(Rectangle::new(corners, BAND.filled())))?;
+            Ok(())
+        })?;
     }
-    chart
-        .configure_mesh()
-        .x_desc(&panel.x_label)
+    let y_label = |value: &f64| match panel.y_is_whole && (value - value.round()).abs() > 1e-9 {
+        true => String::new(),
+        false => axis_label(*value),
+    };
+    let x_label = |value: &f64| axis_label(*value);
+    let mut mesh = chart.configure_mesh();
+    mesh.x_desc(&panel.x_label)
         .y_desc(&panel.y_label)
         .axis_desc_style(("sans-serif", text_size))
         .label_style(("sans-serif", text_size))
-        .x_label_formatter(&|value| axis_label(*value))
-        .y_label_formatter(
-            &|value| match panel.y_is_whole && (value - value.round()).abs() > 1e-9 {
-                true => String::new(),
-                false => axis_label(*value),
-            },
-        )
+        .x_label_formatter(&x_label)
+        .y_label_formatter(&y_label)
         .bold_line_style(GRID)
-        .max_light_lines(0)
-        .draw()?;
+        .max_light_lines(0);
+    if matches!(drawn_for, For::Page(_)) {
+        mesh.x_labels(NUMBERS).y_labels(NUMBERS);
+    }
+    mesh.draw()?;
     // The first of the coloured curves lies on top of the others, and levels lie on top of all.
     let mut order: Vec<_> = panel.curves.iter().zip(looks).rev().collect();
     order.sort_by_key(|(curve, _)| curve.look);
     for (curve, (style, is_dashed)) in order {
-        if curve.look == Look::Dots {
-            let dots = curve
-                .points
-                .iter()
-                .map(|point| Circle::new(*point, DOT, style.filled()));
-            chart.draw_series(dots)?;
-            continue;
-        }
-        for part in cut(&curve.points, y_low, y_high) {
-            let part = match shown {
-                Points::All => part,
-                Points::Thinned => thinned(&part, (x_low, x_high)),
-            };
-            draw_line(&mut chart, part, style, is_dashed)?;
-        }
+        drawn_for.series(area, &curve.name, || {
+            if curve.look == Look::Dots {
+                let dots = curve.points.iter();
+                chart.draw_series(dots.map(|point| Circle::new(*point, DOT, style.filled())))?;
+                return Ok(());
+            }
+            for part in cut(&curve.points, y_low, y_high) {
+                let part = match drawn_for {
+                    For::File => part,
+                    For::Page(_) => thinned(&part, (x_low, x_high)),
+                };
+                draw_line(&mut chart, part, style, is_dashed)?;
+            }
+            Ok(())
+        })?;
     }
     for mark in &panel.marks {
-        draw_line(
-            &mut chart,
-            vec![(mark.at, y_low), (mark.at, y_high)],
-            DARK_RED.stroke_width(1),
-            true,
-        )?;
+        let line = vec![(mark.at, y_low), (mark.at, y_high)];
+        drawn_for.series(area, &mark.name, || {
+            draw_line(&mut chart, line, DARK_RED.stroke_width(1), true)
+        })?;
     }
-    let note = |note: &super::Note| {
-        let beside = (DOT + 3, -text_size / 2);
-        EmptyElement::at(note.at) + Text::new(note.text.clone(), beside, ("sans-serif", text_size).into_font())
-    };
-    chart.draw_series(panel.notes.iter().map(note))?;
     let (x, y) = chart.plotting_area().get_pixel_range();
-    Ok([x.start, x.end, y.start, y.end])
+    let edges = [x.start, x.end, y.start, y.end];
+    let dots = panel.curves.iter().filter(|curve| curve.look == Look::Dots);
+    let dots: Vec<_> = dots
+        .flat_map(|curve| &curve.points)
+        .map(|point| chart.backend_coord(point))
+        .collect();
+    let written = panel.notes.iter().filter(|note| note.writing != Writing::Never);
+    let written: Vec<_> = written
+        .map(|note| Name {
+            text: &note.text,
+            at: chart.backend_coord(&note.at),
+            is_needed: note.writing == Writing::Always,
+        })
+        .collect();
+    drawn_for.notes(area, || {
+        for (text, place) in names::placed(&written, &dots, text_size, edges) {
+            area.draw(&Text::new(
+                text.to_owned(),
+                place,
+                ("sans-serif", text_size).into_font(),
+            ))?;
+        }
+        Ok(())
+    })?;
+    Ok(edges)
+}
+
+/// Draws a band as far as the frame shows it, with lines at its ends, which show it where it is thin.
+fn draw_band(chart: &mut Chart<'_, '_>, range: (f64, f64), frame: &Frame) -> Drawn {
+    let ((x_low, x_high), (y_low, y_high)) = (frame.x, frame.y);
+    let (low, high) = (range.0.max(y_low), range.1.min(y_high));
+    if low < high {
+        let corners = [(x_low, low), (x_high, high)];
+        chart.draw_series(std::iter::once(Rectangle::new(corners, BAND.filled())))?;
+    }
+    for end in [range.0, range.1] {
+        if (y_low..=y_high).contains(&end) {
+            draw_line(
+                chart,
+                vec![(x_low, end), (x_high, end)],
+                BAND_END.stroke_width(1),
+                false,
+            )?;
+        }
+    }
+    Ok(())
 }
 
 fn draw_line(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, style: ShapeStyle, is_dashed: bool) -> Drawn {

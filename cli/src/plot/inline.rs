@@ -1,14 +1,16 @@
 //! A panel as a picture inside a page: the page has its title and its legend, and chooses the colours by its style sheet.
 
-use super::chart::{Edges, Frame, Points, dashed, draw_chart, looks, under};
+use super::chart::{Edges, Frame, dashed, draw_chart, looks, under};
+use super::series::{For, grouped};
 use super::{BAND, BAND_END, COLOURS, DARK_RED, Drawn, GREY, GRID, Look, Panel};
 use crate::failure::Failure;
 use plotters::prelude::*;
 use std::fmt::Write;
 
-/// Size of a picture in pixels. A phone shows it at about half of that: texts are larger than in a file of its own.
-pub(super) const SIZE: (u32, u32) = (640, 370);
-pub(super) const TEXT_SIZE: i32 = 18;
+/// Size of a picture in pixels, and of its texts. A phone shows it at two thirds of that: the texts are so large that they can be
+/// read there. The page's style sheet makes them smaller on wide screens.
+pub(super) const SIZE: (u32, u32) = (520, 340);
+pub(super) const TEXT_SIZE: i32 = 22;
 
 /// A picture with what a page says about it.
 pub(crate) struct Inline {
@@ -20,6 +22,8 @@ pub(crate) struct Inline {
     pub(crate) legend: Vec<LegendEntry>,
     /// Position of the frame and the values at its ends.
     pub(crate) window: Window,
+    /// Points that have a name: position in pixels, and the name.
+    pub(crate) points: Vec<(f64, f64, String)>,
 }
 
 /// What a drawing function returns.
@@ -29,7 +33,7 @@ pub(crate) type Picture = Result<Inline, Failure>;
 pub(crate) struct LegendEntry {
     /// Name of the curve, band or mark.
     pub(crate) name: String,
-    /// Its colour in the picture, as `#RRGGBB`; no other entry has it unless it looks alike.
+    /// Its colour in the picture, as `#RRGGBB`.
     pub(crate) colour: String,
     /// Form of its sample: `line`, `dash`, `dot` or `area`.
     pub(crate) form: &'static str,
@@ -106,26 +110,45 @@ pub(crate) fn hex(colour: RGBColor) -> String {
 /// Draws a panel for a page.
 pub(crate) fn inline(panel: &Panel) -> Picture {
     let frame = Frame::of(panel);
+    let legend = legend(panel);
     let mut svg = String::new();
     let mut edges = [0; 4];
     let drawn = (|| -> Drawn {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        edges = draw_chart(&root, panel, &frame, (TEXT_SIZE, Points::Thinned))?;
+        edges = draw_chart(&root, panel, &frame, TEXT_SIZE, For::Page(&legend))?;
         root.present()?;
         Ok(())
     })();
     drawn.map_err(|error| Failure::from(miette::miette!("cannot draw the plot: {error}")))?;
+    let window = Window {
+        edges,
+        x: frame.x,
+        y: frame.y,
+        labels: [panel.x_label.clone(), panel.y_label.clone()],
+    };
+    let points = panel.notes.iter().map(|note| {
+        let (x, y) = window.pixel(note.at);
+        (x, y, note.text.clone())
+    });
     Ok(Inline {
         title: panel.title.clone(),
-        svg,
-        legend: legend(panel),
-        window: Window {
-            edges,
-            x: frame.x,
-            y: frame.y,
-            labels: [panel.x_label.clone(), panel.y_label.clone()],
-        },
+        svg: grouped(&svg),
+        legend,
+        points: points.collect(),
+        window,
     })
+}
+
+impl Window {
+    /// Where a point of the chart is in the picture.
+    fn pixel(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let [left, right, top, bottom] = self.edges.map(f64::from);
+        let part = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
+        (
+            left + part(x, self.x) * (right - left),
+            bottom - part(y, self.y) * (bottom - top),
+        )
+    }
 }
 
 fn legend(panel: &Panel) -> Vec<LegendEntry> {

@@ -1,8 +1,9 @@
 //! A map for a page: a value over two axes, as areas between levels.
 
 use super::Drawn;
-use super::chart::axis_label;
+use super::chart::{NUMBERS, axis_label};
 use super::inline::{Inline, LegendEntry, Picture, SIZE, TEXT_SIZE, Window, hex};
+use super::series::{For, grouped};
 use crate::failure::Failure;
 use plotters::prelude::*;
 
@@ -47,6 +48,12 @@ fn ends(of: &[f64]) -> (f64, f64) {
 
 /// Draws a map for a page.
 pub(crate) fn inline_map(map: &Map) -> Picture {
+    let levels = map.levels.iter().map(|level| LegendEntry {
+        name: level.name.clone(),
+        colour: hex(level.colour),
+        form: "area",
+    });
+    let legend: Vec<LegendEntry> = levels.collect();
     let mut svg = String::new();
     let mut edges = [0; 4];
     let (x, y) = (ends(&map.columns), ends(&map.rows));
@@ -60,7 +67,7 @@ pub(crate) fn inline_map(map: &Map) -> Picture {
             .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
         let half_column = 0.5 * (x.1 - x.0) / (map.columns.len().max(2) - 1) as f64;
         let half_row = 0.5 * (y.1 - y.0) / (map.rows.len().max(2) - 1) as f64;
-        let mut areas = Vec::new();
+        let mut areas: Vec<Vec<_>> = map.levels.iter().map(|_| Vec::new()).collect();
         for (row, values) in map.rows.iter().zip(&map.values) {
             let bottom_to_top = ((row - half_row).max(y.0), (row + half_row).min(y.1));
             let cells: Vec<(f64, usize)> = map
@@ -73,17 +80,21 @@ pub(crate) fn inline_map(map: &Map) -> Picture {
             for run in cells.chunk_by(|a, b| a.1 == b.1) {
                 let left = (run[0].0 - half_column).max(x.0);
                 let right = (run[run.len() - 1].0 + half_column).min(x.1);
-                let colour = map.levels[run[0].1].colour;
-                areas.push(Rectangle::new(
-                    [(left, bottom_to_top.0), (right, bottom_to_top.1)],
-                    colour.filled(),
-                ));
+                areas[run[0].1].push([(left, bottom_to_top.0), (right, bottom_to_top.1)]);
             }
         }
-        chart.draw_series(areas)?;
+        for (level, corners) in map.levels.iter().zip(areas) {
+            For::Page(&legend).series(&root, &level.name, || {
+                let areas = corners.into_iter();
+                chart.draw_series(areas.map(|corners| Rectangle::new(corners, level.colour.filled())))?;
+                Ok(())
+            })?;
+        }
         chart
             .configure_mesh()
             .disable_mesh()
+            .x_labels(NUMBERS)
+            .y_labels(NUMBERS)
             .x_desc(&map.labels[0])
             .y_desc(&map.labels[1])
             .axis_desc_style(("sans-serif", TEXT_SIZE))
@@ -99,15 +110,11 @@ pub(crate) fn inline_map(map: &Map) -> Picture {
         Ok(())
     })();
     drawn.map_err(|error| Failure::from(miette::miette!("cannot draw the map: {error}")))?;
-    let levels = map.levels.iter().map(|level| LegendEntry {
-        name: level.name.clone(),
-        colour: hex(level.colour),
-        form: "area",
-    });
     Ok(Inline {
         title: map.title.clone(),
-        svg,
-        legend: levels.collect(),
+        svg: grouped(&svg),
+        legend,
+        points: Vec::new(),
         window: Window {
             edges,
             x,

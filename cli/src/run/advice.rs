@@ -1,6 +1,6 @@
 //! The likely cause of a failed check, and what to try.
 
-use crate::run::checks::Check;
+use crate::run::checks::{Check, Coverage};
 
 /// A likely cause, and two things to try.
 pub(crate) struct Advice {
@@ -16,7 +16,7 @@ const ADVICE: [(&str, Advice); 15] = [
             cause: "counts_per_unit that is meant for another unit, or a command that stands still",
             remedies: [
                 "write counts_per_unit for the axis's unit: 1 µm per count is 1_000_000 per m",
-                "give a --command that moves the axis by many counts",
+                "give a `--command` that moves the axis by many counts",
             ],
         },
     ),
@@ -25,7 +25,7 @@ const ADVICE: [(&str, Advice); 15] = [
         Advice {
             cause: "a fault of posicast: description and model of a block differ",
             remedies: [
-                "run `posicast verify` with the same --seed, and report its first difference",
+                "run `posicast verify` with the same `--seed`, and report its first difference",
                 "run `posicast doctor`, and install the missing tools",
             ],
         },
@@ -36,7 +36,7 @@ const ADVICE: [(&str, Advice); 15] = [
             cause: "the Verilog was changed by hand, or a fault of posicast",
             remedies: [
                 "generate into an empty folder and run again",
-                "run `posicast verify` with the same --seed, and report its first difference",
+                "run `posicast verify` with the same `--seed`, and report its first difference",
             ],
         },
     ),
@@ -45,7 +45,7 @@ const ADVICE: [(&str, Advice); 15] = [
         Advice {
             cause: "the command has no samples, or the Verilog differs from the model on it",
             remedies: [
-                "give a --command with at least two points at different times",
+                "give a `--command` with at least two points at different times",
                 "compare with `posicast diff` of wave/model.vcd and wave/rtl.vcd",
             ],
         },
@@ -106,7 +106,7 @@ const ADVICE: [(&str, Advice); 15] = [
             cause: "the Verilog was changed by hand, or a fault of posicast",
             remedies: [
                 "generate into an empty folder and run again",
-                "run `posicast verify` with the same --seed, and report its first difference",
+                "run `posicast verify` with the same `--seed`, and report its first difference",
             ],
         },
     ),
@@ -167,16 +167,26 @@ const ADVICE: [(&str, Advice); 15] = [
 const TOO_SHORT: Advice = Advice {
     cause: "too few clocks to exercise everything; nothing differed",
     remedies: [
-        "leave --cycles away",
+        "leave `--cycles` away",
         "run `posicast verify`, which says how many clocks are enough",
     ],
 };
 
-/// The advice for a check that failed, by its name, or because it was too short.
+/// Advice for a comparison that a fault of the stage ended.
+const GIVEN_UP: Advice = Advice {
+    cause: "a fault of the stage ended the run; nothing differed until then",
+    remedies: [
+        "find the cause of the fault: see the check of the commands",
+        "look at plots/stage-move.svg, which marks the fault",
+    ],
+};
+
+/// The advice for a check that failed, by its name, or because it ended too early.
 pub(crate) fn for_failed(check: &Check) -> Option<&'static Advice> {
-    match check.is_too_short() {
-        true => Some(&TOO_SHORT),
-        false => for_check(check.name),
+    match check.coverage {
+        Coverage::TooFewClocks => Some(&TOO_SHORT),
+        Coverage::GivenUp => Some(&GIVEN_UP),
+        Coverage::Enough | Coverage::Nothing => for_check(check.name),
     }
 }
 

@@ -62,6 +62,8 @@ pub(crate) enum Coverage {
     Enough,
     /// Nothing differed in the clocks that were compared, but there were too few of them.
     TooFewClocks,
+    /// Nothing differed, but the run was given up before its end.
+    GivenUp,
     /// Nothing was compared, or too little to tell: the check is named, and does not count as ok.
     Nothing,
 }

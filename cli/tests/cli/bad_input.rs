@@ -162,7 +162,8 @@ fn cli_a_mode_in_kilohertz_names_its_line_and_the_question() {
     let words = [
         "machine.toml:11: axis.mode.frequency_hz of axis x, mode 1: ",
         "lasts 33.50 s",
-        "help: 0.03 kHz? Frequencies are in Hz: write `frequency_hz = 30`",
+        "help: 0.03 Hz is a period of 33.3 s: ",
+        "if it was meant in kHz, write `frequency_hz = 30`",
     ];
     refused(&["design"], &machine, &words);
     refused(&["generate"], &machine, &words);
@@ -447,10 +448,27 @@ fn cli_sliding_mode_without_gains_is_told_where_to_begin() {
     let without = without.collect::<Vec<_>>().join("\n");
     let words = [
         "axis.controller.c of axis x: found no such key",
-        "begin with the XY stage's, c = 150.0",
+        "begin with c = 150.0, k = 50.0, and in m/s² and m/s epsilon = 4, boundary = 0.05",
         "`kind = \"pd\"`",
     ];
     refused(&["design"], &without, &words);
+    // The figures are in the axis's unit.
+    let rotary = without.replacen("unit = \"m\"", "unit = \"mrad\"", 1);
+    refused(
+        &["design"],
+        &rotary,
+        &["in mrad/s² and mrad/s epsilon = 4000, boundary = 50 ("],
+    );
+}
+
+#[test]
+fn cli_a_unit_that_no_axis_has_is_told_what_to_write() {
+    let machine = one_axis("kind = \"zvd\"", MODE).replace("\"x\"", "\"x\"\nunit = \"inch\"");
+    let words = [
+        "axis.unit of axis x: found \"inch\"",
+        "help: write lengths in mm (an inch is 25.4 mm)",
+    ];
+    refused(&["design"], &machine, &words);
 }
 
 #[test]

@@ -101,10 +101,37 @@ fn is_shown(text: &str, value: f64) -> bool {
     (ratio - 1.0).abs() < 0.05
 }
 
+fn text_of_element(element: scraper::ElementRef<'_>, selector: &str) -> String {
+    let selector = Selector::parse(selector).unwrap();
+    element.select(&selector).flat_map(|element| element.text()).collect()
+}
+
 fn text_of(html: &Html, selector: &str) -> String {
     let selector = Selector::parse(selector).unwrap();
     let words = html.select(&selector).flat_map(|element| element.text());
     words.collect::<Vec<_>>().join(" ")
+}
+
+/// Every curve, dot and area inside a chart belongs to an entry of the legend, or is a line without a name.
+fn each_entry_of_a_legend_hides_what_is_drawn_for_it(html: &Html) {
+    let select = |text: &str| Selector::parse(text).unwrap();
+    let mut bands = 0;
+    for chart in html.select(&select("figure.chart")) {
+        let buttons: Vec<&str> = chart
+            .select(&select("button"))
+            .map(|button| button.value().attr("data-hides").unwrap())
+            .collect();
+        assert!(!buttons.is_empty());
+        for hides in buttons {
+            let group = select(&format!("svg g[data-series=\"{hides}\"]"));
+            let drawn: Vec<_> = chart.select(&group).flat_map(|group| group.child_elements()).collect();
+            assert!(!drawn.is_empty(), "{hides} of {}", text_of_element(chart, "figcaption"));
+            // A band has its area and the lines at its ends.
+            let names: Vec<&str> = drawn.iter().map(|element| element.value().name()).collect();
+            bands += usize::from(names == ["rect", "polyline", "polyline"]);
+        }
+    }
+    assert!(bands > 0);
 }
 
 #[test]
@@ -156,7 +183,11 @@ fn cli_the_page_of_a_run_says_what_its_document_says() {
         "each part with pictures names its command"
     );
     assert!(text_of(&html, ".waves text").contains("x_valid"));
-    assert!(text_of(&html, "header code").ends_with("ramp.csv --simulator icarus"));
+    // The folder has all that its command needs.
+    assert!(text_of(&html, "header code").ends_with("--command input/ramp.csv --simulator icarus"));
+    let copy = std::fs::read_to_string(folder.path().join("out/input/ramp.csv")).unwrap();
+    assert_eq!(copy, std::fs::read_to_string(&command).unwrap());
+    each_entry_of_a_legend_hides_what_is_drawn_for_it(&html);
     assert!(text_of(&html, "main").contains("nothing ran on hardware"));
 }
 

@@ -291,6 +291,13 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
         details[0].contains("FAULT") && details[0].contains("following-error"),
         "{details:?}"
     );
+    // What is left of a vibration is not measured on a move without an end.
+    let vibration = checks
+        .iter()
+        .find(|check| check["name"].as_str().unwrap().starts_with("the shapers suppress"));
+    assert_eq!(vibration.unwrap()["verdict"], "open");
+    let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(page.contains("/axes/0/residual_displacement\"") && !page.contains("/stage/axes/0/residual"));
     for (name, title) in [
         ("move", "axis y: position"),
         ("vibration", "until the run was given up"),

@@ -9,10 +9,10 @@ use crate::design::kind::ShaperKind;
 use crate::digitise::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX, digitise};
 use crate::machine_file::{AxisSection, Digitise, Machine};
 use crate::mode::Mode;
-use crate::unit::short;
+use crate::unit::{short, show_seconds};
 use posicast_optimal::OptimalError;
 
-/// A mode below this is most likely given in kHz.
+/// A mode below this may be given in kHz.
 const UNLIKELY_HZ: f64 = 1.0;
 /// Only sample rates of at least this many samples per period of the fastest mode are proposed: below, its ringing is
 /// hardly sampled.
@@ -227,17 +227,24 @@ fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
             short(hz)
         )
     });
-    let in_khz = (!is_computed && hz < UNLIKELY_HZ && hz * 1e3 < machine.clock.sample_hz / 2.0).then(|| {
-        let (found, meant) = (short(hz), short(hz * 1e3));
-        format!("{found} kHz? Frequencies are in Hz: write `frequency_hz = {meant}`")
+    let in_khz = (!is_computed && hz < UNLIKELY_HZ && hz * 1e3 < machine.clock.sample_hz / 2.0)
+        .then(|| format!("if it was meant in kHz, write `frequency_hz = {}`", short(hz * 1e3)));
+    let rate = rate_that_fits(machine, axis).map(|(text, _)| match in_khz {
+        // A crane or a telescope is as slow as that.
+        Some(_) => format!("write `{text}`, at which the shaper fits"),
+        None => text,
     });
-    let rate = rate_that_fits(machine, axis).map(|(text, _)| text);
-    let remedies: Vec<String> = [of_mechanics, in_khz, rate].into_iter().flatten().collect();
+    let period = in_khz.is_some().then(|| {
+        let period_s = show_seconds(1.0 / hz, 3);
+        format!("{} Hz is a period of {period_s}: ", short(hz))
+    });
+    let remedies: Vec<String> = [of_mechanics, rate, in_khz].into_iter().flatten().collect();
+    let remedies = period.unwrap_or_default() + &remedies.join("; else ");
     Some(DesignBlame {
         axis,
         mode: Some(index),
         key: "axis.mode.frequency_hz".to_owned(),
-        remedy: (!remedies.is_empty()).then(|| remedies.join("; else ")),
+        remedy: (!remedies.is_empty()).then_some(remedies),
     })
 }
 
@@ -347,8 +354,22 @@ mod tests {
         let blame = blamed("kind = \"zvd\"", &[(100.0, 0.1), (0.03, 0.1)]);
         assert_eq!((blame.mode, blame.key.as_str()), (Some(1), "axis.mode.frequency_hz"));
         let remedy = blame.remedy.unwrap();
+        assert_eq!(
+            remedy,
+            "0.03 Hz is a period of 33.3 s: if it was meant in kHz, write `frequency_hz = 30`"
+        );
+    }
+
+    #[test]
+    fn unit_a_mode_that_may_be_as_slow_as_it_is_gets_a_sample_rate_first() {
+        let blame = blamed("kind = \"zvd\"", &[(0.16, 0.01)]);
+        let remedy = blame.remedy.unwrap();
         assert!(
-            remedy.starts_with("0.03 kHz? Frequencies are in Hz: write `frequency_hz = 30`"),
+            remedy.starts_with("0.16 Hz is a period of 6.25 s: write `clock.sample_hz = "),
+            "{remedy}"
+        );
+        assert!(
+            remedy.ends_with("; else if it was meant in kHz, write `frequency_hz = 160`"),
             "{remedy}"
         );
     }

@@ -182,7 +182,12 @@ fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
 
 /// The unit of the axis's figures; metres where the file has none, or one that is refused.
 fn read_unit(table: &Table<'_, '_>) -> AxisUnit {
-    let word = table.choice("unit", &AxisUnit::ALL.map(|(_, name)| name));
+    let names = AxisUnit::ALL.map(|(_, name)| name);
+    let word = table.choice_else(
+        "unit",
+        &names,
+        "write lengths in mm (an inch is 25.4 mm), angles in deg or rad",
+    );
     let unit = AxisUnit::ALL.into_iter().find(|(_, name)| Some(*name) == word);
     unit.map_or(AxisUnit::default(), |(unit, _)| unit)
 }

@@ -3,7 +3,7 @@
 use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
-use crate::unit::AxisUnit;
+use crate::unit::{AxisUnit, trimmed};
 
 /// Range of the gains that are required and must be above 0.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
@@ -104,10 +104,15 @@ const GAINS: [(&str, &[&str]); 7] = [
 
 /// The gains that may be 0.
 const NOT_NEGATIVE_GAINS: [&str; 2] = ["k", "epsilon"];
-/// What to do where a gain of the sliding-mode law is missing.
-const SLIDING_MODE: &str = "sliding mode needs the gains `c`, `k`, `epsilon` and `boundary`: begin with the XY stage's, \
-                            c = 150.0, k = 50.0, and in m epsilon = 4.0, boundary = 0.05 (docs/controllers.md says how they act); \
-                            `kind = \"pd\"` computes its own gains";
+
+/// What to do where a gain of the sliding-mode law is missing, on an axis of this unit.
+fn sliding_mode_remedy(unit: AxisUnit) -> String {
+    let [epsilon, boundary] = [4.0, 0.05].map(|figure| trimmed(unit.from_si(figure), 3));
+    format!(
+        "sliding mode needs the gains `c`, `k`, `epsilon` and `boundary`: begin with c = 150.0, k = 50.0, and in {unit}/s² and {unit}/s \
+         epsilon = {epsilon}, boundary = {boundary} (docs/controllers.md says how they act); `kind = \"pd\"` computes its own gains"
+    )
+}
 
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> {
@@ -131,7 +136,7 @@ pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> 
             } else {
                 POSITIVE
             };
-            table.require_with(key, range, SLIDING_MODE);
+            table.require_with(key, range, sliding_mode_remedy(unit));
         } else if table.has(key) && !kinds.contains(&kind) {
             let found = format!("{key} with kind = \"{kind}\"");
             let kinds: Vec<String> = kinds.iter().map(|kind| format!("\"{kind}\"")).collect();

@@ -155,6 +155,9 @@ apart, and shows the shaped word when `valid` is high for one clock, some {pass}
 The words are counts with {fraction} fraction bits; the shaper only needs that `x` and `y` are
 read alike. A constant command comes out as the same constant.
 
+{what_else}
+## Vendors
+
 The clock is {mhz} MHz. {of_pll}
 
 | vendor | how | checked |
@@ -168,7 +171,28 @@ The clock is {mhz} MHz. {of_pll}
         fraction = kit.command_fraction,
         mhz = kit.clock_hz / 1e6,
         of_pll = of_pll(kit),
+        what_else = what_else(kit),
     )
+}
+
+/// The section of the page about the kit that says what a real machine needs beside the wires of the example.
+fn what_else(kit: &Kit<'_>) -> String {
+    const PAGE: &str = include_str!("../../datasheets/kit.md");
+    const HEADING: &str = "## What else to connect on a real machine\n";
+    let section = PAGE.split_once(HEADING).map_or("", |(_, after)| after);
+    let section = section.split("\n## ").next().unwrap_or_default();
+    let Some(first) = kit.shapers.first() else {
+        return String::new();
+    };
+    let axis = first.axis;
+    let section = ["x", "y"].into_iter().fold(section.to_owned(), |section, word| {
+        section.replace(&format!("AXIS_{word}"), &format!("{axis}_{}", first.position(word)))
+    });
+    let others = match kit.shapers.len() {
+        1 => "",
+        _ => "The ports are those of the first axis; the other axes have the same.\n\n",
+    };
+    format!("{HEADING}\n{others}{}", section.trim_start().replace("AXIS", axis))
 }
 
 /// What to do on a board with another oscillator.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! DIR/machine.toml  rtl/*.v  sopc/  driver/ …      the package: what follows from the machine file
-//! DIR/wave/*.vcd  plots/  report.json              evidence: what a run found out about it
+//! DIR/wave/*.vcd  plots/  input/  report.json      evidence: what a run found out about it
 //! DIR/posicast.json                                version, machine, sha256 of every file written, which are evidence
 //! DIR/.posicast-staging/                           while a run is at work
 //! ```

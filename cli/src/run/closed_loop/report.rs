@@ -73,9 +73,12 @@ impl ClosedLoop<'_> {
         lines.collect()
     }
 
-    /// Vibration of an axis's load without its shaper and with it, in m or rad; `None` if a move was not made.
+    /// Vibration of an axis's load without its shaper and with it, in m or rad; `None` if a move was not made to its end.
     pub(crate) fn ringing(&self, axis: usize) -> Option<[f64; 2]> {
-        let of = |moved: &Moved| Some(moved.axes.get(axis)?.residual.peak);
+        let of = |moved: &Moved| match moved.trouble {
+            Some(_) => None,
+            None => Some(moved.axes.get(axis)?.residual.peak),
+        };
         Some([of(&self.unshaped)?, of(&self.shaped)?])
     }
 

@@ -1,6 +1,6 @@
 //! Pictures that only the page has: impulses, commands, residual maps, kinds of shaper.
 
-use crate::plot::{Curve, Level, Map, Note, Panel, label, time_axis};
+use crate::plot::{Curve, Level, Map, Note, Panel, Writing, label, time_axis};
 use crate::run::report::RunReport;
 use crate::simulate::si_per_lsb;
 use plotters::style::RGBColor;
@@ -17,7 +17,7 @@ const RATIOS: (f64, f64) = (0.6, 1.4);
 const DAMPINGS: (f64, f64) = (0.1, 0.95);
 const GRID: (usize, usize) = (81, 31);
 /// Residual in percent above which a kind is not drawn, unless it is the machine's own.
-const SHOWN_PERCENT: f64 = 60.0;
+const SHOWN_PERCENT: f64 = 30.0;
 /// Colours of a map's levels, which colour-blind readers can tell apart (ColorBrewer's RdBu): blue is within the tolerance.
 const LEVELS: [RGBColor; 5] = [
     RGBColor(33, 102, 172),
@@ -147,22 +147,23 @@ pub(super) fn kinds(of: &KindComparison, band_percent: f64) -> Panel {
     let place = |kind: &Candidate| (time.of(kind.duration_s), 100.0 * kind.worst_residual);
     let is_shown = |kind: &&Candidate| kind.in_file || 100.0 * kind.worst_residual <= SHOWN_PERCENT;
     let shown = || of.candidates.iter().filter(is_shown);
-    let highest = shown().map(|kind| 100.0 * kind.worst_residual).fold(0.0, f64::max);
     let best: Vec<_> = shown().filter(|kind| kind.pareto && !kind.in_file).collect();
-    let mut notes: Vec<Note> = Vec::new();
-    // The machine's own first: where two names would lie on each other, the later one is left out.
-    for kind in shown().filter(|kind| kind.in_file).chain(best.iter().copied()) {
-        let at = place(kind);
-        let is_free = notes.iter().all(|note| {
-            (note.at.0 - at.0).abs() > 0.2 * time.of(longest_s) || (note.at.1 - at.1).abs() > 0.07 * highest
-        });
-        if is_free {
-            notes.push(Note {
-                text: kind.kind.clone(),
-                at,
-            });
-        }
-    }
+    let others: Vec<_> = shown().filter(|kind| !kind.pareto && !kind.in_file).collect();
+    let own: Vec<_> = shown().filter(|kind| kind.in_file).collect();
+    let note = |kind: &Candidate, writing: Writing| Note {
+        text: kind.kind.clone(),
+        at: place(kind),
+        writing,
+    };
+    let notes = [
+        (&own, Writing::Always),
+        (&best, Writing::WhereFree),
+        (&others, Writing::Never),
+    ];
+    let notes = notes.into_iter();
+    let notes = notes.flat_map(|(kinds, writing)| kinds.iter().map(move |kind| note(kind, writing)));
+    let notes: Vec<Note> = notes.collect();
+    let dots = |kinds: &[&Candidate]| kinds.iter().map(|kind| place(kind)).collect();
     Panel {
         title: format!(
             "axis {}: kinds of shaper, modes off by up to ±{band_percent} %",
@@ -171,22 +172,10 @@ pub(super) fn kinds(of: &KindComparison, band_percent: f64) -> Panel {
         x_label: label("duration", time),
         y_label: "worst residual, %".into(),
         curves: vec![
-            Curve::dots(
-                "other kinds",
-                shown()
-                    .filter(|kind| !kind.pareto && !kind.in_file)
-                    .map(place)
-                    .collect(),
-            ),
-            Curve::dots(
-                "no other is better in everything",
-                best.iter().map(|kind| place(kind)).collect(),
-            ),
-            Curve::dots(
-                "this machine's",
-                shown().filter(|kind| kind.in_file).map(place).collect(),
-            ),
-            Curve::reference("", vec![(0.0, 0.0), (1.3 * time.of(longest_s), 0.0)]),
+            Curve::dots("this machine's", dots(&own)),
+            Curve::dots("no other is better in everything", dots(&best)),
+            Curve::dots("other kinds", dots(&others)),
+            Curve::reference("", vec![(0.0, 0.0), (1.1 * time.of(longest_s), 0.0)]),
         ],
         notes,
         ..Panel::default()

@@ -125,8 +125,8 @@ impl RunReport<'_> {
                         h3 { (check.name) }
                         (detail(check))
                         @if let Some(advice) = advice::for_failed(check) {
-                            p { strong { "Likely cause: " } (advice.cause) "." }
-                            p { strong { "Try this: " } (advice.remedies[0]) "; or " (advice.remedies[1]) "." }
+                            p { strong { "Likely cause: " } (with_code(advice.cause)) "." }
+                            p { strong { "Try this: " } (with_code(advice.remedies[0])) "; or " (with_code(advice.remedies[1])) "." }
                         }
                     }
                 }
@@ -192,6 +192,15 @@ fn detail(check: &Check) -> Markup {
     }
 }
 
+/// A text whose parts between backticks are code.
+fn with_code(text: &str) -> Markup {
+    html! {
+        @for (index, part) in text.split('`').enumerate() {
+            @if index % 2 == 1 { code { (part) } } @else { (part) }
+        }
+    }
+}
+
 fn shown(part: &Part) -> Markup {
     html! {
         section {
@@ -219,11 +228,11 @@ fn figure(picture: &Inline) -> Markup {
         .map(|value| value.to_string())
         .join(" ");
     html! {
-        figure.chart data-edges=(places) data-values=(values) data-x=(window.labels[0]) data-y=(window.labels[1]) {
+        figure.chart data-edges=(places) data-values=(values) data-x=(window.labels[0]) data-y=(window.labels[1]) data-points=[points(picture)] {
             figcaption { (picture.title) }
             ul.legend {
-                @for entry in &picture.legend {
-                    li { button type="button" aria-pressed="true" data-colour=(entry.colour) {
+                @for (series, entry) in picture.legend.iter().enumerate() {
+                    li { button type="button" aria-pressed="true" data-hides=(series) {
                         svg.sample viewBox="0 0 26 12" aria-hidden="true" { (sample(entry.form, &entry.colour)) }
                         span { (entry.name) }
                     } }
@@ -233,6 +242,11 @@ fn figure(picture: &Inline) -> Markup {
             output {}
         }
     }
+}
+
+/// The names of a picture's points, for the script; `None` where it has none.
+fn points(picture: &Inline) -> Option<String> {
+    (!picture.points.is_empty()).then(|| serde_json::json!(picture.points).to_string())
 }
 
 fn sample(form: &str, colour: &str) -> Markup {

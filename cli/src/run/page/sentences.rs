@@ -45,10 +45,15 @@ impl RunReport<'_> {
     pub(super) fn axes_table(&self, figures: &Figures) -> Markup {
         html! {
             div.wide { table {
-                thead { tr {
-                    th { "axis" } th { "shaper" } th.number { "duration" } th.number { "residual of the integer taps" }
-                    th.number { "ringing unshaped" } th.number { "shaped" } th.number { "at rest unshaped" } th.number { "shaped" }
-                } }
+                thead {
+                    tr {
+                        th rowspan="2" { "axis" } th rowspan="2" { "shaper" }
+                        th.number rowspan="2" { "duration of the shaper" } th.number rowspan="2" { "residual of the integer taps" }
+                        th.group colspan="2" scope="colgroup" { "ringing after the move" }
+                        th.group colspan="2" scope="colgroup" { "at rest, from the start of the move" }
+                    }
+                    tr { @for _ in 0..2 { th.number { "unshaped" } th.number { "shaped" } } }
+                }
                 tbody {
                     @for (index, axis, tables) in self.rows() {
                         @let length = |figure: f64| axis.unit.show(figure, 3);
@@ -102,6 +107,14 @@ fn cost(gain: &Gain, index: usize, figures: &Figures) -> Markup {
     }
 }
 
+/// Why a load is at rest later with its shaper than without it.
+fn why_later(gain: &Gain) -> &'static str {
+    match (gain.settled_unshaped_s, gain.arrival_unshaped_s) {
+        (Some(settled), Some(arrival)) if settled <= arrival => "without the shaper it rings by less than a count",
+        _ => "without the shaper its vibration is over before the shaper's last impulse",
+    }
+}
+
 fn gained(axis: &AxisSection, gain: &Gain, index: usize, figures: &Figures) -> Markup {
     let show = |name: &str| figures.show(&format!("/axes/{index}/gain/{name}"), time);
     let band = figures.show(&format!("/axes/{index}/gain/band"), |band| axis.unit.show(band, 3));
@@ -121,7 +134,7 @@ fn gained(axis: &AxisSection, gain: &Gain, index: usize, figures: &Figures) -> M
             html! {
                 ", and its load is at rest to ±1 count (" (band) ") " strong { (sooner) } ", "
                 (show("settled_s")) " after the start of the move instead of " (show("settled_unshaped_s"))
-                @if word == "later" { "; without the shaper it rings by less than a count" }
+                @if word == "later" { "; " (why_later(gain)) }
             }
         }
         (None, Some(settled), _) => html! {
@@ -138,5 +151,77 @@ fn gained(axis: &AxisSection, gain: &Gain, index: usize, figures: &Figures) -> M
             ", where the simulation ends"
         },
         _ => html! {},
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::gain::Gain;
+    use posicast_model::machine_file;
+    use serde_json::json;
+
+    /// The sentence of a load that is at rest at these times, with a command that arrives at 10 ms and at 14 ms.
+    fn sentence(unshaped: Option<f64>, shaped: Option<f64>) -> String {
+        let machine = machine_file::parse("m.toml", include_str!("../../../../examples/custom-shaper.toml")).unwrap();
+        let sooner = unshaped.zip(shaped).map(|(unshaped, shaped)| unshaped - shaped);
+        let gain = Gain {
+            of: GainSource::OpenLoop,
+            band: 1e-6,
+            arrival_unshaped_s: Some(0.010),
+            arrival_s: Some(0.014),
+            later_s: Some(0.004),
+            settled_unshaped_s: unshaped,
+            settled_s: shaped,
+            sooner_s: sooner,
+            end_unshaped_s: 0.5,
+            end_s: 0.5,
+        };
+        let figures = Figures(json!({"axes": [{"gain": gain}]}));
+        let text = (cost(&gain, 0, &figures).into_string()
+            + &gained(&machine.axes[0], &gain, 0, &figures).into_string())
+            .split('<')
+            .map(|part| part.split_once('>').map_or(part, |(_, text)| text))
+            .collect::<String>();
+        assert!(
+            text.starts_with("its command arrives 4.0 ms later, and its load is"),
+            "{text}"
+        );
+        text
+    }
+
+    #[test]
+    fn unit_every_outcome_has_its_sentence() {
+        for (unshaped, shaped, said) in [
+            (
+                Some(0.055),
+                Some(0.015),
+                "40 ms sooner, 15 ms after the start of the move instead of 55 ms",
+            ),
+            (
+                Some(0.009),
+                Some(0.015),
+                "6.0 ms later, 15 ms after the start of the move instead of 9.0 ms; without the shaper it rings by less than a count",
+            ),
+            (
+                Some(0.012),
+                Some(0.015),
+                "its vibration is over before the shaper's last impulse",
+            ),
+            (None, Some(0.1), "at least 400 ms sooner"),
+            (
+                Some(0.1),
+                None,
+                "not at rest to ±1 count (1.00 µm) after 500 ms, where the simulation ends; without the shaper it is, after 100 ms",
+            ),
+            (
+                None,
+                None,
+                "at rest to ±1 count (1.00 µm) neither with the shaper nor without it after 500 ms",
+            ),
+        ] {
+            let sentence = sentence(unshaped, shaped);
+            assert!(sentence.contains(said), "{sentence}");
+        }
     }
 }

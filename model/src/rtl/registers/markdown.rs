@@ -1,14 +1,45 @@
-//! A register map as Markdown: the generated part of `docs/registers.md`.
+//! A register map as Markdown: the page `docs/register-tables.md`.
 
-use super::description::{Access, Field, Format, Register};
+use super::description::{Access, Field, Format, Register, WINDOW_WORDS};
 use super::map::RegisterMap;
 use std::fmt::Write;
 
-/// The tables of a map: one of its registers, one of their fields, one of each enumeration.
+/// The tables of a map, for each of its windows: one of its registers, one of their fields, one of each enumeration.
 pub fn markdown(map: &RegisterMap) -> String {
+    markdown_of(map, map.words() / WINDOW_WORDS)
+}
+
+/// The tables of the first windows of a map; those of further axes have the same registers as the second.
+pub fn markdown_of(map: &RegisterMap, windows: u32) -> String {
     let mut text = format!("## {}\n\n{}\n\n", map.name(), map.about());
-    text.push_str("| word | register | access | reset | meaning |\n|---|---|---|---|---|\n");
-    for register in map.registers() {
+    let has_windows = map.words() > WINDOW_WORDS;
+    let parts = (0..windows).map(|window| {
+        let is_in = |register: &&Register| register.offset / WINDOW_WORDS == window;
+        let registers: Vec<&Register> = map.registers().iter().filter(is_in).collect();
+        match has_windows {
+            true => format!("### {}\n\n{}", heading(window, &registers), tables(&registers)),
+            false => tables(&registers),
+        }
+    });
+    text.push_str(&parts.collect::<Vec<_>>().join("\n"));
+    text
+}
+
+/// Name of a window: that of its axis, with which the names of all its registers begin.
+fn heading(window: u32, registers: &[&Register]) -> String {
+    let names = || registers.iter().map(|register| register.name.as_str());
+    let first = names().next().unwrap_or_default();
+    let begins = first.match_indices('_').map(|(end, _)| &first[..=end]);
+    let common = begins.rev().find(|begin| names().all(|name| name.starts_with(*begin)));
+    match common {
+        Some(axis) if window > 0 => format!("window {window}: axis `{}`", axis.trim_end_matches('_')),
+        _ => format!("window {window}: all axes"),
+    }
+}
+
+fn tables(registers: &[&Register]) -> String {
+    let mut text = "| word | register | access | reset | meaning |\n|---|---|---|---|---|\n".to_owned();
+    for register in registers {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
@@ -21,7 +52,7 @@ pub fn markdown(map: &RegisterMap) -> String {
         );
     }
     text.push_str("\n| register | bits | field | format | unit | reset | meaning |\n|---|---|---|---|---|---|---|\n");
-    for register in map.registers() {
+    for register in registers {
         // A shadow has the same fields, which are listed once.
         if matches!(
             register.access,
@@ -43,11 +74,7 @@ pub fn markdown(map: &RegisterMap) -> String {
             );
         }
     }
-    for (register, field) in map
-        .registers()
-        .iter()
-        .flat_map(|r| r.fields.iter().map(move |f| (r, f)))
-    {
+    for (register, field) in registers.iter().flat_map(|r| r.fields.iter().map(move |f| (r, f))) {
         if let Format::Enumeration(choices) = &field.format {
             let register = register.name.to_uppercase();
             let _ = writeln!(
