@@ -1,15 +1,15 @@
 //! The fault campaign of the host link, in a few cases and in many.
 
-#[path = "../examples/link_campaign/campaign.rs"]
+#[path = "../examples/link_campaign/campaign/mod.rs"]
 #[allow(dead_code)] // The table of the example reads more of an outcome.
 mod cases;
 
-use cases::{Ground, Kind};
+use cases::Kind;
 
 fn run(cases: std::ops::Range<u64>, seed: u64) {
-    let ground = Ground::new().unwrap();
-    for number in cases {
-        let outcome = ground.run(number, seed).unwrap();
+    let all = cases::run(cases.clone(), seed).unwrap();
+    assert_eq!(all.len() as u64, cases.end - cases.start);
+    for (number, outcome) in all {
         assert!(
             outcome.failures.is_empty(),
             "case {number}, {}: {:?}",

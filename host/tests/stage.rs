@@ -1,16 +1,15 @@
 //! A stage of a machine file at the other end: which one it is, its state, moves, traces and tap tables, on the model of the stage with its
 //! machine.
 
-use std::collections::VecDeque;
-use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
+use crate::faults::Line;
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions, Shake, TraceRequest};
 use posicast_identify::log::{self, Log};
 use posicast_identify::position;
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{Hardware, StageHardware};
-use posicast_model::link::{Bus, LinkBridge};
+use posicast_model::link::Bus;
 use posicast_model::machine_file::{self, Machine};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::axis::SupervisorState;
@@ -49,54 +48,17 @@ fn stage(machine: &Machine) -> StageHardware {
         .clone()
 }
 
-/// A line with the stage and its machine.
-struct Line {
-    linked: LinkedBench,
-    coming: VecDeque<u8>,
+/// The line of the stage with its machine.
+fn line(machine: &Machine, stage: &StageHardware) -> LinkedBench {
+    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+    let plants = machine.axes.iter().map(plant).collect();
+    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
+    let link = machine.link.unwrap();
+    LinkedBench::new(bench, &link, &machine.clock, address_limit(&stage.component))
 }
 
-impl Line {
-    fn new(machine: &Machine, stage: &StageHardware) -> Self {
-        let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-        let plants = machine.axes.iter().map(plant).collect();
-        let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
-        let link = machine.link.unwrap();
-        Self {
-            linked: LinkedBench::new(bench, &link, &machine.clock, address_limit(&stage.component)),
-            coming: VecDeque::new(),
-        }
-    }
-}
-
-impl Write for Line {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        for byte in bytes {
-            self.coming.extend(self.linked.byte(*byte).unwrap());
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Read for Line {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        if self.coming.is_empty() {
-            return Err(ErrorKind::TimedOut.into());
-        }
-        let count = bytes.len().min(self.coming.len());
-        bytes
-            .iter_mut()
-            .zip(self.coming.drain(..count))
-            .for_each(|(place, byte)| *place = byte);
-        Ok(count)
-    }
-}
-
-fn open<'m>(machine: &'m Machine, stage: &'m StageHardware) -> HostedStage<'m, Line> {
-    HostedStage::open(Link::new(Line::new(machine, stage), OPTIONS), machine, stage).unwrap()
+fn open<'m>(machine: &'m Machine, stage: &'m StageHardware) -> HostedStage<'m, LinkedBench> {
+    HostedStage::open(Link::new(line(machine, stage), OPTIONS), machine, stage).unwrap()
 }
 
 #[test]
@@ -138,7 +100,7 @@ fn unit_a_move_ends_on_its_target_and_the_axes_are_off() {
     let off = host.status().unwrap();
     assert_eq!(off[0].state, Some(SupervisorState::Ready));
     let line = host.into_link().into_line();
-    assert!((line.linked.bench.plant(0).count() - 2000).abs() <= 2);
+    assert!((line.bench.plant(0).count() - 2000).abs() <= 2);
 }
 
 #[test]
@@ -149,8 +111,8 @@ fn unit_a_host_that_dies_in_a_move_leaves_a_machine_that_stops() {
     host.switch_on(&[0, 1], false).unwrap();
     let mut line = host.into_link().into_line();
     // watchdog_s is 0.5 s, and the brake has no time.
-    line.linked.idle(27_000_000).unwrap();
-    assert!(!line.linked.bench.pins(0).drive_enable && !line.linked.bench.pins(1).drive_enable);
+    line.idle(27_000_000).unwrap();
+    assert!(!line.bench.pins(0).drive_enable && !line.bench.pins(1).drive_enable);
     let mut host = HostedStage::open(Link::new(line, OPTIONS), &machine, &stage).unwrap();
     let refused = host.switch_on(&[0], false).unwrap_err();
     assert!(
@@ -221,8 +183,8 @@ fn unit_a_table_is_loaded_read_back_and_used() {
     let refused = host.load_table(0, &other).unwrap_err().to_string();
     assert!(refused.contains("`coefficient_fraction = 16`"), "{refused}");
     let mut line = host.into_link().into_line();
-    assert_eq!(line.linked.bench.net("x_table_bank").unwrap(), 2);
-    assert_eq!(line.linked.bench.read("y_status").unwrap() >> 17 & 3, 0);
+    assert_eq!(line.bench.net("x_table_bank").unwrap(), 2);
+    assert_eq!(line.bench.read("y_status").unwrap() >> 17 & 3, 0);
 }
 
 /// The clocks of `docs/hosts.md`, within 2 %.
@@ -230,10 +192,10 @@ fn unit_a_table_is_loaded_read_back_and_used() {
 fn unit_calls_take_the_clocks_of_the_page() {
     let machine = machine();
     let stage = stage(&machine);
-    let clocks = |calls: fn(&mut HostedStage<'_, Line>)| {
+    let clocks = |calls: fn(&mut HostedStage<'_, LinkedBench>)| {
         let mut host = open(&machine, &stage);
         calls(&mut host);
-        host.into_link().into_line().linked.bench.now()
+        host.into_link().into_line().bench.now()
     };
     let opened = clocks(|_| {});
     let status = clocks(|host| drop(host.status().unwrap())) - opened;
@@ -257,32 +219,6 @@ impl Bus for Constants {
     }
 }
 
-struct Fake(LinkBridge, Constants, VecDeque<u8>);
-
-impl Write for Fake {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        for byte in bytes {
-            self.2.extend(self.0.byte(*byte, &mut self.1).unwrap_or_default());
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Read for Fake {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = bytes.len().min(self.2.len());
-        bytes
-            .iter_mut()
-            .zip(self.2.drain(..count))
-            .for_each(|(place, byte)| *place = byte);
-        Ok(count)
-    }
-}
-
 #[test]
 fn unit_another_stage_is_refused_with_what_was_found_and_expected() {
     let machine = machine();
@@ -295,7 +231,7 @@ fn unit_another_stage_is_refused_with_what_was_found_and_expected() {
     let opened = |place: usize, word: u32| {
         let mut words = constants.clone();
         words[place] = word;
-        let line = Fake(LinkBridge::new(768), Constants(words), VecDeque::new());
+        let line = Line::new(Constants(words), 768, 0);
         HostedStage::open(Link::new(line, OPTIONS), &machine, &stage).map(drop)
     };
     assert!(opened(0, constants[0]).is_ok());

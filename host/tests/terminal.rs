@@ -1,12 +1,13 @@
 //! The host's end through a pseudo-terminal of the operating system, with the byte-exact bridge behind it.
 
-use std::io::{ErrorKind, Read, Write};
+use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::faults::{REGISTERS, Registers};
 use posicast_host::{Link, LinkError, LinkOptions};
 use posicast_model::link::LinkBridge;
+use posicast_testbench::linked_bench::serve;
 use serialport::{SerialPort, TTYPort};
 
 const OPTIONS: LinkOptions = LinkOptions {
@@ -17,25 +18,12 @@ const OPTIONS: LinkOptions = LinkOptions {
 /// Serves the bridge at the other end until `ends`; returns what was written.
 fn served(mut line: TTYPort, ends: &AtomicBool) -> Vec<(u16, u32)> {
     let (mut bridge, mut registers) = (LinkBridge::new(REGISTERS), Registers::default());
-    let mut bytes = [0; 64];
     line.set_timeout(Duration::from_millis(5)).unwrap();
-    while !ends.load(Ordering::Relaxed) {
-        let count = match line.read(&mut bytes) {
-            Ok(count) => count,
-            Err(error) => {
-                // Before the host opens its end, there is nobody at the line.
-                if error.kind() != ErrorKind::TimedOut {
-                    std::thread::sleep(Duration::from_millis(1));
-                }
-                0
-            }
-        };
-        for byte in &bytes[..count] {
-            if let Some(reply) = bridge.byte(*byte, &mut registers) {
-                line.write_all(&reply).unwrap();
-            }
-        }
-    }
+    let served: Result<(), Infallible> = serve(line, ends, |heard| {
+        let reply = heard.and_then(|byte| bridge.byte(byte, &mut registers));
+        Ok(reply.unwrap_or_default())
+    });
+    served.unwrap();
     registers.writes
 }
 

@@ -89,12 +89,7 @@ impl Read for Line {
         if self.coming.is_empty() {
             return Err(ErrorKind::TimedOut.into());
         }
-        let count = bytes.len().min(self.coming.len());
-        bytes
-            .iter_mut()
-            .zip(self.coming.drain(..count))
-            .for_each(|(place, byte)| *place = byte);
-        Ok(count)
+        self.coming.read(bytes)
     }
 }
 

@@ -7,8 +7,11 @@
 //!
 //! A byte takes the time that it has on the line, and so does every access; in between the model of the stage runs event by event. Bits
 //! and clocks of the bridge are not simulated: the lock step of `uart_bridge` and `linked_stage` compares these.
+//!
+//! A host in the same thread has the bench itself as its line; [`serve`] is for a host at a port.
 
-use std::io::{ErrorKind, Read, Write};
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -40,6 +43,8 @@ pub struct LinkedBench {
     silent_clocks: u64,
     /// Part of a clock that bytes have taken.
     rest_clocks: f64,
+    /// Bytes of replies that a host in the same thread has not read.
+    coming: VecDeque<u8>,
 }
 
 /// The registers during a request.
@@ -85,6 +90,7 @@ impl LinkedBench {
             timeout_clocks: (link.timeout_s * clock.frequency_hz) as u64,
             silent_clocks: 0,
             rest_clocks: 0.0,
+            coming: VecDeque::new(),
         }
     }
 
@@ -147,28 +153,70 @@ impl LinkedBench {
     ///
     /// # Errors
     /// [`Error::Step`] where the model stops. Errors of the line are those of a host that has gone, and end nothing.
-    pub fn serve(&mut self, mut line: impl Read + Write, ends: &AtomicBool) -> Result<(), Error> {
-        let mut bytes = [0; 256];
-        while !ends.load(Ordering::Relaxed) {
-            let count = match line.read(&mut bytes) {
-                Ok(count) => count,
-                Err(error) => {
-                    // Before the host opens its end, and after it has closed it, there is nobody at the line.
-                    if error.kind() != ErrorKind::TimedOut {
-                        std::thread::sleep(Duration::from_millis(1));
-                    }
-                    0
+    pub fn serve(&mut self, line: impl Read + Write, ends: &AtomicBool) -> Result<(), Error> {
+        let silent_clocks = (self.clock_hz * SILENT_S) as u64;
+        serve(line, ends, |heard| match heard {
+            Some(byte) => self.byte(byte),
+            None => self.idle(silent_clocks).map(|()| Vec::new()),
+        })
+    }
+}
+
+/// Serves a host at `line` until `ends`: `answer` gets each byte and returns the reply that it completes, and gets `None` if nothing
+/// has come for the time that a read takes.
+///
+/// # Errors
+/// Those of `answer`. Errors of the line are those of a host that has gone, and end nothing.
+pub fn serve<E>(
+    mut line: impl Read + Write,
+    ends: &AtomicBool,
+    mut answer: impl FnMut(Option<u8>) -> Result<Vec<u8>, E>,
+) -> Result<(), E> {
+    let mut bytes = [0; 256];
+    while !ends.load(Ordering::Relaxed) {
+        let count = match line.read(&mut bytes) {
+            Ok(count) => count,
+            Err(error) => {
+                // Before the host opens its end, and after it has closed it, there is nobody at the line.
+                if error.kind() != ErrorKind::TimedOut {
+                    std::thread::sleep(Duration::from_millis(1));
                 }
-            };
-            for byte in &bytes[..count] {
-                let reply = self.byte(*byte)?;
-                // The host may have gone.
-                let _ = line.write_all(&reply);
+                0
             }
-            if count == 0 {
-                self.idle((self.clock_hz * SILENT_S) as u64)?;
-            }
+        };
+        for byte in &bytes[..count] {
+            let reply = answer(Some(*byte))?;
+            // The host may have gone.
+            let _ = line.write_all(&reply);
         }
+        if count == 0 {
+            answer(None)?;
+        }
+    }
+    Ok(())
+}
+
+/// A host in the same thread sends.
+impl Write for LinkedBench {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        for byte in bytes {
+            let reply = self.byte(*byte).map_err(io::Error::other)?;
+            self.coming.extend(reply);
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+/// A host in the same thread reads; no time passes.
+impl Read for LinkedBench {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        match self.coming.is_empty() {
+            true => Err(ErrorKind::TimedOut.into()),
+            false => self.coming.read(bytes),
+        }
     }
 }

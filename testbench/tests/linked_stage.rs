@@ -7,6 +7,7 @@ use posicast_model::machine_file::{self, Machine};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::linked_stage::{LinkedStage, address_limit};
+use posicast_model::rtl::uart_bridge::UartBridgeConfig;
 use posicast_testbench::blocks::{LinkedStageBlock, Sources, check};
 
 /// Clocks of a bit at 3,000,000 baud and 50 MHz, times three.
@@ -17,17 +18,19 @@ fn machine() -> Machine {
     machine_file::parse("xy-stage.toml", &format!("{text}[link]\nbaud = 3_000_000\n")).unwrap()
 }
 
-fn block() -> LinkedStageBlock {
-    let machine = machine();
-    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap())
+/// The stage of the machine, and the constants of its bridge.
+fn stage(machine: &Machine) -> (Component, UartBridgeConfig) {
+    let stage = hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap();
     let component = Component::stage(&stage.config).unwrap();
-    let config = machine
-        .link
-        .unwrap()
-        .bridge(&machine.clock, address_limit(&component))
-        .unwrap();
+    let link = machine.link.unwrap();
+    let config = link.bridge(&machine.clock, address_limit(&component)).unwrap();
+    (component, config)
+}
+
+fn block() -> LinkedStageBlock {
+    let (component, config) = stage(&machine());
     let axes = ["x", "y"].map(str::to_owned);
     LinkedStageBlock::new(&component, (config, 50e6), &axes, ["xy_link", "xy_stage", "xy"])
 }
@@ -110,15 +113,7 @@ fn ask(linked: &mut LinkedStage, request: &Request, sequence: u8) -> (Reply, u64
 #[test]
 fn golden_a_host_reads_the_constants_and_writes_a_register() {
     let machine = machine();
-    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap())
-        .unwrap()
-        .unwrap();
-    let component = Component::stage(&stage.config).unwrap();
-    let config = machine
-        .link
-        .unwrap()
-        .bridge(&machine.clock, address_limit(&component))
-        .unwrap();
+    let (component, config) = stage(&machine);
     let mut linked = LinkedStage::new(&component, config, 1);
     let (reply, _) = ask(&mut linked, &Request::Read { address: 0, count: 7 }, 0);
     let crc = machine.link.unwrap().machine_crc;

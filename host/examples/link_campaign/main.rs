@@ -8,40 +8,14 @@
 
 mod campaign;
 
-use campaign::{Ground, Kind, Outcome};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use campaign::{Kind, Outcome};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut numbers = std::env::args().skip(1).map(|word| word.parse::<u64>());
     let cases = numbers.next().transpose()?.unwrap_or(1000);
     let seed = numbers.next().transpose()?.unwrap_or(1);
     campaign::comparison_finds_wrong_writes();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let (next, all) = (AtomicU64::new(0), Mutex::new(Vec::new()));
-    let work = || -> Result<(), String> {
-        let ground = Ground::new()?;
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= cases {
-                return Ok(());
-            }
-            let outcome = ground
-                .run(number, seed)
-                .map_err(|error| format!("case {number}: {error}"))?;
-            all.lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push((number, outcome));
-        }
-    };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join())
-            .collect::<Result<(), String>>()
-    })?;
-    let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let all = campaign::run(0..cases, seed)?;
     print!("{}", table(&all));
     let failed: Vec<_> = all.iter().filter(|(_, outcome)| !outcome.failures.is_empty()).collect();
     for (number, outcome) in &failed {
