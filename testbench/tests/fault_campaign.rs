@@ -20,7 +20,7 @@ use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, Wire, state};
 
 /// Number of cases of every kind.
-const ROUNDS: u64 = 8;
+const ROUNDS: u64 = 2;
 const SEED: u64 = 7;
 
 fn threads() -> usize {

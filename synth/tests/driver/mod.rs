@@ -166,9 +166,19 @@ fn unit_the_bsp_finds_every_file() {
 }
 
 #[test]
-fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
+fn unit_a_program_moves_the_stage_and_handles_a_fault() {
+    a_program_moves_the_stage_and_handles_a_fault(false);
+}
+
+/// The processor's test has the Verilog beside the model too, with another program.
+#[test]
+fn long_lockstep_a_program_moves_the_stage_and_handles_a_fault() {
+    a_program_moves_the_stage_and_handles_a_fault(true);
+}
+
+fn a_program_moves_the_stage_and_handles_a_fault(with_verilog: bool) {
     let driver = Driver::write();
-    let mut bridge = Bridge::new(&driver, "scenario.c", true);
+    let mut bridge = Bridge::new(&driver, "scenario.c", with_verilog);
     let said = bridge.talk(&[]);
     // The moves are 40 and -25 counts from 0: the command agrees to the last bit, the motor to its count.
     assert_eq!(
