@@ -14,13 +14,21 @@ pub enum LinkError {
         /// What the operating system says.
         reason: String,
     },
+    /// There is no server for this host.
+    #[error("{address}: {reason}")]
+    Server {
+        /// Where it should be.
+        address: String,
+        /// What the operating system or the server says.
+        reason: String,
+    },
     /// The line fails.
     #[error("the line fails: {0}")]
     Line(#[from] std::io::Error),
     /// No reply, or only damaged ones.
     #[error(
-        "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, is the baud rate that of its machine \
-         file, are the lines crossed?{}", .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
+        "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, is the baud rate of a serial line that of its \
+         machine file, are its wires crossed?{}", .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
     )]
     NoReply {
         /// How often the request was sent.

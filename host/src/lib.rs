@@ -5,7 +5,8 @@
 //! - A request that gets no reply in time is sent again with the same sequence number; the bridge executes it once. After
 //!   [`LinkOptions::attempts`] the call fails, and it is not known whether a write has been executed.
 //! - Calls block. One host, one line: nothing is sent while a reply is awaited.
-//! - [`Link::open`] takes a port of the operating system; [`Link::new`] any line that reads and writes bytes.
+//! - [`Link::open`] takes a port of the operating system, [`Link::open_udp`] the address of a server in the network; [`Link::new`] any line
+//!   that reads and writes bytes.
 //!
 //! ```no_run
 //! use posicast_host::{Link, LinkOptions};
@@ -36,11 +37,13 @@ mod moves;
 mod stage;
 mod tables;
 mod trace;
+mod udp;
 
 pub use error::LinkError;
 pub use host_error::HostError;
-pub use link::{Link, LinkOptions, LinkStatistics};
+pub use link::{Line, Link, LinkOptions, LinkStatistics};
 pub use moves::HostMove;
 pub use serialport::SerialPort;
 pub use stage::{AxisStatus, HostedStage, causes};
 pub use trace::{RecordedSignal, RecordedTrace, Shake, TraceRequest};
+pub use udp::UdpLine;

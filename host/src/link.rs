@@ -8,7 +8,7 @@ use posicast_model::link::{DELIMITER, MOST_REPLY_BYTES, MOST_WORDS, Reply, Reque
 use crate::LinkError;
 
 /// Longest time for which a read from a port waits before the clock is looked at.
-const LOOK: Duration = Duration::from_millis(5);
+pub(crate) const LOOK: Duration = Duration::from_millis(5);
 
 /// How long a reply is awaited, and how often a request is sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,6 +40,11 @@ pub struct LinkStatistics {
     /// Frames that the bridge has dropped since its reset, modulo 256.
     pub dropped_by_bridge: u8,
 }
+
+/// Anything that reads and writes bytes, for a link whose kind of line is known only when the program runs.
+pub trait Line: Read + Write {}
+
+impl<T: Read + Write> Line for T {}
 
 /// The link. Words are those of the register tables, at their word addresses.
 #[derive(Debug)]

@@ -22,6 +22,7 @@ mod hal;
 mod hardware;
 #[cfg(unix)]
 mod host;
+mod host_udp;
 mod identify;
 mod kit;
 mod moves;

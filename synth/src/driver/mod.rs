@@ -6,7 +6,7 @@
 //! driver/inc, src/machine_NAME.* the machine's tap tables and limits
 //! driver/TOP_sw.tcl, HAL/        for the HAL of Nios II and Nios V, with the enhanced interrupt API
 //! driver/bare_metal/             a program without an operating system: first moves, and its Makefile
-//! driver/linux/                  user space over UIO, and the overlay of the device tree
+//! driver/linux/                  user space over UIO, the overlay of the device tree, and a server for hosts in the network
 //! ```
 //!
 //! Sources that are the same for every machine are in `c/` and copied. Everything that depends on the machine is
@@ -19,6 +19,7 @@
 mod bare_metal;
 mod family;
 mod fixed;
+mod linux;
 mod machine;
 mod macros;
 mod registers;
@@ -85,6 +86,7 @@ pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));
     files.extend(bare_metal::files(driver));
+    files.extend(linux::files());
     let system = system::files(driver, &files);
     files.extend(system);
     files

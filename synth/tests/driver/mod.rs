@@ -4,14 +4,19 @@
 mod bridge;
 mod error_table;
 mod family;
+mod frames;
 mod identify;
 mod integers;
 mod path;
 pub(crate) mod support;
+mod udp;
 
 use bridge::{Bridge, INDEX_AT};
+use posicast_model::machine_file::{self, Machine};
+use posicast_model::rtl::component::Component;
 use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::Command;
 use support::{Driver, STRICT, beside, machine, run, stage, traced_machine};
@@ -296,6 +301,56 @@ fn unit_an_axis_is_homed_and_looked_at() {
     assert_eq!(said["causes"], 0);
 }
 
+/// The constants of a stage, one of them perhaps of another stage, and what the driver of `machine` says of them.
+fn opened(machine: Machine, changed: Option<(&str, u32)>) -> BTreeMap<String, i64> {
+    let driver = Driver::of(machine);
+    let component = Component::stage(&stage(&driver.machine).config).unwrap();
+    let program = driver.program("refused", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("refused.c")]);
+    bridge::talk(&program, &[], &mut |asked| match asked {
+        bridge::Asked::Read(word) => {
+            let register = component.map().registers().iter().find(|of| of.offset == word).unwrap();
+            let changed = changed.filter(|(name, _)| register.name == *name);
+            Some(changed.map_or(register.reset(), |(_, word)| word))
+        }
+        _ => None,
+    })
+}
+
+#[test]
+fn unit_a_stage_of_another_machine_file_is_refused_with_both_values() {
+    let text = include_str!("../../../examples/xy-stage.toml").to_owned() + "[link]\nbaud = 3_000_000\n";
+    let linked = || machine_file::parse("xy-stage.toml", &text).unwrap();
+    let crc = linked().link.unwrap().machine_crc;
+    // The results of posicast_result.h, and the constants of the example.
+    let [not_found, version, other] = [1, 2, 12];
+    for (name, found, refused, wanted) in [
+        ("magic", 0, not_found, u32::from_le_bytes(*b"STGE")),
+        ("version", 3 << 16, version, 2 << 16 | 2),
+        ("version", 2 << 16 | 1, version, 2 << 16 | 2),
+        ("machine_crc", !crc, other, crc),
+        ("axes", 4, other, 2),
+        ("tick_clocks", 2500, other, 5000),
+    ] {
+        let said = opened(linked(), Some((name, found)));
+        assert_eq!(
+            (said["opened"], said["found"], said["wanted"]),
+            (refused, i64::from(found), i64::from(wanted)),
+            "{name}: {said:?}"
+        );
+        assert_eq!(said[&name.to_uppercase()], 1, "{said:?}");
+    }
+    for (machine, changed) in [
+        (linked(), None),
+        // A larger minor version has registers that this driver does not use.
+        (linked(), Some(("version", 2 << 16 | 3))),
+        // Without [link], there is no checksum to compare.
+        (machine(), Some(("machine_crc", 0))),
+    ] {
+        let said = opened(machine, changed);
+        assert_eq!((said["opened"], said["nothing"]), (0, 1), "{said:?}");
+    }
+}
+
 #[test]
 fn unit_the_driver_does_not_hang_where_nothing_answers() {
     let driver = Driver::write();
@@ -303,7 +358,7 @@ fn unit_the_driver_does_not_hang_where_nothing_answers() {
     bridge::talk(&program, &["absent"], &mut |_| Some(0));
     // This program reads only constants: the clock stands still.
     let machine = machine();
-    let component = posicast_model::rtl::component::Component::stage(&stage(&machine).config).unwrap();
+    let component = Component::stage(&stage(&machine).config).unwrap();
     bridge::talk(&program, &["dead"], &mut |asked| match asked {
         bridge::Asked::Read(word) => {
             let found = component

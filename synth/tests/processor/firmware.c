@@ -237,10 +237,18 @@ static void path(void)
 
 int main(void)
 {
+    posicast_result opened;
+
     mark_stack();
     step("open");
-    need("open", posicast_open(&stage, STAGE_BASE), POSICAST_OK);
+    opened = posicast_open(&stage, STAGE_BASE);
     step("");
+    if (opened == POSICAST_OTHER_MACHINE) {
+        result("found", (int32_t)stage.refused.found);
+        result("wanted", (int32_t)stage.refused.wanted);
+        end(0);
+    }
+    need("open", opened, POSICAST_OK);
     stage.pause = sleep;
     posicast_enable_interrupts(&stage, POSICAST_STAGE_INTERRUPT_STATE_TICK_MSK | WATCHED);
     let_through(STAGE_IRQ);

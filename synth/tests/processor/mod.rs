@@ -10,8 +10,10 @@ use system::{Firmware, HOME_FROM, INDEX_AT, Outcome, Step, System};
 /// Largest number of clocks of a run, enough for the slowest bridge; the program takes about two thirds of it.
 const MOST_CLOCKS: u64 = 4_000_000;
 
-fn driver() -> Driver {
-    Driver::of(machine_file::parse("machine.toml", include_str!("machine.toml")).unwrap())
+const MACHINE: &str = include_str!("machine.toml");
+
+fn driver(text: &str) -> Driver {
+    Driver::of(machine_file::parse("machine.toml", text).unwrap())
 }
 
 /// The home switch of X is pressed from a count on. In the step "fault" the drive of X fails half way, and is repaired
@@ -117,7 +119,7 @@ fn show(firmware: &Firmware, outcome: &Outcome) {
 
 #[test]
 fn prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
-    let driver = driver();
+    let driver = driver(MACHINE);
     let firmware = Firmware::build(&driver);
     // This fits a small memory; the compiler's version changes it by some hundred bytes.
     assert!(
@@ -132,4 +134,17 @@ fn prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
         show(&firmware, &outcome);
         check(&system, &outcome);
     }
+}
+
+/// A comment in the machine file makes another checksum: the program reads that of the hardware, and touches nothing.
+#[test]
+fn lockstep_a_riscv_with_the_driver_of_another_machine_file_refuses_the_stage() {
+    let [hardware, other] = [driver(MACHINE), driver(&format!("{MACHINE}# after the tuning\n"))];
+    let checksum = |driver: &Driver| i64::from(driver.machine.link.unwrap().machine_crc as i32);
+    let outcome = System::new(&hardware).run(&Firmware::build(&other), 0, MOST_CLOCKS, &mut |_, _| ());
+    assert_eq!(
+        (outcome.results["found"], outcome.results["wanted"]),
+        (checksum(&hardware), checksum(&other))
+    );
+    assert_eq!(outcome.steps.iter().map(|step| step.writes).sum::<u64>(), 0);
 }

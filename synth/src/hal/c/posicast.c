@@ -359,7 +359,11 @@ static int load(void)
         return -ENOMEM;
     result = posicast_open(&hardware, 0);
     hardware.pause = let_time_pass;
-    if (result != POSICAST_OK || !posicast_is_of_machine(&hardware, &POSICAST_HAL_MACHINE)) {
+    if (result != POSICAST_OK) {
+        posicast_say_refused(&hardware, stage, &POSICAST_HAL_MACHINE);
+        return -ENODEV;
+    }
+    if (!posicast_is_of_machine(&hardware, &POSICAST_HAL_MACHINE)) {
         rtapi_print_msg(RTAPI_MSG_ERR, "posicast: %s is not the stage of %s\n", stage, POSICAST_HAL_MACHINE.name);
         return -ENODEV;
     }

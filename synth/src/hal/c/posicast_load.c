@@ -47,16 +47,21 @@ int posicast_make_pins(posicast_pins *pins, int component, uint32_t axes)
     return status_of;
 }
 
+void posicast_say_refused(const posicast_stage *stage, const char *where, const posicast_machine *machine)
+{
+    const posicast_refused *of = &stage->refused;
+
+    rtapi_print_msg(RTAPI_MSG_ERR,
+                    "posicast: %s: %s of the stage is 0x%08x, and 0x%08x by the machine file of %s: build the FPGA and this component "
+                    "from one machine file\n",
+                    where, of->name, of->found, of->wanted, machine->name);
+}
+
 int posicast_is_of_machine(const posicast_stage *stage, const posicast_machine *machine)
 {
     static posicast_tap taps[256];
     uint32_t axis, tap, count = 0;
 
-    if (stage->axes != machine->axes) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "posicast: the stage has %u axes, %s of the machine file %u\n", stage->axes,
-                        machine->name, machine->axes);
-        return 0;
-    }
     for (axis = 0; axis < machine->axes; axis++) {
         const posicast_table *table = &machine->axis[axis].table;
         int same = posicast_read_table(stage, axis, SHAPED, taps, 256, &count, LOAD_TICKS) == POSICAST_OK &&

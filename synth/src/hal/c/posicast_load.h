@@ -27,7 +27,10 @@ typedef struct {
 /* Makes the pins of so many axes, and the parameter. Returns 0, or the HAL's negative error. */
 int posicast_make_pins(posicast_pins *pins, int component, uint32_t axes);
 
-/* Returns whether the stage is that of the machine file, which its tables show; if not, LinuxCNC's log says what differs. */
+/* Says in LinuxCNC's log which constant of the stage posicast_open has refused, with both values. */
+void posicast_say_refused(const posicast_stage *stage, const char *where, const posicast_machine *machine);
+
+/* Returns whether the stage has the tap tables of the machine file; if not, LinuxCNC's log says what differs. */
 int posicast_is_of_machine(const posicast_stage *stage, const posicast_machine *machine);
 
 /* Switches the axes off, where another program left them on, and loads the table that does not shape; the machine's own stays in use. */

@@ -66,6 +66,10 @@ int main(void)
     words[POSICAST_STAGE_VERSION_REG] = POSICAST_STAGE_VERSION_RESET;
     words[POSICAST_STAGE_AXES_REG] = POSICAST_STAGE_AXES_RESET;
     XY_STAGE_STAGE_INIT(STAGE_0, stage_0);
+    if (stage_0.found != POSICAST_OTHER_MACHINE || stage_0.stage.refused.wanted != POSICAST_STAGE_TICK_CLOCKS_RESET)
+        return 6;
+    words[POSICAST_STAGE_TICK_CLOCKS_REG] = POSICAST_STAGE_TICK_CLOCKS_RESET;
+    XY_STAGE_STAGE_INIT(STAGE_0, stage_0);
     if (stage_0.found != POSICAST_OK || isr == 0)
         return 3;
     posicast_stage_hal_handle(&stage_0, handle, &handled);

@@ -24,8 +24,16 @@
 #include "posicast_segments.h"
 #include "posicast_stage_regs.h"
 
+/* A constant of the stage that posicast_open has refused. */
+typedef struct {
+    const char *name; /* of its register; 0: nothing was refused */
+    uint32_t found;   /* in the stage */
+    uint32_t wanted;  /* by the machine file from which this driver was generated */
+} posicast_refused;
+
 typedef struct {
     uintptr_t base;
+    posicast_refused refused;
     /* Read from the hardware. */
     uint32_t axes;
     uint32_t tick_clocks;
@@ -48,7 +56,11 @@ typedef struct {
     uint32_t a_low;
 } posicast_self_test_clocks;
 
-/* Finds the stage at `base` and sets `pause` to 0. Returns POSICAST_NOT_FOUND or POSICAST_VERSION if there is no suitable one. */
+/*
+ * Finds the stage at `base` and sets `pause` to 0. Returns POSICAST_NOT_FOUND, POSICAST_VERSION or POSICAST_OTHER_MACHINE if there is none
+ * that this driver suits; `refused` then has both values. The machine is compared by the number of axes, the clocks per tick and, where the
+ * stage has it ([link] of the machine file), the checksum MACHINE_CRC.
+ */
 posicast_result posicast_open(posicast_stage *stage, uintptr_t base);
 
 /* Returns the mask of all axes. */

@@ -25,6 +25,7 @@ static void sleep_a_little(void *context)
 int posicast_uio_open(posicast_uio *device, const char *path)
 {
     device->memory = MAP_FAILED;
+    device->stage.refused.name = NULL;
     device->file = open(path, O_RDWR | O_CLOEXEC);
     if (device->file < 0)
         return -1;

@@ -20,7 +20,7 @@ typedef struct {
 
 /*
  * Maps the registers and finds the stage. Returns 0, or -1 with errno; ENODEV means that there is no stage that this driver
- * knows.
+ * suits: `stage.refused` says what differs.
  */
 int posicast_uio_open(posicast_uio *device, const char *path);
 

@@ -16,7 +16,8 @@
 /* Number of ticks after which a step times out. */
 #define PATIENCE_TICKS 20000u
 
-/* The result, and the causes of each axis, for a debugger. */
+/* The stage (`refused` says what posicast_open does not accept), the result, and the causes of each axis, for a debugger. */
+static posicast_stage first_moves_stage;
 volatile posicast_result first_moves_result = POSICAST_TIMEOUT;
 volatile uint32_t first_moves_causes[@AXES@];
 
@@ -48,15 +49,15 @@ static posicast_result first_moves(const posicast_stage *stage)
 
 int main(void)
 {
-    posicast_stage stage;
-    posicast_result result = posicast_open(&stage, STAGE_BASE);
+    posicast_stage *const stage = &first_moves_stage;
+    posicast_result result = posicast_open(stage, STAGE_BASE);
     uint32_t axis;
 
     if (result == POSICAST_OK) {
-        result = first_moves(&stage);
+        result = first_moves(stage);
         for (axis = 0; axis < machine_@MACHINE@.axes; axis++)
-            first_moves_causes[axis] = posicast_causes(&stage, axis);
-        (void)posicast_switch_off(&stage, posicast_all_axes(&stage), PATIENCE_TICKS);
+            first_moves_causes[axis] = posicast_causes(stage, axis);
+        (void)posicast_switch_off(stage, posicast_all_axes(stage), PATIENCE_TICKS);
     }
     first_moves_result = result;
     return result == POSICAST_OK ? 0 : 1;

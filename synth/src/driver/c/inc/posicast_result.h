@@ -14,7 +14,8 @@ typedef enum {
     POSICAST_FAULT,        /* an axis has a cause; see posicast_causes */
     POSICAST_TIMEOUT,      /* it did not happen within the permitted ticks */
     POSICAST_DEAD,         /* the time stands still: no clock, or the stage is held in reset */
-    POSICAST_NO_REFERENCE  /* neither switch nor index was found within the permitted distance */
+    POSICAST_NO_REFERENCE, /* neither switch nor index was found within the permitted distance */
+    POSICAST_OTHER_MACHINE /* the stage was built from another machine file than this driver; see `refused` of the stage */
 } posicast_result;
 
 #endif

@@ -59,26 +59,46 @@ static void set_control(const posicast_stage *stage, uint32_t axis, uint32_t cle
     IOWR_POSICAST_AXIS_CONTROL(stage->base, axis, (word & ~clear) | set);
 }
 
+static posicast_result refuse(posicast_stage *stage, posicast_result why, const char *name, uint32_t found, uint32_t wanted)
+{
+    stage->refused.name = name;
+    stage->refused.found = found;
+    stage->refused.wanted = wanted;
+    return why;
+}
+
 posicast_result posicast_open(posicast_stage *stage, uintptr_t base)
 {
-    uint32_t version;
+    uint32_t found;
 
     stage->base = base;
     stage->axes = 0;
     stage->tick_clocks = 0;
     stage->pause = NULL;
     stage->context = NULL;
-    if ((uint32_t)IORD_POSICAST_STAGE_MAGIC(base) != POSICAST_STAGE_MAGIC_RESET)
-        return POSICAST_NOT_FOUND;
-    version = (uint32_t)IORD_POSICAST_STAGE_VERSION(base);
+    (void)refuse(stage, POSICAST_OK, NULL, 0, 0);
+    found = (uint32_t)IORD_POSICAST_STAGE_MAGIC(base);
+    if (found != POSICAST_STAGE_MAGIC_RESET)
+        return refuse(stage, POSICAST_NOT_FOUND, "MAGIC", found, POSICAST_STAGE_MAGIC_RESET);
+    found = (uint32_t)IORD_POSICAST_STAGE_VERSION(base);
     /* A larger minor version has registers that this driver does not use. */
-    if (version < POSICAST_STAGE_VERSION_RESET ||
-        FIELD(version, POSICAST_STAGE_VERSION_MAJOR) !=
-            FIELD(POSICAST_STAGE_VERSION_RESET, POSICAST_STAGE_VERSION_MAJOR))
-        return POSICAST_VERSION;
-    stage->axes = FIELD(IORD_POSICAST_STAGE_AXES(base), POSICAST_STAGE_AXES_AXES);
-    stage->tick_clocks = FIELD(IORD_POSICAST_STAGE_TICK_CLOCKS(base), POSICAST_STAGE_TICK_CLOCKS_TICK_CLOCKS);
-    return stage->axes >= 1 && stage->axes <= POSICAST_AXES_MAX ? POSICAST_OK : POSICAST_VERSION;
+    if (found < POSICAST_STAGE_VERSION_RESET || FIELD(found, POSICAST_STAGE_VERSION_MAJOR) !=
+                                                    FIELD(POSICAST_STAGE_VERSION_RESET, POSICAST_STAGE_VERSION_MAJOR))
+        return refuse(stage, POSICAST_VERSION, "VERSION", found, POSICAST_STAGE_VERSION_RESET);
+#ifdef POSICAST_STAGE_MACHINE_CRC_RESET
+    found = (uint32_t)IORD_POSICAST_STAGE_MACHINE_CRC(base);
+    if (found != POSICAST_STAGE_MACHINE_CRC_RESET)
+        return refuse(stage, POSICAST_OTHER_MACHINE, "MACHINE_CRC", found, POSICAST_STAGE_MACHINE_CRC_RESET);
+#endif
+    found = (uint32_t)IORD_POSICAST_STAGE_AXES(base);
+    if (found != POSICAST_STAGE_AXES_RESET)
+        return refuse(stage, POSICAST_OTHER_MACHINE, "AXES", found, POSICAST_STAGE_AXES_RESET);
+    stage->axes = found;
+    found = (uint32_t)IORD_POSICAST_STAGE_TICK_CLOCKS(base);
+    if (found != POSICAST_STAGE_TICK_CLOCKS_RESET)
+        return refuse(stage, POSICAST_OTHER_MACHINE, "TICK_CLOCKS", found, POSICAST_STAGE_TICK_CLOCKS_RESET);
+    stage->tick_clocks = found;
+    return POSICAST_OK;
 }
 
 uint32_t posicast_all_axes(const posicast_stage *stage)

@@ -14,7 +14,7 @@ typedef void (*posicast_interrupt_handler)(void *context, alt_u32 interrupts);
 
 typedef struct {
     posicast_stage stage;
-    /* Result of posicast_open; unless it is POSICAST_OK, nothing else works. */
+    /* Result of posicast_open; unless it is POSICAST_OK, nothing else works, and `stage.refused` says why. */
     posicast_result found;
     volatile alt_u32 interrupts;
     posicast_interrupt_handler handler;
