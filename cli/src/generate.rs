@@ -49,7 +49,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     verilog::add_sources(&mut package, &file, &modules)?;
     kit::add(&mut package, &kit::files(&file.machine, &modules, &built))?;
     let (components, stage) = (&built.components, built.stage.as_ref());
-    sopc::add(&mut package, (&file.machine, &args.machine), board, stage, components)?;
+    sopc::add(
+        &mut package,
+        (&file.machine, &args.machine),
+        board,
+        (stage, built.link.as_ref()),
+        components,
+    )?;
     driver::add(&mut package, &file.machine, &modules, components, stage)?;
     args.hal.add(
         &mut package,

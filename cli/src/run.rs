@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         &mut package,
         (machine, &args.machine),
         board,
-        stage.as_ref(),
+        (stage.as_ref(), link.as_ref()),
         &components,
     )?;
     driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;

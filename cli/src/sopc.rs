@@ -2,13 +2,13 @@
 //! system and projects.
 
 use crate::failure::Failure;
-use crate::hardware::{LINK_SUFFIX, Stage};
+use crate::hardware::Stage;
 use crate::machine;
 use crate::warning::Warning;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
-use posicast_synth::sopc::{Board, Design, Unit};
-use posicast_testbench::blocks::{Block, ComponentBlock};
+use posicast_synth::sopc::{Board, BridgeUnit, Design, Unit};
+use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
 use std::path::Path;
 
 /// Key of the board.
@@ -43,7 +43,7 @@ pub(crate) fn add(
     package: &mut Package,
     (machine, path): (&Machine, &Path),
     board: Option<Board>,
-    stage: Option<&Stage>,
+    (stage, link): (Option<&Stage>, Option<&LinkedStageBlock>),
     components: &[ComponentBlock],
 ) -> Result<(), Failure> {
     let tops: Vec<String> = components.iter().map(Block::top).collect();
@@ -65,9 +65,7 @@ pub(crate) fn add(
         clock_hz: machine.clock.frequency_hz,
         board,
         stage,
-        link: machine
-            .link
-            .map(|link| (format!("{}{LINK_SUFFIX}", machine.name), link.baud)),
+        link: link.map(|link| bridge(link, machine)).transpose()?,
         active_low_axes: active_low.map(|axis| axis.name.as_str()).collect(),
         components: components?,
     };
@@ -83,6 +81,16 @@ pub(crate) fn add(
             .map_err(Failure::because)?;
     }
     Ok(())
+}
+
+/// The top with the serial line, and the bridge in it.
+fn bridge(link: &LinkedStageBlock, machine: &Machine) -> Result<(String, BridgeUnit), Failure> {
+    let modules = posicast_hdl::uart_bridge::emit(&machine.name).map_err(Failure::because)?;
+    let bridge = BridgeUnit {
+        config: *link.config(),
+        modules: modules.into_iter().map(|module| module.name).collect(),
+    };
+    Ok((link.top(), bridge))
 }
 
 /// A component with the names of its modules.

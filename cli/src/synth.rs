@@ -6,7 +6,7 @@ use self::clock::{ClockEstimates, Clocks};
 
 use crate::design::DesignReport;
 use crate::failure::Failure;
-use crate::hardware::{Built, COMPONENT_SUFFIX, STAGE_SUFFIX};
+use crate::hardware::{Built, COMPONENT_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
 use crate::{machine, progress, verilog};
 use posicast_model::machine_file::Machine;
@@ -107,12 +107,12 @@ struct Document<'a> {
     clocks: Option<&'a ClockEstimates>,
 }
 
-/// The top modules of the components among these files: the stage, and the blocks that stand alone.
+/// The top modules of the components among these files: the stage, alone and with its serial line, and the blocks that stand alone.
 fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
-    let stage = format!("{machine}{STAGE_SUFFIX}");
+    let stages = [STAGE_SUFFIX, LINK_SUFFIX].map(|suffix| format!("{machine}{suffix}"));
     let stems = files.iter().filter_map(|file| file.file_stem()?.to_str());
     let mut names: Vec<String> = stems
-        .filter(|name| name.ends_with(COMPONENT_SUFFIX) || *name == stage)
+        .filter(|name| name.ends_with(COMPONENT_SUFFIX) || stages.iter().any(|stage| name == stage))
         .map(str::to_owned)
         .collect();
     names.sort_unstable();

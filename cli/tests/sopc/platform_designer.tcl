@@ -103,6 +103,7 @@ proc add_interface {name kind direction} {
     one_of "direction of interface $name" $direction {end start sink source slave master sender receiver}
     if {[info exists ::interface($name)]} { return [finding "interface $name twice"] }
     set ::interface($name) $kind
+    if {$direction eq "start"} { set ::host($name) 1 }
     lappend ::order $name
     puts "interface $name $kind"
 }
@@ -114,6 +115,14 @@ proc set_interface_property {name property value} {
 proc set_interface_assignment {name key value} {
     if {![info exists ::interface($name)]} { finding "assignment to unknown interface $name" }
 }
+proc set_port_property {port property value} {
+    if {![info exists ::bound($port)]} { return [finding "property of unknown port $port"] }
+    one_of "property of port $port" $property {TERMINATION TERMINATION_VALUE}
+    if {$property eq "TERMINATION_VALUE" && (![string is wideinteger -strict $value] || $value >= 1 << $::width($port))} {
+        finding "port $port is terminated with $value"
+    }
+    set ::port_property($port,$property) $value
+}
 proc add_interface_port {name port role direction width} {
     if {![info exists ::interface($name)]} { return [finding "port $port of unknown interface $name"] }
     set kind $::interface($name)
@@ -123,6 +132,7 @@ proc add_interface_port {name port role direction width} {
     if {[info exists ::bound($port)]} { finding "port $port twice" }
     if {[info exists ::signal($name,$role)]} { finding "role $role of interface $name twice" }
     set ::bound($port) $name
+    set ::width($port) $width
     set ::signal($name,$role) [list $direction $width]
     puts "port $name $port $role $direction $width"
 }
@@ -142,6 +152,11 @@ proc check_component {} {
     }
     foreach name $::order { check_interface $name $::interface($name) }
     foreach {name value} [array get ::assignment] { puts "assignment $name $value" }
+    foreach port [lsort [array names ::bound]] {
+        if {![info exists ::port_property($port,TERMINATION)]} { continue }
+        if {$::port_property($port,TERMINATION) ne "true"} { finding "TERMINATION of port $port" }
+        puts "terminated $port $::port_property($port,TERMINATION_VALUE)"
+    }
 }
 proc check_interface {name kind} {
     if {[array names ::signal $name,*] eq {}} { finding "interface $name has no port" }
@@ -156,10 +171,21 @@ proc check_interface {name kind} {
             finding "associated$other of $name is $target, which is none"
         }
     }
-    if {$kind eq "avalon"} { check_agent $name }
+    if {$kind eq "avalon"} { [expr {[info exists ::host($name)] ? "check_host" : "check_agent"}] $name }
     if {$kind eq "interrupt"} {
         set agent $::interface_property($name,associatedAddressablePoint)
         if {![info exists ::interface($agent)] || $::interface($agent) ne "avalon"} { finding "interrupt $name is of $agent" }
+    }
+}
+proc check_host {name} {
+    foreach {role direction width} {
+        address Output 16 read Output 1 write Output 1 writedata Output 32 readdata Input 32 waitrequest Input 1
+    } {
+        if {![info exists ::signal($name,$role)]} { return [finding "host $name has no $role"] }
+        if {$::signal($name,$role) ne [list $direction $width]} { finding "$role of host $name is $::signal($name,$role)" }
+    }
+    foreach {property value} {addressUnits WORDS maximumPendingReadTransactions 0} {
+        if {$::interface_property($name,$property) ne $value} { finding "$property of host $name is not $value" }
     }
 }
 proc check_agent {name} {
@@ -194,7 +220,7 @@ proc run_component {file} {
     run $file {
         {package package_of_component} set_module_property set_module_assignment add_parameter set_parameter_property
         add_fileset set_fileset_property add_fileset_file add_interface set_interface_property set_interface_assignment
-        add_interface_port
+        add_interface_port set_port_property
     }
     check_component
 }

@@ -31,6 +31,14 @@ const AGENT_PROPERTIES: [(&str, &str); 10] = [
     ("isMemoryDevice", "false"),
 ];
 
+/// Properties of a host: word addresses, one access at a time, which waits as long as it is told.
+const HOST_PROPERTIES: [(&str, &str); 4] = [
+    ("addressUnits", "WORDS"),
+    ("bitsPerSymbol", "8"),
+    ("timingUnits", "Cycles"),
+    ("maximumPendingReadTransactions", "0"),
+];
+
 /// Vendor in device trees.
 const VENDOR: &str = "posicast";
 
@@ -43,18 +51,21 @@ pub fn compatible(unit: &Unit<'_>) -> String {
 /// The text of the file.
 pub(super) fn text(unit: &Unit<'_>) -> String {
     let mut text = String::new();
-    head(&mut text, unit);
+    let about = unit.component.map().about();
+    let display = format!("{}: {}", unit.title(), unit.top);
+    head(&mut text, (unit.top, &unit.version()), &display, about);
     software(&mut text, unit);
-    file_sets(&mut text, unit);
-    parameters(&mut text, unit);
+    file_sets(&mut text, unit.top, &unit.modules);
+    for field in unit.parameters() {
+        parameter(&mut text, &field.name, field.reset, &field.meaning);
+    }
     for interface in unit.interfaces() {
         self::interface(&mut text, &interface);
     }
     text
 }
 
-fn head(text: &mut String, unit: &Unit<'_>) {
-    let map = unit.component.map();
+pub(super) fn head(text: &mut String, (top, version): (&str, &str), display: &str, about: &str) {
     let _ = write!(
         text,
         "\
@@ -74,12 +85,10 @@ set_module_property OPAQUE_ADDRESS_MAP true
 set_module_property INSTANTIATE_IN_SYSTEM_MODULE true
 set_module_property EDITABLE false
 ",
-        top = unit.top,
-        about = map.about().lines().collect::<Vec<_>>().join(" "),
         posicast = env!("CARGO_PKG_VERSION"),
-        version = unit.version(),
-        display = word(&format!("{}: {}", unit.title(), unit.top)),
-        description = word(map.about()),
+        display = word(display),
+        description = word(about),
+        about = about.lines().collect::<Vec<_>>().join(" "),
     );
 }
 
@@ -103,50 +112,50 @@ fn software(text: &mut String, unit: &Unit<'_>) {
     assign("dts.compatible", &compatible(unit));
 }
 
-fn file_sets(text: &mut String, unit: &Unit<'_>) {
+/// The files of a component whose top module is `top`.
+pub(super) fn file_sets(text: &mut String, top: &str, modules: &[String]) {
     let _ = writeln!(text, "\nforeach kind {{QUARTUS_SYNTH SIM_VERILOG}} {{");
     let _ = writeln!(text, "    add_fileset $kind $kind {{}} {{}}");
-    let _ = writeln!(text, "    set_fileset_property $kind TOP_LEVEL {}", unit.top);
-    for module in &unit.modules {
+    let _ = writeln!(text, "    set_fileset_property $kind TOP_LEVEL {top}");
+    for module in modules {
         let _ = writeln!(text, "    add_fileset_file {module}.v VERILOG PATH ../rtl/{module}.v");
     }
     let _ = writeln!(text, "}}");
 }
 
-fn parameters(text: &mut String, unit: &Unit<'_>) {
-    for field in unit.parameters() {
-        let name = field.name.to_uppercase();
-        let kind = if i32::try_from(field.reset).is_ok() {
-            "INTEGER"
-        } else {
-            "LONG"
-        };
-        let value = field.reset;
-        let _ = write!(
-            text,
-            "
+/// A constant of the build: shown, and not to be changed.
+pub(super) fn parameter(text: &mut String, name: &str, value: u32, meaning: &str) {
+    let display = word(name);
+    let name = name.to_uppercase();
+    let kind = if i32::try_from(value).is_ok() {
+        "INTEGER"
+    } else {
+        "LONG"
+    };
+    let _ = write!(
+        text,
+        "
 add_parameter {name} {kind} {value} {meaning}
 set_parameter_property {name} DISPLAY_NAME {display}
 set_parameter_property {name} ALLOWED_RANGES {value}:{value}
 set_parameter_property {name} ENABLED false
 set_parameter_property {name} HDL_PARAMETER false
 ",
-            meaning = word(&field.meaning),
-            display = word(&field.name),
-        );
-    }
+        meaning = word(meaning),
+    );
 }
 
-fn interface(text: &mut String, interface: &Interface) {
+pub(super) fn interface(text: &mut String, interface: &Interface) {
     let name = &interface.name;
     let kind = match interface.kind {
         Kind::Clock => "clock",
         Kind::Reset => "reset",
-        Kind::Agent => "avalon",
+        Kind::Agent | Kind::Host => "avalon",
         Kind::Interrupt => "interrupt",
         Kind::Conduit => "conduit",
     };
-    let _ = writeln!(text, "\nadd_interface {name} {kind} end");
+    let end = if interface.kind == Kind::Host { "start" } else { "end" };
+    let _ = writeln!(text, "\nadd_interface {name} {kind} {end}");
     let mut set = |property: &str, value: &str| {
         let _ = writeln!(text, "set_interface_property {name} {property} {value}");
     };
@@ -156,15 +165,18 @@ fn interface(text: &mut String, interface: &Interface) {
             set("associatedClock", "clk");
             set("synchronousEdges", "BOTH");
         }
-        Kind::Agent | Kind::Interrupt | Kind::Conduit => {
+        Kind::Agent | Kind::Host | Kind::Interrupt | Kind::Conduit => {
             set("associatedClock", "clk");
             set("associatedReset", "reset");
         }
     }
-    if interface.kind == Kind::Agent {
-        for (property, value) in AGENT_PROPERTIES {
-            set(property, value);
-        }
+    let properties = match interface.kind {
+        Kind::Agent => &AGENT_PROPERTIES[..],
+        Kind::Host => &HOST_PROPERTIES[..],
+        _ => &[],
+    };
+    for (property, value) in properties {
+        set(property, value);
     }
     if interface.kind == Kind::Interrupt {
         set("associatedAddressablePoint", "avs");

@@ -5,6 +5,7 @@
 //! DIR/sopc/TOP_hw.tcl                           a component each: the stage, and every block that stands alone
 //! DIR/sopc/MACHINE_BOARD_system.tcl             the system of a board, for qsys-script
 //! DIR/sopc/quartus/BOARD/MACHINE_BOARD.qpf …    its project: .qpf, .qsf, .sdc, top level
+//! DIR/sopc/quartus/BOARD_link/…                 a project without a processor: the stage with its serial line
 //! ```
 //!
 //! - Everything is derived from the components' register maps and ports ([`Unit`]) and from the facts of the boards
@@ -20,6 +21,8 @@
 //! results are not checked.
 
 mod board;
+mod bridge;
+mod core;
 mod hw_tcl;
 mod pins;
 mod quartus;
@@ -29,7 +32,10 @@ mod tcl;
 mod top;
 mod unit;
 
+use core::Core;
+
 pub use board::{Board, UnknownBoard};
+pub use bridge::BridgeUnit;
 pub use hw_tcl::compatible;
 pub(crate) use system::STAGE_BASE;
 pub use unit::Unit;
@@ -45,8 +51,8 @@ pub struct Design<'a> {
     pub board: Option<Board>,
     /// Its stage, if it has one.
     pub stage: Option<Unit<'a>>,
-    /// Top module of the stage with its serial line, and the baud rate, if it has one.
-    pub link: Option<(String, u32)>,
+    /// Top module of the stage with its serial line, and the bridge in it, if it has one.
+    pub link: Option<(String, BridgeUnit)>,
     /// The axes of the stage whose gates are off at a high level.
     pub active_low_axes: Vec<&'a str>,
     /// The blocks that stand alone.
@@ -97,24 +103,27 @@ impl Design<'_> {
         for unit in self.units() {
             add(format!("sopc/{}_hw.tcl", unit.top), hw_tcl::text(unit));
         }
+        if let Some((_, bridge)) = &self.link {
+            let name = BridgeUnit::name(self.machine);
+            add(format!("sopc/{name}_hw.tcl"), bridge.text(self.machine));
+        }
         let mut projects = Vec::new();
         for (board, stage) in self.projects() {
-            let pins = pins::assign(board, stage)?;
             let machine = self.machine;
-            let name = top::name(machine, board);
-            let folder = format!("sopc/quartus/{board}");
             add(
                 format!("sopc/{}.tcl", system::name(machine, board)),
                 system::script(machine, board, stage, self.clock_hz),
             );
-            add(format!("{folder}/{name}.v"), top::text(machine, board, stage, &pins));
-            add(format!("{folder}/{name}.qpf"), quartus::project(machine, board));
-            add(format!("{folder}/{name}.qsf"), quartus::settings(machine, board, &pins));
-            add(
-                format!("{folder}/{name}.sdc"),
-                quartus::timing(machine, board, stage, &pins),
-            );
-            projects.push((board, pins));
+            for core in self.cores() {
+                let pins = pins::assign(board, core, stage)?;
+                let of = (machine, board, core);
+                let (folder, name) = (core.folder(board), core.project(machine, board));
+                add(format!("{folder}/{name}.v"), top::text(of, stage, &pins));
+                add(format!("{folder}/{name}.qpf"), quartus::project(of));
+                add(format!("{folder}/{name}.qsf"), quartus::settings(of, &pins));
+                add(format!("{folder}/{name}.sdc"), quartus::timing(of, stage, &pins));
+                projects.push((board, core, pins));
+            }
         }
         add("README.md".to_owned(), readme::text(self, &projects));
         Ok(files)
@@ -123,6 +132,12 @@ impl Design<'_> {
     /// All components, the stage first.
     fn units(&self) -> impl Iterator<Item = &Unit<'_>> {
         self.stage.iter().chain(&self.components)
+    }
+
+    /// What the projects of a board have inside.
+    fn cores(&self) -> impl Iterator<Item = Core<'_>> {
+        let link = self.link.as_ref().map(|(top, _)| Core::Link(top));
+        std::iter::once(Core::System).chain(link)
     }
 
     /// Whether the board can run the machine without changes.

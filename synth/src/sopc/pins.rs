@@ -1,11 +1,13 @@
 //! Assigns the ports of the top level to pins of a board.
 //!
-//! Clock, reset and, where the fabric has one, the serial line have fixed pins on the board. All others are on the
+//! Clock, reset and, where the fabric has one, the system's serial line have fixed pins on the board. The line of a stage without a processor
+//! is on the headers: the board's own has an RS-232 driver, which is slower than the rates of `[link]`. All others are on the
 //! expansion headers from `GPIO_0[0]` upwards, in the order of the stage's ports: first those that belong to no axis,
 //! then axis by axis.
 
 use super::SopcError;
 use super::board::Board;
+use super::core::Core;
 use super::unit::{PINS, Unit};
 
 /// Ports of the stage that do not leave the device: the tick is for a trace, and there is no PLL to monitor.
@@ -50,11 +52,11 @@ pub(super) struct Pin {
     pub(super) conduit: Option<(String, String)>,
 }
 
-/// Assigns the pins of a stage on a board.
+/// Assigns the pins of a project on a board.
 ///
 /// # Errors
 /// [`SopcError::Pins`] where the headers have fewer than it needs, [`SopcError::Wide`] for a port of more than one bit.
-pub(super) fn assign(board: Board, stage: &Unit<'_>) -> Result<Vec<Pin>, SopcError> {
+pub(super) fn assign(board: Board, core: Core<'_>, stage: &Unit<'_>) -> Result<Vec<Pin>, SopcError> {
     let facts = board.facts();
     let fixed = |port: &str, is_input, purpose, location, on_board: &str| Pin {
         port: port.to_owned(),
@@ -69,7 +71,7 @@ pub(super) fn assign(board: Board, stage: &Unit<'_>) -> Result<Vec<Pin>, SopcErr
         fixed(RESET, true, Use::Reset, facts.reset_pin.0, facts.reset_pin.1),
     ];
     let mut on_headers = Vec::new();
-    match facts.uart_pins {
+    match facts.uart_pins.filter(|_| core == Core::System) {
         Some([receive, transmit]) => pins.extend([
             fixed(UART_RECEIVE, true, Use::Uart, receive, "UART_RXD"),
             fixed(UART_TRANSMIT, false, Use::Uart, transmit, "UART_TXD"),

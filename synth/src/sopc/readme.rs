@@ -3,12 +3,17 @@
 use std::fmt::Write;
 
 use super::board::{Board, Processor};
-use super::pins::{Pin, Use};
+use super::bridge::BridgeUnit;
+use super::core::Core;
+use super::pins::Pin;
 use super::unit::Unit;
-use super::{Design, system, top};
+use super::{Design, system};
 
-/// The text. `projects` are the boards with a project, and their pins.
-pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> String {
+/// A board with a project, what that has inside, and its pins.
+type Project<'a> = (Board, Core<'a>, Vec<Pin>);
+
+/// The text.
+pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
     let mut text = String::new();
     contents(&mut text, design);
     if design.units().next().is_none() {
@@ -27,13 +32,16 @@ pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> Strin
         return text;
     }
     boards(&mut text, design);
-    for (board, _) in projects {
-        steps(&mut text, design.machine, *board);
+    for (board, core, _) in projects {
+        match core {
+            Core::System => steps(&mut text, design.machine, *board),
+            Core::Link(_) => link_steps(&mut text, design, *board, *core),
+        }
     }
     if !projects.is_empty() {
         resistors(&mut text, design);
-        for (board, pins) in projects {
-            pin_table(&mut text, design.machine, *board, pins);
+        for (board, core, pins) in projects {
+            pin_table(&mut text, design.machine, *board, *core, pins);
         }
         bus(&mut text, design);
     }
@@ -64,11 +72,12 @@ to overwrite a file that was edited, and says which.
              | `docs/` | the shaper's datasheet |\n",
         );
     }
-    if let Some((top, baud)) = &design.link {
+    if let Some((top, bridge)) = &design.link {
         let _ = writeln!(
             text,
             "| `rtl/{top}.v` | a top module without a processor: the stage and its serial line of {baud} baud, which `posicast host` operates \
-             (`docs/uart_bridge.md`) |"
+             (`docs/uart_bridge.md`) |",
+            baud = bridge.config.baud(),
         );
     }
     if design.units().next().is_some() {
@@ -78,6 +87,11 @@ to overwrite a file that was edited, and says which.
         text.push_str(
             "| `sopc/*_system.tcl` | a system with a processor and the stage, for `qsys-script` |\n\
              | `sopc/quartus/BOARD/` | a Quartus project per board: top level, pins, timing |\n",
+        );
+    }
+    if design.stage.is_some() && design.link.is_some() {
+        text.push_str(
+            "| `sopc/quartus/BOARD_link/` | the same without a processor: the stage with its serial line |\n",
         );
     }
     if design.units().next().is_some() {
@@ -111,9 +125,17 @@ fn components(text: &mut String, design: &Design<'_>) {
             unit.law().map_or_else(String::new, |law| format!(" This one: {law}.")),
         );
     }
+    if design.link.is_some() {
+        let _ = writeln!(
+            text,
+            "| `{}` | none | The bridge of the serial line, an Avalon-MM host: for a system in which a host at a line operates the stage beside a processor. \
+             Put the stage at address 0 of its `avm`. |",
+            BridgeUnit::name(design.machine)
+        );
+    }
     text.push_str(
-        "\nEach has a clock, a reset that is synchronous at both edges, an Avalon-MM agent without wait states (read latency 1), an \
-         interrupt, and conduits for its pins.\nTheir parameters say what was built; they cannot be changed.\n",
+        "\nEach has a clock, a reset that is synchronous at both edges, and conduits for its pins; with registers also an Avalon-MM agent without \
+         wait states (read latency 1) and an interrupt.\nTheir parameters say what was built; they cannot be changed.\n",
     );
 }
 
@@ -153,7 +175,7 @@ fn boards(text: &mut String, design: &Design<'_>) {
 
 fn steps(text: &mut String, machine: &str, board: Board) {
     let facts = board.facts();
-    let name = top::name(machine, board);
+    let name = Core::System.project(machine, board);
     let system = system::name(machine, board);
     let shell = match facts.processor {
         Processor::Nios2 => "Nios II Command Shell",
@@ -175,24 +197,68 @@ With {quartus}, in its {shell}, from this folder:
         quartus = facts.quartus,
     );
     text.push_str(&generate_step(board, &system));
+    compile_steps(text, board, &name, 4);
+    let _ = write!(
+        text,
+        "8. Software: {software}.
+   `system.h` has the stage's facts as `STAGE_BASE`, `STAGE_IRQ`, `STAGE_MAGIC` and so on. The program is loaded over JTAG and is
+   gone after power-off; for one that stays, switch `initMemContent` of the memory on and give it the program's `.hex`.
+",
+        software = software(facts.processor, &system),
+    );
+}
+
+/// Pins, compilation, loading and a look at the gates, as the steps from `first` on.
+fn compile_steps(text: &mut String, board: Board, name: &str, first: usize) {
+    let facts = board.facts();
     let position = match facts.processor {
         Processor::Nios2 => "",
         // The hard processor is the first device of the JTAG chain.
         Processor::NiosV => "@2",
     };
+    let steps = [
+        format!("Set the pins in `{name}.qsf` to your wiring, and the delays in `{name}.sdc` to your drivers."),
+        format!(
+            "Compile: `quartus_sh --flow compile {name}`. Then read the timing report: no path may fail, and none be unconstrained but those
+   of the JTAG pins."
+        ),
+        format!("With the power stage **off**, load it: `quartus_pgm -m jtag -o 'p;output_files/{name}.sof{position}'`."),
+        format!(
+            "Measure the gates: they must be at their off level before, while and after it is loaded, and while {key} is pressed.",
+            key = facts.reset_pin.1
+        ),
+    ];
+    for (number, step) in (first..).zip(steps) {
+        let _ = writeln!(text, "{number}. {step}");
+    }
+}
+
+/// The steps without Platform Designer.
+fn link_steps(text: &mut String, design: &Design<'_>, board: Board, core: Core<'_>) {
+    let facts = board.facts();
+    let machine = design.machine;
+    let name = core.project(machine, board);
     let _ = write!(
         text,
-        "4. Set the pins in `{name}.qsf` to your wiring, and the delays in `{name}.sdc` to your drivers.
-5. Compile: `quartus_sh --flow compile {name}`. Then read the timing report: no path may fail, and none be unconstrained but those
-   of the JTAG pins.
-6. With the power stage **off**, load it: `quartus_pgm -m jtag -o 'p;output_files/{name}.sof{position}'`.
-7. Measure the gates: they must be at their off level before, while and after it is loaded, and while {key} is pressed.
-8. Software: {software}.
-   `system.h` has the stage's facts as `STAGE_BASE`, `STAGE_IRQ`, `STAGE_MAGIC` and so on. The program is loaded over JTAG and is
-   gone after power-off; for one that stays, switch `initMemContent` of the memory on and give it the program's `.hex`.
+        "
+## {title} without a processor, step by step
+
+The top level has the stage with its serial line, `{module}`, and no system. From this folder, with {quartus}:
+
+1. Copy the project and the Verilog: `PACKAGE=$PWD; cp -r {folder} ../{name}; cp -r rtl {qip} ../{name}; cd ../{name}`.
 ",
-        key = facts.reset_pin.1,
-        software = software(facts.processor, &system),
+        title = facts.title,
+        quartus = facts.quartus,
+        module = core.module(machine, board),
+        folder = core.folder(board),
+        qip = core.qip(machine, board),
+    );
+    compile_steps(text, board, &name, 2);
+    let _ = write!(
+        text,
+        "6. Connect a USB adapter of 3.3 V to `uart_rxd` (its transmitter), `uart_txd` and ground. Then
+   `posicast host /dev/ttyUSB0 status --machine $PACKAGE/machine.toml` shows the axes; `docs/uart_bridge.md` has the line.
+"
     );
 }
 
@@ -250,12 +316,12 @@ in the worst case 7 kΩ. A gate driver takes that for *on*.
     );
 }
 
-fn pin_table(text: &mut String, machine: &str, board: Board, pins: &[Pin]) {
+fn pin_table(text: &mut String, machine: &str, board: Board, core: Core<'_>, pins: &[Pin]) {
     let facts = board.facts();
     let _ = write!(
         text,
         "
-## Pins on the {title}
+## Pins on the {title}{without}
 
 Our choice, in the order of the expansion headers; the copied `{name}.qsf` is the one place to change it. Where a pin is on its
 header is in the board's manual.
@@ -264,7 +330,8 @@ header is in the board's manual.
 |---|---|---|---|
 ",
         title = facts.title,
-        name = top::name(machine, board),
+        without = if core == Core::System { "" } else { " without a processor" },
+        name = core.project(machine, board),
     );
     for pin in pins {
         let direction = if pin.is_input { "in" } else { "out" };
@@ -274,14 +341,15 @@ header is in the board's manual.
             pin.port, pin.on_board, pin.location
         );
     }
-    if pins
-        .iter()
-        .any(|pin| pin.purpose == Use::Uart && pin.on_board.starts_with("GPIO"))
-    {
-        text.push_str(
-            "\nThe board's own serial line belongs to its hard processor, so the UART is on the header: 3.3 V, no RS-232 levels.\n",
-        );
-    }
+    let why = match (core, facts.uart_pins) {
+        (_, None) => "belongs to its hard processor",
+        (Core::Link(_), Some(_)) => "has an RS-232 driver, which is too slow for most baud rates",
+        (Core::System, Some(_)) => return,
+    };
+    let _ = writeln!(
+        text,
+        "\nThe board's own serial line {why}, so the UART is on the header: 3.3 V, no RS-232 levels."
+    );
 }
 
 fn bus(text: &mut String, design: &Design<'_>) {

@@ -35,6 +35,7 @@ pub(super) enum Kind {
     Clock,
     Reset,
     Agent,
+    Host,
     Interrupt,
     Conduit,
 }
@@ -182,7 +183,7 @@ impl Unit<'_> {
     }
 }
 
-fn signal(port: &Port, role: &str) -> Signal {
+pub(super) fn signal(port: &Port, role: &str) -> Signal {
     Signal {
         port: port.name.clone(),
         role: role.to_owned(),

@@ -1,6 +1,7 @@
 //! Components: their bindings agree with the Verilog, and they use nothing newer than version 13.0.
 
-use super::{bound_ports, check_component, file_set, findings, lint, replace, verilog_ports, xy_stage};
+use super::{bound_ports, check_component, file_set, findings, lint, package, replace, verilog_ports, xy_stage};
+use crate::cli::support::example;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -141,5 +142,48 @@ fn cli_a_component_that_is_wrong_or_too_new_is_found() {
         fs::write(&good, &text).unwrap();
         replace(&good, from, to);
         assert!(!component_holds(&good), "{from} -> {to} was not found");
+    }
+}
+
+/// The bridge of the serial line: every port of its Verilog, the constants of the machine file terminated, and faults that are found.
+#[test]
+fn cli_the_bridge_is_a_host_with_the_constants_of_the_machine_file() {
+    let (_folder, output) =
+        package(&(fs::read_to_string(example("xy-stage.toml")).unwrap() + "[link]\nbaud = 3_000_000\n"));
+    let file = output.join("sopc/xy_stage_uart_bridge_hw.tcl");
+    let verilog = verilog_ports(&output.join("rtl/posicast_uart_bridge.v"));
+    let text = fs::read_to_string(&file).unwrap();
+    let holds = || {
+        let (records, content) = check_component(&file);
+        let terminated = records.iter().filter(|record| record[0] == "terminated");
+        let terminated: Vec<String> = terminated.map(|record| record[1..].join(" ")).collect();
+        // 3 Mbaud at 50 MHz (docs/uart_bridge.md), 10 ms of them in eighths of a bit, and windows of 256 words.
+        let expected = ["address_limit 768", "baud_step 31457", "silence_limit 240000"];
+        (
+            content && bound_ports(&records) == verilog && terminated == expected,
+            records,
+        )
+    };
+    let (all_well, records) = holds();
+    assert!(all_well, "{records:#?}");
+    lint(
+        "posicast_uart_bridge",
+        &file_set(&records, "QUARTUS_SYNTH", &output.join("sopc")),
+    );
+    for (from, to) in [
+        ("avalon start", "avalon end"),
+        ("addressUnits WORDS", "addressUnits SYMBOLS"),
+        ("avm_address address Output 16", "avm_address address Output 15"),
+        ("add_interface_port line busy busy Output 1\n", ""),
+        ("baud_step TERMINATION true", "baud_step TERMINATE true"),
+        (
+            "baud_step TERMINATION_VALUE 31457",
+            "baud_step TERMINATION_VALUE 131457",
+        ),
+        ("set_port_property silence_limit", "set_port_property silence"),
+    ] {
+        replace(&file, from, to);
+        assert!(!holds().0, "{from} -> {to} was not found");
+        fs::write(&file, &text).unwrap();
     }
 }

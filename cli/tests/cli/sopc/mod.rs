@@ -64,7 +64,8 @@ pub(super) fn verilog_ports(file: &Path) -> Ports {
     let start = text.find("\nmodule ").unwrap();
     let body = &text[start..start + text[start..].find(");").unwrap()];
     let declaration = |line: &str| {
-        let line = line.trim().trim_end_matches(',');
+        // The emitter's comments say what a port means.
+        let line = line.split("//").next()?.trim().trim_end_matches(',');
         let direction = match line.split_whitespace().next()? {
             "input" => "Input",
             "output" => "Output",

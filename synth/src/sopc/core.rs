@@ -1,0 +1,50 @@
+//! What the top level of a project has inside: the system with a processor, or the stage with its serial line alone.
+
+use super::board::Board;
+use super::system;
+
+/// The inside of a project.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Core<'a> {
+    /// The system that Platform Designer builds.
+    System,
+    /// The top module `NAME_link`: a host at the serial line in place of a processor.
+    Link(&'a str),
+}
+
+impl Core<'_> {
+    /// Name of the project, which is that of its top level.
+    pub(super) fn project(self, machine: &str, board: Board) -> String {
+        match self {
+            Self::System => format!("{machine}_{board}"),
+            Self::Link(top) => format!("{top}_{board}"),
+        }
+    }
+
+    /// Folder of the project.
+    pub(super) fn folder(self, board: Board) -> String {
+        match self {
+            Self::System => format!("sopc/quartus/{board}"),
+            Self::Link(_) => format!("sopc/quartus/{board}_link"),
+        }
+    }
+
+    /// Module inside the top level.
+    pub(super) fn module(self, machine: &str, board: Board) -> String {
+        match self {
+            Self::System => system::name(machine, board),
+            Self::Link(top) => top.to_owned(),
+        }
+    }
+
+    /// The file with the list of its Verilog, in the folder of the project.
+    pub(super) fn qip(self, machine: &str, board: Board) -> String {
+        match self {
+            Self::System => {
+                let system = system::name(machine, board);
+                format!("{system}/synthesis/{system}.qip")
+            }
+            Self::Link(_) => format!("{machine}.qip"),
+        }
+    }
+}
