@@ -172,7 +172,7 @@ pub(crate) fn text(estimate: &Estimate) -> String {
 }
 
 /// Turns an error of Yosys into the failure of a command.
-fn failure(error: YosysError) -> Failure {
+pub(crate) fn failure(error: YosysError) -> Failure {
     match error {
         YosysError::Missing(_) => Failure::missing_tool(error),
         other => Failure::because(other),

@@ -1,6 +1,6 @@
 //! `posicast campaign lock-step`: the lock step of `verify` over many clocks, each unit with a seed of its own.
 
-use super::{Outcome, Part, Units, figures, hash_of, run_part};
+use super::{Outcome, Part, Units, figures, hash_of, row_name, run_part};
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::output;
@@ -101,10 +101,6 @@ impl LockStep {
         let built = counted(self.rows.len() as u64, "simulation");
         output::print(&format!("{built} are built, for {} units\n", self.count()))
     }
-}
-
-fn row_name(block: &dyn Block) -> String {
-    format!("{} {}", block.name(), block.instance()).trim_end().to_owned()
 }
 
 impl Units for LockStep {

@@ -3,15 +3,20 @@
 //! The list of units, and what one of them does, is in a file per kind of campaign. This file runs the units of a shard, writes its
 //! file, and prints its table; `merge` joins the files.
 
+mod coverage;
 mod faults;
 mod lock_step;
 mod merge;
 mod mutants;
+mod netlists;
+mod proofs;
 mod sweep;
 
 use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::progress;
+use posicast_model::spelling::did_you_mean;
+use posicast_testbench::blocks::Block;
 use posicast_testbench::shard::{
     self, CampaignHead, FORMAT, MachineFileHash, MergedRow, Shard, ShardDocument, UnitResult,
 };
@@ -41,6 +46,9 @@ enum Kind {
     LockStep(lock_step::Args),
     Faults(faults::Args),
     Mutants(mutants::Args),
+    Proofs(proofs::Args),
+    Netlists(netlists::Args),
+    Coverage(coverage::Args),
     Sweep(sweep::Args),
     Merge(merge::Args),
 }
@@ -90,6 +98,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Kind::LockStep(args) => lock_step::run(args, started),
         Kind::Faults(args) => run_part(&faults::of(args), &args.part, started),
         Kind::Mutants(args) => run_part(&mutants::of(args)?, &args.part, started),
+        Kind::Proofs(args) => run_part(&proofs::of(args)?, &args.part, started),
+        Kind::Netlists(args) => run_part(&netlists::of(args)?, &args.part, started),
+        Kind::Coverage(args) => run_part(&coverage::of(args)?, &args.part, started),
         Kind::Sweep(args) => run_part(&sweep::of(args)?, &args.part, started),
         Kind::Merge(args) => merge::run(args),
     }
@@ -100,6 +111,26 @@ fn figures<V: Into<Value>>(list: impl IntoIterator<Item = (&'static str, V)>) ->
     list.into_iter()
         .map(|(name, value)| (name.to_owned(), value.into()))
         .collect()
+}
+
+/// Keeps what belongs to the blocks of these names; all, if there is no name.
+fn only_blocks<T>(list: &mut Vec<T>, wanted: &[String], name: impl Fn(&T) -> &str) -> Result<(), Failure> {
+    let mut names: Vec<&str> = list.iter().map(&name).collect();
+    names.dedup();
+    if let Some(unknown) = wanted.iter().find(|wanted| !names.contains(&wanted.as_str())) {
+        let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
+        return Err(Failure::from(miette::miette!(
+            help = format!("{near}choose from: {}", names.join(", ")),
+            "--block {unknown}: this campaign has no block of this name"
+        )));
+    }
+    list.retain(|of| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name(of)));
+    Ok(())
+}
+
+/// Name of a block's row.
+fn row_name(block: &dyn Block) -> String {
+    format!("{} {}", block.name(), block.instance()).trim_end().to_owned()
 }
 
 /// SHA-256 of these texts, in hexadecimal digits.

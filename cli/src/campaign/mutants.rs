@@ -1,9 +1,8 @@
 //! `posicast campaign mutants`: mutants of the blocks, some of one block a unit.
 
-use super::{Outcome, Part, Units, figures};
+use super::{Outcome, Part, Units, figures, only_blocks};
 use crate::bench;
 use crate::failure::Failure;
-use posicast_model::spelling::did_you_mean;
 use posicast_system::scratch::{Folder, PREFIX};
 use posicast_testbench::mutation::{self, MutationOptions, MutationRow, Subject};
 use posicast_testbench::shard::MachineFileHash;
@@ -32,17 +31,7 @@ struct Mutants {
 
 pub(super) fn of(args: &Args) -> Result<impl Units + use<>, Failure> {
     let mut subjects = mutation::all().map_err(bench::failure)?;
-    let mut names: Vec<&str> = subjects.iter().map(|subject| subject.block().name()).collect();
-    names.dedup();
-    if let Some(unknown) = args.blocks.iter().find(|name| !names.contains(&name.as_str())) {
-        let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
-        return Err(Failure::from(miette::miette!(
-            help = format!("{near}choose from: {}", names.join(", ")),
-            "--block {unknown}: there is no block of this name with mutants"
-        )));
-    }
-    let wanted = |name: &str| args.blocks.is_empty() || args.blocks.iter().any(|chosen| chosen == name);
-    subjects.retain(|subject| wanted(subject.block().name()));
+    only_blocks(&mut subjects, &args.blocks, |subject| subject.block().name())?;
     Ok(Mutants {
         subjects,
         units_per_block: args.mutants.div_ceil(UNIT_MUTANTS),

@@ -4,11 +4,12 @@ use super::{Outcome, Part, REFUSED, Units, hash_of};
 use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware::Built;
+use crate::synth;
 use crate::{machine, verilog};
 use posicast_model::design::AxisTables;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_synth::clock::{ClockError, PlaceAndRoute};
-use posicast_synth::yosys::{Yosys, YosysError};
+use posicast_synth::yosys::Yosys;
 use posicast_testbench::shard::MachineFileHash;
 use serde_json::{Map, Number, Value};
 use std::path::{Path, PathBuf};
@@ -94,7 +95,7 @@ pub(super) fn of(args: &Args) -> Result<impl Units + use<'_>, Failure> {
         yosys: (args.area || args.clock)
             .then(Yosys::installed)
             .transpose()
-            .map_err(of_yosys)?,
+            .map_err(synth::failure)?,
         router: args
             .clock
             .then(PlaceAndRoute::installed)
@@ -153,7 +154,7 @@ impl Sweep<'_> {
         let (files, _folder) = verilog::write_scratch(&modules)?;
         let area = yosys
             .estimate(&files, &machine.name, machine::family(machine)?)
-            .map_err(of_yosys)?
+            .map_err(synth::failure)?
             .total;
         let counts = [
             ("cells", area.cells),
@@ -279,17 +280,10 @@ fn set_in(table: &mut toml_edit::Table, path: &str, value: &toml_edit::Value) ->
     }
 }
 
-fn of_yosys(error: YosysError) -> Failure {
-    match error {
-        YosysError::Missing(_) => Failure::missing_tool(error),
-        other => Failure::because(other),
-    }
-}
-
 fn of_clock(error: ClockError) -> Failure {
     match error {
         ClockError::Missing(_) => Failure::missing_tool(error),
-        ClockError::Yosys(error) => of_yosys(error),
+        ClockError::Yosys(error) => synth::failure(error),
         other => Failure::because(other),
     }
 }

@@ -167,12 +167,37 @@ fn cli_campaign_names_a_broken_block_and_the_command_that_repeats_it() {
     assert!(said(&alone).contains("1 unit, 1 failed"), "{}", said(&alone));
 }
 
+/// The figures are those of the tables in `docs/verification.md`.
+#[test]
+fn cli_campaign_does_the_other_rungs_of_the_ladder() {
+    for (words, cells) in [
+        (
+            &["proofs", "--block", "sample_select"][..],
+            ["sample_select, ", "2 units, 0 failed"],
+        ),
+        (
+            &["netlists", "--block", "divider", "--clocks", "20000"],
+            ["divider", "20000"],
+        ),
+        (&["coverage", "--block", "schedule"], ["schedule", "of"]),
+    ] {
+        let done = campaign(words);
+        assert_eq!(done.status.code(), Some(0), "{words:?}: {}", said(&done));
+        for cell in cells {
+            assert!(said(&done).contains(cell), "{words:?}: {}", said(&done));
+        }
+    }
+}
+
 #[test]
 fn cli_campaign_refuses_what_it_does_not_have() {
     let machine = example("xy-stage.toml");
     let machine = machine.to_str().unwrap();
     for (words, expected) in [
         (&["mutants", "--block", "divder"][..], "did you mean `divider`?"),
+        (&["proofs", "--block", "divder"], "did you mean `divider`?"),
+        (&["netlists", "--block", "stage"], "choose from:"),
+        (&["coverage", "--block", "divder"], "did you mean `divider`?"),
         (&["lock-step", machine, "--block", "divder"], "did you mean `divider`?"),
         (&["sweep", machine, "--set", "axis.z.shaper.kind=zv"], "there is no `z`"),
         (

@@ -1,0 +1,77 @@
+//! `posicast campaign coverage`: what the lock step reaches of each block, a block a unit.
+
+use super::{Outcome, Part, Units, figures, only_blocks, row_name};
+use crate::bench;
+use crate::failure::Failure;
+use posicast_testbench::blocks::Block;
+use posicast_testbench::coverage::explanation::{self, Explanation};
+use posicast_testbench::coverage::{self, CLOCKS, Share};
+use posicast_testbench::shard::MachineFileHash;
+use serde_json::{Map, Value};
+
+/// Measure which lines, nets and bins of the blocks the lock step reaches
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Only the blocks of this name; may be given several times
+    #[arg(long = "block", value_name = "NAME")]
+    blocks: Vec<String>,
+    #[command(flatten)]
+    pub(super) part: Part,
+}
+
+struct Coverage {
+    blocks: Vec<Box<dyn Block>>,
+    explanations: Vec<Explanation>,
+}
+
+pub(super) fn of(args: &Args) -> Result<impl Units + use<>, Failure> {
+    let mut blocks = coverage::subjects().map_err(bench::failure)?;
+    only_blocks(&mut blocks, &args.blocks, |block| block.name())?;
+    Ok(Coverage {
+        blocks,
+        explanations: explanation::all().map_err(bench::failure)?,
+    })
+}
+
+impl Coverage {
+    fn block(&self, unit: u64) -> &dyn Block {
+        self.blocks[unit as usize].as_ref()
+    }
+}
+
+impl Units for Coverage {
+    fn kind(&self) -> &'static str {
+        "coverage"
+    }
+
+    fn machine(&self) -> Option<MachineFileHash> {
+        None
+    }
+
+    fn options(&self) -> Map<String, Value> {
+        let names = (0..self.count()).map(|unit| self.name(unit).into()).collect();
+        figures([("clocks", CLOCKS.into()), ("blocks", Value::Array(names))])
+    }
+
+    fn count(&self) -> u64 {
+        self.blocks.len() as u64
+    }
+
+    fn name(&self, unit: u64) -> String {
+        row_name(self.block(unit))
+    }
+
+    /// The explanations of what is not reached are those of the ladder's seed, whatever that of the campaign is.
+    fn run(&self, unit: u64, _seed: u64) -> Result<Outcome, Failure> {
+        let measured = coverage::measure(self.block(unit), CLOCKS).map_err(bench::failure)?;
+        let of = |share: &Share| format!("{} of {}", share.reached, share.all);
+        Ok(Outcome {
+            figures: figures([
+                ("lines", of(&measured.lines)),
+                ("toggles", of(&measured.toggles)),
+                ("bins", of(&measured.bins)),
+            ]),
+            failure: measured.problems(&self.explanations).into_iter().next(),
+        })
+    }
+}

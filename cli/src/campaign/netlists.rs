@@ -1,0 +1,100 @@
+//! `posicast campaign netlists`: Yosys's netlist of each block, simulated and proven equal to the RTL, a block a unit.
+
+use super::{Outcome, Part, Units, figures, only_blocks, row_name};
+use crate::bench;
+use crate::failure::Failure;
+use crate::synth;
+use posicast_synth::yosys::{CELL_MODELS, Yosys};
+use posicast_testbench::blocks::{self, Block, Sources};
+use posicast_testbench::netlist::{self, EquivalenceVerdict, NetlistParts};
+use posicast_testbench::shard::MachineFileHash;
+use posicast_testbench::wording::counted;
+use serde_json::{Map, Value};
+use std::time::Duration;
+
+/// Compare the netlist of each block with its model and its RTL
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Only the blocks of this name; may be given several times
+    #[arg(long = "block", value_name = "NAME")]
+    blocks: Vec<String>,
+    /// Number of clocks for which each netlist is simulated, such as 1000000 or 1e6
+    #[arg(long, default_value = "100000", value_parser = bench::clocks)]
+    clocks: u64,
+    #[command(flatten)]
+    pub(super) part: Part,
+}
+
+/// Time limit of each engine of a proof.
+const LIMIT: Duration = Duration::from_secs(300);
+
+struct Netlists {
+    yosys: Yosys,
+    blocks: Vec<Box<dyn Block>>,
+    clocks: u64,
+}
+
+pub(super) fn of(args: &Args) -> Result<impl Units + use<>, Failure> {
+    let mut blocks = blocks::library().map_err(bench::failure)?;
+    // The stage consists of the other blocks.
+    blocks.retain(|block| block.name() != "stage");
+    only_blocks(&mut blocks, &args.blocks, |block| block.name())?;
+    Ok(Netlists {
+        yosys: Yosys::installed().map_err(synth::failure)?,
+        blocks,
+        clocks: args.clocks,
+    })
+}
+
+impl Netlists {
+    fn block(&self, unit: u64) -> &dyn Block {
+        self.blocks[unit as usize].as_ref()
+    }
+}
+
+impl Units for Netlists {
+    fn kind(&self) -> &'static str {
+        "netlists"
+    }
+
+    fn machine(&self) -> Option<MachineFileHash> {
+        None
+    }
+
+    fn options(&self) -> Map<String, Value> {
+        let names = (0..self.count()).map(|unit| self.name(unit).into()).collect();
+        figures([("clocks", self.clocks.into()), ("blocks", Value::Array(names))])
+    }
+
+    fn count(&self) -> u64 {
+        self.blocks.len() as u64
+    }
+
+    fn name(&self, unit: u64) -> String {
+        row_name(self.block(unit))
+    }
+
+    fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {
+        let block = self.block(unit);
+        let parts = NetlistParts::of(block.modules().map_err(Failure::because)?);
+        let written = |modules| Sources::of_modules(modules).map_err(bench::failure);
+        let (logic, kept) = (written(&parts.logic)?, written(&parts.kept)?);
+        let netlist = self.yosys.netlist(logic.files(), kept.files(), &block.top());
+        let netlist = netlist.map_err(synth::failure)?;
+        let run = (self.clocks, blocks::row_seed(block, seed));
+        let outcome = netlist::check(block, &parts, (&netlist, CELL_MODELS), run, LIMIT).map_err(bench::failure)?;
+        let mismatches = outcome.simulated.as_ref().map_or(0, |report| report.mismatches());
+        let failure = match (mismatches, outcome.verdict) {
+            (0, EquivalenceVerdict::Equivalent) => None,
+            (0, EquivalenceVerdict::Different { clock }) => Some(format!("netlist and RTL differ in clock {clock}")),
+            (0, EquivalenceVerdict::Unknown) => Some("no proof that netlist and RTL are equal".to_owned()),
+            (count, _) => Some(counted(count, "mismatch")),
+        };
+        let [luts, flip_flops] = outcome.cells.map(|count| count as u64);
+        let clocks = outcome.simulated.map_or(0, |report| report.cycles);
+        Ok(Outcome {
+            figures: figures([("LUT", luts), ("flip-flops", flip_flops), ("clocks", clocks)]),
+            failure,
+        })
+    }
+}
