@@ -3,6 +3,10 @@
 use crate::warning::Warning;
 use posicast_model::control::{LostSign, lost_sign};
 use posicast_model::machine_file::{AxisSection, LimitsSection, Machine};
+use posicast_model::unit::trimmed;
+
+/// A following error of fewer counts than this is most likely meant in another unit.
+const LEAST_COUNTS: f64 = 4.0;
 
 /// A guard, whether a file has it, and what can happen without it.
 struct Guard {
@@ -50,9 +54,26 @@ pub(crate) fn missing(machine: &Machine) -> Vec<Warning> {
             Warning::new(index, format!("axis.limits.{}", guard.key), text)
         });
         let sign = sign(axis, &limits).map(|text| Warning::new(index, "axis.limits.encoder_lost_s", text));
-        texts.chain(sign).collect::<Vec<_>>()
+        let tight = tight(axis, &limits).map(|text| Warning::new(index, "axis.limits.following_error", text));
+        texts.chain(sign).chain(tight).collect::<Vec<_>>()
     };
     loops.flat_map(of_axis).collect()
+}
+
+/// A warning where the following error is so small that the encoder's own steps exceed it.
+fn tight(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
+    let limit = limits.following_error?;
+    let counts = limit * axis.loop_counts_per_unit();
+    (counts < LEAST_COUNTS).then(|| {
+        format!(
+            "axis `{}` has a following_error of {}, which is {} of its encoder's counts, whose steps alone switch the axis off; the figure is in the \
+             axis's unit, {}",
+            axis.name,
+            axis.unit.as_in_file(limit, ""),
+            trimmed(counts, 2),
+            axis.unit
+        )
+    })
 }
 
 /// A warning where neither the following error nor the encoder monitor detects a feedback of the wrong sign.

@@ -283,6 +283,10 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
     let (status, document, said, folder) = run(&text, &["--simulator", "rusthdl"]);
     assert_eq!((status, &document["result"]), (Some(1), &"fail".into()), "{said}");
     assert!(said.contains("the closed loop runs in the bit-exact model"), "{said}");
+    assert!(
+        said.contains("axis `x` has a following_error of 0.000001 m, which is 1 of its encoder's counts"),
+        "{said}"
+    );
     assert!(document["stage"]["side_by_side"].is_null());
     let checks = document["checks"].as_array().unwrap();
     let failed = checks.iter().filter(|check| check["passed"] == false);

@@ -266,7 +266,10 @@ pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
                 compared.clocks
             )
         }
-        (None, Some(trouble)) => format!("{} clocks, no mismatch, but not to {end}: {trouble}", compared.clocks),
+        (None, Some(trouble)) => format!(
+            "{} clocks, no mismatch until the run was given up: {trouble}",
+            compared.clocks
+        ),
         (None, None) => format!("{} clocks, {reach}, no mismatch", compared.clocks),
     };
     let coverage = match (&compared.first, &compared.trouble) {
