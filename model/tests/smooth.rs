@@ -8,7 +8,15 @@ use posicast_model::digitise::TAPS_MAX;
 
 #[test]
 fn unit_the_integer_table_of_a_smooth_kind_suppresses_its_mode() {
-    for (kind, promised) in [("smooth_zv", 0.0), ("smooth_zvd", 0.0), ("smooth_ei", 0.05)] {
+    for (kind, promised) in [
+        ("smooth_zv", 0.0),
+        ("smooth_mzv", 0.0),
+        ("smooth_ei", 0.05),
+        ("smooth_zvd", 0.0),
+        ("smooth_si", 0.0),
+        ("smooth_zvd_ei", 0.0),
+        ("smooth_2hump_ei", 0.0),
+    ] {
         let modes = [(48.0, 0.05, "")];
         let machine = machine(5000, "modal", &format!("kind = \"{kind}\""), &modes);
         let design = design_machine(&machine).unwrap();
@@ -65,5 +73,14 @@ fn unit_every_smooth_kind_has_its_word() {
         .filter(|(kind, _)| kind.is_smooth())
         .map(|(_, name)| *name)
         .collect();
-    assert_eq!(smooth, ["smooth_zv", "smooth_zvd", "smooth_ei"]);
+    let expected = [
+        "smooth_zv",
+        "smooth_mzv",
+        "smooth_ei",
+        "smooth_zvd",
+        "smooth_si",
+        "smooth_zvd_ei",
+        "smooth_2hump_ei",
+    ];
+    assert_eq!(smooth, expected);
 }

@@ -38,7 +38,8 @@ pub struct Together {
     pub shorter: Option<Shorter>,
     /// The axis that decides the delay.
     pub latest_axis: usize,
-    /// Lower bound of that axis's delay at this duration, without its lag.
+    /// Lower bound of that axis's delay at this duration, without its lag, for its whole tolerances. The taps leave a part of
+    /// these for rounding, if the duration has room for it, and are later by what that part would gain.
     pub earlier: Option<DelayBound>,
 }
 

@@ -53,6 +53,8 @@ fn golden_bounded_amplitudes_are_as_short_as_the_vector_diagram_says() {
         assert!(worst_ratio(&request, &found.taps) <= 1.0 + 1e-6);
         let within = |amplitude: f64| (low - 1e-12..=high + 1e-12).contains(&amplitude);
         assert!(found.taps.iter().all(|tap| within(tap.1)), "{:?}", found.taps);
+        let sum: f64 = found.taps.iter().map(|tap| tap.1).sum();
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
     }
 }
 
@@ -90,6 +92,42 @@ fn unit_integers_stay_within_the_bounds_of_amplitudes() {
         assert!(taps.iter().all(|tap| (low..=high).contains(&tap.1)), "{taps:?}");
         assert!(worst_ratio(&request, &taps) <= 1.0 + 1e-6);
     }
+}
+
+#[test]
+fn unit_units_that_move_for_the_residual_stay_within_the_bounds() {
+    // So few fraction bits that rounding breaks the tolerance, and units move.
+    let mut moved = 0;
+    for (high, prefer) in [
+        (0.27, Prefer::FewestTaps),
+        (0.3, Prefer::LeastResidual),
+        (0.12, Prefer::FewestTaps),
+        (0.07, Prefer::LeastDelay),
+    ] {
+        let request = Request {
+            prefer,
+            ..bounded(0.0, high, 0.01)
+        };
+        let taps = shortest(&request).unwrap().taps;
+        for fraction in 7..=11 {
+            let unity = f64::from(1u32 << fraction);
+            let most = (high * unity).floor();
+            if most * taps.len() as f64 <= unity {
+                continue;
+            }
+            let units = round_taps(&request, &taps, fraction);
+            let nearest = |(sample, units): &(u32, i64)| {
+                let exact = taps.iter().find(|tap| tap.0 == *sample).map_or(0.0, |tap| tap.1);
+                (exact * unity - *units as f64).abs() < 1.0
+            };
+            moved += u32::from(!units.iter().all(nearest));
+            assert!(
+                units.iter().all(|tap| tap.1 as f64 <= most),
+                "{high} {fraction}: {units:?}"
+            );
+        }
+    }
+    assert!(moved > 0, "no unit moved");
 }
 
 #[test]

@@ -144,3 +144,32 @@ fn unit_the_other_axes_keep_their_preference_and_their_budget() {
         "{error}"
     );
 }
+
+#[test]
+fn unit_the_delay_is_above_its_bound_by_the_room_for_rounding_alone() {
+    // Of a tolerance of 5 %, 8e-5 are left for rounding.
+    let room = 8e-5;
+    let at = |tolerance: f64| {
+        let axes = [(62.0, 0.02), (36.0, 0.05)].map(|mode| {
+            let request = request(5000.0, &[mode], tolerance, 0.1);
+            Partner {
+                alone: shortest(&request).unwrap(),
+                request,
+                lag_samples: 0.0,
+            }
+        });
+        let found = together(&axes).unwrap();
+        (
+            found.samples,
+            found.delay_samples,
+            found.earlier.unwrap().delay_samples,
+            worst_ratio(&axes[found.latest_axis].request, &found.taps[found.latest_axis]),
+        )
+    };
+    let (samples, delay, bound, ratio) = at(TOLERANCE);
+    assert!(delay - bound > 0.05, "{delay} {bound}");
+    assert!(ratio < 1.0 - 0.9 * room / TOLERANCE, "{ratio}");
+    let (within_room, _, bound, _) = at(TOLERANCE - room);
+    assert_eq!(samples, within_room);
+    assert!((delay - bound).abs() < 1e-2, "{delay} {bound}");
+}

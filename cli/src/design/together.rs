@@ -66,7 +66,8 @@ impl<'a> TogetherReport<'a> {
         let _ = match &self.checked.least_delay_samples {
             Some(Ok(least)) => writeln!(
                 text,
-                "  proof, checked: every shaper of axis {decisive} of this duration is at least {:.6} ms late",
+                "  proof, checked: every shaper of axis {decisive} of this duration is at least {:.6} ms late; the design keeps a part of the \
+                 tolerance for rounding",
                 self.milliseconds(*least)
             ),
             Some(Err(error)) => writeln!(

@@ -280,7 +280,7 @@ fn cli_design_compares_smooth_kinds_with_the_best_at_their_duration() {
         .iter()
         .filter(|kind| kind["kind"].as_str().unwrap().starts_with("smooth_"))
         .collect();
-    assert_eq!(smooth.len(), 3);
+    assert_eq!(smooth.len(), 7);
     for kind in smooth {
         let [least, worst] = ["least_residual", "worst_residual"].map(|key| kind[key].as_f64().unwrap());
         assert!(least < worst, "{kind}");

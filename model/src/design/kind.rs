@@ -30,8 +30,12 @@ pub enum ShaperKind {
     Simultaneous,
     Periodic,
     SmoothZv,
-    SmoothZvd,
+    SmoothMzv,
     SmoothEi,
+    SmoothZvd,
+    SmoothSi,
+    SmoothZvdEi,
+    SmoothTwoHumpEi,
     Optimal,
     Custom,
     None,
@@ -39,7 +43,7 @@ pub enum ShaperKind {
 
 impl ShaperKind {
     /// All kinds with their names in the machine file.
-    pub const ALL: [(ShaperKind, &'static str); 29] = [
+    pub const ALL: [(ShaperKind, &'static str); 33] = [
         (ShaperKind::Zv, "zv"),
         (ShaperKind::Zvd, "zvd"),
         (ShaperKind::Zvdd, "zvdd"),
@@ -64,8 +68,12 @@ impl ShaperKind {
         (ShaperKind::Simultaneous, "simultaneous"),
         (ShaperKind::Periodic, "periodic"),
         (ShaperKind::SmoothZv, "smooth_zv"),
-        (ShaperKind::SmoothZvd, "smooth_zvd"),
+        (ShaperKind::SmoothMzv, "smooth_mzv"),
         (ShaperKind::SmoothEi, "smooth_ei"),
+        (ShaperKind::SmoothZvd, "smooth_zvd"),
+        (ShaperKind::SmoothSi, "smooth_si"),
+        (ShaperKind::SmoothZvdEi, "smooth_zvd_ei"),
+        (ShaperKind::SmoothTwoHumpEi, "smooth_2hump_ei"),
         (ShaperKind::Optimal, "optimal"),
         (ShaperKind::Custom, "custom"),
         (ShaperKind::None, "none"),
@@ -113,8 +121,12 @@ impl ShaperKind {
                 | ShaperKind::Simultaneous
                 | ShaperKind::Periodic
                 | ShaperKind::SmoothZv
-                | ShaperKind::SmoothZvd
+                | ShaperKind::SmoothMzv
                 | ShaperKind::SmoothEi
+                | ShaperKind::SmoothZvd
+                | ShaperKind::SmoothSi
+                | ShaperKind::SmoothZvdEi
+                | ShaperKind::SmoothTwoHumpEi
                 | ShaperKind::Optimal
                 | ShaperKind::Custom
                 | ShaperKind::None
@@ -125,7 +137,13 @@ impl ShaperKind {
     pub fn is_smooth(self) -> bool {
         matches!(
             self,
-            ShaperKind::SmoothZv | ShaperKind::SmoothZvd | ShaperKind::SmoothEi
+            ShaperKind::SmoothZv
+                | ShaperKind::SmoothMzv
+                | ShaperKind::SmoothEi
+                | ShaperKind::SmoothZvd
+                | ShaperKind::SmoothSi
+                | ShaperKind::SmoothZvdEi
+                | ShaperKind::SmoothTwoHumpEi
         )
     }
 
