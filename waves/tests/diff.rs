@@ -168,6 +168,37 @@ fn unit_nothing_in_common_is_incomparable() {
 }
 
 #[test]
+fn unit_a_file_without_a_timescale_is_said_to_be_in_nanoseconds() {
+    let with = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c");
+    let without = with.replace("$timescale 1 ns $end\n", "");
+    let notes = |a: &str, b: &str| {
+        let result = Two::new(a, b).compare(&DiffOptions::default()).unwrap();
+        assert_eq!(result.result, DiffVerdict::Equal);
+        result.notes.join("\n")
+    };
+    assert!(!notes(&with, &with).contains("$timescale"));
+    for (text, file) in [(notes(&without, &with), "first"), (notes(&with, &without), "second")] {
+        assert!(text.contains(&format!("the {file} file has no $timescale")), "{text}");
+        assert_eq!(text.matches("$timescale").count(), 1, "{text}");
+    }
+}
+
+#[test]
+fn unit_filters_that_leave_nothing_are_the_reason() {
+    let text = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c");
+    for (only, ignore) in [(Some("nowhere"), None), (None, Some("*")), (None, Some("y"))] {
+        let options = DiffOptions {
+            only: only.map(str::to_owned).into_iter().collect(),
+            ignore: ignore.map(str::to_owned).into_iter().collect(),
+            ..DiffOptions::default()
+        };
+        let result = Two::new(&text, &text).compare(&options).unwrap();
+        assert_eq!(result.result, DiffVerdict::Incomparable);
+        assert!(result.notes.join("").contains("--only and --ignore"), "{result}");
+    }
+}
+
+#[test]
 fn unit_without_a_clock_every_change_counts() {
     let variables = "$scope module t $end $var wire 8 y y $end $var real 64 r r $end $upscope $end";
     let a = text(variables, "#0 b1 y r1.5 r #10 b10 y #20 r2.5 r #30 b0 y");

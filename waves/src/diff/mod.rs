@@ -120,6 +120,12 @@ fn compare_by(
     comparison.only_widths &= strict;
     comparison.unit_fs = waves.iter().map(|wave| wave.declarations.unit_fs).min().unwrap_or(1);
     comparison.notes.clone_from(&plan.clocking.notes);
+    for (wave, file) in waves.iter().zip(["first", "second"]) {
+        if wave.declarations.unit_is_assumed {
+            let note = format!("the {file} file has no $timescale: its times are taken as nanoseconds");
+            comparison.notes.push(note);
+        }
+    }
     if options.explain {
         let left_out = plan.names.iter().map(|names| names.left_out).sum();
         comparison.matching = Some(MatchReport::new(&plan.matched, left_out));
@@ -135,7 +141,11 @@ fn compare_by(
         .and_then(Pair::names);
     let common = plan.matched.pairs.iter().filter(|p| p.a.is_some() && p.b.is_some());
     if common.filter(|pair| !is_clock(pair)).count() == 0 {
-        comparison.incomparable("the files have no signal in common; say with --map A=B which belong together");
+        let is_filtered = !options.only.is_empty() || !options.ignore.is_empty();
+        comparison.incomparable(match is_filtered && plan.names.iter().any(|names| names.left_out > 0) {
+            true => "of the signals that --only and --ignore leave, none but the clock is in both files",
+            false => "the files have no signal in common; say with --map A=B which belong together",
+        });
         return Ok(comparison);
     }
     let mut engine = plan.start(waves, options)?;

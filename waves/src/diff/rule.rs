@@ -171,9 +171,10 @@ impl Rule {
     }
 
     fn near(&self, a: f64, b: f64) -> bool {
+        // A part of infinity is infinity: no number is within a tolerance of it.
         let within = || {
             self.tolerance
-                .is_some_and(|t| (a - b).abs() <= t.limit(a, b, self.lsb()))
+                .is_some_and(|t| (a - b).is_finite() && (a - b).abs() <= t.limit(a, b, self.lsb()))
         };
         a == b || (a.is_nan() && b.is_nan()) || within()
     }
@@ -303,6 +304,20 @@ mod tests {
         assert!(!rule(q2, Some(Tolerance::Absolute(0.49))).equal(minus_half, bits(4, &[0, 0])));
         assert!(rule(q2, Some(Tolerance::Relative(0.5))).equal(minus_half, bits(4, &[0b1111, 0])));
         assert!(!rule(q2, Some(Tolerance::Relative(0.49))).equal(minus_half, bits(4, &[0b1111, 0])));
+    }
+
+    #[test]
+    fn unit_infinity_is_near_nothing_but_itself() {
+        let near = |a: f64, b: f64| {
+            let rule = Rule {
+                tolerance: Some(Tolerance::Relative(0.5)),
+                ..Rule::default()
+            };
+            rule.equal(Value::Real(Some(a)), Value::Real(Some(b)))
+        };
+        assert!(near(1.0, 1.5) && near(f64::INFINITY, f64::INFINITY) && near(f64::NAN, f64::NAN));
+        assert!(!near(f64::INFINITY, 1e308) && !near(1.0, f64::INFINITY));
+        assert!(!near(f64::INFINITY, f64::NEG_INFINITY) && !near(1.0, f64::NAN));
     }
 
     #[test]

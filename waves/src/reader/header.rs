@@ -49,6 +49,8 @@ pub(crate) struct Declarations {
     pub(crate) kinds: Vec<Kind>,
     /// Number of femtoseconds per unit of the file's time.
     pub(crate) unit_fs: u64,
+    /// Whether the file does not say its unit of time.
+    pub(crate) unit_is_assumed: bool,
     /// The open scopes, each followed by a dot, and the end of each.
     scope: String,
     scope_ends: Vec<usize>,

@@ -196,6 +196,7 @@ impl From<String> for Stop {
 
 fn declarations<R: BufRead>(parser: &mut Parser<R>) -> Result<(Declarations, Ids), Stop> {
     let mut declarations = Declarations::new(1_000_000);
+    declarations.unit_is_assumed = true;
     let mut ids = Ids::default();
     loop {
         let command = match parser.next() {
@@ -227,6 +228,7 @@ fn declarations<R: BufRead>(parser: &mut Parser<R>) -> Result<(Declarations, Ids
                     return Err(format!("timescale {number} {unit}: the number is 1, 10 or 100").into());
                 }
                 declarations.unit_fs = u64::from(number) * 10u64.pow(exponent);
+                declarations.unit_is_assumed = false;
             }
             Command::ScopeDef(_, name) => declarations.enter(&name)?,
             Command::Upscope => declarations.leave()?,
