@@ -19,6 +19,10 @@ const MOOD_CLOCKS: u64 = 500;
 /// Range of clocks of the single long self-test: the periods double, then a gate is on for longer than its counter
 /// can count.
 const LONG_TEST: Range<u64> = 350_000..466_500;
+/// Range of clocks of the single long hold: a kick, and then as many ticks as direct mode can last, and some more. Elsewhere the
+/// count of ticks never reaches its upper bits.
+const LONG_HOLD: Range<u64> = 600_000..665_600;
+
 /// Clock of the last valley of the long self-test.
 const LONG_TEST_VALLEY: u64 = 466_000;
 
@@ -160,6 +164,11 @@ impl Stimuli for DriveCommandRandom {
             (inputs[0], inputs[4], inputs[12]) = (0, SupervisorState::Ready as u64, 1);
             (inputs[13], inputs[14]) = (1, 65_535);
             (inputs[17], inputs[18], inputs[19]) = (1, 3, valley);
+        }
+        if LONG_HOLD.contains(&self.clock) {
+            let kick = u64::from(self.clock == LONG_HOLD.start);
+            (inputs[0], inputs[1], inputs[4], inputs[12]) = (0, 1, SupervisorState::Ready as u64, 1);
+            (inputs[13], inputs[14], inputs[17]) = (kick, 65_535, 0);
         }
         self.clock += 1;
     }

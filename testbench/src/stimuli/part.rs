@@ -29,7 +29,8 @@ impl PartRandom {
         let inputs = ports.iter().filter(|port| port.direction == Direction::Input);
         let pin = |port: &Port| Pin {
             width: port.width,
-            pace: 2,
+            // Slow at first, so that what comes from power-up alone is seen.
+            pace: 300,
             value: 0,
         };
         Self {
