@@ -144,8 +144,17 @@ fn figure_the_error_of_a_screw_with_and_without_its_table() {
 }
 
 #[test]
-fn lockstep_nothing_jumps_when_the_table_comes_and_goes() {
-    let mut bed = Bed::new("reference", true);
+fn unit_nothing_jumps_when_the_table_comes_and_goes() {
+    nothing_jumps_when_the_table_comes_and_goes(false);
+}
+
+#[test]
+fn long_lockstep_nothing_jumps_when_the_table_comes_and_goes() {
+    nothing_jumps_when_the_table_comes_and_goes(true);
+}
+
+fn nothing_jumps_when_the_table_comes_and_goes(with_verilog: bool) {
+    let mut bed = Bed::new("reference", with_verilog);
     // After a quarter of a turn the error is 3.1 µm.
     bed.go(0.00125);
     let compensated = bed.bench.probe("x_compensated").unwrap();

@@ -198,7 +198,15 @@ fn lockstep_one_axis_two_million_random_clocks() {
 }
 
 #[test]
-fn lockstep_two_axes_two_million_random_clocks() {
+fn lockstep_two_axes_under_random_traffic() {
+    let block = block(2);
+    let mut device = Sources::write(&block).unwrap().verilated(&block, 5).unwrap();
+    let report = blocks::check(&block, &mut device, 300_000, 5, &mut |_| {}).unwrap();
+    assert_match(&report, "two axes");
+}
+
+#[test]
+fn long_lockstep_two_axes_two_million_random_clocks() {
     let counts = reached(2, [5, 15]);
     let hit = |name: &str| counts.iter().any(|(other, count)| other == name && *count > 0);
     for (name, _) in counts.iter().filter(|(_, count)| *count == 0) {

@@ -47,7 +47,7 @@ fn crosssim_shaper_equals_its_model() {
         Row {
             name: name.to_owned(),
             modules,
-            vectors: Anything::new(&config, 11).take(4000).map(step).collect(),
+            vectors: Anything::new(&config, 11).take(2000).map(step).collect(),
         }
     });
     assert_eq!(tools::replay(&rows), Vec::<String>::new());

@@ -19,22 +19,22 @@ struct Pin {
 #[derive(Debug, Clone)]
 pub struct PartRandom {
     rng: Xoshiro256PlusPlus,
+    clock: u64,
     pins: Vec<Pin>,
 }
 
 impl PartRandom {
-    /// Creates the generator for a block with these ports. Equal seeds give equal inputs. They begin without a reset: a part
-    /// must also do from power-up what it does after a reset.
+    /// Creates the generator for a block with these ports. Equal seeds give equal inputs.
     pub fn new(ports: &[Port], seed: u64) -> Self {
         let inputs = ports.iter().filter(|port| port.direction == Direction::Input);
         let pin = |port: &Port| Pin {
             width: port.width,
-            // Slow at first, so that what comes from power-up alone is seen.
-            pace: 300,
+            pace: 2,
             value: 0,
         };
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            clock: 0,
             pins: inputs.map(pin).collect(),
         }
     }
@@ -55,7 +55,8 @@ impl Stimuli for PartRandom {
             *input = pin.value & (u64::MAX >> (64 - pin.width.clamp(1, 64)));
         }
         if let Some(reset) = inputs.first_mut() {
-            *reset = (self.rng.random_range(0..5000) == 0).into();
+            *reset = (self.clock < 2 || self.rng.random_range(0..5000) == 0).into();
         }
+        self.clock += 1;
     }
 }
