@@ -60,3 +60,14 @@ fn lockstep_catches_a_time_out_that_never_comes() {
 fn lockstep_catches_a_bit_that_is_taken_an_eighth_late() {
     caught(&bridge(), "MIDDLE = 3'd3", "MIDDLE = 3'd4", 300_000);
 }
+
+/// A mutant that was not found while the host's numbers seldom went beyond 63.
+#[test]
+fn lockstep_catches_a_sequence_number_that_loses_a_bit_on_the_way() {
+    caught(
+        &bridge(),
+        "if (place == THIRD) begin",
+        "if (|place) sequence_q_next = sequence_q & 8'hbf;\n            if (place == THIRD) begin",
+        300_000,
+    );
+}

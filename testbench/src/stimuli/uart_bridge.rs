@@ -126,7 +126,12 @@ impl UartBridgeRandom {
         if self.one_in(8) {
             return self.no_request();
         }
-        self.sequence = if self.one_in(20) { 0 } else { self.sequence % 255 + 1 };
+        // A count from 0 alone would seldom come to the upper bits: it begins anew too often.
+        self.sequence = match self.rng.random_range(0..20) {
+            0 => 0,
+            1 | 2 => self.rng.random(),
+            _ => self.sequence % 255 + 1,
+        };
         let request = self.request();
         let sequence = if request.is_write() {
             self.sequence.max(1)
@@ -238,7 +243,9 @@ impl Stimuli for UartBridgeRandom {
             return;
         };
         let busy = seen.get(BUSY).is_some_and(|busy| *busy != 0);
-        *rst = u64::from(self.clock < 2 || self.one_in(40_000));
+        // Most of the time the host speaks, and a reset then meets no request.
+        let clocks_between_resets = if busy { 8_000 } else { 40_000 };
+        *rst = u64::from(self.clock < 2 || self.one_in(clocks_between_resets));
         *uart_rx = u64::from(self.level(busy));
         *baud_step = self.baud_step;
         *silence_limit = self.silence_limit;
