@@ -20,6 +20,7 @@ pub mod signal;
 pub mod spectrum;
 pub mod sweep;
 pub mod synthetic;
+pub mod trial;
 
 pub use found::{FoundMode, Interval};
 pub use signal::{AccelerationLog, Between, DriveLog, PositionLog};

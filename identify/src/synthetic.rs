@@ -3,11 +3,11 @@
 //! A machine with modes under a resonance test is simulated exactly from event to event, by closed forms that none of
 //! the methods uses.
 
-use crate::signal::AccelerationLog;
+use crate::signal::{AccelerationLog, Between, PositionLog};
 use crate::sweep::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 use nalgebra::{Matrix2, Vector2};
 use posicast_model::mode::Mode;
-use posicast_model::plant::free_motion;
+use posicast_model::plant::{Plant, PlantError, SampledPlant, free_motion};
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -143,4 +143,52 @@ pub fn resonance_test(truths: &[KnownMode], sweep: &Sweep, sensor: &Sensor, seed
         sample_s: sensor.sample_s,
         directions: vec![("accel_x".into(), along), ("accel_z".into(), across)],
     }
+}
+
+/// Bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for `held` samples.
+pub fn pseudo_random(samples: usize, held: usize) -> Vec<f64> {
+    let mut register = 1u32;
+    let mut bits = Vec::new();
+    while bits.len() < samples {
+        let bit = (register >> 9 ^ register >> 6) & 1;
+        register = (register << 1 | bit) & 0x3ff;
+        bits.extend(std::iter::repeat_n(if bit == 1 { 1.0 } else { -1.0 }, held));
+    }
+    bits.truncate(samples);
+    bits
+}
+
+/// A command of 0 that becomes 1 after a tenth of the samples.
+pub fn step(samples: usize) -> Vec<f64> {
+    (0..samples).map(|n| if n < samples / 10 { 0.0 } else { 1.0 }).collect()
+}
+
+/// The log of the position under a command that is held from sample to sample, with noise of this standard deviation. The shares of the modes
+/// are scaled to the sum one.
+///
+/// # Errors
+/// [`PlantError`] if the shares do not have a positive sum.
+pub fn position_log(
+    truths: &[KnownMode],
+    command: &[f64],
+    sample_s: f64,
+    noise: f64,
+    seed: u64,
+) -> Result<PositionLog, PlantError> {
+    let modes: Vec<(Mode, f64)> = truths.iter().map(|truth| (truth.mode, truth.share)).collect();
+    let plant = Plant::new(&modes)?;
+    let mut sampled = SampledPlant::new(&plant, sample_s, 0.0);
+    let mut source = Noise::new(seed);
+    let mut at = 0.0;
+    let response = command.iter().map(|u| {
+        let before = at;
+        at = sampled.step(*u);
+        before + noise * source.draw()
+    });
+    Ok(PositionLog {
+        sample_s,
+        between: Between::Held,
+        response: response.collect(),
+        command: command.to_vec(),
+    })
 }

@@ -1,9 +1,9 @@
 //! Position logs whose rows are not equally spaced: they show the modes of the machine and no others, or are refused.
 
-use crate::position::pseudo_random;
 use posicast_identify::log::{self, Log, LogError, Remark};
 use posicast_identify::position;
 use posicast_identify::synthetic::Noise;
+use posicast_identify::synthetic::pseudo_random;
 use posicast_model::mode::Mode;
 use std::fmt::Write;
 

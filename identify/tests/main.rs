@@ -8,3 +8,4 @@ mod position;
 mod position_bad;
 mod position_noise;
 mod sweep;
+mod trial;

@@ -1,10 +1,10 @@
 //! Modes with the motor held, from a drive's command and the motor's own encoder, against two masses on a screw.
 
-use crate::position::pseudo_random;
 use posicast_identify::DriveLog;
 use posicast_identify::position::PositionRemark;
 use posicast_identify::position::motor::{self, FoundAtMotor};
 use posicast_identify::synthetic::Noise;
+use posicast_identify::synthetic::pseudo_random;
 use posicast_model::plant::drive_train::{
     Amplifier, Contact, DriveTrain, DriveTrainPlant, Friction, Stribeck, TrainState, Winding, quantised,
 };

@@ -3,10 +3,9 @@
 use posicast_identify::position::arx::{self, ArxError};
 use posicast_identify::position::recursive::RecursiveArx;
 use posicast_identify::position::{self, FoundInPosition, PositionError, PositionRemark};
-use posicast_identify::synthetic::Noise;
+use posicast_identify::synthetic::{KnownMode, Noise, position_log, pseudo_random, step};
 use posicast_identify::{Between, FoundMode, PositionLog};
 use posicast_model::mode::Mode;
-use posicast_model::plant::{Plant, SampledPlant};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -23,23 +22,6 @@ fn stage() -> [Mode; 2] {
     .map(|(omega, damping)| mode(omega / TAU, damping))
 }
 
-/// Returns bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for `held` samples.
-pub(crate) fn pseudo_random(samples: usize, held: usize) -> Vec<f64> {
-    let mut register = 1u32;
-    let mut bits = Vec::new();
-    while bits.len() < samples {
-        let bit = (register >> 9 ^ register >> 6) & 1;
-        register = (register << 1 | bit) & 0x3ff;
-        bits.extend(std::iter::repeat_n(if bit == 1 { 1.0 } else { -1.0 }, held));
-    }
-    bits.truncate(samples);
-    bits
-}
-
-fn step(samples: usize) -> Vec<f64> {
-    (0..samples).map(|n| if n < samples / 10 { 0.0 } else { 1.0 }).collect()
-}
-
 fn chirp(samples: usize, sample_s: f64, low_hz: f64, high_hz: f64) -> Vec<f64> {
     let rate = (high_hz - low_hz) / (samples as f64 * sample_s);
     let phase = |n: usize| {
@@ -51,21 +33,8 @@ fn chirp(samples: usize, sample_s: f64, low_hz: f64, high_hz: f64) -> Vec<f64> {
 
 /// Returns a log of modes and their shares, with noise of the sensor.
 fn log(modes: &[(Mode, f64)], command: &[f64], sample_s: f64, noise: f64, seed: u64) -> PositionLog {
-    let plant = Plant::new(modes).unwrap();
-    let mut sampled = SampledPlant::new(&plant, sample_s, 0.0);
-    let mut source = Noise::new(seed);
-    let mut at = 0.0;
-    let response = command.iter().map(|u| {
-        let before = at;
-        at = sampled.step(*u);
-        before + noise * source.draw()
-    });
-    PositionLog {
-        sample_s,
-        between: Between::Held,
-        response: response.collect(),
-        command: command.to_vec(),
-    }
+    let modes: Vec<KnownMode> = modes.iter().map(|&(mode, share)| KnownMode { mode, share }).collect();
+    position_log(&modes, command, sample_s, noise, seed).unwrap()
 }
 
 fn close(found: &FoundMode, truth: &Mode, frequency: f64, damping: f64) -> bool {

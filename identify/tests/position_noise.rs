@@ -1,9 +1,9 @@
 //! Position logs whose noise is correlated: it is not identified as a mode, and the existing modes are as certain as
 //! stated.
 
-use crate::position::pseudo_random;
 use posicast_identify::position::{self, FoundInPosition, PositionRemark};
 use posicast_identify::synthetic::Noise;
+use posicast_identify::synthetic::pseudo_random;
 use posicast_identify::{Between, PositionLog};
 use posicast_model::mode::Mode;
 

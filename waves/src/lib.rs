@@ -26,10 +26,13 @@
 //! - [`sample`] reads given signals from a file, clock by clock.
 //! - [`merge`] puts several files into one, with their differences, for a viewer.
 //! - [`files`] lets the caller decide which files may be written.
+//! - `damage`, with the feature of this name, damages recordings at random, to test who reads them.
 //! - [`wording`] writes counts and times for people.
 
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "damage")]
+pub mod damage;
 pub mod diff;
 mod error;
 pub mod files;

@@ -1,13 +1,12 @@
-//! Damaged recordings of every producer: an error or a result, never a panic, and always the same result for the same
-//! file.
+//! Damaged recordings of every producer, as `wavecmp::damage` says: an error or a result, never a panic.
 //!
-//! Every test run has a few hundred cases, or as many as `PROPTEST_CASES` says; `fuzz/` has the same for
-//! `cargo fuzz`, without end.
+//! Every test run has a few hundred cases, or as many as `PROPTEST_CASES` says. `posicast campaign waveforms` has as many as you like;
+//! `fuzz/` has the same for `cargo fuzz`, without end.
 
 use std::path::{Path, PathBuf};
 
-use proptest::prelude::*;
-use wavecmp::diff::{self, DiffOptions, DiffVerdict};
+use wavecmp::damage::trial;
+use wavecmp::diff::{self, DiffOptions};
 
 fn recordings(extension: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/waves");
@@ -28,73 +27,16 @@ fn cases(ordinary: u32) -> u32 {
     wanted.unwrap_or(ordinary)
 }
 
-/// Words with a meaning for a parser, inserted at wrong places.
-const WORDS: [&[u8]; 12] = [
-    b"$end ",
-    b"$scope module x $end ",
-    b"$upscope $end ",
-    b"$var wire 99999999 ! y $end ",
-    b"$enddefinitions $end\n",
-    b"$dumpoff\n",
-    b"$comment ",
-    b"\n#18446744073709551615\n",
-    b"\n#18446744073709551616\n",
-    b"b",
-    b"r1e999 !\n",
-    b"\n",
-];
-
-fn damage() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, Vec<u8>)>> {
-    let bytes = prop_oneof![
-        prop::collection::vec(any::<u8>(), 0..6),
-        prop::sample::select(WORDS.to_vec()).prop_map(<[u8]>::to_vec),
-    ];
-    prop::collection::vec((any::<prop::sample::Index>(), 0usize..20, bytes), 1..6)
-}
-
-fn damaged(mut content: Vec<u8>, damage: &[(prop::sample::Index, usize, Vec<u8>)]) -> Vec<u8> {
-    for (at, length, bytes) in damage {
-        let from = at.index(content.len() + 1);
-        let to = (from + length).min(content.len());
-        content.splice(from..to, bytes.iter().copied());
-    }
-    content
-}
-
-fn survives(content: &[u8], options: &DiffOptions) -> Result<(), TestCaseError> {
-    let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), content).unwrap();
-    if let Ok(result) = diff::compare(file.path(), file.path(), options, &mut |_| {}) {
-        prop_assert_ne!(
-            result.result,
-            DiffVerdict::Different,
-            "a file differs from itself: {}",
-            result
-        );
-    }
-    Ok(())
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(200), failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn prop_damaged_vcds_are_survived(
-        which in any::<[prop::sample::Index; 2]>(),
-        cut in any::<[prop::sample::Index; 2]>(),
-        damage in damage(),
-        raw: bool,
-        spliced in prop::bool::weighted(0.3),
-    ) {
-        let recordings = recordings("vcd");
-        let [mut content, other] = which.map(|which| recordings[which.index(recordings.len())].clone());
-        if spliced {
-            // The beginning of one file with the end of another.
-            content.truncate(cut[0].index(content.len()));
-            content.extend(&other[cut[1].index(other.len())..]);
+#[test]
+fn prop_damaged_recordings_are_survived() {
+    let folder = tempfile::tempdir().unwrap();
+    for extension in ["vcd", "fst"] {
+        let recordings = recordings(extension);
+        for seed in 0..cases(200) {
+            if let Err(problem) = trial(&recordings, seed.into(), folder.path()) {
+                panic!("{extension}, seed {seed}: {problem}");
+            }
         }
-        let content = damaged(content, &damage);
-        survives(&content, &DiffOptions { raw, glitch_fs: u128::from(raw) * 3_000_000, ..DiffOptions::default() })?;
     }
 }
 

@@ -5,12 +5,14 @@
 
 mod coverage;
 mod faults;
+mod identify;
 mod lock_step;
 mod merge;
 mod mutants;
 mod netlists;
 mod proofs;
 mod sweep;
+mod waveforms;
 
 use crate::failure::Failure;
 use crate::output::{self, Table};
@@ -49,6 +51,8 @@ enum Kind {
     Proofs(proofs::Args),
     Netlists(netlists::Args),
     Coverage(coverage::Args),
+    Identify(identify::Args),
+    Waveforms(waveforms::Args),
     Sweep(sweep::Args),
     Merge(merge::Args),
 }
@@ -101,6 +105,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Kind::Proofs(args) => run_part(&proofs::of(args)?, &args.part, started),
         Kind::Netlists(args) => run_part(&netlists::of(args)?, &args.part, started),
         Kind::Coverage(args) => run_part(&coverage::of(args)?, &args.part, started),
+        Kind::Identify(args) => run_part(&identify::of(args), &args.part, started),
+        Kind::Waveforms(args) => run_part(&waveforms::of(args)?, &args.part, started),
         Kind::Sweep(args) => run_part(&sweep::of(args)?, &args.part, started),
         Kind::Merge(args) => merge::run(args),
     }
@@ -111,6 +117,12 @@ fn figures<V: Into<Value>>(list: impl IntoIterator<Item = (&'static str, V)>) ->
     list.into_iter()
         .map(|(name, value)| (name.to_owned(), value.into()))
         .collect()
+}
+
+/// Seeds of the cases of a unit that has this many. Campaigns of other seeds have none of them.
+fn case_seeds(campaign_seed: u64, unit: u64, unit_cases: u64) -> impl Iterator<Item = u64> {
+    let first = campaign_seed.rotate_left(32);
+    (unit * unit_cases..(unit + 1) * unit_cases).map(move |case| first.wrapping_add(case))
 }
 
 /// Keeps what belongs to the blocks of these names; all, if there is no name.

@@ -170,6 +170,7 @@ fn cli_campaign_names_a_broken_block_and_the_command_that_repeats_it() {
 /// The figures are those of the tables in `docs/verification.md`.
 #[test]
 fn cli_campaign_does_the_other_rungs_of_the_ladder() {
+    let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../waves/tests/fixtures/waves/icarus.vcd");
     for (words, cells) in [
         (
             &["proofs", "--block", "sample_select"][..],
@@ -180,6 +181,14 @@ fn cli_campaign_does_the_other_rungs_of_the_ladder() {
             ["divider", "20000"],
         ),
         (&["coverage", "--block", "schedule"], ["schedule", "of"]),
+        (
+            &["identify", "--logs", "1"],
+            ["logs of random machines", "1 unit, 0 failed"],
+        ),
+        (
+            &["waveforms", recording.to_str().unwrap(), "--cases", "1"],
+            ["damaged recordings", "1 unit, 0 failed"],
+        ),
     ] {
         let done = campaign(words);
         assert_eq!(done.status.code(), Some(0), "{words:?}: {}", said(&done));
@@ -210,6 +219,7 @@ fn cli_campaign_refuses_what_it_does_not_have() {
             &["faults", "--cases", "100", "--unit", "2"],
             "this campaign has 2 units",
         ),
+        (&["waveforms", "no-such-file.vcd"], "no-such-file.vcd: cannot read it"),
         (&["merge", "no-such-folder"], "no-such-folder: cannot read the folder"),
     ] {
         let refused = campaign(words);

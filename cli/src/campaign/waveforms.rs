@@ -1,0 +1,93 @@
+//! `posicast campaign waveforms`: recordings that are damaged at random and compared, a hundred a unit.
+
+use super::{Outcome, Part, Units, case_seeds, figures, hash_of};
+use crate::failure::Failure;
+use posicast_system::scratch::{Folder, PREFIX};
+use posicast_testbench::shard::MachineFileHash;
+use serde_json::{Map, Value};
+use std::path::PathBuf;
+use wavecmp::damage::{self, Survival};
+
+/// Damage recordings at random, and check that comparing them survives it
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Small recordings, VCD or FST; each case damages one of them
+    #[arg(required = true, value_name = "FILE")]
+    recordings: Vec<PathBuf>,
+    /// Number of damaged recordings, in whole units
+    #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    cases: u64,
+    #[command(flatten)]
+    pub(super) part: Part,
+}
+
+/// Number of cases of a unit: about a second.
+const UNIT_CASES: u64 = 100;
+
+struct Waveforms {
+    recordings: Vec<Vec<u8>>,
+    units: u64,
+}
+
+pub(super) fn of(args: &Args) -> Result<impl Units + use<>, Failure> {
+    let read = |path: &PathBuf| {
+        std::fs::read(path).map_err(|cause| {
+            Failure::from(miette::miette!(
+                help = "name recordings that exist, VCD or FST",
+                "{}: cannot read it: {cause}",
+                path.display()
+            ))
+        })
+    };
+    Ok(Waveforms {
+        recordings: args.recordings.iter().map(read).collect::<Result<_, _>>()?,
+        units: args.cases.div_ceil(UNIT_CASES),
+    })
+}
+
+impl Units for Waveforms {
+    fn kind(&self) -> &'static str {
+        "waveforms"
+    }
+
+    fn machine(&self) -> Option<MachineFileHash> {
+        None
+    }
+
+    fn options(&self) -> Map<String, Value> {
+        figures([
+            ("unit_cases", Value::from(UNIT_CASES)),
+            (
+                "recordings_sha256",
+                hash_of(self.recordings.iter().map(Vec::as_slice)).into(),
+            ),
+        ])
+    }
+
+    fn count(&self) -> u64 {
+        self.units
+    }
+
+    fn name(&self, _unit: u64) -> String {
+        "damaged recordings".to_owned()
+    }
+
+    fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {
+        let folder = Folder::new(PREFIX).map_err(Failure::because)?;
+        let (mut cases, mut read, mut wrong, mut first) = (0_u64, 0_u64, 0_u64, None);
+        for case_seed in case_seeds(seed, unit, UNIT_CASES) {
+            cases += 1;
+            match damage::trial(&self.recordings, case_seed, folder.path()) {
+                Ok(survival) => read += u64::from(survival == Survival::Read),
+                Err(problem) => {
+                    wrong += 1;
+                    first.get_or_insert_with(|| format!("case {case_seed}: {problem}"));
+                }
+            }
+        }
+        Ok(Outcome {
+            figures: figures([("cases", cases), ("still read", read), ("wrong", wrong)]),
+            failure: first,
+        })
+    }
+}
