@@ -12,8 +12,12 @@
 //! mutant that stays unknown, 1 if one is not listed, 2 if it cannot run, 3 if a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
+use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 use std::time::Instant;
 
 use posicast_model::{design::design_machine, hardware, machine_file};
@@ -103,29 +107,50 @@ fn mutate() -> Result<bool, Error> {
     let temporary = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
     let kept = std::env::var_os("POSICAST_MUTATE_KEEP").map(PathBuf::from);
     let folder = kept.clone().unwrap_or_else(|| temporary.clone());
-    let mut rows = Vec::new();
-    for (at, subject) in subjects.iter().enumerate() {
-        let start = Instant::now();
-        let name = subject.block().name();
-        let fates = run(subject, &options, &folder.join(format!("{at}_{name}")))?;
-        let row = MutationRow::new(subject, &fates);
-        eprintln!(
-            "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
-            subject.size(),
-            row.mutants,
-            row.lockstep,
-            row.property,
-            row.equivalent,
-            row.unknown.len(),
-            start.elapsed().as_secs_f64()
-        );
-        if write {
-            // The subjects run one by one, so that finished results are not lost if a later one fails.
-            let subjects = all()?;
-            MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &subjects))?;
+    let count = subjects.len();
+    // A thread that is done with a block takes the next one.
+    let (next, written) = (AtomicUsize::new(0), Mutex::new(()));
+    let worker = || -> Result<Vec<(usize, MutationRow)>, Error> {
+        let mut rows = Vec::new();
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            if at >= count {
+                return Ok(rows);
+            }
+            let subject = &subjects[at];
+            let start = Instant::now();
+            let name = subject.block().name();
+            let fates = run(subject, &options, &folder.join(format!("{at}_{name}")))?;
+            let row = MutationRow::new(subject, &fates);
+            let _one_by_one = written.lock().unwrap_or_else(PoisonError::into_inner);
+            eprintln!(
+                "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
+                subject.size(),
+                row.mutants,
+                row.lockstep,
+                row.property,
+                row.equivalent,
+                row.unknown.len(),
+                start.elapsed().as_secs_f64()
+            );
+            if write {
+                // Each row is written as soon as it is there, so that finished results are not lost if a later one fails.
+                MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &subjects))?;
+            }
+            rows.push((at, row));
         }
-        rows.push(row);
-    }
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from).min(count);
+    let mut rows = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        let rows = workers
+            .into_iter()
+            .map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        rows.collect::<Result<Vec<_>, Error>>()
+    })?
+    .concat();
+    rows.sort_by_key(|(at, _)| *at);
+    let rows: Vec<MutationRow> = rows.into_iter().map(|(_, row)| row).collect();
     if kept.is_none() {
         // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
         let _ = std::fs::remove_dir_all(&temporary);

@@ -35,7 +35,10 @@ impl Without {
     }
 }
 
-/// Compares, for at most about fifteen times `limit`.
+/// Time limit of ABC's `dprove`, which is done in seconds or never.
+const DPROVE_LIMIT: Duration = Duration::from_secs(30);
+
+/// Compares, for at most about eight times `limit`.
 ///
 /// It first compares without memories and multipliers; if that gives no proof, with the multipliers, then with the
 /// memories too, as registers that begin as 0 in both. The module of the mutant is always included.
@@ -47,51 +50,70 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
         ways.push(Without::Nothing);
     }
-    let mut verdict = EquivalenceVerdict::Unknown;
-    for without in ways {
-        netlist.yosys("miter", &miter(netlist.top(), mutant, without))?;
-        verdict = prove(netlist, limit)?;
-        if verdict == EquivalenceVerdict::Equivalent {
-            break;
+    for without in &ways {
+        netlist.yosys("miter", &miter(netlist.top(), mutant, *without))?;
+        if prove(netlist, limit)? {
+            return Ok(EquivalenceVerdict::Equivalent);
         }
     }
-    Ok(verdict)
+    // A difference counts only where the least is left out.
+    let commands = format!("read_aiger merged.aig; bmc3 -T {}", seconds(limit));
+    let said = abc(netlist, &commands, limit.saturating_mul(2))?;
+    let clock = said.and_then(|said| asserted(&said).next()).map(|(_, clock)| clock);
+    Ok(
+        clock.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
+            clock,
+        }),
+    )
 }
 
-/// Result for `miter.aig`.
-fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<EquivalenceVerdict, Error> {
+/// Whether `miter.aig` is proven to have no difference.
+fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<bool, Error> {
     // Signals that are equal in both, by induction, are merged; the remainder is small, and mostly empty. Counters
     // that never get far are quick with BDDs and slow with PDR, which needs a clause for each value.
     let at = |name: &str| netlist.folder().join(name);
     // If the first engine does not finish, the others use its input.
     std::fs::copy(at("miter.aig"), at("merged.aig")).map_err(Error::file(&at("merged.aig"), "write"))?;
-    let seconds = limit.as_secs().max(1);
     let engines = [
-        format!(
-            "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
+        (
+            format!(
+                "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
+            ),
+            limit.saturating_mul(2),
         ),
         // Induction, retiming and reachability in turn succeed soon or never.
-        "read_aiger merged.aig; dprove -T 5".to_owned(),
-        format!("read_aiger merged.aig; pdr -m -T {seconds}"),
-        format!("read_aiger merged.aig; bmc3 -T {seconds}"),
+        ("read_aiger merged.aig; dprove -T 5".to_owned(), DPROVE_LIMIT),
+        (
+            format!("read_aiger merged.aig; pdr -m -T {}", seconds(limit)),
+            limit.saturating_mul(2),
+        ),
     ];
-    for commands in engines {
-        let mut abc = ABC.command_in(netlist.folder());
-        abc.args(["-c", &commands]);
-        let Some(said) = ABC.run_within(&mut abc, "comparing a mutant", limit.saturating_mul(2))? else {
+    for (commands, limit) in engines {
+        let Some(said) = abc(netlist, &commands, limit)? else {
             continue;
         };
         if ["Property proved", "proved unreachable", "Networks are equivalent"]
             .iter()
             .any(|proof| said.contains(proof))
         {
-            return Ok(EquivalenceVerdict::Equivalent);
+            return Ok(true);
         }
-        if let Some((_, clock)) = asserted(&said).next() {
-            return Ok(EquivalenceVerdict::Different { clock });
+        if asserted(&said).next().is_some() {
+            return Ok(false);
         }
     }
-    Ok(EquivalenceVerdict::Unknown)
+    Ok(false)
+}
+
+fn seconds(limit: Duration) -> u64 {
+    limit.as_secs().max(1)
+}
+
+/// What ABC says; `None` if it did not end in time.
+fn abc(netlist: &Netlist<'_>, commands: &str, limit: Duration) -> Result<Option<String>, Error> {
+    let mut abc = ABC.command_in(netlist.folder());
+    abc.args(["-c", commands]);
+    ABC.run_within(&mut abc, "comparing a mutant", limit)
 }
 
 /// The script that writes `miter.aig`, whose one output tells that an output differs.
