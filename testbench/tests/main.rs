@@ -38,4 +38,5 @@ mod stage_run;
 mod support;
 mod trace;
 mod uart_bridge;
+mod verification_page;
 mod wrong_sign;
