@@ -151,6 +151,14 @@ fn cli_verify_that_exercised_too_little_says_what_and_is_no_match() {
     assert_eq!(enough.status.code(), Some(0), "{}", said(&enough));
 }
 
+/// The group of a machine with one axis has an output that no input can change.
+#[test]
+fn cli_verify_of_a_single_axis_has_a_verdict() {
+    let single = verify(&example("ball-screw.toml"), &["--block", "group", "--cycles", "20000"]);
+    assert_eq!(single.status.code(), Some(0), "{}", said(&single));
+    assert_eq!(json(&single.stdout)["not_exercised"], serde_json::json!([]));
+}
+
 #[test]
 fn cli_verify_of_a_folder_finds_a_fault_latch_that_needs_the_clock() {
     let folder = tempfile::tempdir().unwrap();

@@ -223,4 +223,11 @@ impl Block for PartBlock {
     fn coverage(&self) -> Box<dyn Bins + '_> {
         Box::new(Changes::new(&self.ports()))
     }
+
+    fn fixed(&self) -> Vec<(String, &'static str)> {
+        match self.part {
+            SmallPart::Group(1) => vec![("group_stop_0".to_owned(), "no other axis can stop a single one")],
+            _ => Vec::new(),
+        }
+    }
 }
