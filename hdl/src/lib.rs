@@ -28,6 +28,7 @@
 //! | [`linear_scale`] | the linear scale: compares motor and scale; deviation, position, velocity |
 //! | [`trace`] | the trace memory: records signals of an axis, tick by tick, around a trigger |
 //! | [`uart_bridge`] | the bridge from a serial line to the registers |
+//! | [`spi_bridge`] | the bridge from SPI to the registers |
 //! | [`linked_stage`] | the stage with that bridge |
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
@@ -46,6 +47,7 @@ pub mod excitation;
 pub mod group;
 mod kernel;
 pub mod linear_scale;
+mod link_frames;
 pub mod linked_stage;
 pub mod machine;
 pub(crate) mod prelude;
@@ -60,6 +62,7 @@ pub mod setting_banks;
 pub mod shaper;
 mod simulation;
 pub mod sliding_mode;
+pub mod spi_bridge;
 pub mod time_base;
 pub mod trace;
 pub mod uart_bridge;

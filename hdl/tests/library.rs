@@ -7,7 +7,7 @@ use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
     axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group,
     linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper,
-    sliding_mode, time_base, trace, uart_bridge,
+    sliding_mode, spi_bridge, time_base, trace, uart_bridge,
 };
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
@@ -123,6 +123,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         encoder_generator::emit(prefix),
         excitation::emit(prefix),
         uart_bridge::emit(prefix),
+        spi_bridge::emit(prefix),
     ];
     let components = [
         Component::shaper(shaper).unwrap(),

@@ -20,6 +20,7 @@ mod segments;
 mod shaper_rusthdl;
 mod shaper_verilog;
 mod sliding_mode;
+mod spi_bridge;
 mod stimulus;
 mod trace;
 mod uart_bridge;

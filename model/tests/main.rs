@@ -46,6 +46,7 @@ mod shaper_prop;
 mod shaper_protocol;
 mod sliding_mode;
 mod smooth;
+mod spi_bridge;
 mod stage;
 mod stiction;
 mod supervision;

@@ -2,14 +2,14 @@
 
 use posicast_model::rtl::{
     Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, error_table,
-    excitation, linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, trace, uart_bridge,
+    excitation, linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, spi_bridge, trace, uart_bridge,
 };
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 13] = [
+const DATASHEETS: [(&str, PortList); 14] = [
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
@@ -21,6 +21,7 @@ const DATASHEETS: [(&str, PortList); 13] = [
     ("pwm", pwm::PORTS),
     ("segments", segments::PORTS),
     ("sliding_mode", sliding_mode::PORTS),
+    ("spi_bridge", spi_bridge::PORTS),
     ("trace", trace::PORTS),
     ("uart_bridge", uart_bridge::PORTS),
 ];

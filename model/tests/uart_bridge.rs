@@ -1,37 +1,10 @@
 //! The cycle-accurate model of the bridge compared with the model that knows bytes only, and its times.
 
+use crate::support::link::{REGISTERS, Registers, request};
 use crate::support::random_inputs::Random;
 
-use posicast_model::link::{Bus, LinkBridge, MOST_WORDS, Request};
+use posicast_model::link::{Bus, LinkBridge, Request};
 use posicast_model::rtl::uart_bridge::{Inputs, Outputs, UartBridge, UartBridgeConfig};
-
-const REGISTERS: u16 = 64;
-
-/// Registers that count their accesses.
-#[derive(Clone, PartialEq, Debug)]
-struct Registers {
-    words: [u32; REGISTERS as usize],
-    accesses: u32,
-}
-
-impl Registers {
-    const NEW: Self = Self {
-        words: [0; REGISTERS as usize],
-        accesses: 0,
-    };
-}
-
-impl Bus for Registers {
-    fn read(&mut self, address: u16) -> u32 {
-        self.accesses += 1;
-        self.words[usize::from(address)]
-    }
-
-    fn write(&mut self, address: u16, word: u32) {
-        self.accesses += 1;
-        self.words[usize::from(address)] = word;
-    }
-}
 
 /// The bridge with its registers, and a host's receiver at its line.
 struct Bench {
@@ -144,22 +117,6 @@ impl Bench {
             quiet = if outputs.busy || !outputs.uart_tx { 0 } else { quiet + 1 };
         }
         std::mem::take(&mut self.heard)
-    }
-}
-
-fn request(random: &mut Random) -> Request {
-    let most = if random.below(8) == 0 { u64::from(MOST_WORDS) } else { 4 };
-    let count = 1 + random.below(most) as u8;
-    let address = random.below(u64::from(REGISTERS)) as u16;
-    let words: Vec<u32> = (0..count)
-        .map(|_| random.next() as u32 & random.next() as u32 & random.next() as u32)
-        .collect();
-    let places: Vec<u16> = (0..count).map(|_| random.below(u64::from(REGISTERS)) as u16).collect();
-    match random.below(4) {
-        0 => Request::Read { address, count },
-        1 => Request::Write { address, words },
-        2 => Request::ReadList(places),
-        _ => Request::WriteList(places.into_iter().zip(words).collect()),
     }
 }
 

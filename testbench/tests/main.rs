@@ -29,6 +29,7 @@ mod registers;
 mod segments;
 mod shaper;
 mod sliding_mode;
+mod spi_bridge;
 mod stage;
 mod stage_bring_up;
 mod stage_guards;

@@ -48,6 +48,7 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
             ("encoder_generator", "alone"),
             ("excitation", "alone"),
             ("uart_bridge", "alone"),
+            ("spi_bridge", "alone"),
             ("drive_command", "alone"),
             ("linear_scale", "alone"),
         ] {

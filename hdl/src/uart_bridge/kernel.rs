@@ -1,11 +1,8 @@
 //! The bridge: serial line, frames, bus.
 
-use super::crc::Crc;
-use super::decoder::FrameDecoder;
 use super::receiver::Receiver;
-use super::reply::Reply;
-use super::sequencer::Sequencer;
 use super::transmitter::Transmitter;
+use crate::link_frames::{Crc, FrameDecoder, Reply, Sequencer};
 use crate::prelude::*;
 
 kernel! {

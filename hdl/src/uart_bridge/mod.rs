@@ -6,17 +6,10 @@
 //! |---|---|
 //! | `kernel` | divides the clock, and joins the others |
 //! | `receiver`, `transmitter` | the line |
-//! | `decoder` | COBS of the request, which it stores |
-//! | `crc` | the checksum of both |
-//! | `sequencer` | checks, executes, replies |
-//! | `reply` | COBS of the reply, which it stores |
+//! | those of `link_frames` | from bytes to the bus and back, shared with [`spi_bridge`](crate::spi_bridge) |
 
-mod crc;
-mod decoder;
 mod kernel;
 mod receiver;
-mod reply;
-mod sequencer;
 mod transmitter;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};

@@ -1,6 +1,7 @@
 //! Machines for the tests of the mathematics, written as machine files.
 
 pub(crate) mod golden;
+pub(crate) mod link;
 pub(crate) mod plain;
 pub(crate) mod random_inputs;
 pub(crate) mod stage;

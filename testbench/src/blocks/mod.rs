@@ -42,6 +42,7 @@ mod shaper;
 mod short_ticks;
 mod sliding_mode;
 mod sources;
+mod spi_bridge;
 mod stage;
 mod trace;
 mod uart_bridge;
@@ -69,6 +70,7 @@ pub use self::shaper::{MachineShapers, ShaperBlock};
 pub use self::short_ticks::ShortTicksBlock;
 pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
+pub use self::spi_bridge::SpiBridgeBlock;
 pub use self::stage::StageBlock;
 pub use self::trace::TraceBlock;
 pub use self::uart_bridge::UartBridgeBlock;
@@ -348,6 +350,9 @@ fn not_in_rusthdl(block: &'static str) -> SimulationError {
 }
 
 /// Converts names and counts to the form of a report.
-fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u64)> {
-    counts.map(|(name, count)| (name.to_owned(), count)).to_vec()
+fn named<'a>(counts: impl IntoIterator<Item = (&'a str, u64)>) -> Vec<(String, u64)> {
+    counts
+        .into_iter()
+        .map(|(name, count)| (name.to_owned(), count))
+        .collect()
 }

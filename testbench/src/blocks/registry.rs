@@ -18,14 +18,14 @@ use posicast_model::rtl::stage::StageConfig;
 
 use super::{
     Block, ComponentBlock, axis, cascade, component, divider, drive_command, encoder_generator, error_table,
-    excitation, linear_scale, part, pulse_counter, pwm, registers, segments, shaper, sliding_mode, stage, trace,
-    uart_bridge,
+    excitation, linear_scale, part, pulse_counter, pwm, registers, segments, shaper, sliding_mode, spi_bridge, stage,
+    trace, uart_bridge,
 };
 use crate::Error;
 use crate::formal::Task;
 
 /// Every kind of block, in the order of `posicast verify`.
-const REGISTRY: [RegistryRow; 24] = [
+const REGISTRY: [RegistryRow; 25] = [
     pulse_counter::ROW,
     divider::ROW,
     pwm::ROW,
@@ -41,6 +41,7 @@ const REGISTRY: [RegistryRow; 24] = [
     encoder_generator::ROW,
     excitation::ROW,
     uart_bridge::ROW,
+    spi_bridge::ROW,
     part::TIME_BASE,
     part::SCHEDULE,
     part::DIVIDER_SHARE,

@@ -26,6 +26,7 @@ mod exercise;
 mod fill;
 mod layout;
 mod linear_scale;
+mod link_host;
 mod linked_stage;
 mod motion;
 mod part;
@@ -35,6 +36,7 @@ mod random;
 mod registers;
 mod segments;
 mod sliding_mode;
+mod spi_bridge;
 mod table;
 mod trace;
 mod uart_bridge;
@@ -65,6 +67,7 @@ pub use self::registers::{
 };
 pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
+pub use self::spi_bridge::{SpiBridgeCoverage, SpiBridgeRandom};
 pub use self::trace::{TraceCoverage, TraceRandom};
 pub use self::uart_bridge::{UartBridgeCoverage, UartBridgeRandom};
 

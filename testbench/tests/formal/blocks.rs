@@ -63,6 +63,21 @@ fn formal_uart_bridge() {
 }
 
 #[test]
+fn formal_spi_bridge() {
+    proven("spi_bridge", 0);
+}
+
+#[test]
+fn formal_a_byte_that_goes_on_in_the_next_selection_is_found() {
+    fails(
+        "spi_bridge",
+        "place_next = FIRST_PLACE",
+        "place_next = place",
+        "known_lines",
+    );
+}
+
+#[test]
 fn formal_uart_sequencer() {
     proven("uart_sequencer", 0);
 }

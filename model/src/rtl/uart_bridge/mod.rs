@@ -15,7 +15,7 @@
 //! | `Eighths` | divides the clock into eighths of a bit, from a fraction: no eighth is off by more than a clock |
 //! | `Receiver` | votes on three successive eighths; takes each bit in its middle |
 //! | [`FrameDecoder`](crate::link::FrameDecoder) | bytes to requests; shared with the model of the frames |
-//! | `Sequencer` | looks at a request, begins the reply, executes, ends the reply, sends it |
+//! | `Sequencer` | looks at a request, begins the reply, executes, ends the reply, sends it; with the decoder in `link_frames`, shared with [`spi_bridge`](super::spi_bridge) |
 //! | `Transmitter` | bytes to bits |
 //!
 //! The reply stays in its memory. If the same request comes again, it is sent again.
@@ -52,29 +52,20 @@
 mod config;
 mod line;
 mod ports;
-mod sequencer;
 
 pub use config::{BAUD, MOST_BAUD_ERROR, SILENCE_BIT_TIMES, UartBridgeConfig, UartBridgeConfigError};
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, SILENCE_BITS, STEP_BITS, ports};
 
 use self::line::{Eighths, Receiver, Transmitter};
-use self::sequencer::Sequencer;
 use super::clocked_block;
-use crate::link::{FrameDecoder, FrameEnd};
+use super::link_frames::{Frames, Heard, Registers};
 
 /// The cycle-accurate model of the bridge.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct UartBridge {
     eighths: Eighths,
     receiver: Receiver,
-    frame: FrameDecoder,
-    /// Eighths of a bit since the last byte.
-    silence: u32,
-    /// A whole frame has ended.
-    request: bool,
-    frame_dropped: bool,
-    dropped: u8,
-    sequencer: Sequencer,
+    frames: Frames,
     transmitter: Transmitter,
 }
 
@@ -86,16 +77,15 @@ impl UartBridge {
 
     /// The outputs in a clock with these inputs.
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
-        let accesses = self.sequencer.accesses(inputs.address_limit);
-        let writes = self.frame.header().writes();
+        let asked = self.frames.asked(inputs.address_limit);
         Outputs {
             uart_tx: self.transmitter.line,
-            avm_address: self.sequencer.address,
-            avm_read: accesses && !writes,
-            avm_write: accesses && writes,
-            avm_writedata: self.sequencer.data,
-            busy: self.sequencer.is_busy(),
-            frame_dropped: self.frame_dropped,
+            avm_address: asked.address,
+            avm_read: asked.read,
+            avm_write: asked.write,
+            avm_writedata: asked.writedata,
+            busy: asked.busy,
+            frame_dropped: asked.frame_dropped,
         }
     }
 
@@ -110,42 +100,22 @@ impl UartBridge {
         let Receiver {
             byte, received, bad, ..
         } = self.receiver;
-        let byte = received.then_some(byte);
-        let busy = self.sequencer.is_busy();
-
-        let sent = self.sequencer.clock(
-            self.request,
-            (&self.frame, self.dropped),
-            inputs,
-            self.transmitter.is_busy(),
-        );
+        let heard = Heard {
+            byte: received.then_some(byte),
+            bad,
+            tick,
+        };
+        let registers = Registers {
+            silence_limit: inputs.silence_limit,
+            address_limit: inputs.address_limit,
+            readdata: inputs.avm_readdata,
+            waitrequest: inputs.avm_waitrequest,
+        };
+        let sent = self.frames.clock(heard, &registers, self.transmitter.is_busy());
         self.transmitter.clock(tick, sent);
-        self.decode(byte, bad, busy, inputs.silence_limit);
-        self.silence = match byte {
-            Some(_) => 0,
-            None => self.silence + u32::from(tick && self.silence != inputs.silence_limit),
-        } & ((1 << SILENCE_BITS) - 1);
         self.receiver.clock(tick, inputs.uart_rx);
         self.eighths.clock(inputs.baud_step);
         shown
-    }
-
-    fn decode(&mut self, byte: Option<u8>, bad: bool, busy: bool, silence_limit: u32) {
-        if self.silence == silence_limit {
-            self.frame.expire();
-        }
-        if bad {
-            self.frame.spoil();
-        }
-        let end = byte.and_then(|byte| {
-            if busy && byte != crate::link::DELIMITER {
-                self.frame.spoil();
-            }
-            self.frame.byte(byte)
-        });
-        self.request = end == Some(FrameEnd::Whole);
-        self.frame_dropped = end == Some(FrameEnd::Dropped);
-        self.dropped = self.dropped.wrapping_add(u8::from(self.frame_dropped));
     }
 }
 

@@ -5,7 +5,7 @@ use crate::rtl::ports;
 /// Width of `baud_step` in bits, all of them behind the point.
 pub const STEP_BITS: u32 = 16;
 /// Width of `silence_limit` in bits.
-pub const SILENCE_BITS: u32 = 20;
+pub const SILENCE_BITS: u32 = crate::rtl::link_frames::SILENCE_BITS;
 
 ports! {
     uart_bridge_ports;

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use posicast_model::link::{CRC_START, POLYNOMIAL, RESIDUE};
 
 kernel! {
-    pub(super) struct Crc;
+    pub(crate) struct Crc;
 
     inputs { rst: Bit, renew: Bit, take: Bit, data: Bits<8> }
     outputs { crc: Bits<32>, holds: Bit, idle: Bit }

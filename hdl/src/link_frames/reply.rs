@@ -6,7 +6,7 @@
 use crate::prelude::*;
 
 kernel! {
-    pub(super) struct Reply;
+    pub(crate) struct Reply;
 
     inputs { rst: Bit, renew: Bit, put: Bit, data: Bits<8>, close: Bit, read_address: Bits<8> }
     outputs { bytes: Bits<8>, read_data: Bits<8> }

@@ -1,6 +1,6 @@
 //! The sequencer: checks a request, executes it, and writes the reply.
 
-use super::Inputs;
+use super::Registers;
 use crate::link::{CRC_BYTES, Crc, FrameDecoder, LinkStatus, REPLY_HEADER_BYTES, REQUEST_HEADER_BYTES};
 
 /// Clocks in which the CRC takes a byte.
@@ -107,8 +107,8 @@ impl Sequencer {
         &mut self,
         request: bool,
         (frame, dropped): (&FrameDecoder, u8),
-        inputs: &Inputs,
-        transmitter_busy: bool,
+        registers: &Registers,
+        sender_busy: bool,
     ) -> Option<u8> {
         let crc_left = self.crc_left;
         self.crc_left = crc_left.saturating_sub(1);
@@ -148,17 +148,17 @@ impl Sequencer {
                 }
             }
             Phase::Access => {
-                let exists = self.address < inputs.address_limit;
+                let exists = self.address < registers.address_limit;
                 if self.looks || !exists {
                     self.phase = Phase::Next;
                     if !exists {
                         self.status = LinkStatus::WrongAddress;
                         self.phase = Phase::Head;
                     }
-                } else if !inputs.avm_waitrequest {
+                } else if !registers.waitrequest {
                     self.phase = Phase::Next;
                     if !header.writes() {
-                        self.data = inputs.avm_readdata;
+                        self.data = registers.readdata;
                         self.part = Part::Word;
                         self.phase = Phase::Put;
                     }
@@ -205,7 +205,7 @@ impl Sequencer {
             }
             Phase::Send => {
                 self.ready = true;
-                if ready && !transmitter_busy {
+                if ready && !sender_busy {
                     return Some(self.sent());
                 }
             }

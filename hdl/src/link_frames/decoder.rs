@@ -7,7 +7,7 @@ use crate::prelude::*;
 use posicast_model::link::MOST_REQUEST_BYTES;
 
 kernel! {
-    pub(super) struct FrameDecoder;
+    pub(crate) struct FrameDecoder;
 
     inputs {
         rst: Bit,

@@ -12,7 +12,7 @@ use crate::prelude::*;
 use posicast_model::link::{LinkStatus, MOST_WORDS, VERSION};
 
 kernel! {
-    pub(super) struct Sequencer;
+    pub(crate) struct Sequencer;
 
     inputs {
         rst: Bit,

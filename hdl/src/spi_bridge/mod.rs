@@ -1,0 +1,48 @@
+//! The bridge from SPI to the registers in hardware.
+//!
+//! The datasheet is `docs/spi_bridge.md`, the reference `posicast_model::rtl::spi_bridge`.
+//!
+//! | kernel | what it does |
+//! |---|---|
+//! | `kernel` | counts the time-out's units, and joins the others |
+//! | `line` | the SPI lines: bytes from the host, and bytes for it |
+//! | those of `link_frames` | from bytes to the bus and back, shared with [`uart_bridge`](crate::uart_bridge) |
+
+mod kernel;
+mod line;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::SpiBridge;
+use posicast_model::rtl::spi_bridge::{PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
+
+/// The bridge in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds an error in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(SpiBridge::default());
+    Ok(Box::new(Simulated::new("spi_bridge", block, ports())?))
+}
+
+/// The bridge's Verilog, one module per file, the top last.
+///
+/// The top is called `posicast_spi_bridge`, or `spi_bridge` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "spi_bridge".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Bridge from SPI (mode 0) to registers: frames with COBS and CRC-32, Avalon-MM host.\n\
+                    Reads and writes words only for a whole frame whose CRC holds."
+                .to_owned(),
+            ports: port_notes(PORTS),
+            parameters: Vec::new(),
+        },
+    };
+    emit::emit(&SpiBridge::default(), &options)
+}

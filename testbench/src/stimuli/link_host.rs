@@ -1,0 +1,213 @@
+//! A host of the link, whatever its line is: requests of every kind, right and wrong, frames that are damaged in every way; and what
+//! such a run must reach.
+
+use posicast_model::link::{Crc, MOST_WORDS, Request, cobs};
+use posicast_model::rtl::uart_bridge::OUTPUT_PORTS;
+use rand::{Rng, RngExt};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::table::pick;
+
+/// Places of outputs, which all bridges have.
+const ADDRESS: usize = 1;
+const READ: usize = 2;
+const WRITE: usize = 3;
+pub(super) const BUSY: usize = 5;
+const DROPPED: usize = 6;
+
+pub(super) fn one_in(rng: &mut Xoshiro256PlusPlus, times: u32) -> bool {
+    rng.random_range(0..times) == 0
+}
+
+/// A word with many zeros.
+pub(super) fn word(rng: &mut Xoshiro256PlusPlus) -> u32 {
+    let any = rng.next_u32();
+    *pick(rng, &[any, any, any & 0xff00_ff00, any & 0xff, any << 24, 0])
+}
+
+/// Makes the frames of a host.
+#[derive(Debug, Clone)]
+pub(super) struct LinkHost {
+    pub(super) address_limit: u16,
+    sequence: u8,
+    last_frame: Vec<u8>,
+}
+
+impl LinkHost {
+    /// A host of registers below 300.
+    pub(super) fn new() -> Self {
+        Self {
+            address_limit: 300,
+            sequence: 0,
+            last_frame: Vec::new(),
+        }
+    }
+
+    fn address(&self, rng: &mut Xoshiro256PlusPlus) -> u16 {
+        let limit = self.address_limit;
+        let any = rng.next_u32() as u16;
+        let inside = any % limit.max(1);
+        *pick(
+            rng,
+            &[inside, inside, inside, inside, inside, inside, 0, limit.wrapping_sub(1)],
+        )
+    }
+
+    fn request(&self, rng: &mut Xoshiro256PlusPlus) -> Request {
+        let any = rng.random_range(1..=MOST_WORDS);
+        let count = match rng.random_range(0..24) {
+            0 => any,
+            1..=3 => MOST_WORDS,
+            _ => 1 + any % 3,
+        };
+        let words: Vec<u32> = (0..count).map(|_| word(rng)).collect();
+        let list: Vec<u16> = (0..count).map(|_| self.address(rng)).collect();
+        let address = list[0].saturating_sub(u16::from(count) - u16::from(!one_in(rng, 8)));
+        match rng.random_range(0..4) {
+            0 => Request::Read { address, count },
+            1 => Request::Write { address, words },
+            2 => Request::ReadList(list),
+            _ => Request::WriteList(list.into_iter().zip(words).collect()),
+        }
+    }
+
+    /// A frame whose CRC holds, but which is no request.
+    fn no_request(&self, rng: &mut Xoshiro256PlusPlus) -> Vec<u8> {
+        let [any, other] = [rng.next_u32(), rng.next_u32()];
+        let command = *pick(rng, &[0x10, 0x11, 0x12, 0x13, 0x14, 0x11 ^ (1 << (any % 8)) as u8]);
+        let count = *pick(rng, &[0, 1, 2, 41, 64, other as u8]);
+        let length = *pick(rng, &[9, 13, 8, 10, other as usize % 250]);
+        let sequence = *pick(rng, &[self.sequence, 0, any as u8]);
+        let write_without_sequence = (0, 0x11, 1, 13);
+        let (sequence, command, count, length) = match one_in(rng, 4) {
+            true => write_without_sequence,
+            false => (sequence, command, count, length),
+        };
+        let mut bytes = vec![sequence, command, count];
+        bytes.resize(length.saturating_sub(4), any as u8);
+        bytes.extend(Crc::of(&bytes).to_le_bytes());
+        let mut frame = cobs::encode(&bytes).unwrap_or_default();
+        frame.push(0);
+        frame
+    }
+
+    pub(super) fn frame(&mut self, rng: &mut Xoshiro256PlusPlus) -> Vec<u8> {
+        if one_in(rng, 6) && !self.last_frame.is_empty() {
+            return self.last_frame.clone();
+        }
+        if one_in(rng, 8) {
+            return self.no_request(rng);
+        }
+        // A count from 0 alone would seldom come to the upper bits: it begins anew too often.
+        self.sequence = match rng.random_range(0..20) {
+            0 => 0,
+            1 | 2 => rng.random(),
+            _ => self.sequence % 255 + 1,
+        };
+        let request = self.request(rng);
+        let sequence = if request.is_write() {
+            self.sequence.max(1)
+        } else {
+            self.sequence
+        };
+        self.last_frame = request.encode(sequence).unwrap_or_default();
+        self.last_frame.clone()
+    }
+}
+
+/// Damages a frame, or puts something before it.
+pub(super) fn damage(rng: &mut Xoshiro256PlusPlus, frame: &mut Vec<u8>) {
+    let place = rng.random_range(0..frame.len());
+    match rng.random_range(0..8) {
+        0 => {
+            frame.remove(place);
+        }
+        1 => frame.insert(place, frame[place]),
+        2 => frame[place] ^= 1 << rng.random_range(0..8),
+        3 => frame.insert(place, 0),
+        4 => frame.insert(place, 0xff),
+        5 => frame.insert(0, 0),
+        6 => frame.truncate(place),
+        _ => {
+            // A frame that is too long.
+            let byte = 1 + rng.random_range(0..254_u8);
+            let length = rng.random_range(245..260);
+            frame.splice(0..0, vec![byte; length]);
+        }
+    }
+}
+
+/// What a bridge hears in a clock, and its registers' side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeardClock {
+    pub(super) rst: u64,
+    /// The host says something.
+    pub(super) speaks: bool,
+    pub(super) address_limit: u64,
+    pub(super) waits: bool,
+}
+
+/// Counts of the events in a lockstep run of a bridge.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct BridgeCoverage {
+    was_busy: bool,
+    /// Words accessed by the request.
+    words: u64,
+    resets: u64,
+    resets_while_busy: u64,
+    requests: u64,
+    without_access: u64,
+    read: u64,
+    written: u64,
+    waited: u64,
+    of_most_words: u64,
+    at_the_last_address: u64,
+    dropped: u64,
+    spoken_while_busy: u64,
+}
+
+impl BridgeCoverage {
+    /// Adds a clock.
+    pub(super) fn observe(&mut self, heard: HeardClock, outputs: &[u64; OUTPUT_PORTS]) {
+        let HeardClock { rst, waits, .. } = heard;
+        let [reads, writes, busy] = [READ, WRITE, BUSY].map(|output| outputs[output] != 0);
+        self.resets += rst;
+        self.resets_while_busy += rst & outputs[BUSY];
+        self.dropped += outputs[DROPPED];
+        self.spoken_while_busy += u64::from(busy && heard.speaks);
+        let accesses = (reads || writes) && !waits;
+        self.waited += u64::from((reads || writes) && waits);
+        self.read += u64::from(reads && accesses);
+        self.written += u64::from(writes && accesses);
+        self.at_the_last_address += u64::from(accesses && outputs[ADDRESS] + 1 == heard.address_limit);
+        if busy && !self.was_busy {
+            (self.requests, self.words) = (self.requests + 1, 0);
+        }
+        self.words += u64::from(accesses);
+        if !busy && self.was_busy {
+            self.without_access += u64::from(self.words == 0);
+            self.of_most_words += u64::from(self.words == u64::from(MOST_WORDS));
+        }
+        self.was_busy = busy && rst == 0;
+    }
+
+    /// Returns each event's name and count.
+    pub(super) fn counts(&self) -> [(&'static str, u64); 11] {
+        [
+            ("resets", self.resets),
+            ("resets while busy", self.resets_while_busy),
+            ("requests", self.requests),
+            ("requests that are refused or repeated", self.without_access),
+            ("words read", self.read),
+            ("words written", self.written),
+            ("clocks that the registers wait", self.waited),
+            ("requests of 40 words", self.of_most_words),
+            ("accesses to the last address", self.at_the_last_address),
+            ("frames dropped", self.dropped),
+            (
+                "clocks in which the host speaks to a busy bridge",
+                self.spoken_while_busy,
+            ),
+        ]
+    }
+}
