@@ -135,7 +135,9 @@ fn mutate() -> Result<bool, Error> {
             );
             if write {
                 // Each row is written as soon as it is there, so that finished results are not lost if a later one fails.
-                MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &subjects))?;
+                // The rows of all blocks stay, not only of those that were chosen.
+                let everything = all()?;
+                MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &everything))?;
             }
             rows.push((at, row));
         }
