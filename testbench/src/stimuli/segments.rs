@@ -30,8 +30,9 @@ const PACES: [u32; 8] = [
 /// last long enough.
 const OVERFLOWS: [i64; 2] = [(1 << 39) - 1, -(1 << 39)];
 
-/// Number of random moods before the first overflow.
+/// Number of random moods before the first overflow. The mood after the last overflow starves.
 const OVERFLOW_MOOD: u64 = 8;
+const STARVING_MOOD: u64 = OVERFLOW_MOOD + OVERFLOWS.len() as u64;
 
 /// Settings that hold for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -49,6 +50,8 @@ struct Mood {
     /// Pace of the feed hold: never, always, or about every other tick.
     hold_pace: u32,
     extrapolation: u64,
+    /// Whether nothing is written after the words that wait already.
+    starves: bool,
 }
 
 /// An endless random mixture of all inputs.
@@ -93,6 +96,7 @@ impl SegmentsRandom {
             modulo: rng.random_range(0..2),
             hold_pace: *pick(rng, &[0, 0, 0, 1, 60, 60]),
             extrapolation: *pick(rng, &[0, 0, 1, 2, 5, 255]),
+            starves: false,
         };
     }
 
@@ -117,6 +121,39 @@ impl SegmentsRandom {
                 .words(),
             );
             self.words.extend(words.map(|(word, data)| (word, u64::from(data))));
+        }
+    }
+
+    /// Fills the whole FIFO with one batch after one that is too large, and then leaves its slow motion to be
+    /// extrapolated: random batches seldom find the FIFO empty, and random motions soon leave the range.
+    fn starve(&mut self) {
+        self.mood = Mood {
+            write_pace: 1,
+            tick_pace: TICK_CLOCKS,
+            request_pace: 500_000,
+            enable: true,
+            modulo: 1,
+            hold_pace: 0,
+            extrapolation: 255,
+            starves: true,
+            ..self.mood
+        };
+        self.words.clear();
+        self.presets = true;
+        let slow = Entry {
+            ticks: 1,
+            motion: EntryMotion::Cubic(CubicEntry {
+                jerk: 0,
+                velocity: 1 << 16,
+                acceleration: 0,
+            }),
+            notify: false,
+        };
+        self.until_tick = 1;
+        // The preset drops what arrives until the next tick, and so the first of the batches; one entry more than the
+        // FIFO has drops the second.
+        for count in [65, 65, 64] {
+            self.push_words(&Entry::batch(&vec![slow; count]));
         }
     }
 
@@ -192,15 +229,23 @@ impl SegmentsRandom {
 
     /// Some entries that are taken together, or one of them is wrong.
     fn push_batch(&mut self) {
-        let entries: Vec<Entry> = (0..self.rng.random_range(1..5)).map(|_| self.cubic()).collect();
+        let few = self.rng.random_range(1..5);
+        let many = self.rng.random_range(1..64);
+        // 64 fit into an empty FIFO only, 65 into none.
+        let count = *pick(&mut self.rng, &[few, few, few, few, few, many, 64, 65]);
+        let entries: Vec<Entry> = (0..count).map(|_| self.cubic()).collect();
         let mut batch = Entry::batch(&entries);
         if self.rng.random_range(0..3) == 0 {
             let wrong = self.rng.random_range(0..batch.len());
             batch[wrong][3] ^= *pick(&mut self.rng, &[POINT, 1 << 24, MORE]);
         }
-        for words in batch {
+        self.push_words(&batch);
+    }
+
+    fn push_words(&mut self, entries: &[[u32; 4]]) {
+        for words in entries {
             self.words
-                .extend((0..).zip(words).map(|(word, data)| (word, u64::from(data))));
+                .extend((0..).zip(*words).map(|(word, data)| (word, u64::from(data))));
         }
     }
 
@@ -267,13 +312,19 @@ impl SegmentsRandom {
 impl Stimuli for SegmentsRandom {
     fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
         if self.clock.is_multiple_of(MOOD_CLOCKS) {
-            self.new_mood();
             let mood = self.clock / MOOD_CLOCKS;
+            // Starving lasts for two moods: the FIFO has to run empty first.
+            if mood != STARVING_MOOD + 1 {
+                self.new_mood();
+            }
             if let Some(jerk) = mood
                 .checked_sub(OVERFLOW_MOOD)
                 .and_then(|at| OVERFLOWS.get(at as usize))
             {
                 self.overflow(*jerk);
+            }
+            if mood == STARVING_MOOD {
+                self.starve();
             }
         }
         let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
@@ -285,7 +336,8 @@ impl Stimuli for SegmentsRandom {
         if tick {
             self.until_tick = mood.tick_pace + self.rng.random_range(0..2);
         }
-        let write = self.rng.random_range(0..mood.write_pace) == 0;
+        let idles = mood.starves && self.words.is_empty();
+        let write = !idles && self.rng.random_range(0..mood.write_pace) == 0;
         let (mut word, mut data) = (self.rng.next_u64(), self.rng.next_u64());
         if write {
             if self.words.is_empty() {
@@ -303,9 +355,9 @@ impl Stimuli for SegmentsRandom {
         // Without a restart most runs would end at the first stop.
         let restart = u64::from(self.rng.random_range(0..200) == 0);
         *inputs = [
-            u64::from(self.clock < 2 || self.rng.random_range(0..20_000) == 0),
+            u64::from(self.clock < 2 || (!mood.starves && self.rng.random_range(0..20_000) == 0)),
             u64::from(tick),
-            u64::from(mood.enable != (self.rng.random_range(0..2_000) == 0)),
+            u64::from(mood.enable != (!mood.starves && self.rng.random_range(0..2_000) == 0)),
             u64::from(write),
             word,
             data,
