@@ -1,7 +1,8 @@
 //! Recordings damaged at random, by a seed: what the reader and the comparison must survive.
 //!
 //! A recording with bytes replaced, words of the format at wrong places, or the end of another one, is an error or has a result. The
-//! comparison never panics on it; it does not find that a file differs from itself; and it finds the same for *a* and *b* as for *b* and *a*.
+//! comparison never panics on it; it does not find that a file differs from itself; and it finds the same for *a* and *b* as for *b* and *a*,
+//! signal by signal: equal numbers of differences, and the values of each first difference the other way round.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -11,10 +12,10 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::WaveError;
-use crate::diff::{self, DiffOptions, DiffVerdict};
+use crate::diff::{self, Comparison, DiffOptions, DiffVerdict};
 
 /// Words with a meaning for a parser of VCD, inserted at wrong places.
-const WORDS: [&[u8]; 12] = [
+const WORDS: [&[u8]; 16] = [
     b"$end ",
     b"$scope module x $end ",
     b"$upscope $end ",
@@ -25,13 +26,19 @@ const WORDS: [&[u8]; 12] = [
     b"\n#18446744073709551615\n",
     b"\n#18446744073709551616\n",
     b"b",
+    b"$var wire 1 abcdefghij y $end ",
+    b"1abcdefghij\n",
+    b"bxz !\n",
     b"r1e999 !\n",
+    b"rnan !\n",
     b"\n",
 ];
+/// Digits of a vector or a single bit.
+const DIGITS: [u8; 4] = *b"01xz";
 /// Number of bytes that a damage removes or inserts, at most.
 const MOST_REMOVED: usize = 20;
 const MOST_INSERTED: usize = 5;
-/// Number of damages of a file, at most.
+/// Number of damages of a file, at most, and of changed digits.
 const MOST_DAMAGES: usize = 5;
 
 /// What became of a damaged recording that was survived.
@@ -48,24 +55,58 @@ pub fn damaged(recordings: &[Vec<u8>], seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
     let original = recordings.choose(&mut rng).cloned().unwrap_or_default();
     let mut content = original.clone();
-    if rng.random_ratio(3, 10) {
+    if rng.random() {
+        (0..MOST_DAMAGES).for_each(|_| change(&mut content, &mut rng));
+        if rng.random() {
+            return (original, content);
+        }
+    }
+    if rng.random_ratio(1, 4) {
         // The beginning of one file with the end of another.
         let other = recordings.choose(&mut rng).map_or(&[][..], Vec::as_slice);
         content.truncate(rng.random_range(0..=content.len()));
         content.extend(&other[rng.random_range(0..=other.len())..]);
     }
     for _ in 0..rng.random_range(1..=MOST_DAMAGES) {
-        let from = rng.random_range(0..=content.len());
-        let to = (from + rng.random_range(0..MOST_REMOVED)).min(content.len());
-        let bytes: Vec<u8> = if rng.random() {
-            WORDS[rng.random_range(0..WORDS.len())].to_vec()
-        } else {
-            let count = rng.random_range(0..=MOST_INSERTED);
-            (0..count).map(|_| rng.random()).collect()
-        };
-        content.splice(from..to, bytes);
+        damage(&mut content, &mut rng);
     }
     (original, content)
+}
+
+/// Damages a content once: anywhere, or at the beginning of a line, where a parser expects a word.
+fn damage(content: &mut Vec<u8>, rng: &mut Xoshiro256PlusPlus) {
+    let from = rng.random_range(0..=content.len());
+    let to = (from + rng.random_range(0..MOST_REMOVED)).min(content.len());
+    let word = WORDS[rng.random_range(0..WORDS.len())];
+    match rng.random_range(0..3) {
+        0 => {
+            let count = rng.random_range(0..=MOST_INSERTED);
+            let bytes: Vec<u8> = (0..count).map(|_| rng.random()).collect();
+            content.splice(from..to, bytes);
+        }
+        1 => {
+            content.splice(from..to, word.iter().copied());
+        }
+        _ => {
+            let at = content[..from].iter().rposition(|byte| *byte == b'\n');
+            let at = at.map_or(0, |end| end + 1);
+            content.splice(at..at, word.iter().copied());
+        }
+    }
+}
+
+/// Changes a digit of a value of a VCD: the recording can still be read.
+fn change(content: &mut [u8], rng: &mut Xoshiro256PlusPlus) {
+    let from = rng.random_range(0..=content.len());
+    let begins = |at: &usize| *at == 0 || content[at - 1] == b'\n';
+    let mut lines = (from..content.len()).filter(begins);
+    let digit = lines.find_map(|at| {
+        let at = at + usize::from(content[at] == b'b');
+        content.get(at).is_some_and(|byte| DIGITS.contains(byte)).then_some(at)
+    });
+    if let Some(at) = digit {
+        content[at] = DIGITS[rng.random_range(0..DIGITS.len())];
+    }
 }
 
 /// Damages a recording as [`damaged`] does, and compares it with itself and with what it was, both ways. The files are written into `folder`
@@ -89,22 +130,64 @@ pub fn trial(recordings: &[Vec<u8>], seed: u64, folder: &Path) -> Result<Surviva
         glitch_fs: u128::from(raw) * 3_000_000,
         ..DiffOptions::default()
     };
-    let survival = match verdict(&damaged, &damaged, &options)? {
-        Ok(DiffVerdict::Different) => return Err("a damaged recording differs from itself".to_owned()),
+    let survival = match findings(&damaged, &damaged, &options)? {
+        Ok(found) if found.result == DiffVerdict::Different => {
+            return Err("a damaged recording differs from itself".to_owned());
+        }
         Ok(_) => Survival::Read,
         Err(_) => Survival::Refused,
     };
-    let one_way = verdict(&original, &damaged, &options)?;
-    let other_way = verdict(&damaged, &original, &options)?;
-    if one_way.as_ref().ok() != other_way.as_ref().ok() {
-        return Err(format!("one way it is {one_way:?}, the other way {other_way:?}"));
+    let one_way = findings(&original, &damaged, &options)?.ok();
+    let other_way = findings(&damaged, &original, &options)?.ok().map(Findings::turned);
+    if one_way != other_way {
+        return Err(format!(
+            "one way it is {one_way:?}, the other way, turned round, {other_way:?}"
+        ));
     }
     Ok(survival)
 }
 
-/// Verdict or error of a comparison; the outer error is a panic.
-fn verdict(a: &Path, b: &Path, options: &DiffOptions) -> Result<Result<DiffVerdict, WaveError>, String> {
-    let compare = || diff::compare(a, b, options, &mut |_| {}).map(|report| report.result);
+/// What a comparison found, without names and times, which are those of the first file.
+#[derive(Debug, PartialEq)]
+struct Findings {
+    result: DiffVerdict,
+    signals: u64,
+    samples: u64,
+    /// Number of signals without a partner, of each file.
+    alone: [usize; 2],
+    /// Of each signal that differs: number of samples, whether they differ at the end, and the first two values, in no order.
+    /// Values are text, so that an invalid number is equal to itself.
+    differences: Vec<(u64, bool, [String; 2])>,
+}
+
+impl Findings {
+    fn of(found: &Comparison) -> Self {
+        let differences = found.differences.iter();
+        let mut differences: Vec<_> = differences
+            .map(|of| (of.count, of.persistent, [format!("{:?}", of.a), format!("{:?}", of.b)]))
+            .collect();
+        differences.sort_unstable();
+        Self {
+            result: found.result,
+            signals: found.signals,
+            samples: found.samples,
+            alone: [found.only_in_a.len(), found.only_in_b.len()],
+            differences,
+        }
+    }
+
+    /// The same with both files exchanged.
+    fn turned(mut self) -> Self {
+        self.alone.reverse();
+        self.differences.iter_mut().for_each(|(_, _, values)| values.reverse());
+        self.differences.sort_unstable();
+        self
+    }
+}
+
+/// Result or error of a comparison; the outer error is a panic.
+fn findings(a: &Path, b: &Path, options: &DiffOptions) -> Result<Result<Findings, WaveError>, String> {
+    let compare = || diff::compare(a, b, options, &mut |_| {}).map(|found| Findings::of(&found));
     catch_unwind(AssertUnwindSafe(compare)).map_err(|cause| {
         let said = cause.downcast_ref::<String>().map(String::as_str);
         let said = said

@@ -90,6 +90,23 @@ fn golden_what_is_not_recorded_is_not_compared() {
 }
 
 #[test]
+fn unit_an_edge_that_one_file_lacks_before_a_pause_counts_the_same_in_both_orders() {
+    let whole = fixture("icarus_dumpoff.vcd");
+    let content = std::fs::read_to_string(&whole).unwrap();
+    // From 1 over x to 1 is no rising edge.
+    let lacking = content.replace("#80000\nb1000 '\n0$\n", "#80000\nb1000 '\nx$\n");
+    assert_ne!(content, lacking);
+    let lacks = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(lacks.path(), lacking).unwrap();
+    let [one_way, other_way] = [(whole.as_path(), lacks.path()), (lacks.path(), whole.as_path())].map(|(a, b)| {
+        let found = diff::compare(a, b, &DiffOptions::default(), &mut |_| {}).unwrap();
+        let counts = found.differences.iter().map(|of| (of.signal.clone(), of.count));
+        (found.samples, counts.collect::<Vec<_>>())
+    });
+    assert_eq!(one_way, other_way);
+}
+
+#[test]
 fn golden_simulators_meet_on_all_signals_but_what_only_one_writes() {
     let mut options = DiffOptions {
         clock: Some("tb.clk".to_owned()),

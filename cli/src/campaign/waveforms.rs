@@ -74,9 +74,8 @@ impl Units for Waveforms {
 
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {
         let folder = Folder::new(PREFIX).map_err(Failure::because)?;
-        let (mut cases, mut read, mut wrong, mut first) = (0_u64, 0_u64, 0_u64, None);
+        let (mut read, mut wrong, mut first) = (0_u64, 0_u64, None);
         for case_seed in case_seeds(seed, unit, UNIT_CASES) {
-            cases += 1;
             match damage::trial(&self.recordings, case_seed, folder.path()) {
                 Ok(survival) => read += u64::from(survival == Survival::Read),
                 Err(problem) => {
@@ -86,7 +85,7 @@ impl Units for Waveforms {
             }
         }
         Ok(Outcome {
-            figures: figures([("cases", cases), ("still read", read), ("wrong", wrong)]),
+            figures: figures([("cases", UNIT_CASES), ("still read", read), ("wrong", wrong)]),
             failure: first,
         })
     }

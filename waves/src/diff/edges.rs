@@ -19,6 +19,7 @@ impl Engine<'_> {
         loop {
             let mut a = self.a.next_edge(&mut self.touched)?;
             let mut b = self.b.next_edge(&mut self.touched)?;
+            let recorded = ![a, b].into_iter().flatten().any(|edge| edge.gap);
             if let (Some(edge_a), Some(edge_b)) = (a, b)
                 && edge_a.gap != edge_b.gap
             {
@@ -41,10 +42,11 @@ impl Engine<'_> {
             if a.time_fs != b.time_fs && self.shifted_fs.is_none() {
                 self.shifted_fs = Some(a.time_fs);
             }
-            if let Some([last_a, _]) = last
-                && !a.gap
+            if let Some([last_a, last_b]) = last
+                && recorded
             {
-                period_fs = a.time_fs - last_a;
+                // The shorter one: an edge that one file lacks does not make the period longer.
+                period_fs = (a.time_fs - last_a).min(b.time_fs - last_b);
             }
             last = Some([a.time_fs, b.time_fs]);
             if self.options.end_fs.is_some_and(|end| a.time_fs > end) {
