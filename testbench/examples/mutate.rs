@@ -104,6 +104,8 @@ fn mutate() -> Result<bool, Error> {
         Some(name) => named(name)?,
         None => all()?,
     };
+    // The table keeps the rows of all blocks, not only of those that were chosen.
+    let everything = all()?;
     let temporary = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
     let kept = std::env::var_os("POSICAST_MUTATE_KEEP").map(PathBuf::from);
     let folder = kept.clone().unwrap_or_else(|| temporary.clone());
@@ -135,8 +137,6 @@ fn mutate() -> Result<bool, Error> {
             );
             if write {
                 // Each row is written as soon as it is there, so that finished results are not lost if a later one fails.
-                // The rows of all blocks stay, not only of those that were chosen.
-                let everything = all()?;
                 MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &everything))?;
             }
             rows.push((at, row));

@@ -30,8 +30,9 @@ const PACES: [u32; 8] = [
 /// last long enough.
 const OVERFLOWS: [i64; 2] = [(1 << 39) - 1, -(1 << 39)];
 
-/// Number of random moods before the first overflow. The mood after the last overflow starves.
+/// Number of random moods before the first overflow.
 const OVERFLOW_MOOD: u64 = 8;
+/// The mood that starves: the one after the last overflow.
 const STARVING_MOOD: u64 = OVERFLOW_MOOD + OVERFLOWS.len() as u64;
 
 /// Settings that hold for a while.
@@ -110,18 +111,12 @@ impl SegmentsRandom {
         self.words.clear();
         // The queued and the playing entries are discarded at the next tick, which comes with the first of these.
         self.presets = true;
-        for _ in 0..8 {
-            let motion = EntryMotion::Jerk(jerk);
-            let words = (0..).zip(
-                Entry {
-                    ticks: 30,
-                    motion,
-                    notify: false,
-                }
-                .words(),
-            );
-            self.words.extend(words.map(|(word, data)| (word, u64::from(data))));
-        }
+        let entry = Entry {
+            ticks: 30,
+            motion: EntryMotion::Jerk(jerk),
+            notify: false,
+        };
+        self.push_words(&[entry.words(); 8]);
     }
 
     /// Fills the whole FIFO with one batch after one that is too large, and then leaves its slow motion to be
@@ -250,8 +245,7 @@ impl SegmentsRandom {
     }
 
     fn push(&mut self, entry: &Entry) {
-        let words = (0..).zip(entry.words()).map(|(word, data)| (word, u64::from(data)));
-        self.words.extend(words);
+        self.push_words(&[entry.words()]);
         if let (EntryMotion::Jerk(_), 0) = (entry.motion, self.rng.random_range(0..2)) {
             let unused = self.words.len() - 2;
             self.words.remove(unused);
