@@ -11,6 +11,7 @@ use crate::output::{self, shell_word};
 use crate::{sopc, verilog};
 use posicast_model::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
+use posicast_testbench::blocks::LinkedStageBlock;
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -70,7 +71,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let folder = package.root().to_owned();
     let committed = package.commit().map_err(Failure::because)?;
     tell(&committed);
-    let document = Document::new(&file.machine, stage.is_some(), &folder, &committed.files);
+    let document = Document::new(
+        &file.machine,
+        (stage.is_some(), built.link.as_ref()),
+        &folder,
+        &committed.files,
+    );
     if args.json {
         return output::print_json(&document);
     }
@@ -91,10 +97,18 @@ struct Document {
     folder: String,
     top: Vec<String>,
     files: Vec<String>,
+    /// What the line of the stage is called, where it has one.
+    #[serde(skip)]
+    line: Option<&'static str>,
 }
 
 impl Document {
-    fn new(machine: &Machine, has_stage: bool, folder: &Path, files: &[PathBuf]) -> Self {
+    fn new(
+        machine: &Machine,
+        (has_stage, link): (bool, Option<&LinkedStageBlock>),
+        folder: &Path,
+        files: &[PathBuf],
+    ) -> Self {
         let name = &machine.name;
         let relative = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).display().to_string();
         Self {
@@ -102,20 +116,21 @@ impl Document {
             folder: folder.display().to_string(),
             top: std::iter::once(name.clone())
                 .chain(has_stage.then(|| format!("{name}{STAGE_SUFFIX}")))
-                .chain(machine.link.map(|_| format!("{name}{LINK_SUFFIX}")))
+                .chain(link.map(|_| format!("{name}{LINK_SUFFIX}")))
                 .collect(),
             files: files.iter().map(relative).collect(),
+            line: link.map(|link| link.config().line()),
         }
     }
 
     /// Number of files by folder, the top modules, and what to do next.
     fn text(&self, folder: &Path) -> String {
         let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
-        let top = match self.top.as_slice() {
-            [shapers, stage] => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
-            [shapers, stage, link] => {
+        let top = match (self.top.as_slice(), self.line) {
+            ([shapers, stage], _) => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
+            ([shapers, stage, link], Some(line)) => {
                 format!(
-                    "top modules: {shapers} (the shapers), {stage} (the whole stage), {link} (the stage with its serial line)"
+                    "top modules: {shapers} (the shapers), {stage} (the whole stage), {link} (the stage with its {line})"
                 )
             }
             _ => format!("top module: {} (the shapers)", self.top.join(", ")),

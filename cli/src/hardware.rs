@@ -7,7 +7,7 @@ use crate::warning::Warning;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
-use posicast_model::machine_file::{LinkSection, Machine};
+use posicast_model::machine_file::{LinkLine, LinkSection, Machine};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::linked_stage::address_limit;
 use posicast_model::rtl::stage::StageConfig;
@@ -18,10 +18,8 @@ use std::path::Path;
 pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
 /// Suffix of a stage's top module.
 pub(crate) const STAGE_SUFFIX: &str = "_stage";
-/// Suffix of the top module with a stage and its serial line.
+/// Suffix of the top module with a stage and its line to a host.
 pub(crate) const LINK_SUFFIX: &str = "_link";
-/// Table of the machine file with the serial line.
-const LINK_KEY: &str = "link.baud";
 
 /// The hardware of a machine.
 pub(crate) struct Built<'a> {
@@ -33,7 +31,7 @@ pub(crate) struct Built<'a> {
     pub(crate) components: Vec<ComponentBlock>,
     /// All axes behind one agent, where every loop is complete.
     pub(crate) stage: Option<Stage>,
-    /// The stage with its serial line, where the machine file has one. Its top module is `<machine>_link`.
+    /// The stage with its line to a host, where the machine file has one. Its top module is `<machine>_link`.
     pub(crate) link: Option<LinkedStageBlock>,
 }
 
@@ -80,13 +78,13 @@ impl<'a> Built<'a> {
                 block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")).with_prefix(&machine.name),
             }
         });
-        let link = match (machine.link, &stage) {
+        let link = match (&machine.link, &stage) {
             (None, _) => None,
-            (Some(link), Some(stage)) => Some(linked(machine, &link, stage, path)?),
-            (Some(_), None) => {
+            (Some(link), Some(stage)) => Some(linked(machine, link, stage, path)?),
+            (Some(link), None) => {
                 let reason =
                     "a line needs the stage, and none is built; remove [link], or change what the warning names";
-                return Err(at_key(path, 0, LINK_KEY, reason));
+                return Err(at_key(path, 0, link_key(link), reason));
             }
         };
         Ok(Self {
@@ -99,7 +97,7 @@ impl<'a> Built<'a> {
     }
 
     /// The Verilog modules without duplicates: those of the machine's top, then those of its components, of its stage,
-    /// and of its serial line. `path` is the machine file.
+    /// and of its line. `path` is the machine file.
     pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
         for component in &self.components {
@@ -115,11 +113,19 @@ impl<'a> Built<'a> {
     }
 }
 
-/// The stage of a machine with its serial line.
+/// The key of the line's speed.
+fn link_key(link: &LinkSection) -> &'static str {
+    match link.line {
+        LinkLine::Uart { .. } => "link.baud",
+        LinkLine::Spi { .. } => "link.sck_hz",
+    }
+}
+
+/// The stage of a machine with its line.
 fn linked(machine: &Machine, link: &LinkSection, stage: &Stage, path: &Path) -> Result<LinkedStageBlock, Failure> {
     let component = stage.block.component();
     let config = link.bridge(&machine.clock, address_limit(component));
-    let config = config.map_err(|error| at_key(path, 0, LINK_KEY, error))?;
+    let config = config.map_err(|error| at_key(path, 0, link_key(link), error))?;
     let axes: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let top = format!("{}{LINK_SUFFIX}", machine.name);
     let names = [top.as_str(), &stage.block.top(), &machine.name];

@@ -1,19 +1,21 @@
-//! `posicast host`: operates a stage through its serial line, or through a server in the network.
+//! `posicast host`: operates a stage through its serial line, its SPI lines, or a server in the network.
 
 mod actions;
 mod text;
+mod way;
 
+use self::way::Way;
 use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine;
 use crate::moves::PerAxis;
-use posicast_host::{HostError, HostedStage, Line as AnyLine, Link, LinkError, LinkOptions, UdpLine};
+use posicast_host::{HostError, HostedStage, Line as AnyLine, LinkError, LinkOptions};
 use posicast_model::hardware::StageHardware;
 use posicast_model::machine_file::Machine;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Operate a stage through its serial line or a network: show its state, move, record, load a shaper
+/// Operate a stage through its serial line, SPI or a network: show its state, move, record, load a shaper
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -21,13 +23,15 @@ Examples:
   posicast host /dev/ttyUSB0 move x=0.04,y=-0.02 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 trace x -o x.csv --shake 60 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 load x new.toml --machine xy_stage/machine.toml
+  posicast host spi:///dev/spidev0.0 status --machine xy_stage/machine.toml
   posicast host udp://192.0.2.10:4210 status --machine xy_stage/machine.toml
 
-The machine file is the one from which the FPGA was built; for a serial line it has a table [link]. At a UDP address, posicast_serve of the
+The machine file is the one from which the FPGA was built; for a serial line or SPI it has a table [link]. At a UDP address, posicast_serve of the
 C driver's linux/ runs. Exit status: 1 the stage did not do it, 2 bad input
 or another machine, 3 no port or no reply.")]
 pub(crate) struct Args {
-    /// Serial port, such as /dev/ttyUSB0 or COM3; or udp://HOST:PORT
+    /// Serial port, such as /dev/ttyUSB0 or COM3; an SPI device, such as spi:///dev/spidev0.0 or spi:///dev/spidev0.0?hz=1000000; or
+    /// udp://HOST:PORT
     port: String,
     #[command(subcommand)]
     action: Action,
@@ -115,7 +119,7 @@ struct Line {
     /// Machine file from which the FPGA was built
     #[arg(long, value_name = "FILE")]
     machine: PathBuf,
-    /// Baud rate [default: that of the machine file]
+    /// Baud rate of a serial line [default: that of the machine file]
     #[arg(long)]
     baud: Option<u32>,
     /// Time in milliseconds for which a reply is awaited, 1 to 10000; every request is sent up to five times
@@ -135,9 +139,6 @@ impl Action {
 /// A stage behind a port.
 type Port<'m> = HostedStage<'m, Box<dyn AnyLine>>;
 
-/// Begins the address of a server.
-const UDP: &str = "udp://";
-
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let line = args.action.line();
     let path = line.machine.as_path();
@@ -147,7 +148,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .hardware
         .stage()
         .map_err(|error| machine::of_hardware(&error, path))?;
-    let way = Way::of(args, &machine, path)?;
+    let way = Way::of((&args.port, line.baud), &machine, path)?;
     let stage = stage.ok_or_else(|| {
         miette::miette!(
             help = "give every axis encoder, PWM, drive and controller",
@@ -174,52 +175,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The way to the stage.
-enum Way<'a> {
-    /// Port and baud rate.
-    Serial(&'a str, u32),
-    /// Address of a server.
-    Network(&'a str),
-}
-
-impl<'a> Way<'a> {
-    /// That of the port in the arguments; `path` is the machine file.
-    fn of(args: &'a Args, machine: &Machine, path: &Path) -> Result<Self, Failure> {
-        let baud = args.action.line().baud;
-        match (args.port.strip_prefix(UDP), machine.link) {
-            (Some(_), _) if baud.is_some() => Err(Failure::from(miette::miette!(
-                help = "leave it out",
-                "--baud: {} is no serial line",
-                args.port
-            ))),
-            (Some(address), _) => Ok(Self::Network(address)),
-            (None, Some(link)) => Ok(Self::Serial(&args.port, baud.unwrap_or(link.baud))),
-            (None, None) => Err(Failure::from(miette::miette!(
-                help = "add [link] with its baud rate, and generate and build the stage anew",
-                "{}: the machine has no [link]: its stage has no serial line",
-                path.display()
-            ))),
-        }
-    }
-
-    fn open(&self, options: LinkOptions) -> Result<Link<Box<dyn AnyLine>>, LinkError> {
-        let line: Box<dyn AnyLine> = match self {
-            Self::Serial(port, baud) => Box::new(Link::open(port, *baud, options)?.into_line()),
-            Self::Network(address) => Box::new(UdpLine::open(address, options)?),
-        };
-        Ok(Link::new(line, options))
-    }
-}
-
-impl std::fmt::Display for Way<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Serial(port, baud) => write!(f, "{port}, {baud} baud"),
-            Self::Network(address) => write!(f, "{UDP}{address}"),
-        }
-    }
-}
-
 fn open<'m>(
     way: &Way<'_>,
     timeout_ms: u64,
@@ -241,7 +196,11 @@ fn open<'m>(
 fn failure(error: HostError) -> Failure {
     match &error {
         HostError::Link(
-            LinkError::Open { .. } | LinkError::Server { .. } | LinkError::NoReply { .. } | LinkError::Line(_),
+            LinkError::Open { .. }
+            | LinkError::Spi { .. }
+            | LinkError::Server { .. }
+            | LinkError::NoReply { .. }
+            | LinkError::Line(_),
         ) => Failure::missing_tool(error),
         HostError::Fault { .. } => Failure::Check(format!("{error} (--clear-faults)")),
         HostError::Late { .. } | HostError::Refused { .. } | HostError::Standstill => Failure::Check(error.to_string()),

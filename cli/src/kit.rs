@@ -6,6 +6,7 @@ use crate::hardware::Built;
 use crate::verilog;
 use posicast_hdl::emit::Module;
 use posicast_model::machine_file::Machine;
+use posicast_model::rtl::linked_stage::BridgeConfig;
 use posicast_synth::datasheets::{self, BuiltBlocks};
 use posicast_synth::kit::{self, Kit, KitShaper};
 use posicast_synth::package::Package;
@@ -14,8 +15,11 @@ use posicast_synth::package::Package;
 pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) -> Vec<(String, String)> {
     let files: Vec<String> = modules.iter().map(verilog::path).collect();
     let blocks = match (&built.stage, built.components.is_empty()) {
-        (Some(_), _) if built.link.is_some() => BuiltBlocks::LinkedStage,
-        (Some(_), _) => BuiltBlocks::Stage,
+        (Some(_), _) => match built.link.as_ref().map(|link| link.config()) {
+            Some(BridgeConfig::Spi(_)) => BuiltBlocks::SpiLinkedStage,
+            Some(BridgeConfig::Uart(_)) => BuiltBlocks::LinkedStage,
+            None => BuiltBlocks::Stage,
+        },
         (None, false) => BuiltBlocks::Components,
         (None, true) => BuiltBlocks::Shapers,
     };

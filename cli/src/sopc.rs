@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::machine;
 use crate::warning::Warning;
+use posicast_hdl::linked_stage::emit_bridge;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, BridgeUnit, Design, Unit};
@@ -13,6 +14,8 @@ use std::path::Path;
 
 /// Key of the board.
 const BOARD_KEY: &str = "target.board";
+/// Table of the machine file with the line to a host.
+const LINK_KEY: &str = "link";
 
 /// The board that the machine file at `path` names.
 ///
@@ -75,6 +78,10 @@ pub(crate) fn add(
         );
         Warning::new(0, BOARD_KEY, text).print(path);
     }
+    for error in design.without_link_project() {
+        let text = format!("no project without a processor: {error}");
+        Warning::new(0, LINK_KEY, text).print(path);
+    }
     for file in design.files().map_err(Failure::because)? {
         package
             .add(&file.path, file.text.as_bytes())
@@ -83,9 +90,9 @@ pub(crate) fn add(
     Ok(())
 }
 
-/// The top with the serial line, and the bridge in it.
+/// The top with the line, and the bridge in it.
 fn bridge(link: &LinkedStageBlock, machine: &Machine) -> Result<(String, BridgeUnit), Failure> {
-    let modules = posicast_hdl::uart_bridge::emit(&machine.name).map_err(Failure::because)?;
+    let modules = emit_bridge(link.config(), &machine.name).map_err(Failure::because)?;
     let bridge = BridgeUnit {
         config: *link.config(),
         modules: modules.into_iter().map(|module| module.name).collect(),

@@ -107,7 +107,7 @@ struct Document<'a> {
     clocks: Option<&'a ClockEstimates>,
 }
 
-/// The top modules of the components among these files: the stage, alone and with its serial line, and the blocks that stand alone.
+/// The top modules of the components among these files: the stage, alone and with its line to a host, and the blocks that stand alone.
 fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
     let stages = [STAGE_SUFFIX, LINK_SUFFIX].map(|suffix| format!("{machine}{suffix}"));
     let stems = files.iter().filter_map(|file| file.file_stem()?.to_str());

@@ -4,10 +4,9 @@
 
 use crate::emit::print::{self, Lines};
 use crate::emit::{EmitError, Header, Module, Parameter, Type, add};
-use crate::{component, uart_bridge};
+use crate::{component, spi_bridge, uart_bridge};
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::ports;
-use posicast_model::rtl::uart_bridge::{SILENCE_BITS, STEP_BITS, UartBridgeConfig};
+use posicast_model::rtl::linked_stage::{BridgeConfig, ports};
 use posicast_model::rtl::{Direction, Port};
 
 /// Width of the bridge's addresses.
@@ -20,11 +19,11 @@ const ADDRESS_BITS: u32 = 16;
 /// [`EmitError`] where a name is not a valid Verilog name.
 pub fn emit(
     stage: &Component,
-    config: &UartBridgeConfig,
+    config: &BridgeConfig,
     (name, stage_name, prefix): (&str, &str, &str),
 ) -> Result<Vec<Module>, EmitError> {
     let mut modules = component::emit(stage, stage_name, prefix)?;
-    let bridge = uart_bridge::emit(prefix)?;
+    let bridge = emit_bridge(config, prefix)?;
     let bridge_name = bridge.last().map_or_else(String::new, |module| module.name.clone());
     add(&mut modules, bridge)?;
     let top = Module {
@@ -34,30 +33,55 @@ pub fn emit(
             &header(name, config),
             &body(stage, config, stage_name, &bridge_name),
         ),
-        ports: ports(stage),
+        ports: ports(stage, config),
         clocked: true,
     };
     add(&mut modules, vec![top])?;
     Ok(modules)
 }
 
-fn header(name: &str, config: &UartBridgeConfig) -> String {
+/// Emits the bridge of the line alone, the top last.
+///
+/// # Errors
+/// [`EmitError`] where the prefix does not begin a valid Verilog name.
+pub fn emit_bridge(config: &BridgeConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    match config {
+        BridgeConfig::Uart(_) => uart_bridge::emit(prefix),
+        BridgeConfig::Spi(_) => spi_bridge::emit(prefix),
+    }
+}
+
+fn header(name: &str, config: &BridgeConfig) -> String {
     let parameter = |name: &str, value: String, meaning: &str| Parameter {
         name: name.to_owned(),
         value,
         meaning: meaning.to_owned(),
     };
-    let header = Header {
-        about: "The stage with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
-                See docs/uart_bridge.md."
-            .to_owned(),
-        ports: Vec::new(),
-        parameters: vec![
+    let (about, speed) = match config {
+        BridgeConfig::Uart(config) => (
+            "The stage with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
+             See docs/uart_bridge.md.",
             parameter(
                 "baud",
                 config.baud().to_string(),
                 "bits per second: 8 data bits, no parity, 1 stop bit",
             ),
+        ),
+        BridgeConfig::Spi(config) => (
+            "The stage with its SPI lines: a host reads and writes the registers through spi_sck, spi_cs_n, spi_mosi and spi_miso.\n\
+             See docs/spi_bridge.md.",
+            parameter(
+                "most_sck_hz",
+                config.most_sck_hz().to_string(),
+                "fastest spi_sck in Hz, mode 0: an eighth of the clock",
+            ),
+        ),
+    };
+    let header = Header {
+        about: about.to_owned(),
+        ports: Vec::new(),
+        parameters: vec![
+            speed,
             parameter(
                 "address_limit",
                 config.address_limit().to_string(),
@@ -68,10 +92,10 @@ fn header(name: &str, config: &UartBridgeConfig) -> String {
     print::data_header(name, &header, "machine file")
 }
 
-fn body(stage: &Component, config: &UartBridgeConfig, stage_name: &str, bridge_name: &str) -> String {
+fn body(stage: &Component, config: &BridgeConfig, stage_name: &str, bridge_name: &str) -> String {
     let bits = |width, value: u64| Type { width, signed: false }.literal(value);
     let mut list = vec![("input  wire", bit(), "clk".to_owned())];
-    list.extend(ports(stage).iter().map(|port| {
+    list.extend(ports(stage, config).iter().map(|port| {
         let keyword = match port.direction {
             Direction::Input => "input  wire",
             Direction::Output => "output wire",
@@ -97,24 +121,18 @@ fn body(stage: &Component, config: &UartBridgeConfig, stage_name: &str, bridge_n
         lines.line("    read_before <= avm_read & ~rst;");
         lines.line("end");
         lines.line("");
-        let pins = [
-            pin("clk", "clk"),
-            pin("rst", "rst"),
-            pin("uart_rx", "uart_rx"),
-            pin("baud_step", &bits(STEP_BITS, config.baud_step().into())),
-            pin("silence_limit", &bits(SILENCE_BITS, config.silence_limit().into())),
-            pin("address_limit", &bits(ADDRESS_BITS, config.address_limit().into())),
-            pin("avm_readdata", "avm_readdata"),
-            pin("avm_waitrequest", "avm_read & ~read_before"),
-            pin("uart_tx", "uart_tx"),
-            pin("avm_address", "avm_address"),
-            pin("avm_read", "avm_read"),
-            pin("avm_write", "avm_write"),
-            pin("avm_writedata", "avm_writedata"),
-            pin("busy", "busy"),
-            pin("frame_dropped", "frame_dropped"),
-        ];
-        print::instance(lines, bridge_name, "u_uart_bridge", &pins);
+        let constants = config.constants();
+        let pins = config.ports().into_iter().map(|port| {
+            let constant = constants.iter().find(|(name, _)| *name == port.name);
+            let net = match (constant, port.name.as_str()) {
+                (Some((_, value)), _) => bits(port.width, (*value).into()),
+                (_, "avm_waitrequest") => "avm_read & ~read_before".to_owned(),
+                (_, name) => name.to_owned(),
+            };
+            (port.name, net)
+        });
+        let pins: Vec<_> = std::iter::once(pin("clk", "clk")).chain(pins).collect();
+        print::instance(lines, bridge_name, &format!("u_{}", config.block()), &pins);
         lines.line("");
         let pins = stage.composition().ports().iter().map(|port| {
             let net = match port.name.as_str() {

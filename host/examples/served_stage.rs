@@ -17,7 +17,7 @@ fn main() {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     use posicast_model::design::design_machine;
     use posicast_model::hardware::Hardware;
-    use posicast_model::machine_file;
+    use posicast_model::machine_file::{self, LinkLine};
     use posicast_model::plant::axis::{AxisPlant, PlantOptions};
     use posicast_model::rtl::linked_stage::address_limit;
     use posicast_testbench::linked_bench::LinkedBench;
@@ -29,6 +29,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).ok_or("usage: served_stage MACHINE")?;
     let machine = machine_file::parse(&file, &std::fs::read_to_string(&file)?)?;
     let link = machine.link.ok_or("the machine file has no [link]")?;
+    if let LinkLine::Spi { .. } = link.line {
+        return Err("the line of the machine file is SPI: a pseudo-terminal stands for a serial line".into());
+    }
     let design = design_machine(&machine)?;
     let hardware = Hardware::of(&machine, &design)?;
     let stage = hardware.stage()?.ok_or("the machine has no stage")?;

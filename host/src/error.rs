@@ -14,6 +14,16 @@ pub enum LinkError {
         /// What the operating system says.
         reason: String,
     },
+    /// The SPI device cannot be opened.
+    #[error(
+        "{device}: {reason}: is SPI switched on (`ls /dev/spidev*`; on a Raspberry Pi `dtparam=spi=on`), and may you use it (group spi)?"
+    )]
+    Spi {
+        /// Name of the device.
+        device: String,
+        /// What the operating system says.
+        reason: String,
+    },
     /// There is no server for this host.
     #[error("{address}: {reason}")]
     Server {
@@ -28,7 +38,7 @@ pub enum LinkError {
     /// No reply, or only damaged ones.
     #[error(
         "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, is the baud rate of a serial line that of its \
-         machine file, are its wires crossed?{}", .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
+         machine file, are the wires crossed?{}", .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
     )]
     NoReply {
         /// How often the request was sent.

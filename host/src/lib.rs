@@ -1,12 +1,12 @@
-//! The host's end of the link: reads and writes the registers of a stage over a serial line, and operates its axes.
+//! The host's end of the link: reads and writes the registers of a stage over a serial line, SPI or a network, and operates its axes.
 //!
-//! The frames are those of [`posicast_model::link`], the other end is the block of `docs/uart_bridge.md`.
+//! The frames are those of [`posicast_model::link`], the other end is the block of `docs/uart_bridge.md` or `docs/spi_bridge.md`.
 //!
 //! - A request that gets no reply in time is sent again with the same sequence number; the bridge executes it once. After
 //!   [`LinkOptions::attempts`] the call fails, and it is not known whether a write has been executed.
 //! - Calls block. One host, one line: nothing is sent while a reply is awaited.
 //! - [`Link::open`] takes a port of the operating system, [`Link::open_udp`] the address of a server in the network; [`Link::new`] any line
-//!   that reads and writes bytes.
+//!   that reads and writes bytes, such as an [`SpiLine`].
 //!
 //! ```no_run
 //! use posicast_host::{Link, LinkOptions};
@@ -34,6 +34,9 @@ mod error;
 mod host_error;
 mod link;
 mod moves;
+mod spi;
+#[cfg(target_os = "linux")]
+mod spidev;
 mod stage;
 mod tables;
 mod trace;
@@ -44,6 +47,9 @@ pub use host_error::HostError;
 pub use link::{Line, Link, LinkOptions, LinkStatistics};
 pub use moves::HostMove;
 pub use serialport::SerialPort;
+pub use spi::{SpiLine, SpiTransfer};
+#[cfg(target_os = "linux")]
+pub use spidev::LinuxSpi;
 pub use stage::{AxisStatus, HostedStage, causes};
 pub use trace::{RecordedSignal, RecordedTrace, Shake, TraceRequest};
 pub use udp::UdpLine;

@@ -3,6 +3,7 @@
 
 mod campaign;
 mod faults;
+mod spi;
 mod stage;
 #[cfg(unix)]
 mod terminal;

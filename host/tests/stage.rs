@@ -38,7 +38,7 @@ fn machine() -> Machine {
     machine_file::parse("xy-stage.toml", &format!("{text}[link]\nbaud = 3_000_000\n")).unwrap()
 }
 
-fn stage(machine: &Machine) -> StageHardware {
+pub(crate) fn stage(machine: &Machine) -> StageHardware {
     let design = design_machine(machine).unwrap();
     Hardware::of(machine, &design)
         .unwrap()

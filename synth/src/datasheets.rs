@@ -20,8 +20,10 @@ const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divide
 const STAGE: [(&str, &str); 9] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
 ];
-/// Of machines whose stage has a serial line.
+/// Of machines whose stage has a line to a host.
 const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
+/// Of those where that is SPI; the frames are in the other page.
+const SPI_LINK: [(&str, &str); 1] = pages!["spi_bridge"];
 
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,6 +36,8 @@ pub enum BuiltBlocks {
     Stage,
     /// A stage with a serial line.
     LinkedStage,
+    /// A stage with SPI lines.
+    SpiLinkedStage,
 }
 
 /// The datasheets of a machine, as path in the output folder and text.
@@ -41,7 +45,14 @@ pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
     let components = COMPONENTS.iter().filter(|_| built >= BuiltBlocks::Components);
     let stage = STAGE.iter().filter(|_| built >= BuiltBlocks::Stage);
     let link = LINK.iter().filter(|_| built >= BuiltBlocks::LinkedStage);
-    let pages: Vec<_> = SHAPER.iter().chain(components).chain(stage).chain(link).collect();
+    let spi = SPI_LINK.iter().filter(|_| built >= BuiltBlocks::SpiLinkedStage);
+    let pages: Vec<_> = SHAPER
+        .iter()
+        .chain(components)
+        .chain(stage)
+        .chain(link)
+        .chain(spi)
+        .collect();
     let is_there = |name: &str| pages.iter().any(|(page, _)| *page == name);
     let file = |(name, text): &&(&str, &str)| (format!("{FOLDER}/{name}.md"), with_links_to(text, is_there));
     pages.iter().map(file).collect()

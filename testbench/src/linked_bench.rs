@@ -21,8 +21,6 @@ use posicast_model::machine_file::{ClockSection, LinkSection};
 use crate::Error;
 use crate::stage_bench::StageBench;
 
-/// Bits of a byte on the line.
-const BYTE_BITS: f64 = 10.0;
 /// Clocks from the end of a request to its first access, and from access to access: those of the datasheet for reads.
 const FIRST_ACCESS_CLOCKS: u64 = 41;
 const ACCESS_CLOCKS: u64 = 34;
@@ -86,7 +84,7 @@ impl LinkedBench {
             writes: Vec::new(),
             bridge: LinkBridge::new(address_limit),
             clock_hz: clock.frequency_hz,
-            byte_clocks: BYTE_BITS * clock.frequency_hz / f64::from(link.baud),
+            byte_clocks: link.byte_s() * clock.frequency_hz,
             timeout_clocks: (link.timeout_s * clock.frequency_hz) as u64,
             silent_clocks: 0,
             rest_clocks: 0.0,

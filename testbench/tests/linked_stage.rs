@@ -1,25 +1,31 @@
-//! The stage with its serial line: the Verilog of both, joined, compared with the model, and what a host at the line sees.
+//! The stage with its line, serial or SPI: the Verilog of stage and bridge, joined, compared with the model, and what a host at the line
+//! sees.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
 use posicast_model::link::{Reply, Request};
 use posicast_model::machine_file::{self, Machine};
-use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::{LinkedStage, address_limit};
-use posicast_model::rtl::uart_bridge::UartBridgeConfig;
+use posicast_model::rtl::linked_stage::{BridgeConfig, LinkedStage, address_limit};
+use posicast_model::rtl::{ClockedBlock, Direction, Port};
 use posicast_testbench::blocks::{LinkedStageBlock, Sources, check};
 
 /// Clocks of a bit at 3,000,000 baud and 50 MHz, times three.
 const THREE_BITS: u64 = 50;
 
-fn machine() -> Machine {
+const UART: &str = "baud = 3_000_000";
+const SPI: &str = "line = \"spi\"\nsck_hz = 6_250_000";
+/// Clocks of half a bit at 6.25 MHz and 50 MHz.
+const HALF_BIT: u64 = 4;
+
+/// The machine of the example with this line.
+fn machine(line: &str) -> Machine {
     let text = include_str!("../../examples/xy-stage.toml");
-    machine_file::parse("xy-stage.toml", &format!("{text}[link]\nbaud = 3_000_000\n")).unwrap()
+    machine_file::parse("xy-stage.toml", &format!("{text}[link]\n{line}\n")).unwrap()
 }
 
 /// The stage of the machine, and the constants of its bridge.
-fn stage(machine: &Machine) -> (Component, UartBridgeConfig) {
+fn stage(machine: &Machine) -> (Component, BridgeConfig) {
     let stage = hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap();
@@ -29,16 +35,15 @@ fn stage(machine: &Machine) -> (Component, UartBridgeConfig) {
     (component, config)
 }
 
-fn block() -> LinkedStageBlock {
-    let (component, config) = stage(&machine());
+fn block(line: &str) -> LinkedStageBlock {
+    let (component, config) = stage(&machine(line));
     let axes = ["x", "y"].map(str::to_owned);
     LinkedStageBlock::new(&component, (config, 50e6), &axes, ["xy_link", "xy_stage", "xy"])
 }
 
-/// A few requests in the simulator that compiles fast; the long test has many.
-#[test]
-fn lockstep_a_host_at_the_line_of_a_stage() {
-    let block = block();
+/// A few requests in the simulator that compiles fast; the long tests have many.
+fn a_few_requests_agree(line: &str) {
+    let block = block(line);
     let sources = Sources::write(&block).unwrap();
     assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
     let mut device = sources.icarus(&block).unwrap();
@@ -47,8 +52,17 @@ fn lockstep_a_host_at_the_line_of_a_stage() {
 }
 
 #[test]
-fn long_lockstep_a_host_at_the_line_of_a_stage() {
-    let block = block();
+fn lockstep_a_host_at_the_serial_line_of_a_stage() {
+    a_few_requests_agree(UART);
+}
+
+#[test]
+fn lockstep_a_host_at_the_spi_lines_of_a_stage() {
+    a_few_requests_agree(SPI);
+}
+
+fn many_requests_agree(line: &str) {
+    let block = block(line);
     let sources = Sources::write(&block).unwrap();
     let mut device = sources.verilated(&block, 1).unwrap();
     let report = check(&block, &mut device, 400_000, 1, &mut |_| {}).unwrap();
@@ -62,13 +76,23 @@ fn long_lockstep_a_host_at_the_line_of_a_stage() {
     assert!(report.mismatches() > 0);
 }
 
+#[test]
+fn long_lockstep_a_host_at_the_serial_line_of_a_stage() {
+    many_requests_agree(UART);
+}
+
+#[test]
+fn long_lockstep_a_host_at_the_spi_lines_of_a_stage() {
+    many_requests_agree(SPI);
+}
+
 /// A line with a host at it: sends a request, and returns the reply and the clocks from the first bit of the request to the last of the
 /// reply.
 fn ask(linked: &mut LinkedStage, request: &Request, sequence: u8) -> (Reply, u64) {
     let inputs = linked
         .ports()
         .iter()
-        .filter(|port| port.direction == posicast_model::rtl::Direction::Input)
+        .filter(|port| port.direction == Direction::Input)
         .count();
     let mut idle = vec![0; inputs];
     idle[1] = 1;
@@ -110,11 +134,71 @@ fn ask(linked: &mut LinkedStage, request: &Request, sequence: u8) -> (Reply, u64
     (Reply::decode(&bytes).unwrap(), last)
 }
 
+/// The same over SPI: a selection with the request and with bytes 00 until the reply has come. The clocks are those from the selection to
+/// its end.
+fn ask_spi(linked: &mut LinkedStage, request: &Request, sequence: u8) -> (Reply, u64) {
+    let is_input = |port: &&Port| port.direction == Direction::Input;
+    let inputs = linked.ports().iter().filter(is_input).count();
+    let (mut levels, mut outputs) = (vec![0; inputs], vec![0; linked.ports().len() - inputs]);
+    let mut clocks = 0;
+    let mut lines = |[sck, cs_n, mosi]: [bool; 3]| {
+        levels[1..4].copy_from_slice(&[sck, cs_n, mosi].map(u64::from));
+        for _ in 0..HALF_BIT {
+            linked.step(&levels, &mut outputs).unwrap();
+        }
+        clocks += HALF_BIT;
+        outputs[0] != 0
+    };
+    // Not selected: what a host does between two requests.
+    lines([false, true, false]);
+    lines([false, true, false]);
+    lines([false, false, false]);
+    let mut sent = request.encode(sequence).unwrap().into_iter();
+    let (mut bytes, mut asked) = (Vec::new(), 0);
+    while bytes.is_empty() || bytes.last() != Some(&0) {
+        let byte = sent.next().unwrap_or(0);
+        let taken = (0..8).rev().fold(0, |taken, bit| {
+            let mosi = byte >> bit & 1 != 0;
+            let miso = lines([false, false, mosi]);
+            lines([true, false, mosi]);
+            taken << 1 | u8::from(miso)
+        });
+        if taken != 0 || !bytes.is_empty() {
+            bytes.push(taken);
+        }
+        asked += 1;
+        assert!(asked < 1000, "no reply");
+    }
+    lines([false, true, false]);
+    bytes.pop();
+    (Reply::decode(&bytes).unwrap(), clocks - 2 * HALF_BIT)
+}
+
 #[test]
-fn golden_a_host_reads_the_constants_and_writes_a_register() {
-    let machine = machine();
+fn golden_a_host_over_spi_reads_the_constants_and_writes_a_register() {
+    let machine = machine(SPI);
     let (component, config) = stage(&machine);
-    let mut linked = LinkedStage::new(&component, config, 1);
+    let mut linked = LinkedStage::new(&component, &config, 1);
+    let (reply, _) = ask_spi(&mut linked, &Request::Read { address: 0, count: 7 }, 0);
+    let letters = u32::from_le_bytes(*b"STGE");
+    assert_eq!(reply.words[..4], [letters, 0x2_0002, 2, 5000]);
+    assert_eq!(reply.words[6], machine.link.unwrap().machine_crc);
+    // The interrupt enables, word 13 of the stage's map.
+    let (reply, clocks) = ask_spi(&mut linked, &Request::WriteList(vec![(0x0d, 0x1234)]), 1);
+    assert!(reply.status.is_ok());
+    // The datasheet: 1688 clocks up to the last edge for a write of one word, whose frame is a byte shorter than that of a list.
+    assert!((1688..1688 + 64 + 3 * HALF_BIT).contains(&clocks), "{clocks}");
+    let (reply, _) = ask_spi(&mut linked, &Request::ReadList(vec![0x0d, 0x00]), 2);
+    assert_eq!(reply.words, [0x1234, letters]);
+    let (reply, _) = ask_spi(&mut linked, &Request::ReadList(vec![0x300]), 3);
+    assert_eq!(reply.status, posicast_model::link::LinkStatus::WrongAddress);
+}
+
+#[test]
+fn golden_a_host_at_the_serial_line_reads_the_constants_and_writes_a_register() {
+    let machine = machine(UART);
+    let (component, config) = stage(&machine);
+    let mut linked = LinkedStage::new(&component, &config, 1);
     let (reply, _) = ask(&mut linked, &Request::Read { address: 0, count: 7 }, 0);
     let crc = machine.link.unwrap().machine_crc;
     let letters = u32::from_le_bytes(*b"STGE");

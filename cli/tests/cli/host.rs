@@ -185,6 +185,13 @@ fn cli_host_says_what_is_missing() {
     let plain = folder.path().join("plain.toml");
     std::fs::write(&plain, std::fs::read_to_string(example("xy-stage.toml")).unwrap()).unwrap();
     fails(&port, &plain, &["status"], 2, "the machine has no [link]");
+    fails(
+        "spi:///dev/spidev0.0",
+        &file,
+        &["status"],
+        2,
+        "has a serial line, no SPI",
+    );
     fails(&port, &file, &["move", "z=1"], 2, "no axis `z`");
     fails(&port, &file, &["move", "x=0"], 2, "0 for axis x is no distance");
     fails(
@@ -210,6 +217,38 @@ fn cli_host_says_what_is_missing() {
         "at most 100.00 counts",
     );
     assert!(!csv.exists());
+}
+
+#[test]
+fn cli_host_says_what_is_wrong_with_an_spi_device() {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let (_folder, file) = scratch(&(text + "[link]\nline = \"spi\"\nsck_hz = 5_000_000\ntimeout_s = 100e-6\n"));
+    let hz = "hz is a whole number, 160000 to 6250000";
+    for (port, baud, code, expected) in [
+        (
+            "spi:///dev/no-such-device",
+            false,
+            3,
+            "/dev/no-such-device: No such file",
+        ),
+        ("spi:///dev/no-such-device?hz=1_000_000", false, 3, "is SPI switched on"),
+        ("spi:///dev/null", false, 3, "/dev/null: "),
+        ("spi:///dev/null?hz=7000000", false, 2, hz),
+        ("spi:///dev/null?hz=159999", false, 2, hz),
+        ("spi:///dev/null?hz=fast", false, 2, hz),
+        ("spi:///dev/null?clock=1", false, 2, "write spi:///dev/spidev0.0"),
+        ("spi://spidev0.0", false, 2, "write spi:///dev/spidev0.0"),
+        ("/dev/ttyUSB0", false, 2, "has SPI, no serial line"),
+        ("spi:///dev/null", true, 2, "is no serial line"),
+    ] {
+        let mut command = posicast();
+        command.args(["host", port, "status", "--machine"]).arg(&file);
+        command.args(["--baud", "115200"].iter().filter(|_| baud));
+        let output = command.output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{port}: {error}");
+        assert!(error.contains(expected), "{port}: {error}");
+    }
 }
 
 #[test]

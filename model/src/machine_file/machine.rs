@@ -52,7 +52,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "link",
         Values::Table(link::KEYS),
-        "A serial line through which a host reads and writes the registers of the stage.",
+        "A line, serial or SPI, through which a host reads and writes the registers of the stage.",
     ),
 ];
 

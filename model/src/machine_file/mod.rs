@@ -62,7 +62,7 @@ pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
 pub use error_table::{ErrorTableSection, ErrorUse, STEEPEST_IN_FILE};
 pub use limits::LimitsSection;
-pub use link::LinkSection;
+pub use link::{BridgeConfigError, LinkLine, LinkSection};
 pub use machine::{BOARDS, FAMILIES};
 pub(crate) use moving::MAX_TABLES;
 pub use moving::{FamilySection, ModePoint};
@@ -169,7 +169,7 @@ pub struct Machine {
     pub axes: Vec<AxisSection>,
     /// `[stage]`: settings of all axes together.
     pub stage: Option<StageSection>,
-    /// `[link]`: the serial line to the registers of the stage.
+    /// `[link]`: the line, serial or SPI, to the registers of the stage.
     pub link: Option<LinkSection>,
 }
 

@@ -3,7 +3,7 @@
 use super::files::{XY_STAGE, right, wrong};
 use posicast_model::design::design_machine;
 use posicast_model::hardware::Hardware;
-use posicast_model::machine_file::parse_beside;
+use posicast_model::machine_file::{LinkLine, parse_beside};
 
 fn refused(text: &str, expected: &str) {
     let problems = wrong(text).to_string();
@@ -21,11 +21,15 @@ fn remedy(text: &str) -> String {
 #[test]
 fn unit_the_keys_and_their_defaults() {
     let link = right(&format!("{XY_STAGE}[link]\nbaud = 3_000_000\n")).link.unwrap();
-    assert_eq!((link.baud, link.timeout_s), (3_000_000, 0.01));
+    assert_eq!((link.line, link.timeout_s), (LinkLine::Uart { baud: 3_000_000 }, 0.01));
     let link = right(&format!("{XY_STAGE}[link]\nbaud = 115_200\ntimeout_s = 0.5\n"))
         .link
         .unwrap();
-    assert_eq!((link.baud, link.timeout_s), (115_200, 0.5));
+    assert_eq!((link.line, link.timeout_s), (LinkLine::Uart { baud: 115_200 }, 0.5));
+    let link = right(&format!("{XY_STAGE}[link]\nline = \"spi\"\nsck_hz = 6_250_000\n"))
+        .link
+        .unwrap();
+    assert_eq!((link.line, link.timeout_s), (LinkLine::Spi { sck_hz: 6_250_000 }, 0.01));
     assert_eq!(right(XY_STAGE).link, None);
 }
 
@@ -91,6 +95,39 @@ fn unit_values_out_of_range_and_missing_ones_are_refused() {
         "link.timeout_s: found 0.1; allowed: 6.7e-6 s to 0.044 s at 3000000 baud",
     );
     refused(&format!("{XY_STAGE}[link]\nbaud = 3_000_000\nparity = 1\n"), "parity");
+}
+
+#[test]
+fn unit_a_host_whose_spi_clock_is_too_fast_is_refused_with_the_fastest() {
+    let text = format!("{XY_STAGE}[link]\nline = \"spi\"\nsck_hz = 10_000_000\n");
+    refused(
+        &text,
+        "link.sck_hz: found 10_000_000; allowed: at most an eighth of the clock of 50000000 Hz: 6250000",
+    );
+    assert_eq!(
+        remedy(&text),
+        "write `sck_hz = 6_250_000`, or raise clock.frequency_hz to at least 80000000 Hz"
+    );
+}
+
+#[test]
+fn unit_keys_and_time_outs_that_do_not_suit_the_line_are_refused() {
+    for (text, expected) in [
+        ("line = \"spi\"\nbaud = 3_000_000", "baud, and line = \"spi\""),
+        ("baud = 3_000_000\nsck_hz = 1_000_000", "sck_hz, and line = \"uart\""),
+        ("line = \"spi\"", "link.sck_hz: found no such key"),
+        ("line = \"i2c\"\nbaud = 3_000_000", "i2c"),
+        (
+            "line = \"spi\"\nsck_hz = 1_000_000\ntimeout_s = 0.00001",
+            "link.timeout_s: found 0.00001; allowed: at least two bytes, 1.6e-5 s at sck_hz = 1000000",
+        ),
+        (
+            "line = \"spi\"\nsck_hz = 1_000_000\ntimeout_s = 0.00002",
+            "link.timeout_s: found 0.00002; allowed: 5.1e-5 s to 1.342 s at a clock of 50000000 Hz",
+        ),
+    ] {
+        refused(&format!("{XY_STAGE}[link]\n{text}\n"), expected);
+    }
 }
 
 #[test]

@@ -1,18 +1,20 @@
-//! The bridge from the serial line as a component for Platform Designer: a host of its own beside the processor.
+//! The bridge from the line to the host as a component for Platform Designer: a host of its own beside the processor.
 //!
 //! | interface | kind | ports |
 //! |---|---|---|
 //! | `clk`, `reset` | clock, synchronous reset | `clk`, `rst` |
 //! | `avm` | Avalon-MM host, word addresses | `avm_*` |
-//! | `line` | conduit | `uart_rx`, `uart_tx`, `busy`, `frame_dropped` |
+//! | `line` | conduit | `uart_rx`, `uart_tx` or the four of SPI, `busy`, `frame_dropped` |
 //!
 //! The ports for the constants of the machine file belong to the conduit, which requires an interface for every port. They are terminated
 //! by these constants, so that nobody sees or drives them.
 
 use std::fmt::Write;
 
-use posicast_model::rtl::uart_bridge::{UartBridgeConfig, ports};
+use posicast_model::rtl::Port;
+use posicast_model::rtl::linked_stage::BridgeConfig;
 
+use super::core::Line;
 use super::hw_tcl;
 use super::unit::{Interface, Kind, Signal, signal};
 
@@ -25,52 +27,69 @@ const VERSION: &str = "1.0";
 #[derive(Debug, Clone)]
 pub struct BridgeUnit {
     /// Its constants.
-    pub config: UartBridgeConfig,
+    pub config: BridgeConfig,
     /// Names of its Verilog modules, each a file `rtl/NAME.v` of the package, the top last.
     pub modules: Vec<String>,
 }
 
 impl BridgeUnit {
     /// Name of the component: the constants are those of the machine, though the Verilog is not.
-    pub(super) fn name(machine: &str) -> String {
-        format!("{machine}_uart_bridge")
+    pub(super) fn name(&self, machine: &str) -> String {
+        format!("{machine}_{}", self.config.block())
     }
 
-    /// Constant inputs.
-    fn constants(&self) -> [(&'static str, u32); 3] {
-        [
-            ("baud_step", self.config.baud_step()),
-            ("silence_limit", self.config.silence_limit()),
-            ("address_limit", self.config.address_limit().into()),
-        ]
+    /// What its line is.
+    pub(super) fn line(&self) -> Line {
+        match self.config {
+            BridgeConfig::Uart(_) => Line::Uart,
+            BridgeConfig::Spi(_) => Line::Spi,
+        }
     }
 
-    /// The text of `MACHINE_uart_bridge_hw.tcl`.
+    /// The text of `MACHINE_uart_bridge_hw.tcl` or `MACHINE_spi_bridge_hw.tcl`.
     pub(super) fn text(&self, machine: &str) -> String {
-        let name = Self::name(machine);
-        let about =
-            "Bridge from a serial line to registers: a host at the line reads and writes words as an Avalon-MM host.";
+        let name = self.name(machine);
+        let about = match self.line() {
+            Line::Uart => {
+                "Bridge from a serial line to registers: a host at the line reads and writes words as an Avalon-MM host."
+            }
+            Line::Spi => {
+                "Bridge from SPI to registers: a host at the lines reads and writes words as an Avalon-MM host."
+            }
+        };
         let mut text = String::new();
-        hw_tcl::head(&mut text, (&name, VERSION), &format!("uart_bridge: {name}"), about);
+        hw_tcl::head(
+            &mut text,
+            (&name, VERSION),
+            &format!("{}: {name}", self.config.block()),
+            about,
+        );
         let top = self.modules.last().map_or("", String::as_str);
         hw_tcl::file_sets(&mut text, top, &self.modules);
-        hw_tcl::parameter(
-            &mut text,
-            "baud",
-            self.config.baud(),
-            "bits per second: 8 data bits, no parity, 1 stop bit",
-        );
+        let (speed, value, meaning) = match self.config {
+            BridgeConfig::Uart(config) => (
+                "baud",
+                config.baud(),
+                "bits per second: 8 data bits, no parity, 1 stop bit",
+            ),
+            BridgeConfig::Spi(config) => (
+                "most_sck_hz",
+                u32::try_from(config.most_sck_hz()).unwrap_or(u32::MAX),
+                "fastest spi_sck in Hz, mode 0: an eighth of the clock",
+            ),
+        };
+        hw_tcl::parameter(&mut text, speed, value, meaning);
         hw_tcl::parameter(
             &mut text,
             "address_limit",
             self.config.address_limit().into(),
             "a request with a word address of this or above is refused: the words of the stage",
         );
-        for interface in interfaces() {
+        for interface in interfaces(self.config.ports()) {
             hw_tcl::interface(&mut text, &interface);
         }
         let _ = writeln!(text, "\n# Constants of the machine file");
-        for (port, value) in self.constants() {
+        for (port, value) in self.config.constants() {
             let _ = writeln!(text, "set_port_property {port} TERMINATION true");
             let _ = writeln!(text, "set_port_property {port} TERMINATION_VALUE {value}");
         }
@@ -78,7 +97,7 @@ impl BridgeUnit {
     }
 }
 
-fn interfaces() -> Vec<Interface> {
+fn interfaces(ports: Vec<Port>) -> Vec<Interface> {
     let clk = Signal {
         port: "clk".to_owned(),
         role: "clk".to_owned(),
@@ -98,7 +117,7 @@ fn interfaces() -> Vec<Interface> {
         signals,
     })
     .collect();
-    for port in ports() {
+    for port in ports {
         let (name, role) = match (port.name.as_str(), port.name.strip_prefix("avm_")) {
             ("rst", _) => ("reset", "reset"),
             (_, Some(role)) => ("avm", role),

@@ -1,4 +1,4 @@
-//! What the top level of a project has inside: the system with a processor, or the stage with its serial line alone.
+//! What the top level of a project has inside: the system with a processor, or the stage with its line alone.
 
 use super::board::Board;
 use super::system;
@@ -8,8 +8,25 @@ use super::system;
 pub(super) enum Core<'a> {
     /// The system that Platform Designer builds.
     System,
-    /// The top module `NAME_link`: a host at the serial line in place of a processor.
-    Link(&'a str),
+    /// The top module `NAME_link`: a host at its line in place of a processor.
+    Link(&'a str, Line),
+}
+
+/// The line of a stage without a processor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Line {
+    Uart,
+    Spi,
+}
+
+impl Line {
+    /// What the stage is, in a sentence.
+    pub(super) fn of_stage(self) -> &'static str {
+        match self {
+            Self::Uart => "the stage with its serial line",
+            Self::Spi => "the stage with its SPI lines",
+        }
+    }
 }
 
 impl Core<'_> {
@@ -17,7 +34,7 @@ impl Core<'_> {
     pub(super) fn project(self, machine: &str, board: Board) -> String {
         match self {
             Self::System => format!("{machine}_{board}"),
-            Self::Link(top) => format!("{top}_{board}"),
+            Self::Link(top, _) => format!("{top}_{board}"),
         }
     }
 
@@ -25,7 +42,7 @@ impl Core<'_> {
     pub(super) fn folder(self, board: Board) -> String {
         match self {
             Self::System => format!("sopc/quartus/{board}"),
-            Self::Link(_) => format!("sopc/quartus/{board}_link"),
+            Self::Link(..) => format!("sopc/quartus/{board}_link"),
         }
     }
 
@@ -33,7 +50,7 @@ impl Core<'_> {
     pub(super) fn module(self, machine: &str, board: Board) -> String {
         match self {
             Self::System => system::name(machine, board),
-            Self::Link(top) => top.to_owned(),
+            Self::Link(top, _) => top.to_owned(),
         }
     }
 
@@ -44,7 +61,7 @@ impl Core<'_> {
                 let system = system::name(machine, board);
                 format!("{system}/synthesis/{system}.qip")
             }
-            Self::Link(_) => format!("{machine}.qip"),
+            Self::Link(..) => format!("{machine}.qip"),
         }
     }
 }

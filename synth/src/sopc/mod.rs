@@ -5,7 +5,7 @@
 //! DIR/sopc/TOP_hw.tcl                           a component each: the stage, and every block that stands alone
 //! DIR/sopc/MACHINE_BOARD_system.tcl             the system of a board, for qsys-script
 //! DIR/sopc/quartus/BOARD/MACHINE_BOARD.qpf …    its project: .qpf, .qsf, .sdc, top level
-//! DIR/sopc/quartus/BOARD_link/…                 a project without a processor: the stage with its serial line
+//! DIR/sopc/quartus/BOARD_link/…                 a project without a processor: the stage with its line
 //! ```
 //!
 //! - Everything is derived from the components' register maps and ports ([`Unit`]) and from the facts of the boards
@@ -51,7 +51,7 @@ pub struct Design<'a> {
     pub board: Option<Board>,
     /// Its stage, if it has one.
     pub stage: Option<Unit<'a>>,
-    /// Top module of the stage with its serial line, and the bridge in it, if it has one.
+    /// Top module of the stage with its line, and the bridge in it, if it has one.
     pub link: Option<(String, BridgeUnit)>,
     /// The axes of the stage whose gates are off at a high level.
     pub active_low_axes: Vec<&'a str>,
@@ -104,7 +104,7 @@ impl Design<'_> {
             add(format!("sopc/{}_hw.tcl", unit.top), hw_tcl::text(unit));
         }
         if let Some((_, bridge)) = &self.link {
-            let name = BridgeUnit::name(self.machine);
+            let name = bridge.name(self.machine);
             add(format!("sopc/{name}_hw.tcl"), bridge.text(self.machine));
         }
         let mut projects = Vec::new();
@@ -115,7 +115,10 @@ impl Design<'_> {
                 system::script(machine, board, stage, self.clock_hz),
             );
             for core in self.cores() {
-                let pins = pins::assign(board, core, stage)?;
+                let pins = match pins::assign(board, core, stage) {
+                    Err(SopcError::Pins { .. }) if core != Core::System => continue,
+                    pins => pins?,
+                };
                 let of = (machine, board, core);
                 let (folder, name) = (core.folder(board), core.project(machine, board));
                 add(format!("{folder}/{name}.v"), top::text(of, stage, &pins));
@@ -129,6 +132,16 @@ impl Design<'_> {
         Ok(files)
     }
 
+    /// Why boards get no project without a processor: their headers have no pins left for the line.
+    pub fn without_link_project(&self) -> Vec<SopcError> {
+        let cores: Vec<Core<'_>> = self.cores().filter(|core| *core != Core::System).collect();
+        let of_board = |(board, stage): (Board, &Unit<'_>)| {
+            let assigned = cores.iter().map(move |core| pins::assign(board, *core, stage));
+            assigned.filter_map(Result::err).collect::<Vec<_>>()
+        };
+        self.projects().into_iter().flat_map(of_board).collect()
+    }
+
     /// All components, the stage first.
     fn units(&self) -> impl Iterator<Item = &Unit<'_>> {
         self.stage.iter().chain(&self.components)
@@ -136,7 +149,7 @@ impl Design<'_> {
 
     /// What the projects of a board have inside.
     fn cores(&self) -> impl Iterator<Item = Core<'_>> {
-        let link = self.link.as_ref().map(|(top, _)| Core::Link(top));
+        let link = self.link.as_ref().map(|(top, bridge)| Core::Link(top, bridge.line()));
         std::iter::once(Core::System).chain(link)
     }
 

@@ -7,7 +7,7 @@
 
 use super::SopcError;
 use super::board::Board;
-use super::core::Core;
+use super::core::{Core, Line};
 use super::unit::{PINS, Unit};
 
 /// Ports of the stage that do not leave the device: the tick is for a trace, and there is no PLL to monitor.
@@ -27,13 +27,21 @@ pub(super) const CLOCK: &str = "clock_50";
 pub(super) const RESET: &str = "reset_button_n";
 pub(super) const UART_RECEIVE: &str = "uart_rxd";
 pub(super) const UART_TRANSMIT: &str = "uart_txd";
+/// The lines of SPI, which have the names of the stage's ports, and whether they are inputs.
+pub(super) const SPI: [(&str, bool); 4] = [
+    ("spi_sck", true),
+    ("spi_cs_n", true),
+    ("spi_mosi", true),
+    ("spi_miso", false),
+];
 
 /// Purpose of a port of the top level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
     Clock,
     Reset,
-    Uart,
+    /// Of the line to the host.
+    Line,
     /// A port of the stage's conduits.
     Stage,
 }
@@ -71,14 +79,17 @@ pub(super) fn assign(board: Board, core: Core<'_>, stage: &Unit<'_>) -> Result<V
         fixed(RESET, true, Use::Reset, facts.reset_pin.0, facts.reset_pin.1),
     ];
     let mut on_headers = Vec::new();
-    match facts.uart_pins.filter(|_| core == Core::System) {
-        Some([receive, transmit]) => pins.extend([
-            fixed(UART_RECEIVE, true, Use::Uart, receive, "UART_RXD"),
-            fixed(UART_TRANSMIT, false, Use::Uart, transmit, "UART_TXD"),
+    match (core, facts.uart_pins) {
+        (Core::Link(_, Line::Spi), _) => {
+            on_headers.extend(SPI.map(|(port, is_input)| (port.to_owned(), is_input, Use::Line, None)));
+        }
+        (Core::System, Some([receive, transmit])) => pins.extend([
+            fixed(UART_RECEIVE, true, Use::Line, receive, "UART_RXD"),
+            fixed(UART_TRANSMIT, false, Use::Line, transmit, "UART_TXD"),
         ]),
-        None => on_headers.extend([
-            (UART_RECEIVE.to_owned(), true, Use::Uart, None),
-            (UART_TRANSMIT.to_owned(), false, Use::Uart, None),
+        _ => on_headers.extend([
+            (UART_RECEIVE.to_owned(), true, Use::Line, None),
+            (UART_TRANSMIT.to_owned(), false, Use::Line, None),
         ]),
     }
     let mut conduits = stage.conduits();

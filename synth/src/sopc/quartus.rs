@@ -104,7 +104,7 @@ pub(super) fn timing((machine, board, core): Project<'_>, stage: &Unit<'_>, pins
     let in_system = core == Core::System;
     let is_synchronised = |purpose| match purpose {
         Use::Stage | Use::Reset => true,
-        Use::Uart => !in_system,
+        Use::Line => !in_system,
         Use::Clock => false,
     };
     let synchronised = list(&|pin| pin.is_input && is_synchronised(pin.purpose));

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use super::board::{Board, Processor};
-use super::bridge::BridgeUnit;
-use super::core::Core;
+use super::core::{Core, Line};
 use super::pins::Pin;
 use super::unit::Unit;
 use super::{Design, system};
+use posicast_model::rtl::linked_stage::BridgeConfig;
 
 /// A board with a project, what that has inside, and its pins.
 type Project<'a> = (Board, Core<'a>, Vec<Pin>);
@@ -15,7 +15,7 @@ type Project<'a> = (Board, Core<'a>, Vec<Pin>);
 /// The text.
 pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
     let mut text = String::new();
-    contents(&mut text, design);
+    contents(&mut text, design, projects);
     if design.units().next().is_none() {
         text.push_str(
             "\nThe machine has only shapers: without a component with registers, there is nothing for Platform Designer. `kit/README.md` \
@@ -35,7 +35,7 @@ pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
     for (board, core, _) in projects {
         match core {
             Core::System => steps(&mut text, design.machine, *board),
-            Core::Link(_) => link_steps(&mut text, design, *board, *core),
+            Core::Link(_, line) => link_steps(&mut text, design, *board, (*core, *line)),
         }
     }
     if !projects.is_empty() {
@@ -48,7 +48,7 @@ pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
     text
 }
 
-fn contents(text: &mut String, design: &Design<'_>) {
+fn contents(text: &mut String, design: &Design<'_>, projects: &[Project<'_>]) {
     let _ = write!(
         text,
         "\
@@ -73,11 +73,15 @@ to overwrite a file that was edited, and says which.
         );
     }
     if let Some((top, bridge)) = &design.link {
+        let line = match bridge.config {
+            BridgeConfig::Uart(config) => format!("the stage and its serial line of {} baud", config.baud()),
+            BridgeConfig::Spi(config) => format!("the stage and its SPI lines, up to {} Hz", config.most_sck_hz()),
+        };
         let _ = writeln!(
             text,
-            "| `rtl/{top}.v` | a top module without a processor: the stage and its serial line of {baud} baud, which `posicast host` operates \
-             (`docs/uart_bridge.md`) |",
-            baud = bridge.config.baud(),
+            "| `rtl/{top}.v` | a top module without a processor: {line}, which `posicast host` operates \
+             (`docs/{block}.md`) |",
+            block = bridge.config.block(),
         );
     }
     if design.units().next().is_some() {
@@ -89,9 +93,12 @@ to overwrite a file that was edited, and says which.
              | `sopc/quartus/BOARD/` | a Quartus project per board: top level, pins, timing |\n",
         );
     }
-    if design.stage.is_some() && design.link.is_some() {
-        text.push_str(
-            "| `sopc/quartus/BOARD_link/` | the same without a processor: the stage with its serial line |\n",
+    let has_link = projects.is_empty() || projects.iter().any(|(_, core, _)| *core != Core::System);
+    if let Some((_, bridge)) = design.link.as_ref().filter(|_| design.stage.is_some() && has_link) {
+        let _ = writeln!(
+            text,
+            "| `sopc/quartus/BOARD_link/` | the same without a processor: {} |",
+            bridge.line().of_stage()
         );
     }
     if design.units().next().is_some() {
@@ -125,12 +132,16 @@ fn components(text: &mut String, design: &Design<'_>) {
             unit.law().map_or_else(String::new, |law| format!(" This one: {law}.")),
         );
     }
-    if design.link.is_some() {
+    if let Some((_, bridge)) = &design.link {
+        let line = match bridge.line() {
+            Line::Uart => "the serial line",
+            Line::Spi => "SPI",
+        };
         let _ = writeln!(
             text,
-            "| `{}` | none | The bridge of the serial line, an Avalon-MM host: for a system in which a host at a line operates the stage beside a processor. \
+            "| `{}` | none | The bridge of {line}, an Avalon-MM host: for a system in which a host at a line operates the stage beside a processor. \
              Put the stage at address 0 of its `avm`. |",
-            BridgeUnit::name(design.machine)
+            bridge.name(design.machine)
         );
     }
     text.push_str(
@@ -234,7 +245,7 @@ fn compile_steps(text: &mut String, board: Board, name: &str, first: usize) {
 }
 
 /// The steps without Platform Designer.
-fn link_steps(text: &mut String, design: &Design<'_>, board: Board, core: Core<'_>) {
+fn link_steps(text: &mut String, design: &Design<'_>, board: Board, (core, line): (Core<'_>, Line)) {
     let facts = board.facts();
     let machine = design.machine;
     let name = core.project(machine, board);
@@ -243,23 +254,30 @@ fn link_steps(text: &mut String, design: &Design<'_>, board: Board, core: Core<'
         "
 ## {title} without a processor, step by step
 
-The top level has the stage with its serial line, `{module}`, and no system. From this folder, with {quartus}:
+The top level has {what}, `{module}`, and no system. From this folder, with {quartus}:
 
 1. Copy the project and the Verilog: `PACKAGE=$PWD; cp -r {folder} ../{name}; cp -r rtl {qip} ../{name}; cd ../{name}`.
 ",
         title = facts.title,
         quartus = facts.quartus,
+        what = line.of_stage(),
         module = core.module(machine, board),
         folder = core.folder(board),
         qip = core.qip(machine, board),
     );
     compile_steps(text, board, &name, 2);
-    let _ = write!(
-        text,
-        "6. Connect a USB adapter of 3.3 V to `uart_rxd` (its transmitter), `uart_txd` and ground. Then
+    text.push_str(match line {
+        Line::Uart => {
+            "6. Connect a USB adapter of 3.3 V to `uart_rxd` (its transmitter), `uart_txd` and ground. Then
    `posicast host /dev/ttyUSB0 status --machine $PACKAGE/machine.toml` shows the axes; `docs/uart_bridge.md` has the line.
 "
-    );
+        }
+        Line::Spi => {
+            "6. Connect the host's SPI of 3.3 V to `spi_sck`, `spi_cs_n`, `spi_mosi`, `spi_miso` and ground. Then
+   `posicast host spi:///dev/spidev0.0 status --machine $PACKAGE/machine.toml` shows the axes; `docs/spi_bridge.md` has the lines.
+"
+        }
+    });
 }
 
 /// The third step, which differs most between the versions.
@@ -342,8 +360,9 @@ header is in the board's manual.
         );
     }
     let why = match (core, facts.uart_pins) {
+        (Core::Link(_, Line::Spi), _) => return,
         (_, None) => "belongs to its hard processor",
-        (Core::Link(_), Some(_)) => "has an RS-232 driver, which is too slow for most baud rates",
+        (Core::Link(_, Line::Uart), Some(_)) => "has an RS-232 driver, which is too slow for most baud rates",
         (Core::System, Some(_)) => return,
     };
     let _ = writeln!(

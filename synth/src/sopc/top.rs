@@ -1,14 +1,14 @@
-//! Writes the top level of a project in Verilog-2001: the system, or the stage with its serial line, and a synchroniser for its reset, nothing
+//! Writes the top level of a project in Verilog-2001: the system, or the stage with its line, and a synchroniser for its reset, nothing
 //! else.
 
 use std::fmt::Write;
 
 use super::board::Board;
-use super::core::Core;
+use super::core::{Core, Line};
 use super::pins::{self, Pin};
 use super::unit::Unit;
 
-/// The stage's interrupt, which a host at a serial line reads as a register.
+/// The stage's interrupt, which a host at a line reads as a register.
 const INTERRUPT: &str = "irq";
 
 /// The text of the file.
@@ -24,21 +24,22 @@ pub(super) fn text((machine, board, core): (&str, Board, Core<'_>), stage: &Unit
             )
         })
         .collect();
-    let [clk, rst, receive, transmit] = match core {
-        Core::System => ["clk_clk", "reset_reset_n", "serial_rxd", "serial_txd"],
-        Core::Link(_) => ["clk", "rst", "uart_rx", "uart_tx"],
+    let uart = |receive, transmit| vec![(receive, pins::UART_RECEIVE), (transmit, pins::UART_TRANSMIT)];
+    let (clk, rst, line) = match core {
+        Core::System => ("clk_clk", "reset_reset_n", uart("serial_rxd", "serial_txd")),
+        Core::Link(_, Line::Uart) => ("clk", "rst", uart("uart_rx", "uart_tx")),
+        Core::Link(_, Line::Spi) => ("clk", "rst", pins::SPI.map(|(port, _)| (port, port)).to_vec()),
     };
     let reset = match core {
         Core::System => "synchroniser_second",
-        Core::Link(_) => "!synchroniser_second",
+        Core::Link(..) => "!synchroniser_second",
     };
     let mut inside = Vec::new();
     let mut connections = vec![
         (clk.to_owned(), pins::CLOCK.to_owned()),
         (rst.to_owned(), reset.to_owned()),
-        (receive.to_owned(), pins::UART_RECEIVE.to_owned()),
-        (transmit.to_owned(), pins::UART_TRANSMIT.to_owned()),
     ];
+    connections.extend(line.into_iter().map(|(port, net)| (port.to_owned(), net.to_owned())));
     if core != Core::System {
         inside.push(INTERRUPT.to_owned());
         connections.push((INTERRUPT.to_owned(), INTERRUPT.to_owned()));
@@ -51,7 +52,7 @@ pub(super) fn text((machine, board, core): (&str, Board, Core<'_>), stage: &Unit
             };
             let port = match core {
                 Core::System => format!("{}_{}", conduit.name, signal.role),
-                Core::Link(_) => signal.port.clone(),
+                Core::Link(..) => signal.port.clone(),
             };
             if !signal.is_input && pins::stays_inside(&signal.port) {
                 inside.push(signal.port);
@@ -110,10 +111,9 @@ endmodule
         reset = pins::RESET,
         module = core.module(machine, board),
         instance = if core == Core::System { "u_system" } else { "u_link" },
-        what = if core == Core::System {
-            "system"
-        } else {
-            "the stage with its serial line"
+        what = match core {
+            Core::System => "system",
+            Core::Link(_, line) => line.of_stage(),
         },
         connections = connections.join(",\n"),
         inside = inside.join(", "),

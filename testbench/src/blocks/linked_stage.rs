@@ -1,11 +1,10 @@
-//! The bench of a stage with its serial line, whose stimuli are a host at the line, and lines and encoders at the pins.
+//! The bench of a stage with its line, whose stimuli are a host at the line, and lines and encoders at the pins.
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::linked_stage::emit;
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::{LinkedStage, ports};
-use posicast_model::rtl::uart_bridge::UartBridgeConfig;
+use posicast_model::rtl::linked_stage::{BridgeConfig, LinkedStage, ports};
 use posicast_model::rtl::{ClockedBlock, Direction};
 
 use super::changes::Changes;
@@ -16,11 +15,11 @@ use crate::stimuli::{LinkedStageRandom, Stimuli};
 /// Number of bytes on the line that a run must have at least.
 const LEAST_BYTES: f64 = 1000.0;
 
-/// A stage with its serial line, and the names of its modules.
+/// A stage with its line, and the names of its modules.
 #[derive(Debug, Clone)]
 pub struct LinkedStageBlock {
     stage: Component,
-    config: UartBridgeConfig,
+    config: BridgeConfig,
     clock_hz: f64,
     axes: Vec<String>,
     instance: String,
@@ -30,24 +29,19 @@ pub struct LinkedStageBlock {
 impl LinkedStageBlock {
     /// Creates the top `names[0]` with the stage `names[1]`; modules whose contents depend on the machine begin with `names[2]`. `axes`
     /// are those of the stage.
-    pub fn new(
-        stage: &Component,
-        (config, clock_hz): (UartBridgeConfig, f64),
-        axes: &[String],
-        names: [&str; 3],
-    ) -> Self {
+    pub fn new(stage: &Component, (config, clock_hz): (BridgeConfig, f64), axes: &[String], names: [&str; 3]) -> Self {
         Self {
             stage: stage.clone(),
             config,
             clock_hz,
             axes: axes.to_vec(),
-            instance: format!("{}, serial line", axes.join(", ")),
+            instance: format!("{}, {}", axes.join(", "), config.line()),
             names: names.map(str::to_owned),
         }
     }
 
     /// The constants of its bridge.
-    pub fn config(&self) -> &UartBridgeConfig {
+    pub fn config(&self) -> &BridgeConfig {
         &self.config
     }
 }
@@ -71,7 +65,7 @@ impl Block for LinkedStageBlock {
     }
 
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
-        Box::new(LinkedStage::new(&self.stage, self.config, seed))
+        Box::new(LinkedStage::new(&self.stage, &self.config, seed))
     }
 
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
@@ -88,16 +82,16 @@ impl Block for LinkedStageBlock {
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
-        Box::new(Changes::new(&ports(&self.stage)))
+        Box::new(Changes::new(&ports(&self.stage, &self.config)))
     }
 
     fn least_clocks(&self) -> u64 {
-        (LEAST_BYTES * 10.0 * self.clock_hz / f64::from(self.config.baud())) as u64
+        (LEAST_BYTES * LinkedStageRandom::byte_clocks(&self.config, self.clock_hz)) as u64
     }
 
     /// Only the line: the stage's own bench exercises the pins, and a line is too slow for that.
     fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
-        let mut ports = ports(&self.stage);
+        let mut ports = ports(&self.stage, &self.config);
         ports.retain(|port| port.direction == Direction::Output);
         Some(Box::new(Levels::new(&self.instance, &ports[..1], &[])))
     }

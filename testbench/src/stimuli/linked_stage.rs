@@ -1,10 +1,10 @@
-//! A host at the serial line of a stage: requests for its registers, some of them damaged; and the stage's pins.
+//! A host at the line of a stage: requests for its registers, some of them damaged; and the stage's pins.
 
 use std::collections::VecDeque;
 
 use posicast_model::link::Request;
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::uart_bridge::UartBridgeConfig;
+use posicast_model::rtl::linked_stage::BridgeConfig;
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -16,10 +16,19 @@ use super::{StageRandom, Stimuli};
 const BUS_INPUTS: usize = 5;
 /// Most words of a request, so that many requests fit into a run.
 const WORDS: u8 = 6;
-/// Number of bits for which the host waits after a request and after the last edge of a reply.
-const PATIENCE_BITS: f64 = 60.0;
-/// Bits of a byte on the line.
+/// Number of levels for which the host waits after a request and after the last edge of a reply.
+const PATIENCE: f64 = 60.0;
+/// Bits of a byte on a serial line.
 const FRAME_BITS: u32 = 10;
+/// Half a period of an SPI host's clock, in clocks: the fastest.
+const HALF_CLOCKS: f64 = 4.0;
+/// Bytes 00 by which an SPI host gets a reply.
+const REPLY_BYTES: usize = 48;
+/// The levels of idle lines.
+const IDLE_UART: Levels = [true, false, false];
+const IDLE_SPI: Levels = [false, true, false];
+/// Levels of the inputs of the line: one, or `spi_sck`, `spi_cs_n`, `spi_mosi`.
+type Levels = [bool; 3];
 
 /// An endless random mixture of a host's requests, and of everything at the pins.
 pub struct LinkedStageRandom {
@@ -32,12 +41,14 @@ pub struct LinkedStageRandom {
     /// Offsets of the registers.
     offsets: Vec<u16>,
     words: u16,
-    clocks_per_bit: f64,
-    /// Levels that wait for the line, a bit each.
-    line: VecDeque<bool>,
-    level: bool,
+    is_spi: bool,
+    /// Clocks for which a level stays.
+    level_clocks: f64,
+    /// Levels that wait for the line.
+    line: VecDeque<Levels>,
+    levels: Levels,
     left: f64,
-    quiet_bits: f64,
+    quiet: f64,
     sequence: u8,
     last: Vec<u8>,
     clock: u64,
@@ -45,11 +56,12 @@ pub struct LinkedStageRandom {
 
 impl LinkedStageRandom {
     /// Creates the host of a stage with these axes, at a clock in Hz. Equal seeds give equal inputs.
-    pub fn new(stage: &Component, axes: &[String], (config, clock_hz): (&UartBridgeConfig, f64), seed: u64) -> Self {
+    pub fn new(stage: &Component, axes: &[String], (config, clock_hz): (&BridgeConfig, f64), seed: u64) -> Self {
         let ports = stage.composition().ports();
         let count = |direction| ports.iter().filter(|port| port.direction == direction).count();
         let mut outputs = ports.iter().filter(|port| port.direction == Direction::Output);
         let registers = stage.map().registers().iter();
+        let is_spi = matches!(config, BridgeConfig::Spi(_));
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
             pins: StageRandom::new(stage, axes, seed),
@@ -60,11 +72,15 @@ impl LinkedStageRandom {
                 .filter_map(|register| u16::try_from(register.offset).ok())
                 .collect(),
             words: config.address_limit(),
-            clocks_per_bit: clock_hz / f64::from(config.baud()),
+            is_spi,
+            level_clocks: match config {
+                BridgeConfig::Uart(config) => clock_hz / f64::from(config.baud()),
+                BridgeConfig::Spi(_) => HALF_CLOCKS,
+            },
             line: VecDeque::new(),
-            level: true,
+            levels: if is_spi { IDLE_SPI } else { IDLE_UART },
             left: 0.0,
-            quiet_bits: 0.0,
+            quiet: 0.0,
             sequence: 0,
             last: Vec::new(),
             clock: 0,
@@ -109,33 +125,66 @@ impl LinkedStageRandom {
             2 => frame.iter_mut().skip(place).take(1).for_each(|byte| *byte ^= 0x10),
             _ => {}
         }
-        for byte in frame {
-            let bits = 1 << (FRAME_BITS - 1) | u32::from(byte) << 1;
-            self.line.extend((0..FRAME_BITS).map(|bit| bits >> bit & 1 != 0));
+        match self.is_spi {
+            false => frame.into_iter().for_each(|byte| self.serial_byte(byte)),
+            true => {
+                // A host takes the reply in a selection of its own, or in that of the request.
+                frame.into_iter().for_each(|byte| self.spi_byte(byte));
+                if self.rng.random_range(0..2) == 0 {
+                    self.line.extend([IDLE_SPI; 2]);
+                }
+                (0..REPLY_BYTES).for_each(|_| self.spi_byte(0));
+                self.line.extend([IDLE_SPI; 2]);
+            }
         }
-        self.quiet_bits = 0.0;
+        self.quiet = 0.0;
     }
 
-    fn level(&mut self, uart_tx: bool) -> bool {
+    fn serial_byte(&mut self, byte: u8) {
+        let bits = 1 << (FRAME_BITS - 1) | u32::from(byte) << 1;
+        let levels = (0..FRAME_BITS).map(|bit| [bits >> bit & 1 != 0, false, false]);
+        self.line.extend(levels);
+    }
+
+    fn spi_byte(&mut self, byte: u8) {
+        let levels = (0..8).rev().map(|bit| byte >> bit & 1 != 0);
+        self.line
+            .extend(levels.flat_map(|mosi| [[false, false, mosi], [true, false, mosi]]));
+    }
+
+    /// Clocks of a byte on the line.
+    pub(crate) fn byte_clocks(config: &BridgeConfig, clock_hz: f64) -> f64 {
+        match config {
+            BridgeConfig::Uart(config) => f64::from(FRAME_BITS) * clock_hz / f64::from(config.baud()),
+            BridgeConfig::Spi(_) => 16.0 * HALF_CLOCKS,
+        }
+    }
+
+    fn levels(&mut self, to_host: bool) -> Levels {
         self.left -= 1.0;
         while self.left <= 0.0 {
-            self.left += self.clocks_per_bit;
-            self.level = self.line.pop_front().unwrap_or(true);
+            self.left += self.level_clocks;
+            let idle = if self.is_spi { IDLE_SPI } else { IDLE_UART };
+            self.levels = self.line.pop_front().unwrap_or(idle);
         }
-        self.quiet_bits = match uart_tx && self.line.is_empty() {
-            true => self.quiet_bits + 1.0 / self.clocks_per_bit,
+        self.quiet = match (to_host || self.is_spi) && self.line.is_empty() {
+            true => self.quiet + 1.0 / self.level_clocks,
             false => 0.0,
         };
-        if self.quiet_bits > PATIENCE_BITS {
+        if self.quiet > PATIENCE {
             self.send();
         }
-        self.level
+        self.levels
     }
 }
 
 impl Stimuli for LinkedStageRandom {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
-        let ([uart_tx, shown @ ..], [rst, uart_rx, pins @ ..]) = (seen, &mut *inputs) else {
+        let ([to_host, shown @ ..], [rst, rest @ ..]) = (seen, &mut *inputs) else {
+            return;
+        };
+        let count = if self.is_spi { 3 } else { 1 };
+        let Some((lines, pins)) = rest.split_at_mut_checked(count) else {
             return;
         };
         let behind = shown.len().min(self.read_data);
@@ -144,7 +193,11 @@ impl Stimuli for LinkedStageRandom {
         self.pins.fill(&self.stage_outputs, &mut self.stage_inputs);
         pins.copy_from_slice(&self.stage_inputs[1 + BUS_INPUTS..]);
         *rst = u64::from(self.clock < 2 || self.rng.random_range(0..200_000) == 0);
-        *uart_rx = u64::from(self.level(*uart_tx != 0));
+        let levels = self.levels(*to_host != 0);
+        lines
+            .iter_mut()
+            .zip(levels)
+            .for_each(|(line, level)| *line = level.into());
         self.clock += 1;
     }
 }

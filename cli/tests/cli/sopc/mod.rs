@@ -7,6 +7,7 @@
 mod bad_input;
 mod components;
 mod projects;
+mod spi;
 mod systems;
 
 use crate::cli::support::{example, generate, scratch};

@@ -1,14 +1,15 @@
 //! Projects: pins and timing of every port of the top level.
 
 use super::{BOARDS, check_project, check_system, findings, lint, package, replace, verilog_ports, xy_stage};
-use crate::cli::support::example;
+use crate::cli::support::{example, generate, scratch};
+use predicates::str::contains;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Checks pins and timing of a project: `folder` is below `sopc/quartus`, `ends` are the registers at which false paths end.
-fn places_and_constrains(
+pub(super) fn places_and_constrains(
     output: &Path,
     (folder, name): (&str, &str),
     (quartus, clock_pin, device): (&str, &str, &str),
@@ -133,7 +134,7 @@ fn cli_lines_end_in_registers_that_the_timing_excludes_and_in_no_others() {
 
 /// Compares the false paths of a project with what the lines of its stage, the module `top`, reach in the netlist.
 fn check_lines(machine: &str, (project, name): (&str, &str), top: &str) {
-    let (folder, output) = package(machine);
+    let (_folder, output) = package(machine);
     let project = output.join("sopc/quartus").join(project);
     let ports = verilog_ports(&project.join(format!("{name}.v")));
     let (timing, _) = check_project("13.0", &project.join(format!("{name}.sdc")), &ports);
@@ -158,11 +159,22 @@ fn check_lines(machine: &str, (project, name): (&str, &str), top: &str) {
         .collect();
     let of_host = usize::from(stage.contains_key("uart_rx"));
     assert_eq!(lines.len(), 1 + 2 * 9 + of_host);
+    for (line, register) in reached(&output, top, &lines) {
+        assert!(
+            excluded(&line, &register),
+            "{line} reaches {register}, which the .sdc does not exclude"
+        );
+    }
+}
+
+/// The registers that input lines of a module reach first in the netlist, each with its line. Every line reaches one.
+pub(super) fn reached(output: &Path, top: &str, lines: &[&String]) -> Vec<(String, String)> {
+    let folder = tempfile::tempdir().unwrap();
     // These cells end the search for what a line reaches in the netlist.
     let kinds = ["dff", "sdff", "adff", "dffe", "sdffe", "adffe", "sdffce"];
     let stop: String = kinds.map(|kind| format!(":-${kind}[Q]")).concat();
     let mut script = format!("hierarchy -top {top}; proc; flatten; opt_clean; ");
-    for line in &lines {
+    for line in lines {
         let list = folder.path().join(line);
         script += &format!(
             "tee -q -o {} select -list i:{line} %co*{stop} t:$*dff* %i %co1:+[Q] w:* %i; ",
@@ -177,16 +189,13 @@ fn check_lines(machine: &str, (project, name): (&str, &str), top: &str) {
         .args(files.map(|file| output.join(file)));
     let run = yosys.output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    for line in lines {
-        let reached = fs::read_to_string(folder.path().join(line)).unwrap();
-        assert!(!reached.is_empty(), "{line} reaches nothing");
-        for register in reached.lines() {
-            assert!(
-                excluded(line, register),
-                "{line} reaches {register}, which the .sdc does not exclude"
-            );
-        }
-    }
+    let of_line = |line: &&String| {
+        let registers = fs::read_to_string(folder.path().join(line)).unwrap();
+        assert!(!registers.is_empty(), "{line} reaches nothing");
+        let pairs = registers.lines().map(|register| ((*line).clone(), register.to_owned()));
+        pairs.collect::<Vec<_>>()
+    };
+    lines.iter().flat_map(of_line).collect()
 }
 
 #[test]
@@ -231,7 +240,21 @@ fn cli_four_axes_with_scales_find_their_pins() {
         "[axis.scale]\ncounts_per_unit = 10_000_000\nuse = \"monitor\"\n\n[axis.pwm]",
     );
     let named = ["x", "y", "z", "w"].map(|name| with_scale.replacen("name = \"x\"", &format!("name = \"{name}\""), 1));
-    let (_folder, output) = package(&format!("{head}{}", named.join("\n")));
+    let (folder, file) = scratch(&format!(
+        "{head}{}[link]\nline = \"spi\"\nsck_hz = 1_000_000\n",
+        named.join("\n")
+    ));
+    let output = folder.path().join("out");
+    // Without a processor, the line needs one pin more than the headers have.
+    generate(&file, &output).stderr(contains(
+        "link: no project without a processor: de1: the stage has 73 lines",
+    ));
+    assert!(!output.join("sopc/quartus/de1_link").exists());
+    assert!(
+        !fs::read_to_string(output.join("README.md"))
+            .unwrap()
+            .contains("BOARD_link")
+    );
     for (board, quartus, ..) in BOARDS {
         let project = output.join("sopc/quartus").join(board);
         let ports = verilog_ports(&project.join(format!("xy_stage_{board}.v")));

@@ -31,7 +31,7 @@ use std::sync::{Mutex, PoisonError};
 
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions};
 use posicast_model::hardware::StageHardware;
-use posicast_model::machine_file::LinkSection;
+use posicast_model::machine_file::{LinkLine, LinkSection};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::linked_stage::address_limit;
 use posicast_testbench::fault_campaign::{Bed, TICK_CLOCKS};
@@ -45,7 +45,7 @@ use world::{Line, LineFaults, REPLY, World};
 
 /// The line of the campaign.
 const LINK: LinkSection = LinkSection {
-    baud: 3_000_000,
+    line: LinkLine::Uart { baud: 3_000_000 },
     timeout_s: 200e-6,
     machine_crc: 0x1234_5678,
 };

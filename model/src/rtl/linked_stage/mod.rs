@@ -1,24 +1,29 @@
-//! A stage whose registers a host operates through a serial line: the stage with its bridge.
+//! A stage whose registers a host operates through a line: the stage with its bridge.
 //!
 //! ```text
-//!            ┌─────────────┐ avm_*      avs_* ┌───────┐
-//! uart_rx ─► │ uart_bridge ├────────────────► │ stage ├─► pins of the axes
-//! uart_tx ◄─ │             │ ◄─ waitrequest   │       │ ◄─
-//!            └─────────────┘                  └───────┘
+//!                ┌─────────────┐ avm_*      avs_* ┌───────┐
+//! uart_rx     ─► │ uart_bridge ├────────────────► │ stage ├─► pins of the axes
+//! uart_tx     ◄─ │             │ ◄─ waitrequest   │       │ ◄─
+//! or spi_*       │ spi_bridge  │                  │       │
+//!                └─────────────┘                  └───────┘
 //! ```
 //!
 //! The registers answer in the clock after `avs_read`, so the bridge waits in the first clock of each read. It is the only host of the
-//! bus: words are always written whole. Everything else is that of [`uart_bridge`](super::uart_bridge) and
-//! [`stage`](super::stage); the datasheet is `docs/uart_bridge.md`.
+//! bus: words are always written whole. Everything else is that of [`uart_bridge`](super::uart_bridge) or
+//! [`spi_bridge`](super::spi_bridge), and [`stage`](super::stage); the datasheets are theirs.
 //!
 //! | ports | |
 //! |---|---|
-//! | `rst`, `uart_rx`, `uart_tx` | the bridge's |
+//! | `rst`, and `uart_rx`, `uart_tx` or `spi_sck`, `spi_cs_n`, `spi_mosi`, `spi_miso` | the bridge's |
 //! | `irq`, all pins | the stage's; not its bus |
 
+mod bridge;
+
+pub use bridge::BridgeConfig;
+
+use self::bridge::{Bridge, inputs};
 use super::component::Component;
 use super::composition::Composed;
-use super::uart_bridge::{UartBridge, UartBridgeConfig};
 use super::{ClockedBlock, Direction, Port, StepError};
 
 /// Prefix of the ports of the stage's bus.
@@ -27,27 +32,21 @@ const BUS_PREFIX: &str = "avs_";
 const BUS_INPUTS: usize = 5;
 
 /// The ports of a stage with its bridge: inputs, then outputs.
-pub fn ports(stage: &Component) -> Vec<Port> {
-    let bit = |name: &str, direction| Port {
-        name: name.to_owned(),
-        direction,
+pub fn ports(stage: &Component, config: &BridgeConfig) -> Vec<Port> {
+    let rst = Port {
+        name: "rst".to_owned(),
+        direction: Direction::Input,
         width: 1,
         signed: false,
     };
-    let own = stage
-        .composition()
-        .ports()
-        .iter()
-        .filter(|port| port.name != "rst" && !port.name.starts_with(BUS_PREFIX));
-    let of = |wanted| {
-        own.clone()
-            .filter(move |port: &&Port| port.direction == wanted)
-            .cloned()
-    };
-    let (input, output) = (Direction::Input, Direction::Output);
-    let inputs = [bit("rst", input), bit("uart_rx", input)].into_iter().chain(of(input));
-    let outputs = std::iter::once(bit("uart_tx", output)).chain(of(output));
-    inputs.chain(outputs).collect()
+    let of_stage = stage.composition().ports().iter();
+    let pins = of_stage.filter(|port| port.name != "rst" && !port.name.starts_with(BUS_PREFIX));
+    let all: Vec<Port> = std::iter::once(rst)
+        .chain(config.lines())
+        .chain(pins.cloned())
+        .collect();
+    let (inputs, outputs): (Vec<_>, Vec<_>) = all.into_iter().partition(|port| port.direction == Direction::Input);
+    inputs.into_iter().chain(outputs).collect()
 }
 
 /// Number of word addresses of a stage.
@@ -58,8 +57,9 @@ pub fn address_limit(stage: &Component) -> u16 {
 
 /// The cycle-accurate model.
 pub struct LinkedStage {
-    config: UartBridgeConfig,
-    bridge: UartBridge,
+    bridge: Bridge,
+    /// Number of inputs of its line.
+    lines: usize,
     stage: Composed,
     ports: Vec<Port>,
     /// `avm_read` of the clock before.
@@ -71,15 +71,15 @@ pub struct LinkedStage {
 }
 
 impl LinkedStage {
-    /// A stage after reset. `config` has the baud rate and the [`address_limit`]; `seed` determines the arbitrary contents of memories.
-    pub fn new(stage: &Component, config: UartBridgeConfig, seed: u64) -> Self {
+    /// A stage after reset. `config` has the line and the [`address_limit`]; `seed` determines the arbitrary contents of memories.
+    pub fn new(stage: &Component, config: &BridgeConfig, seed: u64) -> Self {
         let of_stage = stage.composition().ports();
         let count = |wanted| of_stage.iter().filter(|port| port.direction == wanted).count();
         let mut outputs = of_stage.iter().filter(|port| port.direction == Direction::Output);
         Self {
-            config,
-            bridge: UartBridge::new(),
-            ports: ports(stage),
+            bridge: Bridge::new(config),
+            lines: inputs(config),
+            ports: ports(stage, config),
             read_before: false,
             stage_inputs: vec![0; count(Direction::Input)],
             stage_outputs: vec![0; count(Direction::Output)],
@@ -100,9 +100,11 @@ impl ClockedBlock for LinkedStage {
     }
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let [rst, uart_rx, pins @ ..] = inputs else {
-            return Err(StepError(format!("{} inputs", inputs.len())));
+        let wrong = || StepError(format!("{} inputs", inputs.len()));
+        let [rst, rest @ ..] = inputs else {
+            return Err(wrong());
         };
+        let (lines, pins) = rest.split_at_checked(self.lines).ok_or_else(wrong)?;
         if pins.len() + 1 + BUS_INPUTS != self.stage_inputs.len() || outputs.len() != self.stage_outputs.len() {
             return Err(StepError(format!(
                 "{} inputs and {} outputs",
@@ -111,28 +113,22 @@ impl ClockedBlock for LinkedStage {
             )));
         }
         let rst = *rst & 1 != 0;
-        let idle = self.config.inputs();
-        let asked = self.bridge.outputs(&idle);
+        let asked = self.bridge.shown();
         let bus = [
             u64::from(rst),
-            asked.avm_address.into(),
-            asked.avm_read.into(),
-            asked.avm_write.into(),
+            asked.address.into(),
+            asked.read.into(),
+            asked.write.into(),
             0xf,
-            asked.avm_writedata.into(),
+            asked.writedata.into(),
         ];
         self.stage_inputs[..bus.len()].copy_from_slice(&bus);
         self.stage_inputs[bus.len()..].copy_from_slice(pins);
         self.stage.step(&self.stage_inputs, &mut self.stage_outputs)?;
-        self.bridge.step(&super::uart_bridge::Inputs {
-            rst,
-            uart_rx: *uart_rx & 1 != 0,
-            avm_readdata: self.stage_outputs[self.read_data] as u32,
-            avm_waitrequest: asked.avm_read && !self.read_before,
-            ..idle
-        });
-        self.read_before = asked.avm_read && !rst;
-        outputs[0] = asked.uart_tx.into();
+        let read_data = self.stage_outputs[self.read_data] as u32;
+        self.bridge.step(rst, lines, read_data, asked.read && !self.read_before);
+        self.read_before = asked.read && !rst;
+        outputs[0] = asked.line.into();
         let shown = self.stage_outputs.iter().enumerate();
         let shown = shown.filter(|(place, _)| *place != self.read_data);
         outputs[1..]

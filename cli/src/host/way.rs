@@ -1,0 +1,123 @@
+//! The ways to a stage, as the first argument of `posicast host` names them.
+
+use crate::failure::Failure;
+#[cfg(target_os = "linux")]
+use posicast_host::SpiLine;
+use posicast_host::{Line, Link, LinkError, LinkOptions, UdpLine};
+use posicast_model::machine_file::{LinkLine, LinkSection, Machine};
+use std::path::Path;
+
+/// Begins the name of an SPI device.
+const SPI: &str = "spi://";
+/// Begins the clock behind it.
+const SPI_CLOCK: &str = "?hz=";
+/// Begins the address of a server.
+const UDP: &str = "udp://";
+
+/// The way to the stage.
+pub(super) enum Way<'a> {
+    /// Port and baud rate.
+    Serial(&'a str, u32),
+    /// SPI device and clock in Hz.
+    Spi(&'a str, u32),
+    /// Address of a server.
+    Network(&'a str),
+}
+
+impl<'a> Way<'a> {
+    /// The way through a port, with the baud rate of the arguments, if they have one. `path` is the machine file.
+    pub(super) fn of((port, baud): (&'a str, Option<u32>), machine: &Machine, path: &Path) -> Result<Self, Failure> {
+        let (spi, udp) = (port.strip_prefix(SPI), port.strip_prefix(UDP));
+        if baud.is_some() && (spi.is_some() || udp.is_some()) {
+            return Err(refused("leave it out", format!("--baud: {port} is no serial line")));
+        }
+        if let Some(address) = udp {
+            return Ok(Self::Network(address));
+        }
+        let file = path.display();
+        let Some(link) = machine.link else {
+            return Err(refused(
+                "add [link] with its line, and generate and build the stage anew",
+                format!("{file}: the machine has no [link]: its stage has no line to a host"),
+            ));
+        };
+        match (spi, link.line) {
+            (None, LinkLine::Uart { baud: of_file }) => Ok(Self::Serial(port, baud.unwrap_or(of_file))),
+            (Some(device), LinkLine::Spi { sck_hz }) => Self::spi((port, device), (&link, sck_hz), machine),
+            (Some(_), LinkLine::Uart { .. }) => Err(refused(
+                "give the serial port, such as /dev/ttyUSB0",
+                format!("{port}: the stage of {file} has a serial line, no SPI"),
+            )),
+            (None, LinkLine::Spi { .. }) => Err(refused(
+                "give the SPI device, such as spi:///dev/spidev0.0",
+                format!("{port}: the stage of {file} has SPI, no serial line"),
+            )),
+        }
+    }
+
+    /// An SPI device, whose name a clock may follow; without one, that of the machine file.
+    fn spi(
+        (port, name): (&str, &'a str),
+        (link, sck_hz): (&LinkSection, u32),
+        machine: &Machine,
+    ) -> Result<Self, Failure> {
+        let (device, clock) = match name.split_once(SPI_CLOCK) {
+            Some((device, clock)) => (device, Some(clock)),
+            None => (name, None),
+        };
+        if !device.starts_with('/') || device.contains('?') {
+            return Err(refused(
+                "write spi:///dev/spidev0.0 (three slashes), or spi:///dev/spidev0.0?hz=1000000",
+                format!("{port}: no name of an SPI device"),
+            ));
+        }
+        let Some(clock) = clock else {
+            return Ok(Self::Spi(device, sck_hz));
+        };
+        let range = link.sck_range(&machine.clock);
+        match clock.replace('_', "").parse() {
+            Ok(hz) if range.contains(&hz) => Ok(Self::Spi(device, hz)),
+            _ => Err(refused(
+                "give a clock in this range, or leave it out for that of the machine file",
+                format!(
+                    "{port}: hz is a whole number, {} to {}: two bytes within link.timeout_s, and an eighth of the machine's clock",
+                    range.start(),
+                    range.end()
+                ),
+            )),
+        }
+    }
+
+    /// Opens it.
+    pub(super) fn open(&self, options: LinkOptions) -> Result<Link<Box<dyn Line>>, LinkError> {
+        let line: Box<dyn Line> = match self {
+            Self::Serial(port, baud) => Box::new(Link::open(port, *baud, options)?.into_line()),
+            #[cfg(target_os = "linux")]
+            Self::Spi(device, sck_hz) => Box::new(SpiLine::open(device, *sck_hz)?),
+            #[cfg(not(target_os = "linux"))]
+            Self::Spi(device, _) => {
+                return Err(LinkError::Spi {
+                    device: (*device).to_owned(),
+                    reason: "posicast knows the SPI devices of Linux only".to_owned(),
+                });
+            }
+            Self::Network(address) => Box::new(UdpLine::open(address, options)?),
+        };
+        Ok(Link::new(line, options))
+    }
+}
+
+impl std::fmt::Display for Way<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Serial(port, baud) => write!(f, "{port}, {baud} baud"),
+            Self::Spi(device, sck_hz) => write!(f, "{SPI}{device}, {sck_hz} Hz"),
+            Self::Network(address) => write!(f, "{UDP}{address}"),
+        }
+    }
+}
+
+/// Arguments that do not suit the machine.
+fn refused(help: &str, text: String) -> Failure {
+    Failure::from(miette::miette!(help = help.to_owned(), "{text}"))
+}

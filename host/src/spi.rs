@@ -1,0 +1,86 @@
+//! The line over SPI, with the host as its controller (`docs/spi_bridge.md`).
+//!
+//! Every byte goes in both directions. What is written is sent in one selection, by the flush; a read sends bytes 00 and gives what came.
+//! Bytes 00 are empty frames to both ends.
+//!
+//! A [`Link`](crate::Link) writes the delimiter before a frame that it repeats. The line then first takes what the bridge still has of a reply, in a
+//! selection of its own, and drops it: the bridge repeats it.
+
+use std::collections::VecDeque;
+use std::io::{self, Read, Write};
+
+use posicast_model::link::DELIMITER;
+
+/// Bytes that a read sends for those that it takes: the reply to a write, 10 bytes, and some for the time that the bridge needs.
+const LOOK_BYTES: usize = 16;
+/// Bytes that take whatever a bridge may have of a reply.
+const CLEAR_BYTES: usize = 200;
+
+/// A controller of SPI, mode 0, most significant bit first.
+pub trait SpiTransfer {
+    /// Sends all bytes in one selection; what comes meanwhile replaces them.
+    ///
+    /// # Errors
+    /// Those of the operating system.
+    fn transfer(&mut self, bytes: &mut [u8]) -> io::Result<()>;
+}
+
+/// A line over SPI.
+#[derive(Debug)]
+pub struct SpiLine<T> {
+    controller: T,
+    /// Bytes since the last flush.
+    going: Vec<u8>,
+    /// Bytes that came and were not read yet.
+    coming: VecDeque<u8>,
+}
+
+impl<T: SpiTransfer> SpiLine<T> {
+    /// A line at this controller.
+    pub fn new(controller: T) -> Self {
+        Self {
+            controller,
+            going: Vec::new(),
+            coming: VecDeque::new(),
+        }
+    }
+
+    /// The controller.
+    pub fn controller(&mut self) -> &mut T {
+        &mut self.controller
+    }
+
+    fn pass(&mut self, mut bytes: Vec<u8>) -> io::Result<()> {
+        self.controller.transfer(&mut bytes)?;
+        self.coming.extend(bytes);
+        Ok(())
+    }
+}
+
+impl<T: SpiTransfer> Write for SpiLine<T> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.going.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let going = std::mem::take(&mut self.going);
+        if going.is_empty() {
+            return Ok(());
+        }
+        if going.first() == Some(&DELIMITER) {
+            self.controller.transfer(&mut [DELIMITER; CLEAR_BYTES])?;
+            self.coming.clear();
+        }
+        self.pass(going)
+    }
+}
+
+impl<T: SpiTransfer> Read for SpiLine<T> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        if self.coming.is_empty() {
+            self.pass(vec![DELIMITER; LOOK_BYTES])?;
+        }
+        self.coming.read(bytes)
+    }
+}
