@@ -17,6 +17,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 PROGRAM = os.path.join(HERE, "part.ngc")
 EMERGENCY_STOP, WATCHDOG = 1 << 0, 1 << 13
 FOLLOWING_ERROR, ENCODER = 1 << 7, 1 << 10 | 1 << 11
+CLOCK_HZ = 50e6
 # Two counts of the encoder.
 REST_MM = 0.002
 PATIENCE_S = float(os.environ.get("POSICAST_PATIENCE_S", "120"))
@@ -121,8 +122,12 @@ def start_program():
 
 def program(stage, name):
     stage("record")
+    began, since = stage("state")["clocks"], time.monotonic()
     start_program()
     until(idle, "the program ends")
+    took = time.monotonic() - since
+    passed = (stage("state")["clocks"] - began) / CLOCK_HZ
+    print(f"figure {passed:.2f} s of the machine in {took:.2f} s, {name}", flush=True)
     figures = stage(f"path {name} {PROGRAM}")
     print("path", json.dumps(figures), flush=True)
     rest = [abs(value) for value in status.actual_position[:2]]
@@ -215,15 +220,12 @@ def main():
     home()
     origins = [axis["origin"] for axis in stage("state")["axes"]]
     check(origins == [777, 777], f"homing sets the origin at the index, to the count: {origins}")
-    began, since = stage("state")["clocks"], time.monotonic()
     shaped = program(stage, "shaped")
     if "program" in sys.argv:
         check(stage("state")["mismatches"] == 0, "the Verilog equals the model in every clock")
         stage.quit()
         print("done", flush=True)
         return
-    seconds = (stage("state")["clocks"] - began) / 50e6
-    print(f"figure {seconds:.2f} s of the machine in {time.monotonic() - since:.2f} s", flush=True)
     print("figure accesses of the bus per servo period, two axes:", int(pin("posicast.accesses")), flush=True)
     lags = {"shaped": lag()}
     for axis in (0, 1):

@@ -19,6 +19,7 @@
 //! | `drop` | closes the link, and lets the machine run for half a second |
 //! | `state` | states, causes and outputs of the axes |
 
+mod link;
 mod path;
 mod server;
 

@@ -1,5 +1,6 @@
 //! The stage, its two sockets, and the time that passes between them.
 
+use crate::link::{Link, Request};
 use crate::path::{Recording, picture};
 use posicast_model::hardware::MachineStage;
 use posicast_model::machine_file::Machine;
@@ -9,7 +10,7 @@ use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, Wire, state};
 use std::error::Error;
-use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -19,8 +20,6 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// Count of the index of each encoder.
 const INDEX_AT: i64 = 777;
-/// How long LinuxCNC may be silent before the machine runs on.
-const SILENCE: Duration = Duration::from_secs(1);
 /// How far the machine runs on then, and after a dropped link.
 const ALONE_S: f64 = 0.5;
 
@@ -85,8 +84,6 @@ impl Server {
         loop {
             match links.accept() {
                 Ok((link, _)) => {
-                    link.set_nonblocking(false)?;
-                    link.set_read_timeout(Some(SILENCE))?;
                     if self.talk(link, &commands)? {
                         return Ok(());
                     }
@@ -105,8 +102,7 @@ impl Server {
 
     /// Answers LinuxCNC until it goes; returns whether the server shall end.
     fn talk(&mut self, link: UnixStream, commands: &Receiver<Command>) -> Outcome<bool> {
-        let mut answers = link.try_clone()?;
-        let mut requests = BufReader::new(link);
+        let mut link = Link::new(link)?;
         self.dropped = false;
         while !self.dropped {
             if let Ok(command) = commands.try_recv()
@@ -114,21 +110,15 @@ impl Server {
             {
                 return Ok(true);
             }
-            match requests.fill_buf() {
-                Ok([]) => return Ok(false),
-                Ok(_) => {}
-                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
-                    self.run(ALONE_S)?;
-                    continue;
+            match link.request()? {
+                Request::End => return Ok(false),
+                Request::Silence => self.run(ALONE_S)?,
+                Request::None => {}
+                Request::Words([what, data]) => {
+                    if let Some(word) = self.answer(what >> 28, what & 0x0fff_ffff, data)? {
+                        link.answer(word)?;
+                    }
                 }
-                Err(error) => return Err(error.into()),
-            }
-            let mut words = [0; 8];
-            requests.read_exact(&mut words)?;
-            let [what, data] =
-                [0, 4].map(|at| u32::from_le_bytes([words[at], words[at + 1], words[at + 2], words[at + 3]]));
-            if let Some(word) = self.answer(what >> 28, what & 0x0fff_ffff, data)? {
-                answers.write_all(&word.to_le_bytes())?;
             }
         }
         Ok(false)
@@ -144,7 +134,7 @@ impl Server {
             }
             ASK_RUN => {
                 self.run(f64::from(data) * 1e-9)?;
-                Some(0)
+                None
             }
             _ => return Err(format!("a request of kind {kind}").into()),
         })

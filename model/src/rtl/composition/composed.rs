@@ -23,6 +23,8 @@ pub struct Composed {
     /// The clock in which each member must be clocked next. They are in a list of their own, since every clock looks
     /// at all of them.
     wakes: Vec<u64>,
+    /// No member must be clocked before this clock.
+    next_wake: u64,
     wires: Vec<Wire>,
     input_count: usize,
     /// Net of each output of the composition.
@@ -63,6 +65,7 @@ impl Composed {
             combinational: combinational.map(|(at, _)| at).collect(),
             clocked: (0..members.len()).collect(),
             wakes: vec![1; members.len()],
+            next_wake: 1,
             members,
             wires,
             now: 1,
@@ -97,9 +100,8 @@ impl Composed {
         let start = self.now;
         let end = start.saturating_add(clocks);
         while self.now < end {
-            let wakes = self.next_wake();
-            if wakes > self.now {
-                self.now = wakes.min(end);
+            if self.next_wake > self.now {
+                self.now = self.next_wake.min(end);
                 continue;
             }
             self.clock()?;
@@ -131,17 +133,13 @@ impl Composed {
         pairs.all(|(wire, output)| wire.at(self.now) == wire.later(*output, clocks))
     }
 
-    /// The next clock in which a member must be clocked.
-    fn next_wake(&self) -> u64 {
-        self.wakes.iter().copied().fold(u64::MAX, u64::min)
-    }
-
     /// Sets a net from now on, and wakes its watchers.
     #[inline]
     fn set(&mut self, net: usize, value: u64) {
         if self.wires[net].set(value, self.now) {
             for watcher in &self.wires[net].watchers {
                 self.wakes[*watcher] = self.wakes[*watcher].min(self.now);
+                self.next_wake = self.now;
                 self.members[*watcher].is_combined = false;
             }
         }
@@ -168,17 +166,21 @@ impl Composed {
     fn sleep(&mut self, at: usize) {
         if self.wakes[at] > self.now && self.members[at].is_clocked_to(self.now) {
             self.wakes[at] = self.members[at].sleep_until(self.now);
+            self.next_wake = self.next_wake.min(self.wakes[at]);
         }
     }
 
     /// Clocks all members that are awake.
     fn clock(&mut self) -> Result<(), StepError> {
         self.clocked.clear();
+        self.next_wake = u64::MAX;
         for at in 0..self.wakes.len() {
             if self.wakes[at] <= self.now {
                 self.members[at].clock(&self.wires, self.now)?;
                 self.wakes[at] = u64::MAX;
                 self.clocked.push(at);
+            } else {
+                self.next_wake = self.next_wake.min(self.wakes[at]);
             }
         }
         self.now += 1;
@@ -258,7 +260,7 @@ impl Moore for Composed {
         let watched = self.wires.iter().zip(inputs).take(self.input_count);
         let mut watched = watched.filter(|(wire, _)| !wire.watchers.is_empty());
         if combined && watched.all(|(wire, value)| wire.at(self.now) == *value) {
-            self.next_wake() - self.now
+            self.next_wake - self.now
         } else {
             0
         }

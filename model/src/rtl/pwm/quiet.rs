@@ -16,10 +16,7 @@ impl State {
         if counts {
             counted.leg.timer = before.leg.timer.wrapping_sub(1);
         }
-        // A strobe that is high falls in the next clock.
-        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
-        let computes = state.command.step != 0 || state.command.works;
-        if counted != *state || strobes || computes || inputs.sync || inputs.rst {
+        if counted != *state || state.is_busy() || inputs.sync || inputs.rst {
             return None;
         }
         let lead = state.period.wrapping_sub(LEAD_CLOCKS);
@@ -37,6 +34,12 @@ impl State {
         Some(u64::from(
             distances.fold(timer.min(state.command.same_level()), u16::min),
         ))
+    }
+
+    /// Whether it computes a command, or a strobe is high, which falls in the next clock.
+    fn is_busy(&self) -> bool {
+        let strobes = self.at_valley || self.at_peak || self.valley || self.peak || self.trigger;
+        strobes || self.command.step != 0 || self.command.works
     }
 }
 
@@ -64,6 +67,9 @@ impl Moore for Pwm {
 
     /// Tries one clock: if it only counts, it and all like it are quiet.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        if self.state.is_busy() {
+            return 0;
+        }
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
         };

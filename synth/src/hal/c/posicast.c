@@ -170,7 +170,7 @@ static void read_stage(void *argument, long period)
     int ok = 1;
 
     (void)argument;
-    posicast_link_run((uint32_t)period);
+    (void)period;
     posicast_take_snapshot(&hardware, &now);
     for (axis = 0; axis < hardware.axes; axis++) {
         status[axis] = posicast_status(&hardware, axis);
@@ -278,7 +278,6 @@ static void write_stage(void *argument, long period)
     int on = 1;
 
     (void)argument;
-    (void)period;
     for (axis = 0; axis < hardware.axes; axis++) {
         on = on && *hal->axis[axis].enable;
         any_cause |= causes[axis];
@@ -332,6 +331,7 @@ static void write_stage(void *argument, long period)
     posicast_kick(&hardware);
     *hal->phase = at_phase;
     *hal->accesses = posicast_link_accesses();
+    posicast_link_run((uint32_t)period);
 }
 
 /* While the component is loaded: a simulated stage runs on, a real one needs time. */

@@ -21,6 +21,9 @@
 /* How long a simulated stage may take for an answer: it is busy, or it is gone. */
 #define ANSWER_SECONDS 10
 
+/* How often an answer is looked for before the thread sleeps: some hundred microseconds. */
+#define AWAKE_LOOKS 200
+
 /* Writes wait here for the next request that has an answer. */
 static struct {
     uint32_t words[2 * 256];
@@ -128,12 +131,19 @@ static void ask(uint32_t what, uint32_t data)
     waiting.words[waiting.count++] = data;
 }
 
+/* A thread that sleeps is woken later than a stage at rest answers: so it sleeps only where the stage is busy. */
 static uint32_t answer(void)
 {
     uint32_t word = 0;
+    ssize_t received = -1;
+    int looks;
 
     send_waiting();
-    if (!broken && recv(socket_file, &word, sizeof word, MSG_WAITALL) != (ssize_t)sizeof word)
+    for (looks = 0; looks < AWAKE_LOOKS && received < 0 && !broken; looks++)
+        received = recv(socket_file, &word, sizeof word, MSG_DONTWAIT);
+    if (received < 0 && !broken)
+        received = recv(socket_file, &word, sizeof word, MSG_WAITALL);
+    if (received != (ssize_t)sizeof word)
         broken = 1;
     return broken ? 0 : word;
 }
@@ -143,7 +153,7 @@ void posicast_link_run(uint32_t nanoseconds)
     if (registers != NULL || broken)
         return;
     ask(ASK_RUN, nanoseconds);
-    (void)answer();
+    send_waiting();
 }
 
 uint32_t posicast_read(uintptr_t base, uint32_t word)

@@ -22,7 +22,7 @@ int posicast_link_is_broken(void);
 /* Returns how many registers were read and written since the last call. */
 uint32_t posicast_link_accesses(void);
 
-/* Lets a simulated stage run on for this time; real ones do so by themselves. */
+/* Lets a simulated stage run on for this time, while the caller goes on; real ones do so by themselves. */
 void posicast_link_run(uint32_t nanoseconds);
 
 #endif
