@@ -40,6 +40,8 @@ const MOST_REMOVED: usize = 20;
 const MOST_INSERTED: usize = 5;
 /// Number of damages of a file, at most, and of changed digits.
 const MOST_DAMAGES: usize = 5;
+/// Largest width that a declaration may get.
+const MOST_WIDTH: u32 = 130;
 
 /// What became of a damaged recording that was survived.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,17 +97,59 @@ fn damage(content: &mut Vec<u8>, rng: &mut Xoshiro256PlusPlus) {
     }
 }
 
-/// Changes a digit of a value of a VCD: the recording can still be read.
-fn change(content: &mut [u8], rng: &mut Xoshiro256PlusPlus) {
+/// Changes a value or a declaration of a VCD. Most such recordings can still be read.
+fn change(content: &mut Vec<u8>, rng: &mut Xoshiro256PlusPlus) {
+    match rng.random_range(0..6) {
+        0 => redeclare(content, rng),
+        1 => change_number(content, rng),
+        _ => change_digit(content, rng),
+    }
+}
+
+/// Places where lines begin, from a random one on.
+fn lines(content: &[u8], rng: &mut Xoshiro256PlusPlus) -> impl Iterator<Item = usize> {
     let from = rng.random_range(0..=content.len());
-    let begins = |at: &usize| *at == 0 || content[at - 1] == b'\n';
-    let mut lines = (from..content.len()).filter(begins);
-    let digit = lines.find_map(|at| {
+    (from..content.len()).filter(|at| *at == 0 || content[at - 1] == b'\n')
+}
+
+/// Changes a digit of a vector or a single bit.
+fn change_digit(content: &mut [u8], rng: &mut Xoshiro256PlusPlus) {
+    let digit = lines(content, rng).find_map(|at| {
         let at = at + usize::from(content[at] == b'b');
         content.get(at).is_some_and(|byte| DIGITS.contains(byte)).then_some(at)
     });
     if let Some(at) = digit {
         content[at] = DIGITS[rng.random_range(0..DIGITS.len())];
+    }
+}
+
+/// Makes a real value not a number.
+fn change_number(content: &mut Vec<u8>, rng: &mut Xoshiro256PlusPlus) {
+    let line = lines(content, rng).find(|at| content[*at] == b'r');
+    let value = line.and_then(|at| Some((at + 1, at + content[at..].iter().position(|byte| *byte == b' ')?)));
+    if let Some((from, to)) = value {
+        content.splice(from..to, *b"nan");
+    }
+}
+
+/// Declares a signal with another width, or under an id code that is too long: `$var TYPE WIDTH ID …`.
+fn redeclare(content: &mut Vec<u8>, rng: &mut Xoshiro256PlusPlus) {
+    let declarations = (0..content.len()).filter(|at| content[*at..].starts_with(b"$var "));
+    let Some(declaration) = declarations.collect::<Vec<_>>().choose(rng).copied() else {
+        return;
+    };
+    let spaces: Vec<usize> = (declaration..content.len())
+        .filter(|at| content[*at] == b' ')
+        .take(4)
+        .collect();
+    let [_, before_width, before_id, after_id] = spaces[..] else {
+        return;
+    };
+    if rng.random() {
+        content.splice(before_id + 1..after_id, *b"abcdefghi!");
+    } else {
+        let width = rng.random_range(1..=MOST_WIDTH).to_string();
+        content.splice(before_width + 1..before_id, width.into_bytes());
     }
 }
 
