@@ -2,7 +2,8 @@
 //! rest and others; ticks at every pace; requests, resets, and stops of every size.
 
 use posicast_model::rtl::segments::{
-    CUBIC, CubicEntry, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState, TICK_CLOCKS,
+    CUBIC, CubicEntry, ENTRIES_MAX, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState,
+    TICK_CLOCKS,
 };
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -93,7 +94,7 @@ impl SegmentsRandom {
             request_pace: *pick(rng, &[200, 2_000, 500_000, 500_000]),
             enable: rng.random_range(0..8) != 0,
             stop_deceleration: *pick(rng, &[0, 1, any, shifted, shifted, (1 << 31) - 1]),
-            low_water: rng.random_range(0..64),
+            low_water: rng.random_range(0..u64::from(ENTRIES_MAX)),
             modulo: rng.random_range(0..2),
             hold_pace: *pick(rng, &[0, 0, 0, 1, 60, 60]),
             extrapolation: *pick(rng, &[0, 0, 1, 2, 5, 255]),
@@ -147,7 +148,8 @@ impl SegmentsRandom {
         self.until_tick = 1;
         // The preset drops what arrives until the next tick, and so the first of the batches; one entry more than the
         // FIFO has drops the second.
-        for count in [65, 65, 64] {
+        let all = usize::from(ENTRIES_MAX);
+        for count in [all + 1, all + 1, all] {
             self.push_words(&Entry::batch(&vec![slow; count]));
         }
     }
@@ -225,9 +227,10 @@ impl SegmentsRandom {
     /// Some entries that are taken together, or one of them is wrong.
     fn push_batch(&mut self) {
         let few = self.rng.random_range(1..5);
-        let many = self.rng.random_range(1..64);
-        // 64 fit into an empty FIFO only, 65 into none.
-        let count = *pick(&mut self.rng, &[few, few, few, few, few, many, 64, 65]);
+        let all = i32::from(ENTRIES_MAX);
+        let many = self.rng.random_range(1..all);
+        // All fit into an empty FIFO only, one more into none.
+        let count = *pick(&mut self.rng, &[few, few, few, few, few, many, all, all + 1]);
         let entries: Vec<Entry> = (0..count).map(|_| self.cubic()).collect();
         let mut batch = Entry::batch(&entries);
         if self.rng.random_range(0..3) == 0 {
@@ -436,7 +439,7 @@ impl SegmentsCoverage {
             is(SegmentsState::Move),
             is(SegmentsState::Stop),
             is(SegmentsState::Stopped),
-            u64::from(level == 64),
+            u64::from(level == u64::from(ENTRIES_MAX)),
             low,
             empty,
             notify,
