@@ -11,7 +11,7 @@ use posicast_synth::core_file::{self, Core};
 use posicast_synth::driver::{self, AxisData, AxisFamily, DriverFile, StageDriver};
 use posicast_synth::package::Package;
 use posicast_synth::register_documents;
-use posicast_testbench::blocks::{Block, ComponentBlock};
+use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
 
 /// Adds the whole driver where there is a stage, a header and documents for every component's registers, and the
 /// core.
@@ -20,7 +20,7 @@ pub(crate) fn add(
     machine: &Machine,
     modules: &[Module],
     components: &[ComponentBlock],
-    stage: Option<&Stage>,
+    (stage, link): (Option<&Stage>, Option<&LinkedStageBlock>),
 ) -> Result<(), Failure> {
     let mut add = |path: &str, text: &str| package.add(path, text.as_bytes()).map_err(Failure::because);
     for block in components {
@@ -35,18 +35,24 @@ pub(crate) fn add(
             add(&path, &text)?;
         }
     }
-    for (path, text) in core_files(machine, modules, stage) {
+    for (path, text) in core_files(machine, modules, stage, link) {
         add(&path, &text)?;
     }
     Ok(())
 }
 
-fn core_files(machine: &Machine, modules: &[Module], stage: Option<&Stage>) -> Vec<(String, String)> {
+fn core_files(
+    machine: &Machine,
+    modules: &[Module],
+    stage: Option<&Stage>,
+    link: Option<&LinkedStageBlock>,
+) -> Vec<(String, String)> {
     let files: Vec<String> = modules.iter().map(verilog::path).collect();
     let component: Option<&Component> = stage.map(|stage| stage.block.component());
     core_file::files(&Core {
         machine: &machine.name,
         top: &stage.map_or_else(|| machine.name.clone(), |stage| stage.block.top()),
+        link: link.map(Block::top).as_deref(),
         files: &files,
         bus: component.map(|component| (component.map(), component.composition().ports())),
     })

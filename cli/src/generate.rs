@@ -57,7 +57,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         (stage, built.link.as_ref()),
         components,
     )?;
-    driver::add(&mut package, &file.machine, &modules, components, stage)?;
+    let of_stage = (stage, built.link.as_ref());
+    driver::add(&mut package, &file.machine, &modules, components, of_stage)?;
     args.hal.add(
         &mut package,
         &file.machine,

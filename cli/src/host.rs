@@ -187,7 +187,9 @@ fn open<'m>(
     };
     let link = way.open(options).map_err(|error| failure(error.into()))?;
     HostedStage::open(link, machine, stage).map_err(|error| match error {
-        HostError::Link(LinkError::NoReply { .. }) => Failure::missing_tool(format!("{way}: {error}")),
+        HostError::Link(LinkError::NoReply { .. } | LinkError::Line(_)) => {
+            Failure::MissingTool(miette::miette!(help = way.remedy(), "{way}: {error}"))
+        }
         error => failure(error),
     })
 }

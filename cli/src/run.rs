@@ -155,7 +155,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         (stage.as_ref(), link.as_ref()),
         &components,
     )?;
-    driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;
+    driver::add(
+        &mut package,
+        machine,
+        &modules,
+        &components,
+        (stage.as_ref(), link.as_ref()),
+    )?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
     let components = components.map(|component| component as &dyn Block);
     let components = components.chain(link.as_ref().map(|link| link as &dyn Block));
@@ -192,6 +198,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut checks = Vec::from_iter(checks::lint(simulator, &all, &tops)?);
     checks.push(checks::moves(machine, &axes));
     checks.extend(checks::all(simulator, machine, &design.design, &lockstep, &waves));
+    checks.extend(checks::link(link.as_ref()));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
     let of_loop: Vec<_> = closed_loop.iter().flat_map(ClosedLoop::pictures).collect();

@@ -15,14 +15,14 @@ pub enum LinkError {
         reason: String,
     },
     /// The SPI device cannot be opened.
-    #[error(
-        "{device}: {reason}: is SPI switched on (`ls /dev/spidev*`; on a Raspberry Pi `dtparam=spi=on`), and may you use it (group spi)?"
-    )]
+    #[error("{device}: {reason}: {remedy}")]
     Spi {
         /// Name of the device.
         device: String,
         /// What the operating system says.
         reason: String,
+        /// What to look at.
+        remedy: &'static str,
     },
     /// There is no server for this host.
     #[error("{address}: {reason}")]
@@ -37,8 +37,8 @@ pub enum LinkError {
     Line(#[from] std::io::Error),
     /// No reply, or only damaged ones.
     #[error(
-        "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, is the baud rate of a serial line that of its \
-         machine file, are the wires crossed?{}", .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
+        "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, are the wires and the speed of the line right?{}",
+        .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
     )]
     NoReply {
         /// How often the request was sent.

@@ -35,8 +35,20 @@ impl SpiLine<LinuxSpi> {
             Err(error) => Err(LinkError::Spi {
                 device: device.to_owned(),
                 reason: error.to_string(),
+                remedy: remedy(error.kind()),
             }),
         }
+    }
+}
+
+/// What to look at if a device cannot be opened.
+fn remedy(kind: io::ErrorKind) -> &'static str {
+    match kind {
+        io::ErrorKind::NotFound => {
+            "is SPI switched on (on a Raspberry Pi `dtparam=spi=on` in config.txt)? `ls /dev/spidev*` shows the devices"
+        }
+        io::ErrorKind::PermissionDenied => "may you use it? On most systems it belongs to the group `spi`",
+        _ => "is it an SPI device? `ls /dev/spidev*` shows those of this computer",
     }
 }
 

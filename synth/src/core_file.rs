@@ -25,6 +25,8 @@ pub struct Core<'a> {
     pub machine: &'a str,
     /// The top module.
     pub top: &'a str,
+    /// The top module of the stage with its line to a host, where there is one.
+    pub link: Option<&'a str>,
     /// All Verilog files, as paths in the folder.
     pub files: &'a [String],
     /// Register map and ports of the top module, where it has registers.
@@ -87,6 +89,21 @@ targets:
       verilator_options: [-Wall]
 "
     );
+    if let Some(link) = core.link {
+        let _ = write!(
+            text,
+            "
+  lint_link:
+    description: Verilator reads everything below {link}, and warns of nothing
+    filesets: [rtl]
+    toplevel: {link}
+    flow: lint
+    flow_options:
+      tool: verilator
+      verilator_options: [-Wall]
+"
+        );
+    }
     if core.bus.is_some() {
         let _ = write!(
             text,

@@ -88,6 +88,23 @@ impl<'a> Way<'a> {
         }
     }
 
+    /// What to look at where nothing comes back, or the line fails.
+    pub(super) fn remedy(&self) -> String {
+        match self {
+            Self::Serial(..) => {
+                "the baud rate must be that of the machine file from which the FPGA was built; the adapter's transmitter belongs to uart_rx, \
+                 its receiver to uart_tx"
+                    .to_owned()
+            }
+            Self::Spi(device, sck_hz) => format!(
+                "spi_cs_n belongs to the chip select of {device}, spi_mosi to MOSI and spi_miso to MISO, not crossed; try a slower clock, such as \
+                 {SPI}{device}{SPI_CLOCK}{}",
+                sck_hz / 10
+            ),
+            Self::Network(address) => format!("posicast_serve must run at {address}, and the stage behind it must have a clock"),
+        }
+    }
+
     /// Opens it.
     pub(super) fn open(&self, options: LinkOptions) -> Result<Link<Box<dyn Line>>, LinkError> {
         let line: Box<dyn Line> = match self {
@@ -99,6 +116,7 @@ impl<'a> Way<'a> {
                 return Err(LinkError::Spi {
                     device: (*device).to_owned(),
                     reason: "posicast knows the SPI devices of Linux only".to_owned(),
+                    remedy: "operate the stage from a computer with Linux",
                 });
             }
             Self::Network(address) => Box::new(UdpLine::open(address, options)?),

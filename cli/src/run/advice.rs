@@ -229,9 +229,10 @@ mod tests {
                 names += 1;
                 // Open checks are named, but are not failures; a move that is too short gets its advice in the check
                 // of the error.
-                assert!(for_check(name).is_some() || name.starts_with("every shaper"), "{name}");
+                let is_never_failed = name.starts_with("every shaper") || name.starts_with("the line to the host");
+                assert!(for_check(name).is_some() || is_never_failed, "{name}");
             }
         }
-        assert_eq!(names, 15);
+        assert_eq!(names, 16);
     }
 }

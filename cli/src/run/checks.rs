@@ -11,7 +11,7 @@ use posicast_model::machine_file::Machine;
 use posicast_model::simulation::AxisSimulation;
 use posicast_model::unit::short;
 use posicast_synth::yosys::Estimate;
-use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::blocks::{Block, LinkedStageBlock, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
@@ -332,6 +332,20 @@ pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block])
         warnings.is_empty(),
         warnings.first().cloned().unwrap_or_else(clean),
     )))
+}
+
+/// The line to a host, which a run does not simulate.
+pub(crate) fn link(link: Option<&LinkedStageBlock>) -> Option<Check> {
+    let link = link?;
+    let reason = format!(
+        "a run does not simulate {}; `posicast verify MACHINE --block linked_stage` does",
+        link.top()
+    );
+    Some(Check::not_exercised(
+        "the line to the host, with its bridge, equals its model",
+        true,
+        &reason,
+    ))
 }
 
 /// The top module, without the components, must fit the device of the machine file; no check where it names none.

@@ -173,7 +173,7 @@ fn cli_host_says_what_is_missing() {
         &file,
         &["status"],
         3,
-        "3000000 baud: no reply in 5 attempts of 5 ms, 0 damaged: is the stage powered, is the baud rate",
+        "3000000 baud: no reply in 5 attempts of 5 ms, 0 damaged: is the stage powered, are the wires",
     );
     fails(
         &port,
@@ -232,7 +232,7 @@ fn cli_host_says_what_is_wrong_with_an_spi_device() {
             "/dev/no-such-device: No such file",
         ),
         ("spi:///dev/no-such-device?hz=1_000_000", false, 3, "is SPI switched on"),
-        ("spi:///dev/null", false, 3, "/dev/null: "),
+        ("spi:///dev/null", false, 3, "is it an SPI device?"),
         ("spi:///dev/null?hz=7000000", false, 2, hz),
         ("spi:///dev/null?hz=159999", false, 2, hz),
         ("spi:///dev/null?hz=fast", false, 2, hz),

@@ -15,6 +15,8 @@ pub(super) struct Key {
     pub(super) default: Option<Default>,
     /// Another key that may stand in place of this one: a table has one of the two.
     pub(super) instead_of: Option<&'static str>,
+    /// Another key and the word of it that goes with this one.
+    pub(super) chosen_by: Option<(&'static str, &'static str)>,
     /// Another key that is only valid beside this one.
     pub(super) needed_by: Option<&'static str>,
     /// Meaning and unit, in a sentence.
@@ -81,6 +83,7 @@ impl Key {
             required: false,
             default: None,
             instead_of: None,
+            chosen_by: None,
             needed_by: None,
             about,
         }
@@ -103,6 +106,14 @@ impl Key {
     pub(super) const fn instead_of(self, other: &'static str) -> Self {
         Self {
             instead_of: Some(other),
+            ..self
+        }
+    }
+
+    /// Says which word of another key goes with this one, where keys stand in place of each other.
+    pub(super) const fn chosen_by(self, other: &'static str, word: &'static str) -> Self {
+        Self {
+            chosen_by: Some((other, word)),
             ..self
         }
     }

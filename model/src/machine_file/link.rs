@@ -18,7 +18,8 @@ const SCK_HZ: RangeInclusive<u32> = 100_000..=50_000_000;
 /// Bits of two bytes, the shortest time-out with SPI.
 const LEAST_SPI_TIMEOUT_BITS: f64 = 16.0;
 /// Range of time-outs; the line limits them further.
-const TIMEOUT_S: NumberRange = NumberRange::positive(1.2).unit("s");
+const TIMEOUT_S: NumberRange = NumberRange::positive(MOST_TIMEOUT_S).unit("s");
+const MOST_TIMEOUT_S: f64 = 1.2;
 /// Time-out of a file that gives none.
 const DEFAULT_TIMEOUT_S: f64 = 0.01;
 /// Baud rates that the ports of hosts usually have, within [`BAUD`].
@@ -106,13 +107,15 @@ pub(super) const KEYS: &[Key] = &[
         "baud",
         Values::Integer(*BAUD.start(), *BAUD.end()),
         "Baud rate of a serial line, 8 data bits, no parity, 1 stop bit. The clock must make it within 2 %.",
-    ),
+    )
+    .chosen_by("line", UART),
     Key::new(
         "sck_hz",
         Values::Integer(*SCK_HZ.start(), *SCK_HZ.end()),
         "Clock of the host in Hz, where the line is SPI: at most an eighth of that of the machine.",
     )
-    .instead_of("baud"),
+    .instead_of("baud")
+    .chosen_by("line", SPI),
     Key::new(
         "timeout_s",
         Values::Number(TIMEOUT_S),
@@ -185,20 +188,32 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
     };
     table.refuse(
         "timeout_s",
-        format_args!("{shortest:.1e} s to {longest:.3} s at {at}"),
+        format_args!(
+            "{:.1e} s to {:.3} s at {at}",
+            rounded_up(shortest),
+            longest.min(MOST_TIMEOUT_S)
+        ),
         other,
     );
     None
 }
 
 fn read_uart(table: &Table<'_, '_>) -> Option<LinkLine> {
-    let allowed = format!("a whole number, {} to {}", BAUD.start(), BAUD.end());
+    let allowed = format!(
+        "a whole number, {} to {}; or line = \"{SPI}\" and sck_hz",
+        BAUD.start(),
+        BAUD.end()
+    );
     if table.has("sck_hz") {
+        let remedy = match table.has("baud") {
+            true => format!("remove sck_hz; or write `line = \"{SPI}\"` and remove baud"),
+            false => format!("write `line = \"{SPI}\"`; or replace sck_hz by baud"),
+        };
         table.contradiction(
             "sck_hz",
             format!("sck_hz, and line = \"{UART}\""),
             "sck_hz where the line is SPI",
-            format!("write `line = \"{SPI}\"`, or remove sck_hz and give baud"),
+            remedy,
         );
         return None;
     }
@@ -209,17 +224,25 @@ fn read_uart(table: &Table<'_, '_>) -> Option<LinkLine> {
 
 fn read_spi(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<LinkLine> {
     if table.has("baud") {
+        let remedy = match table.has("sck_hz") {
+            true => format!("remove baud; or write `line = \"{UART}\"` and remove sck_hz"),
+            false => format!("replace baud by sck_hz; or write `line = \"{UART}\"`"),
+        };
         table.contradiction(
             "baud",
             format!("baud, and line = \"{SPI}\""),
             "baud where the line is serial",
-            format!("write `line = \"{UART}\"`, or replace baud by sck_hz"),
+            remedy,
         );
         return None;
     }
-    table.require(
+    let most = clock.map_or(*SCK_HZ.end(), |clock| most_sck_hz(&clock).min(*SCK_HZ.end()));
+    let allowed = format!("a whole number, {} to {most}", SCK_HZ.start());
+    let example = written(f64::from(most));
+    table.require_with(
         "sck_hz",
-        format_args!("a whole number, {} to {}", SCK_HZ.start(), SCK_HZ.end()),
+        allowed,
+        format!("add the clock of the host, such as `sck_hz = {example}`"),
     );
     let sck_hz = table.integer("sck_hz", *SCK_HZ.start(), *SCK_HZ.end())?;
     let clock = clock?;
@@ -246,6 +269,12 @@ fn read_spi(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<LinkLi
 /// Fastest clock of an SPI host.
 fn most_sck_hz(clock: &ClockSection) -> u32 {
     (clock.frequency_hz.round() as u64 / LEAST_CLOCKS_PER_BIT) as u32
+}
+
+/// The next number of two digits, so that the number in a message is itself allowed.
+fn rounded_up(number: f64) -> f64 {
+    let unit = 10_f64.powf(number.log10().floor() - 1.0);
+    (number / unit).ceil() * unit
 }
 
 /// What is allowed where the clock cannot make the baud rate, and what to do.

@@ -47,13 +47,31 @@ fn table(keys: &[Key]) -> Map<String, Value> {
     }
     if let Some(other) = keys.iter().find_map(|key| key.instead_of) {
         let others = keys.iter().filter(|key| key.instead_of == Some(other));
-        let one = std::iter::once(other).chain(others.map(|key| key.name));
-        let one: Vec<Value> = one.map(|key| json!({ "required": [key] })).collect();
+        let one: Vec<&str> = std::iter::once(other).chain(others.map(|key| key.name)).collect();
+        let one: Vec<Value> = one.iter().map(|key| alternative(keys, key, &one)).collect();
         schema.insert("oneOf".to_owned(), json!(one));
     }
     schema.insert("additionalProperties".to_owned(), json!(false));
     schema.insert("properties".to_owned(), Value::Object(properties));
     schema
+}
+
+/// A table with this key of several, which must not have the others. `oneOf` says the latter by itself where no word of another key
+/// goes with this one.
+fn alternative(keys: &[Key], name: &str, all: &[&str]) -> Value {
+    let key = keys.iter().find(|key| key.name == name);
+    let Some((by, word)) = key.and_then(|key| key.chosen_by) else {
+        return json!({ "required": [name] });
+    };
+    let default = keys.iter().find(|key| key.name == by).and_then(|key| key.default);
+    let required = match default {
+        Some(Default::Word(usual)) if usual == word => vec![name],
+        _ => vec![name, by],
+    };
+    let others = all.iter().filter(|other| **other != name);
+    let mut properties: Map<String, Value> = others.map(|other| ((*other).to_owned(), json!(false))).collect();
+    properties.insert(by.to_owned(), json!({ "const": word }));
+    json!({ "required": required, "properties": properties })
 }
 
 fn property(key: &Key) -> Value {

@@ -123,10 +123,42 @@ fn unit_keys_and_time_outs_that_do_not_suit_the_line_are_refused() {
         ),
         (
             "line = \"spi\"\nsck_hz = 1_000_000\ntimeout_s = 0.00002",
-            "link.timeout_s: found 0.00002; allowed: 5.1e-5 s to 1.342 s at a clock of 50000000 Hz",
+            "link.timeout_s: found 0.00002; allowed: 5.2e-5 s to 1.200 s at a clock of 50000000 Hz",
         ),
     ] {
         refused(&format!("{XY_STAGE}[link]\n{text}\n"), expected);
+    }
+    right(&format!(
+        "{XY_STAGE}[link]\nline = \"spi\"\nsck_hz = 1_000_000\ntimeout_s = 5.2e-5\n"
+    ));
+}
+
+/// Each remedy leads to a file that is accepted.
+#[test]
+fn unit_remedies_for_keys_of_the_other_line() {
+    for (text, expected) in [
+        (
+            "line = \"spi\"",
+            "add the clock of the host, such as `sck_hz = 6_250_000`",
+        ),
+        (
+            "line = \"spi\"\nbaud = 3_000_000",
+            "replace baud by sck_hz; or write `line = \"uart\"`",
+        ),
+        (
+            "line = \"spi\"\nbaud = 3_000_000\nsck_hz = 1_000_000",
+            "remove baud; or write `line = \"uart\"` and remove sck_hz",
+        ),
+        (
+            "sck_hz = 1_000_000",
+            "write `line = \"spi\"`; or replace sck_hz by baud",
+        ),
+        (
+            "baud = 3_000_000\nsck_hz = 1_000_000",
+            "remove sck_hz; or write `line = \"spi\"` and remove baud",
+        ),
+    ] {
+        assert_eq!(remedy(&format!("{XY_STAGE}[link]\n{text}\n")), expected);
     }
 }
 

@@ -157,6 +157,26 @@ fn unit_the_examples_and_the_templates_are_valid() {
 }
 
 #[test]
+fn unit_the_speed_of_a_line_goes_with_its_kind() {
+    let text = std::fs::read_to_string(root().join("examples/xy-stage.toml")).unwrap();
+    let validator = jsonschema::validator_for(&machine_file::schema()).unwrap();
+    for (link, is_right) in [
+        ("baud = 3_000_000", true),
+        ("line = \"uart\"\nbaud = 3_000_000", true),
+        ("line = \"spi\"\nsck_hz = 1_000_000", true),
+        ("line = \"spi\"\nbaud = 3_000_000", false),
+        ("sck_hz = 1_000_000", false),
+        ("line = \"spi\"\nsck_hz = 1_000_000\nbaud = 3_000_000", false),
+        ("line = \"spi\"", false),
+    ] {
+        let text = format!("{text}[link]\n{link}\n");
+        let json = serde_json::to_value(toml::from_str::<toml::Table>(&text).unwrap()).unwrap();
+        assert_eq!(validator.is_valid(&json), is_right, "{link}");
+        assert_eq!(machine_file::parse("m.toml", &text).is_ok(), is_right, "{link}");
+    }
+}
+
+#[test]
 fn unit_every_key_has_a_row_in_the_documentation() {
     let page = std::fs::read_to_string(root().join("docs/machine-file.md")).unwrap();
     for (path, _) in all_keys() {

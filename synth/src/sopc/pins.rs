@@ -35,6 +35,9 @@ pub(super) const SPI: [(&str, bool); 4] = [
     ("spi_miso", false),
 ];
 
+/// Lines to a host that are high while nobody speaks, or nobody is connected.
+pub(super) const RESTS_HIGH: [&str; 2] = [UART_RECEIVE, "spi_cs_n"];
+
 /// Purpose of a port of the top level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {

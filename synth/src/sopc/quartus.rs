@@ -67,7 +67,7 @@ set_global_assignment -name STRATIX_DEVICE_IO_STANDARD \"{IO_STANDARD}\"
     }
     let _ = writeln!(
         text,
-        "\n# A weak pull-up would show a broken wire as healthy: lines have pull-downs outside"
+        "\n# A weak pull-up would show a broken wire as healthy: lines have pull-downs outside. Only the line to a host rests high."
     );
     for pin in pins {
         let _ = writeln!(
@@ -75,6 +75,13 @@ set_global_assignment -name STRATIX_DEVICE_IO_STANDARD \"{IO_STANDARD}\"
             "set_instance_assignment -name IO_STANDARD \"{IO_STANDARD}\" -to {}",
             pin.port
         );
+        if pins::RESTS_HIGH.contains(&pin.port.as_str()) {
+            let _ = writeln!(
+                text,
+                "set_instance_assignment -name WEAK_PULL_UP_RESISTOR ON -to {}",
+                pin.port
+            );
+        }
         if pin.is_input && pin.purpose == Use::Stage {
             let _ = writeln!(
                 text,

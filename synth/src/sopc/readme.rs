@@ -316,6 +316,16 @@ fn resistors(text: &mut String, design: &Design<'_>) {
         [] => "no axis of this machine".to_owned(),
         axes => axes.join(", "),
     };
+    let host = match design.link.as_ref().map(|(_, bridge)| bridge.line()) {
+        None => "",
+        Some(Line::Uart) => {
+            "- `uart_rxd` rests high: the project turns its weak pull-up on, for a host that is not connected.\n"
+        }
+        Some(Line::Spi) => {
+            "- `spi_cs_n` rests high: the project turns its weak pull-up on, for a host that is not connected or off; 10 kΩ to 3.3 V outside are \
+             safer. `spi_sck` needs 10 kΩ to ground.\n"
+        }
+    };
     let _ = write!(
         text,
         "
@@ -328,7 +338,7 @@ in the worst case 7 kΩ. A gate driver takes that for *on*.
   ({pulled_up}). The same for `drive_enable` and `brake_release`, to ground.
 - Every line for which low is the safe side (`emergency_stop_n`, `limit_plus_n`, `limit_minus_n`, `drive_ready`, `drive_fault_n`,
   `fault_n`) needs 10 kΩ to ground, so that a broken wire reads as a fault. The project turns the weak pull-ups of inputs off.
-- A line that you leave open reads low through its resistor: the axis stays in FAULT. That is meant.
+{host}- A line that you leave open reads low through its resistor: the axis stays in FAULT. That is meant.
 - The pins take 3.3 V. Encoders and switches of 5 V or 24 V need level shifters or optocouplers.
 "
     );

@@ -141,6 +141,7 @@ fn unit_fusesoc_runs_lint_and_sim() {
     let core = Core {
         machine: "xy_stage",
         top: "xy_stage_stage",
+        link: None,
         files: &files,
         bus: Some((component.map(), component.composition().ports())),
     };

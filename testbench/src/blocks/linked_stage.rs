@@ -35,7 +35,7 @@ impl LinkedStageBlock {
             config,
             clock_hz,
             axes: axes.to_vec(),
-            instance: format!("{}, {}", axes.join(", "), config.line()),
+            instance: format!("{}, {} without time-outs", axes.join(", "), config.line()),
             names: names.map(str::to_owned),
         }
     }
@@ -89,7 +89,8 @@ impl Block for LinkedStageBlock {
         (LEAST_BYTES * LinkedStageRandom::byte_clocks(&self.config, self.clock_hz)) as u64
     }
 
-    /// Only the line: the stage's own bench exercises the pins, and a line is too slow for that.
+    /// Only the line: the stage's own bench exercises the pins, and a line is too slow for that. Time-outs are as long as a run; the bench
+    /// of the bridge has them.
     fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
         let mut ports = ports(&self.stage, &self.config);
         ports.retain(|port| port.direction == Direction::Output);

@@ -87,9 +87,12 @@ impl LinkedStageRandom {
         }
     }
 
+    /// Address of a register, or of any word; or the last address that exists, or the first that does not.
     fn address(&mut self) -> u16 {
         match self.rng.random_range(0..20) {
             0 => self.rng.random_range(0..self.words + 2),
+            1 => self.words - 1,
+            2 => self.words,
             _ => *pick(&mut self.rng, &self.offsets),
         }
     }
