@@ -57,31 +57,22 @@ fn header(name: &str, config: &BridgeConfig) -> String {
         value,
         meaning: meaning.to_owned(),
     };
-    let (about, speed) = match config {
-        BridgeConfig::Uart(config) => (
+    let about = match config {
+        BridgeConfig::Uart(_) => {
             "The stage with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
-             See docs/uart_bridge.md.",
-            parameter(
-                "baud",
-                config.baud().to_string(),
-                "bits per second: 8 data bits, no parity, 1 stop bit",
-            ),
-        ),
-        BridgeConfig::Spi(config) => (
+             See docs/uart_bridge.md."
+        }
+        BridgeConfig::Spi(_) => {
             "The stage with its SPI lines: a host reads and writes the registers through spi_sck, spi_cs_n, spi_mosi and spi_miso.\n\
-             See docs/spi_bridge.md.",
-            parameter(
-                "most_sck_hz",
-                config.most_sck_hz().to_string(),
-                "fastest spi_sck in Hz, mode 0: an eighth of the clock",
-            ),
-        ),
+             See docs/spi_bridge.md."
+        }
     };
+    let (speed, value, meaning) = config.speed();
     let header = Header {
         about: about.to_owned(),
         ports: Vec::new(),
         parameters: vec![
-            speed,
+            parameter(speed, value.to_string(), meaning),
             parameter(
                 "address_limit",
                 config.address_limit().to_string(),

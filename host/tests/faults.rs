@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use posicast_host::{Link, LinkError, LinkOptions};
+use posicast_host::{Line as AnyLine, Link, LinkError, LinkOptions};
 use posicast_model::link::{Bus, LinkBridge, LinkStatus};
 
 pub(crate) const REGISTERS: u16 = 512;
@@ -146,9 +146,9 @@ fn unit_a_line_without_a_bridge_is_an_error_that_says_what_to_look_for() {
     );
 }
 
-/// Every write arrives once and in order, although one byte in 60 is damaged.
-fn campaign(calls: u32) -> u64 {
-    let mut link = Link::new(line(60), FAST);
+/// Writes one to five words per call, and reads up to `most` words, which must be those of the bench's registers. Returns the address and
+/// the word of every write, in order.
+pub(crate) fn write_and_read<L: AnyLine>(link: &mut Link<L>, calls: u32, most: u32) -> Vec<(u16, u32)> {
     let mut expected = Vec::new();
     for call in 0..calls {
         let words: Vec<u32> = (0..1 + call % 5)
@@ -157,12 +157,19 @@ fn campaign(calls: u32) -> u64 {
         let address = (call % 400) as u16;
         link.write(address, &words).unwrap();
         expected.extend((address..).zip(words));
-        let count = 1 + (call % 7) as u16;
+        let count = 1 + (call % most) as u16;
         let read: Vec<u32> = (address..address + count)
             .map(|address| u32::from(address) << 8 | 1)
             .collect();
         assert_eq!(link.read(address, count).unwrap(), read);
     }
+    expected
+}
+
+/// Every write arrives once and in order, although one byte in 60 is damaged.
+fn campaign(calls: u32) -> u64 {
+    let mut link = Link::new(line(60), FAST);
+    let expected = write_and_read(&mut link, calls, 7);
     let statistics = link.statistics();
     let line = link.into_line();
     assert!(line.registers.writes == expected);

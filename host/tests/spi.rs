@@ -3,6 +3,7 @@
 use std::io::{self, Read, Write};
 use std::time::Duration;
 
+use crate::faults::write_and_read;
 use crate::stage::stage;
 use posicast_host::{HostedStage, Link, LinkOptions, SpiLine, SpiTransfer};
 use posicast_model::link::{DELIMITER, Reply, Request};
@@ -125,16 +126,7 @@ fn unit_words_are_read_and_written() {
 #[test]
 fn unit_damaged_bits_write_nothing_wrong_and_nothing_twice() {
     let mut link = Link::new(SpiLine::new(Bench::new(1500)), options(Duration::from_millis(4)));
-    let mut expected = Vec::new();
-    for call in 0..150_u32 {
-        let words: Vec<u32> = (0..1 + call % 5)
-            .map(|word| (call * 8 + word).wrapping_mul(0x9e37_79b1))
-            .collect();
-        let address = (call % 400) as u16;
-        link.write(address, &words).unwrap();
-        expected.extend((address..).zip(words));
-        assert_eq!(link.read(address, 1).unwrap(), [u32::from(address) << 8 | 1]);
-    }
+    let expected = write_and_read(&mut link, 150, 1);
     assert!(link.statistics().repeated > 10, "{:?}", link.statistics());
     let mut line = link.into_line();
     assert!(line.controller().writes == expected);

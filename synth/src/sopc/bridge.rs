@@ -66,18 +66,7 @@ impl BridgeUnit {
         );
         let top = self.modules.last().map_or("", String::as_str);
         hw_tcl::file_sets(&mut text, top, &self.modules);
-        let (speed, value, meaning) = match self.config {
-            BridgeConfig::Uart(config) => (
-                "baud",
-                config.baud(),
-                "bits per second: 8 data bits, no parity, 1 stop bit",
-            ),
-            BridgeConfig::Spi(config) => (
-                "most_sck_hz",
-                u32::try_from(config.most_sck_hz()).unwrap_or(u32::MAX),
-                "fastest spi_sck in Hz, mode 0: an eighth of the clock",
-            ),
-        };
+        let (speed, value, meaning) = self.config.speed();
         hw_tcl::parameter(&mut text, speed, value, meaning);
         hw_tcl::parameter(
             &mut text,

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use posicast_model::link::Request;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::linked_stage::BridgeConfig;
+use posicast_model::rtl::spi_bridge::LEAST_CLOCKS_PER_BIT;
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -21,7 +22,7 @@ const PATIENCE: f64 = 60.0;
 /// Bits of a byte on a serial line.
 const FRAME_BITS: u32 = 10;
 /// Half a period of an SPI host's clock, in clocks: the fastest.
-const HALF_CLOCKS: f64 = 4.0;
+const HALF_CLOCKS: f64 = LEAST_CLOCKS_PER_BIT as f64 / 2.0;
 /// Bytes 00 by which an SPI host gets a reply.
 const REPLY_BYTES: usize = 48;
 /// The levels of idle lines.

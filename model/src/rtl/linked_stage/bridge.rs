@@ -30,6 +30,22 @@ impl BridgeConfig {
         }
     }
 
+    /// Speed of its line, for those who connect a host: name, value and meaning.
+    pub fn speed(&self) -> (&'static str, u32, &'static str) {
+        match self {
+            Self::Uart(config) => (
+                "baud",
+                config.baud(),
+                "bits per second: 8 data bits, no parity, 1 stop bit",
+            ),
+            Self::Spi(config) => (
+                "most_sck_hz",
+                u32::try_from(config.most_sck_hz()).unwrap_or(u32::MAX),
+                "fastest spi_sck in Hz, mode 0: an eighth of the clock",
+            ),
+        }
+    }
+
     /// The ports of the block.
     pub fn ports(&self) -> Vec<Port> {
         match self {
