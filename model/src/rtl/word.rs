@@ -10,8 +10,6 @@
 //! # Ok::<(), posicast_model::rtl::word::WordError>(())
 //! ```
 
-use fixed::types::I64F64;
-
 /// A signed format of `bits` bits, the lowest `fraction` of which are behind the binary point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WordFormat {
@@ -67,23 +65,32 @@ impl WordFormat {
     /// [`WordError::Range`] for counts that are too large for the word, or not a number.
     pub fn to_word(self, counts: f64) -> Result<i64, WordError> {
         let (smallest, largest) = self.ends();
-        I64F64::checked_from_num(counts)
-            .and_then(|exact| exact.checked_mul_int(1 << self.fraction))
-            .and_then(|scaled| scaled.checked_add(I64F64::ONE / 2))
-            .map(|rounded| rounded.floor().to_num::<i64>())
-            .filter(|word| (smallest..=largest).contains(word))
-            .ok_or(WordError::Range {
+        // A power of two and a difference of less than one change no digit. `(scaled + 0.5).floor()` would: it rounds the number
+        // below one half up.
+        let scaled = counts * self.one();
+        let below = scaled.floor();
+        let nearest = if scaled - below < 0.5 { below } else { below + 1.0 };
+        if (smallest as f64..=largest as f64).contains(&nearest) {
+            Ok(nearest as i64)
+        } else {
+            Err(WordError::Range {
                 found: counts,
                 bits: self.bits,
                 fraction: self.fraction,
                 smallest: self.to_counts(smallest),
                 largest: self.to_counts(largest),
             })
+        }
     }
 
     /// The counts that a word stands for, exactly.
     pub fn to_counts(self, word: i64) -> f64 {
-        I64F64::from_bits(i128::from(word) << (I64F64::FRAC_NBITS - self.fraction)).to_num()
+        word as f64 / self.one()
+    }
+
+    /// The word of one count.
+    fn one(self) -> f64 {
+        f64::from(1u32 << self.fraction)
     }
 
     /// The largest number that a word holds, in counts.
@@ -106,6 +113,16 @@ mod tests {
         let format = WordFormat::new(16, 2).unwrap();
         let words = [-0.375, -0.25, -0.125, 0.0, 0.1249, 0.125, 0.375].map(|counts| format.to_word(counts).unwrap());
         assert_eq!(words, [-1, -1, 0, 0, 0, 1, 2]);
+
+        let beside_half = [
+            (-0.125_f64).next_up(),
+            (-0.125_f64).next_down(),
+            0.125_f64.next_down(),
+            -1e-300,
+            1e-300,
+        ];
+        let words = beside_half.map(|counts| format.to_word(counts).unwrap());
+        assert_eq!(words, [0, -1, 0, 0, 0]);
     }
 
     #[test]
