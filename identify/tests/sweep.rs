@@ -164,6 +164,39 @@ fn unit_a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
 }
 
 #[test]
+fn unit_a_sweep_of_which_the_log_has_neither_end_is_refused() {
+    // The shaking from 30 to 85 Hz at 2 Hz/s is also that of one from 5 to 135 Hz at 1 Hz/s, at twice its frequencies and in one direction.
+    let driven = Sweep {
+        start_hz: 30.0,
+        end_hz: 85.0,
+        rate_hz_per_s: 2.0,
+        ..Sweep::default()
+    };
+    let truths = [known(44.3, 0.053, 0.75), known(71.0, 0.04, 0.25)];
+    let sensor = Sensor {
+        sample_s: 1.0 / 400.0,
+        ..Sensor::default()
+    };
+    let log = resonance_test(&truths, &driven, &sensor, 5);
+    check(&truths, &sweep::identify(&log, &driven).unwrap().modes);
+    let error = sweep::identify(&log, &Sweep::default()).unwrap_err();
+    assert!(matches!(error, SweepError::Piece(_)), "{error}");
+}
+
+#[test]
+fn unit_no_mode_is_told_of_frequencies_that_the_log_does_not_have() {
+    let truths = [known(30.0, 0.04, 0.6), known(90.0, 0.03, 0.4)];
+    let mut log = resonance_test(&truths, &quick(), &Sensor::default(), 5);
+    for (_, record) in &mut log.directions {
+        // 5.8 s of the sweep, up to 63 Hz.
+        record.truncate((0.437_21 * 3200.0) as usize + 18_560);
+    }
+    let found = sweep::identify(&log, &quick()).unwrap();
+    assert!((found.covered.high_hz - 63.0).abs() < 0.5, "{:?}", found.covered);
+    check(&truths[..1], &found.modes);
+}
+
+#[test]
 fn unit_a_clock_that_drifts_is_set_by_the_sweep() {
     let truths = [known(38.0, 0.04, 0.7), known(66.0, 0.05, 0.3)];
     for error in [-2e-4, 1e-4, 5e-4] {

@@ -9,7 +9,7 @@ use posicast_identify::output_only;
 use posicast_identify::position::{self, FoundInPosition, PositionError, motor};
 use posicast_identify::recommend::{Judgement, Recommendation, recommend};
 use posicast_identify::spectrum::{PowerSpectrum, welch};
-use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
+use posicast_identify::sweep::{self, Band, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
 use posicast_model::unit::{AxisUnit, trimmed};
 
@@ -70,7 +70,15 @@ pub(super) struct Findings {
 impl Findings {
     /// Finds the modes of a log.
     pub(super) fn of(reading: Reading, flags: &ExcitationFlags, judgement: &Judgement) -> Result<Self, Failure> {
-        let remarks = reading.remarks.iter().map(ToString::to_string).collect();
+        let mut remarks: Vec<String> = reading.remarks.iter().map(ToString::to_string).collect();
+        let sample_s = match &reading.log {
+            Log::Acceleration(log) => log.sample_s,
+            Log::Position(log) => log.sample_s,
+            Log::Drive(log) => log.sample_s,
+        };
+        if sample_s > SLOW_S {
+            remarks.push(MILLISECONDS.to_owned());
+        }
         let mut findings = match &reading.log {
             Log::Acceleration(log) if flags.output_only => of_output(log)?,
             Log::Acceleration(log) => of_sweep(log, &flags.sweep)?,
@@ -95,12 +103,18 @@ impl Findings {
     }
 }
 
+/// Time between samples above which it is asked whether it was given in milliseconds.
+const SLOW_S: f64 = 0.2;
+const MILLISECONDS: &str =
+    "the log has less than 5 samples per second; if its times are in milliseconds, write them in seconds";
+
 fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
     let found = sweep::identify(log, sweep).map_err(|error| {
         let help = match error {
-            SweepError::Unrelated(_) | SweepError::Unlike(_) => {
-                "--sweep describes another sweep; --output-only looks for modes without knowing the excitation"
+            SweepError::Unrelated(_) | SweepError::Unlike(_) | SweepError::Piece(_) => {
+                "--sweep START:END:RATE:ACCEL describes another sweep; --output-only looks for modes without knowing the excitation"
             }
+            SweepError::Description(_) if log.sample_s > SLOW_S => MILLISECONDS,
             SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",
             SweepError::Short { .. } | SweepError::Empty => "log the whole resonance test, from rest to rest",
         };
@@ -258,6 +272,8 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
     const LEFT_OVER: f64 = 4.0;
     /// Part by which clocks differ that is told: less moves no mode.
     const TOLD_CLOCK: f64 = 1e-5;
+    /// Ratio by which an end of the sweep must be missing to be told.
+    const PART: f64 = 1.05;
     let mut remarks = Vec::new();
     if found.reduced_square > LEFT_OVER {
         remarks.push(format!(
@@ -273,18 +289,27 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
             if found.clock_error > 0.0 { "faster" } else { "slower" }
         ));
     }
-    if found.modes.is_empty() {
+    let Band { low_hz, high_hz } = found.covered;
+    let (low, high) = (trimmed(low_hz, 4), trimmed(high_hz, 4));
+    if found.order.first_harmonic() > 1.0 {
+        remarks.push(
+            "the log fits this sweep if the axis moved in one direction, shaken at twice the sweep's frequencies; if it did not, it was another sweep: --sweep".to_owned(),
+        );
+    }
+    if low_hz > sweep.start_hz * PART || high_hz * PART < sweep.end_hz {
         remarks.push(format!(
-            "between {} and {} Hz the sensor follows the sweep without a resonance that could be told from noise",
-            trimmed(sweep.start_hz, 4),
-            trimmed(sweep.end_hz, 4)
-        ));
-    } else {
-        remarks.push(format!(
-            "modes below {} Hz and above {} Hz are not in this sweep, nor is one with less than 5 % of the displacement told",
-            trimmed(sweep.start_hz, 4),
-            trimmed(sweep.end_hz, 4)
+            "the log has a part of this sweep only, from {low} to {high} Hz, and modes near a missing end are doubtful; if it was another sweep, describe it: \
+             --sweep START:END:RATE:ACCEL"
         ));
     }
+    remarks.push(if found.modes.is_empty() {
+        format!(
+            "between {low} and {high} Hz the sensor follows the sweep without a resonance that could be told from noise"
+        )
+    } else {
+        format!(
+            "modes below {low} Hz and above {high} Hz are not told, nor is one with less than 5 % of the displacement"
+        )
+    });
     remarks
 }

@@ -48,6 +48,14 @@ impl QuarterOrder {
     /// Every order.
     pub const ALL: [Self; 3] = [Self::Mirrored, Self::Alternating, Self::Square];
 
+    /// The lowest frequency at which this order shakes the axis, as a multiple of that of its quarters.
+    pub fn first_harmonic(self) -> f64 {
+        match self {
+            Self::Mirrored | Self::Square => 1.0,
+            Self::Alternating => 2.0,
+        }
+    }
+
     fn sign(self, quarter: usize) -> f64 {
         let positive = match self {
             Self::Mirrored => matches!(quarter % 4, 0 | 3),

@@ -34,6 +34,8 @@ pub struct FoundInSweep {
     pub order: QuarterOrder,
     /// Way in which the frequency rises that fits the log.
     pub rise: Rise,
+    /// The frequencies at which the log has the axis shaken; modes outside are not reported.
+    pub covered: Band,
     /// The measured transfer function.
     pub transfer: Transfer,
     /// The fitted transfer function, at the same points.
@@ -59,6 +61,12 @@ pub enum SweepError {
     /// No direction follows the sweep.
     #[error("no direction of the sensor follows the sweep: it explains {:.1} % of the log at most", 100.0 * .0)]
     Unrelated(f64),
+    /// The log has neither end of the sweep.
+    #[error(
+        "the log follows this sweep only as a piece of it, from {:.1} to {:.1} Hz, without its beginning and its end: it was another sweep, or the log was cut",
+        .0.low_hz, .0.high_hz
+    )]
+    Piece(Band),
     /// The log follows the sweep in a way that modes do not explain.
     #[error("modes tell {:.0} % of how the sensor follows this sweep: it was another one, or the machine is far from linear", 100.0 * .0)]
     Unlike(f64),
@@ -162,6 +170,8 @@ fn followed(
     if rough.explained < LEAST_EXPLAINED {
         return Err(SweepError::Unrelated(rough.explained));
     }
+    let covered = covered(sweep, &band, &begun, seconds)?;
+    let rough = rough.within(&covered);
     let timed = timed(&rough).ok_or(SweepError::Empty)?;
     let late = timed.phase.lateness();
     let bends = late.bend_s.abs() > BEND_S && late.bend_s.abs() > CERTAIN * timed.bend_deviation_s;
@@ -179,7 +189,8 @@ fn followed(
     let transfer = match on_samples.explained > between.explained {
         true => on_samples,
         false => between,
-    };
+    }
+    .within(&covered);
     let points = &transfer.points;
     let rest = Phase::Late(Lateness::default());
     let start = modal::refine(points, &timed.poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
@@ -190,12 +201,13 @@ fn followed(
         return Err(SweepError::Unlike(told));
     }
     Ok(Pass::Ended(Box::new(FoundInSweep {
-        modes: modes(&fit, &band),
+        modes: modes(&fit, &covered),
         direction,
         start_s: start_s + fit.phase.lateness().delay_s,
         clock_error: 0.0,
         order: begun.order,
         rise: begun.rise,
+        covered,
         reduced_square: fit.reduced_square(),
         fitted: fit.values,
         transfer,
@@ -263,6 +275,23 @@ fn begin(analyser: &mut Analyser, response: &Lines, sweep: &Sweep) -> Option<Beg
         }
     }
     best.map(|(_, begun)| begun)
+}
+
+/// The part of the band at which the log has the axis shaken. The harmonics of the sweep shake it above, but too little to be trusted.
+///
+/// # Errors
+/// [`SweepError::Piece`]: the division of the transforms needs a log from rest to rest, and one that has neither end rests on nothing.
+fn covered(sweep: &Sweep, band: &Band, begun: &Begun, seconds: f64) -> Result<Band, SweepError> {
+    let after = |time_s: f64| sweep.start_hz + sweep.rate_hz_per_s * time_s.max(0.0);
+    let (low_hz, high_hz) = (after(-begun.start_s), after(seconds - begun.start_s));
+    if low_hz > band.low_hz && high_hz < band.high_hz {
+        return Err(SweepError::Piece(Band { low_hz, high_hz }));
+    }
+    let harmonic = begun.order.first_harmonic();
+    Ok(Band {
+        low_hz: band.low_hz.max(harmonic * low_hz),
+        high_hz: band.high_hz.min(harmonic * high_hz),
+    })
 }
 
 /// Lines of the sweep that begins at `start_s`, in a log of this many seconds.

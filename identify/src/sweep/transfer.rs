@@ -208,6 +208,15 @@ pub struct Transfer {
     pub folded: f64,
 }
 
+impl Transfer {
+    /// The points of a band.
+    pub(super) fn within(mut self, band: &Band) -> Self {
+        self.points
+            .retain(|point| (band.low_hz..=band.high_hz).contains(&point.frequency_hz));
+        self
+    }
+}
+
 /// Width of a point relative to its frequency: a tenth of the width of a mode with 1 % damping.
 const RELATIVE_WIDTH: f64 = 0.002;
 /// Smallest number of lines in a point: two determine the straight line, the others its noise.
