@@ -2,9 +2,10 @@
 
 use crate::allowance::Allowance;
 use crate::failure::Failure;
+use crate::output;
 use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{AxisMove, SAMPLES_MAX, command_words, modulo_words, resample, settle_s};
+use posicast_model::motion::{AxisMove, SAMPLES_MAX, beyond_limits, command_words, modulo_words, resample, settle_s};
 use posicast_model::rtl::shaper::wrap;
 use std::fs::File;
 use std::path::Path;
@@ -23,6 +24,9 @@ pub(crate) fn words(
     moves: &[AxisMove],
 ) -> Result<Words, Failure> {
     let points = path.map(|path| read(machine, path)).transpose()?;
+    if let (Some(path), Some(points)) = (path, &points) {
+        warn_of_limits(machine, path, points);
+    }
     let sample_hz = machine.clock.sample_hz;
     let mut words = Words::new();
     let axes = machine.axes.iter().zip(&design.axes).zip(moves);
@@ -31,7 +35,7 @@ pub(crate) fn words(
         let settle = settle_s(shaper_s, axis.modes.iter().map(|m| m.mode));
         let (positions, counts_per_unit) = match &points {
             Some(points) => (
-                resample(&points[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
+                resample(&points.of_axes[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
                 axis.loop_counts_per_file_unit(),
             ),
             None => {
@@ -66,9 +70,53 @@ fn of_axis(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
     Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
 }
 
+/// The points of a command file.
+struct Points {
+    /// Line of each point in the file.
+    lines: Vec<u64>,
+    /// The points `(time_s, position)` of every axis.
+    of_axes: Vec<Vec<(f64, f64)>>,
+}
+
+/// Says where a command asks for more than the machine file allows. It is simulated all the same: what happens beyond a limit is worth a look.
+fn warn_of_limits(machine: &Machine, path: &Path, points: &Points) {
+    for (axis, of_axis) in machine.axes.iter().zip(&points.of_axes) {
+        let Some(limits) = &axis.limits else {
+            continue;
+        };
+        let unit = axis.unit;
+        let travel = limits.travel.filter(|_| !axis.modulo);
+        let in_file = (
+            travel.map(|ends| ends.map(|end| unit.in_file(end))),
+            limits.velocity.map(|v| unit.in_file(v)),
+        );
+        let (outside, too_fast) = beyond_limits(of_axis, in_file.0, in_file.1);
+        let warn = |index: usize, what: String| {
+            let (path, line, name) = (path.display(), points.lines[index], &axis.name);
+            output::say(&format!(
+                "warning: command file `{path}`, line {line}: axis `{name}` {what}"
+            ));
+        };
+        if let (Some(index), Some(ends)) = (outside, travel) {
+            let [position, low, high] =
+                [unit.to_si(of_axis[index].1), ends[0], ends[1]].map(|figure| unit.as_in_file(figure, ""));
+            warn(
+                index,
+                format!("goes to {position}, beyond its travel of {low} to {high}"),
+            );
+        }
+        if let (Some(index), Some(limit)) = (too_fast, limits.velocity) {
+            warn(
+                index,
+                format!("moves faster than limits.velocity, {}", unit.as_in_file(limit, "/s")),
+            );
+        }
+    }
+}
+
 /// Reads the points `(time_s, position)` of every axis, with positions in its unit. The columns are `time_s` and
 /// either `position` for all axes or one per axis.
-fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure> {
+fn read(machine: &Machine, path: &Path) -> Result<Points, Failure> {
     let refused = |found: String| {
         Failure::from(miette::miette!(
             help = "give a CSV file with the heading `time_s,position`, or `time_s` and one column per axis",
@@ -76,13 +124,22 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
             path.display()
         ))
     };
-    let file = File::open(path).map_err(|e| refused(e.to_string()))?;
+    let file = File::open(path)
+        .map_err(|error| Failure::from(miette::miette!("command file `{}`: {error}", path.display())))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(Allowance::new(file, LINE_BYTES));
     let headings = reader.headers().map_err(|e| refused(e.to_string()))?.clone();
     let column = |name: &str| headings.iter().position(|h| h == name);
-    let time = column("time_s").ok_or_else(|| refused("line 1: no column `time_s`".to_owned()))?;
+    let time = column("time_s").ok_or_else(|| {
+        refused(match headings.iter().collect::<Vec<_>>()[..] {
+            [] => "the file is empty".to_owned(),
+            [one] if one.contains(';') => {
+                "line 1: the columns are separated by semicolons; commas are needed".to_owned()
+            }
+            _ => "line 1: no column `time_s`".to_owned(),
+        })
+    })?;
     let columns: Vec<usize> = machine
         .axes
         .iter()
@@ -96,8 +153,10 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
             })
         })
         .collect::<Result<_, _>>()?;
+    let mut lines = Vec::new();
     let mut points = vec![Vec::new(); machine.axes.len()];
     let mut record = csv::StringRecord::new();
+    let mut before_s = None;
     loop {
         reader.get_mut().renew();
         if !reader.read_record(&mut record).map_err(|e| refused(e.to_string()))? {
@@ -112,17 +171,29 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
         let line = record.position().map_or(0, csv::Position::line);
         let value = |column: usize| {
             let text = record.get(column).unwrap_or("");
-            text.parse::<f64>().map_err(|_| {
+            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+            number.ok_or_else(|| {
                 refused(format!(
-                    "line {line}: `{}` is `{text}`, not a number",
+                    "line {line}: `{}` is `{text}`, not a finite number",
                     headings.get(column).unwrap_or("?")
                 ))
             })
         };
         let time_s = value(time)?;
+        if let Some(before_s) = before_s.replace(time_s).filter(|before_s| time_s <= *before_s) {
+            return Err(refused(format!(
+                "line {line}: time {time_s} s does not lie after {before_s} s: times must increase"
+            )));
+        }
+        lines.push(line);
         for (points, column) in points.iter_mut().zip(&columns) {
             points.push((time_s, value(*column)?));
         }
     }
-    Ok(points)
+    if before_s.is_none() {
+        return Err(refused(
+            "no points: at least one line is needed below the heading".to_owned(),
+        ));
+    }
+    Ok(Points { lines, of_axes: points })
 }

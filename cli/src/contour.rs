@@ -55,6 +55,22 @@ enum Path2d<'a> {
 }
 
 impl ContourArgs {
+    /// Refuses the options of a path where there is none. The parser takes them beside an option that excludes `--contour`.
+    pub(crate) fn only_with_a_path(&self) -> Result<(), Failure> {
+        let given = [
+            ("--radius", self.radius.is_some()),
+            ("--side", self.side.is_some()),
+            ("--plot", self.plot.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((option, _)) if self.contour.is_none() => Err(Failure::from(miette::miette!(
+                help = format!("leave out {option}, or give a path with --contour"),
+                "{option}: this option belongs to --contour"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// The file of the path, if it comes from one.
     pub(crate) fn file(&self) -> Option<&Path> {
         match self.kind()? {

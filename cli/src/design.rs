@@ -85,7 +85,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "plot")]
     compare: bool,
     /// With --compare: frequency error that each mode may have, in percent
-    #[arg(long, value_name = "PERCENT", default_value = "10", value_parser = compare::band, requires = "compare")]
+    #[arg(long, value_name = "PERCENT", default_value = "10", value_parser = compare::band, requires = "compare", allow_negative_numbers = true)]
     band: f64,
 }
 

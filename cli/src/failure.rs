@@ -56,7 +56,7 @@ impl Failure {
         let _ = match &self {
             Self::Check(line) => writeln!(anstream::stderr(), "posicast: {}", style::bad(line)),
             Self::Input(report) | Self::MissingTool(report) if err.is_terminal() => writeln!(err, "{report:?}"),
-            Self::Input(report) | Self::MissingTool(report) => write_plain(&mut err, report),
+            Self::Input(report) | Self::MissingTool(report) => write_plain(&mut anstream::stderr(), report),
         };
         ExitCode::from(match self {
             Self::Check(_) => 1,
@@ -66,11 +66,14 @@ impl Failure {
     }
 }
 
+/// Begins a line that says what is wrong.
+const ERROR: &str = "error:";
+
 fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result<()> {
-    writeln!(err, "error: {}", with_causes(report))?;
+    writeln!(err, "{} {}", style::message(ERROR), with_causes(report))?;
     write_help(err, report.help())?;
     for related in report.related().into_iter().flatten() {
-        writeln!(err, "error: {related}")?;
+        writeln!(err, "{} {related}", style::message(ERROR))?;
         write_help(err, related.help())?;
     }
     Ok(())

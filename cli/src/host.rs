@@ -12,6 +12,7 @@ use crate::moves::PerAxis;
 use posicast_host::{HostError, HostedStage, Line as AnyLine, LinkError, LinkOptions};
 use posicast_model::hardware::StageHardware;
 use posicast_model::machine_file::Machine;
+use posicast_model::rtl::uart_bridge::BAUD;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -120,7 +121,7 @@ struct Line {
     #[arg(long, value_name = "FILE")]
     machine: PathBuf,
     /// Baud rate of a serial line [default: that of the machine file]
-    #[arg(long)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(i64::from(*BAUD.start())..=i64::from(*BAUD.end())))]
     baud: Option<u32>,
     /// Time in milliseconds for which a reply is awaited, 1 to 10000; every request is sent up to five times
     #[arg(long, value_name = "MS", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000))]

@@ -59,7 +59,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "M/S2", default_value = "5", value_parser = excitation::positive)]
     acceleration: f64,
     /// Change of the frequencies in percent that a shaper must stand beside what the log leaves open
-    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = crate::compare::band)]
+    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = crate::compare::band, allow_negative_numbers = true)]
     margin: f64,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
     #[arg(long)]
@@ -74,7 +74,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     for (option, path) in [("-o", &args.output), ("--plot", &args.plot)] {
         if let Some(path) = path {
-            outputs.claim(option, path).map_err(Failure::because)?;
+            let claimed = match option {
+                "-o" => outputs.claim_machine_file(option, path),
+                _ => outputs.claim(option, path),
+            };
+            claimed.map_err(Failure::because)?;
         }
     }
     if let Some(path) = &args.plot {

@@ -47,7 +47,7 @@ mod verify;
 mod verilog;
 mod warning;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use posicast_system::interrupt;
 use std::process::ExitCode;
 
@@ -96,7 +96,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let Cli { command, color } = Cli::parse();
+    // What is wrong with the arguments is printed before they are known.
+    let matches = Cli::command()
+        .color(style::of_arguments(std::env::args_os()))
+        .get_matches();
+    let Cli { command, color } = match Cli::from_arg_matches(&matches) {
+        Ok(cli) => cli,
+        Err(error) => error.exit(),
+    };
     style::set(color);
     if let Err(error) = interrupt::listen() {
         output::say(&format!("warning: a signal will not remove temporary files: {error}"));

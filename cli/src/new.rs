@@ -113,7 +113,7 @@ fn claim(path: &Path, force: bool) -> Result<OutputFiles, Failure> {
         return Err(there("this file exists", help));
     }
     let mut outputs = OutputFiles::new(false);
-    match outputs.claim("FILE", path) {
+    match outputs.claim_machine_file("FILE", path) {
         Ok(()) => Ok(outputs),
         Err(OutputError::Foreign { .. }) => Err(there(
             "posicast did not write this file, or it was changed since",

@@ -56,6 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.contour.contour.is_some() {
         return along_contour(args, &machine);
     }
+    args.contour.only_with_a_path()?;
     let default = PathBuf::from(format!("{}.vcd", machine.name));
     let path = args.output.as_ref().unwrap_or(&default);
     let mut outputs = OutputFiles::new(args.force);

@@ -6,6 +6,7 @@
 use anstream::ColorChoice;
 use anstyle::{AnsiColor, Style};
 use clap::ValueEnum;
+use std::ffi::OsString;
 
 const GREEN: Style = AnsiColor::Green.on_default();
 const BOLD_GREEN: Style = GREEN.bold();
@@ -36,6 +37,21 @@ pub(crate) fn set(when: When) {
         let plain = || miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
         let _ = miette::set_hook(Box::new(move |_| Box::new(plain())));
     }
+}
+
+/// The value of `--color` among these arguments; `auto` where there is none, or a wrong one, which the parser reports.
+pub(crate) fn of_arguments(arguments: impl Iterator<Item = OsString>) -> clap::ColorChoice {
+    const OPTION: &str = "--color";
+    let words: Vec<OsString> = arguments.collect();
+    let words: Vec<&str> = words.iter().filter_map(|word| word.to_str()).collect();
+    let beside = words.iter().skip_while(|word| **word != OPTION).nth(1).copied();
+    let joined = words
+        .iter()
+        .find_map(|word| word.strip_prefix(OPTION)?.strip_prefix('='));
+    let value = beside
+        .or(joined)
+        .and_then(|value| clap::ColorChoice::from_str(value, false).ok());
+    value.unwrap_or_default()
 }
 
 /// Style for what holds.

@@ -64,3 +64,34 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
     }
     beyond
 }
+
+/// The mode that exceeds its tolerance most, where all stay within [`BETWEEN_SAMPLES`]; `None` if none does.
+pub(crate) fn just_above_tolerance(machine: &Machine, design: &MachineDesign) -> Option<String> {
+    let axes = machine.axes.iter().zip(&design.axes);
+    let shaped = axes.filter(|(_, tables)| tables.design.impulses.impulses().len() > 1);
+    let figures = shaped.flat_map(|(axis, tables)| {
+        let of_modes: Vec<(f64, f64)> = match tables.design.findings {
+            Findings::Optimal(_) => {
+                let modes = certify_axis(axis, tables, design.sample_hz).modes;
+                modes.iter().map(|mode| (mode.residual.bound, mode.tolerance)).collect()
+            }
+            _ => {
+                let modes = tables.mode_figures(axis, design.sample_hz);
+                modes
+                    .iter()
+                    .map(|mode| (mode.residual_quantised, mode.tolerance))
+                    .collect()
+            }
+        };
+        of_modes.into_iter().map(|(found, asked)| (&axis.name, found, asked))
+    });
+    let (name, found, asked) = figures
+        .filter(|(_, found, asked)| found > asked)
+        .max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
+    Some(format!(
+        "axis {name} leaves {:.4} % of {:.4} %: up to {} % more than the tolerance counts as kept, because an impulse between two samples becomes two taps",
+        100.0 * found,
+        100.0 * asked,
+        100.0 * BETWEEN_SAMPLES
+    ))
+}

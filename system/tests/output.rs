@@ -34,6 +34,21 @@ fn claim(force: bool, path: &Path) -> Result<(), OutputError> {
 }
 
 #[test]
+fn unit_a_machine_file_is_replaced_by_a_machine_file_alone() {
+    let scratch = Scratch::new();
+    let path = scratch.path("mill.toml");
+    write_text(&path, "name = 1\n").unwrap();
+    assert!(matches!(claim(false, &path), Err(OutputError::MachineFile { .. })));
+    OutputFiles::new(false).claim_machine_file("-o", &path).unwrap();
+    claim(true, &path).unwrap();
+    let mut outputs = OutputFiles::new(false);
+    outputs.input("the machine file", &path);
+    assert!(matches!(outputs.claim("--plot", &path), Err(OutputError::Input { .. })));
+    fs::write(&path, "name = 2\n").unwrap();
+    assert!(matches!(claim(false, &path), Err(OutputError::Foreign { .. })));
+}
+
+#[test]
 fn unit_a_file_of_posicast_is_known_as_long_as_nobody_changes_it() {
     let scratch = Scratch::new();
     for text in [

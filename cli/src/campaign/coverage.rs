@@ -49,8 +49,7 @@ impl Units for Coverage {
     }
 
     fn options(&self) -> Map<String, Value> {
-        let names = (0..self.count()).map(|unit| self.name(unit).into()).collect();
-        figures([("clocks", CLOCKS.into()), ("blocks", Value::Array(names))])
+        figures([("clocks", CLOCKS.into()), ("blocks", self.names())])
     }
 
     fn count(&self) -> u64 {

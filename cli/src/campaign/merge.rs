@@ -1,6 +1,6 @@
 //! `posicast campaign merge`: the shards of a campaign as one result.
 
-use super::{MOST_SHOWN, of_failure, table, verdict};
+use super::{MOST_SHOWN, counts, of_failure, table, verdict};
 use crate::failure::Failure;
 use crate::output;
 use posicast_testbench::shard::{self, MergeError, Merged, ShardDocument};
@@ -28,7 +28,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         true => output::print_json(&merged)?,
         false => output::print_styled(&text(&merged, &costs, &repeat))?,
     }
-    verdict(merged.failures.len(), merged.results.len())
+    verdict(&merged.results, true)
 }
 
 /// A missing shard is a check that fails; files of something else are bad input.
@@ -73,12 +73,15 @@ fn text(merged: &Merged, costs: &str, repeat: &str) -> String {
         .map_or_else(String::new, |machine| format!(" of {}", machine.name));
     text += &format!("{costs}\n");
     text += &format!(
-        "{} {}{machine}, seed {}: {}, {} failed\n",
-        crate::style::message(if merged.failures.is_empty() { "PASS:" } else { "FAIL:" }),
+        "{} {}{machine}, seed {}: {}\n",
+        crate::style::message(if verdict(&merged.results, true).is_ok() {
+            "PASS:"
+        } else {
+            "FAIL:"
+        }),
         head.kind,
         head.seed,
-        counted(merged.results.len() as u64, "unit"),
-        merged.failures.len()
+        counts(&merged.results)
     );
     text
 }

@@ -86,6 +86,10 @@ trait Units {
     fn count(&self) -> u64;
     /// Name of a unit.
     fn name(&self, unit: u64) -> String;
+    /// Names of all units, for [`Units::options`] where each stands for itself.
+    fn names(&self) -> Value {
+        (0..self.count()).map(|unit| self.name(unit)).collect()
+    }
     /// Does a unit from a fresh start. `seed` is that of the campaign.
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure>;
 }
@@ -166,7 +170,7 @@ fn run_part(campaign: &dyn Units, part: &Part, started: Instant) -> Result<(), F
                 counted(units, "unit")
             )));
         }
-        return finish(&done(campaign, [unit], part.seed)?, "");
+        return finish(&done(campaign, [unit], part.seed)?, part, "");
     }
     let head = CampaignHead {
         posicast_campaign: FORMAT,
@@ -178,12 +182,16 @@ fn run_part(campaign: &dyn Units, part: &Part, started: Instant) -> Result<(), F
         units,
     };
     if let Some(results) = finished(&head, part)? {
-        return finish(&results, "; this shard was finished already and was not run again");
+        return finish(
+            &results,
+            part,
+            "; this shard was finished already and was not run again",
+        );
     }
     let prepared = Instant::now();
     let results = done(campaign, part.shard.units(units), part.seed)?;
     let Some(path) = &part.json else {
-        return finish(&results, "");
+        return finish(&results, part, "");
     };
     let document = ShardDocument {
         head,
@@ -194,7 +202,11 @@ fn run_part(campaign: &dyn Units, part: &Part, started: Instant) -> Result<(), F
         results,
     };
     document.write(path).map_err(Failure::because)?;
-    finish(&document.results, &format!("; written to {}", output::shell_word(path)))
+    finish(
+        &document.results,
+        part,
+        &format!("; written to {}", output::shell_word(path)),
+    )
 }
 
 /// The results that the file of this shard has already; `None` if there is no file.
@@ -241,19 +253,29 @@ fn done(campaign: &dyn Units, units: impl IntoIterator<Item = u64>, seed: u64) -
 }
 
 /// Prints the table of these results; it is the failure of a check if one does not hold.
-fn finish(results: &[UnitResult], beside: &str) -> Result<(), Failure> {
+fn finish(results: &[UnitResult], part: &Part, beside: &str) -> Result<(), Failure> {
     let failed: Vec<&UnitResult> = results.iter().filter(|result| result.failure.is_some()).collect();
     let mut text = table(&shard::rows(results));
     for result in failed.iter().take(MOST_SHOWN) {
         text += &of_failure(result);
     }
-    text += &format!(
-        "{}, {} failed{beside}\n",
-        counted(results.len() as u64, "unit"),
-        failed.len()
-    );
+    text += &format!("{}{beside}\n", counts(results));
     output::print_styled(&text)?;
-    verdict(failed.len(), results.len())
+    verdict(results, part.unit.is_none() && part.shard == Shard::WHOLE)
+}
+
+/// How many units there were, how many failed, and how many were refused.
+fn counts(results: &[UnitResult]) -> String {
+    let failed = results.iter().filter(|result| result.failure.is_some()).count();
+    let refused = match results.iter().filter(|result| is_refused(result)).count() {
+        0 => String::new(),
+        count => format!(", {count} refused"),
+    };
+    format!("{}, {failed} failed{refused}", counted(results.len() as u64, "unit"))
+}
+
+fn is_refused(result: &UnitResult) -> bool {
+    result.figures.contains_key(REFUSED)
 }
 
 /// Number of failures that are shown in words.
@@ -264,17 +286,19 @@ fn of_failure(result: &UnitResult) -> String {
     format!("unit {}, {}: {why}\n", result.unit, result.name)
 }
 
-fn verdict(failed: usize, of: usize) -> Result<(), Failure> {
-    match (failed, of) {
-        (_, 0) => Err(Failure::Check(
-            "no unit was done: this part of the campaign is empty".to_owned(),
-        )),
-        (0, _) => Ok(()),
-        (failed, of) => Err(Failure::Check(format!(
-            "{failed} of {} failed",
-            counted(of as u64, "unit")
-        ))),
-    }
+/// The verdict on a part of a campaign, or on all of it. One without a unit has checked nothing, nor has a campaign of which every unit was refused.
+fn verdict(results: &[UnitResult], are_all: bool) -> Result<(), Failure> {
+    let failed = results.iter().filter(|result| result.failure.is_some()).count();
+    let problem = if results.is_empty() {
+        "no unit was done: this part of the campaign is empty".to_owned()
+    } else if are_all && results.iter().all(is_refused) {
+        "no unit was done: all were refused".to_owned()
+    } else if failed > 0 {
+        format!("{failed} of {} failed", counted(results.len() as u64, "unit"))
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Check(problem))
 }
 
 /// A table with a row for each name, and a column for each figure.
@@ -306,7 +330,12 @@ fn table(rows: &[MergedRow]) -> String {
         .filter_map(|row| Some((&row.name, row.figures.get(REFUSED)?.as_str()?)));
     table.text("")
         + &refused
-            .map(|(name, why)| format!("{name}: {why}\n"))
+            .map(|(name, why)| {
+                format!(
+                    "{name}: {}\n",
+                    why.lines().map(str::trim).collect::<Vec<_>>().join("; ")
+                )
+            })
             .collect::<String>()
 }
 

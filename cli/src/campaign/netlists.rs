@@ -62,8 +62,7 @@ impl Units for Netlists {
     }
 
     fn options(&self) -> Map<String, Value> {
-        let names = (0..self.count()).map(|unit| self.name(unit).into()).collect();
-        figures([("clocks", self.clocks.into()), ("blocks", Value::Array(names))])
+        figures([("clocks", self.clocks.into()), ("blocks", self.names())])
     }
 
     fn count(&self) -> u64 {

@@ -49,8 +49,7 @@ impl Units for Proofs {
     }
 
     fn options(&self) -> Map<String, Value> {
-        let names = (0..self.count()).map(|unit| self.name(unit).into()).collect();
-        figures([("proofs", Value::Array(names))])
+        figures([("proofs", self.names())])
     }
 
     fn count(&self) -> u64 {

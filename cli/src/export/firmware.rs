@@ -52,7 +52,7 @@ fn x_or_y(selected: &Selected<'_>, firmware: &str) -> Result<String, Failure> {
 /// Returns mode and kind of an axis with one mode, whose shaper the firmware can be told by name.
 fn named(selected: &Selected<'_>, firmware: &str, kinds: &str) -> Result<(Mode, ShaperKind), Failure> {
     let remedy = format!(
-        "choose one of {kinds} and one mode, or take --to reprapfirmware, which takes impulses, or --to c, csv, numpy or matlab"
+        "choose one of {kinds} and one mode, or take --to reprapfirmware, which takes two to five impulses above 0, or --to c, csv, numpy or matlab"
     );
     match &selected.tables.design.parts {
         ShaperParts::PerMode(parts) if parts.len() == 1 => Ok((parts[0].mode, parts[0].kind)),
@@ -86,7 +86,9 @@ pub(super) fn klipper(selection: &Selection<'_>) -> Result<String, Failure> {
             return Err(refused(
                 selected,
                 &format!("Klipper does not have the kind `{}`", kind.name()),
-                &format!("choose one of {names}, or take --to reprapfirmware, which takes impulses"),
+                &format!(
+                    "choose one of {names}, or take --to reprapfirmware, which takes two to five impulses above 0, or --to c, csv, numpy or matlab"
+                ),
             ));
         };
         let tolerance = selected.axis.modes.first().map(|mode| selected.axis.tolerance_of(mode));

@@ -32,12 +32,25 @@ impl<'a> Way<'a> {
             return Err(refused("leave it out", format!("--baud: {port} is no serial line")));
         }
         if let Some(address) = udp {
+            let (host, number) = address.rsplit_once(':').unwrap_or_default();
+            if host.is_empty() || number.parse::<u16>().is_err() {
+                return Err(refused(
+                    "write udp://HOST:PORT",
+                    format!("{port}: no address of a server"),
+                ));
+            }
             return Ok(Self::Network(address));
+        }
+        if port.is_empty() || (spi.is_none() && port.contains("://")) {
+            return Err(refused(
+                "write spi:///dev/spidev0.0, udp://HOST:PORT, or a serial port such as /dev/ttyUSB0",
+                format!("`{port}`: no way to a stage begins like this"),
+            ));
         }
         let file = path.display();
         let Some(link) = machine.link else {
             return Err(refused(
-                "add [link] with its line, and generate and build the stage anew",
+                "add [link] with `baud = 921_600` (or `line = \"spi\"` and its sck_hz), then generate and build the stage anew",
                 format!("{file}: the machine has no [link]: its stage has no line to a host"),
             ));
         };

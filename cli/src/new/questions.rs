@@ -26,17 +26,12 @@ const ANSWER_BYTES: u64 = 4096;
 pub(crate) struct Questions<R, W> {
     answers: R,
     terminal: W,
-    ended: bool,
 }
 
 impl<R: BufRead, W: Write> Questions<R, W> {
     /// Asks on `terminal`, and reads from `answers`.
     pub(crate) fn new(answers: R, terminal: W) -> Self {
-        Self {
-            answers,
-            terminal,
-            ended: false,
-        }
+        Self { answers, terminal }
     }
 
     /// Asks all questions, and makes the file that `path` will hold.
@@ -113,17 +108,17 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         }
     }
 
-    /// Asks a question; returns the default for an empty answer, and for all questions after the end of the input.
+    /// Asks a question; returns the default for an empty answer. The end of the input is an error: nobody has agreed to what is open.
     fn ask(&mut self, question: &str, default: &str) -> Result<String, Failure> {
-        if self.ended {
-            return Ok(default.to_owned());
-        }
         self.say(&format!("{question} [{default}]: "))?;
         let mut line = Vec::new();
         let read = (&mut self.answers).take(ANSWER_BYTES).read_until(b'\n', &mut line);
         if read.map_err(Failure::because)? == 0 {
-            self.ended = true;
             self.say("\n")?;
+            return Err(Failure::from(miette::miette!(
+                help = "answer all questions (Enter takes the value in brackets), or name the kind: --gantry, --printer, --joint or --crane",
+                "the answers ended before the last question; no file was written"
+            )));
         }
         match String::from_utf8_lossy(&line).trim() {
             "" => Ok(default.to_owned()),
@@ -193,13 +188,19 @@ mod tests {
     }
 
     #[test]
-    fn unit_enter_and_the_end_of_the_input_take_the_defaults() {
-        for answers in ["", "\n\n", "gantry\n", "\n\n\n\n\n\n\n\n\n\n\n\n"] {
-            let (draft, _) = answered(answers);
-            assert_eq!(
-                draft.text(),
-                Draft::new(MachineKind::Gantry, Path::new("mill.toml")).text()
-            );
+    fn unit_enter_takes_the_defaults() {
+        let (draft, _) = answered(&"\n".repeat(12));
+        assert_eq!(
+            draft.text(),
+            Draft::new(MachineKind::Gantry, Path::new("mill.toml")).text()
+        );
+    }
+
+    #[test]
+    fn unit_the_end_of_the_input_makes_no_file() {
+        for answers in ["", "\n\n", "gantry\n", "1\n"] {
+            let mut questions = Questions::new(answers.as_bytes(), Vec::new());
+            assert!(questions.draft(Path::new("mill.toml")).is_err(), "{answers:?}");
         }
     }
 

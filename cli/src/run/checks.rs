@@ -4,7 +4,7 @@ use super::waves::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::output::percent;
-use crate::tolerance::{beyond_tolerance, shaped_modes};
+use crate::tolerance::{beyond_tolerance, just_above_tolerance, shaped_modes};
 use posicast_model::certify::{certify_axis, measure_corners};
 use posicast_model::design::{Findings, MachineDesign};
 use posicast_model::machine_file::Machine;
@@ -231,7 +231,10 @@ fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check
         (Some(first), _) => Check::new(name, false, first.text.clone()),
         // A machine whose axes have no shaper asks for nothing: that is reported, and is not a failure.
         (None, 0) => Check::not_exercised(name, true, "no axis has a shaper for a mode"),
-        (None, modes) => Check::new(name, true, counted(modes as u64, "mode")),
+        (None, modes) => {
+            let above = just_above_tolerance(machine, design).map_or_else(String::new, |text| format!("; {text}"));
+            Check::new(name, true, counted(modes as u64, "mode") + &above)
+        }
     }
 }
 

@@ -261,8 +261,17 @@ fn cli_a_command_file_names_its_bad_line() {
     for (text, words) in [
         ("time,position\n0,0\n", "time_s"),
         ("time_s,position\n0,0\n0.1,abc\n", "line 3"),
-        ("time_s,position\n0.1,0\n0.0,1\n", "must increase"),
-        ("time_s,position\n", "no point"),
+        (
+            "time_s,position\n0,0\n0.1,NaN\n",
+            "moves.csv`: line 3: `position` is `NaN`",
+        ),
+        (
+            "time_s,position\n0.1,0\n0.0,1\n",
+            "moves.csv`: line 3: time 0 s does not lie after 0.1 s",
+        ),
+        ("time_s,position\n", "moves.csv`: no points"),
+        ("", "moves.csv`: the file is empty"),
+        ("time_s;position\n0;0\n", "semicolons"),
         ("time_s,position\n0,0\n1,1e9\n", "beyond a word"),
     ] {
         std::fs::write(&command, text).unwrap();
@@ -277,6 +286,56 @@ fn cli_a_command_file_names_its_bad_line() {
             .stdout("")
             .stderr(predicate::str::contains(words));
     }
+}
+
+#[test]
+fn cli_a_command_beyond_the_limits_is_warned_of() {
+    let limits = "[axis.limits]\nvelocity = 0.1\ntravel = [-0.02, 0.02]\n";
+    let (folder, file) = scratch(&(one_axis("kind = \"zvd\"", MODE) + limits));
+    let command = folder.path().join("moves.csv");
+    let outside = "line 4: axis `x` goes to 0.021 m, beyond its travel of -0.02 m to 0.02 m";
+    let too_fast = "line 3: axis `x` moves faster than limits.velocity, 0.1 m/s";
+    for (text, words) in [
+        ("time_s,position\n0,0\n1,0.01\n3,0.021\n", outside),
+        ("time_s,position\n0,0\n0.01,0.01\n3,0.02\n", too_fast),
+        ("time_s,position\n0,0\n1,0.01\n3,0.02\n", ""),
+    ] {
+        std::fs::write(&command, text).unwrap();
+        let output = posicast()
+            .args(["simulate"])
+            .arg(&file)
+            .arg("--command")
+            .arg(&command)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert_eq!(
+            said.matches("warning").count(),
+            usize::from(!words.is_empty()),
+            "{said}"
+        );
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn cli_options_of_a_path_need_a_path() {
+    let (folder, file) = scratch(&one_axis("kind = \"zvd\"", MODE));
+    for option in [["--plot", "a.svg"], ["--side", "0.01"], ["--radius", "0.01"]] {
+        posicast()
+            .arg("simulate")
+            .arg(&file)
+            .args(["-o", "wave.vcd"])
+            .args(option)
+            .current_dir(folder.path())
+            .assert()
+            .code(2)
+            .stdout("")
+            .stderr(predicate::str::contains("belongs to --contour"));
+    }
+    assert!(!folder.path().join("wave.vcd").exists());
 }
 
 #[test]

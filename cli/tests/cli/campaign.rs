@@ -199,6 +199,32 @@ fn cli_campaign_does_the_other_rungs_of_the_ladder() {
 }
 
 #[test]
+fn cli_campaign_of_refused_combinations_alone_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("1.json");
+    let machine = example("xy-stage.toml");
+    let words = [
+        "sweep",
+        machine.to_str().unwrap(),
+        "--set",
+        "foo=1,2",
+        "--json",
+        file.to_str().unwrap(),
+    ];
+    let swept = campaign(&words);
+    assert_eq!(swept.status.code(), Some(1), "{}", said(&swept));
+    assert!(
+        said(&swept).contains("2 units, 0 failed, 2 refused"),
+        "{}",
+        said(&swept)
+    );
+    let merged = campaign(&["merge", folder.path().to_str().unwrap()]);
+    assert_eq!(merged.status.code(), Some(1), "{}", said(&merged));
+    assert!(said(&merged).contains("FAIL: sweep of xy_stage"), "{}", said(&merged));
+    assert!(!said(&merged).contains("PASS"), "{}", said(&merged));
+}
+
+#[test]
 fn cli_campaign_refuses_what_it_does_not_have() {
     let machine = example("xy-stage.toml");
     let machine = machine.to_str().unwrap();

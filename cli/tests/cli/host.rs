@@ -238,6 +238,16 @@ fn cli_host_says_what_is_wrong_with_an_spi_device() {
         ("spi:///dev/null?hz=fast", false, 2, hz),
         ("spi:///dev/null?clock=1", false, 2, "write spi:///dev/spidev0.0"),
         ("spi://spidev0.0", false, 2, "write spi:///dev/spidev0.0"),
+        (
+            "SPI:///dev/null",
+            false,
+            2,
+            "write spi:///dev/spidev0.0, udp://HOST:PORT",
+        ),
+        ("", false, 2, "write spi:///dev/spidev0.0, udp://HOST:PORT"),
+        ("udp://127.0.0.1", false, 2, "write udp://HOST:PORT"),
+        ("udp://:4210", false, 2, "write udp://HOST:PORT"),
+        ("udp://127.0.0.1:99999", false, 2, "write udp://HOST:PORT"),
         ("/dev/ttyUSB0", false, 2, "has SPI, no serial line"),
         ("spi:///dev/null", true, 2, "is no serial line"),
     ] {

@@ -40,6 +40,30 @@ fn every_kind_designs_and_generates_without_a_warning() {
 }
 
 #[test]
+fn the_line_to_a_host_is_there_to_be_switched_on() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in ["--gantry", "--joint"] {
+        let name = &kind[2..];
+        let file = format!("{name}.toml");
+        status(folder.path(), &[kind, &file]);
+        let mut text = read(folder.path(), &file);
+        for key in ["[link]", "line =", "baud ="] {
+            text = text.replacen(&format!("# {key}"), key, 1);
+        }
+        std::fs::write(folder.path().join(&file), text).unwrap();
+        let output = posicast()
+            .current_dir(folder.path())
+            .args(["generate", &file])
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{kind}: {said}");
+        let top = folder.path().join(name).join(format!("rtl/{name}_link.v"));
+        assert!(top.is_file(), "{}", top.display());
+    }
+}
+
+#[test]
 fn without_a_terminal_and_a_kind_it_writes_a_gantry() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(status(folder.path(), &["stage.toml"]).0, Some(0));

@@ -87,6 +87,32 @@ pub fn resample(points: &[(f64, f64)], sample_hz: f64, settle_s: f64) -> Result<
     Ok((0..samples as u32).map(sample).collect())
 }
 
+/// Fraction of a limit by which a command may exceed it: rounding of its file.
+const ROUNDING: f64 = 1e-6;
+
+/// Indices of the first point beyond `travel`, and of the first point that is reached faster than with `velocity`. Points are in time order;
+/// positions, travel and velocity have one unit.
+pub fn beyond_limits(
+    points: &[(f64, f64)],
+    travel: Option<[f64; 2]>,
+    velocity: Option<f64>,
+) -> (Option<usize>, Option<usize>) {
+    let outside = travel.and_then(|[low, high]| {
+        let room = ROUNDING * (high - low);
+        points
+            .iter()
+            .position(|(_, position)| *position < low - room || *position > high + room)
+    });
+    let too_fast = velocity.and_then(|limit| {
+        let speeds = points
+            .windows(2)
+            .map(|pair| (pair[1].1 - pair[0].1).abs() / (pair[1].0 - pair[0].0));
+        let first = speeds.into_iter().position(|speed| speed > limit * (1.0 + ROUNDING));
+        first.map(|index| index + 1)
+    });
+    (outside, too_fast)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,6 +126,15 @@ mod tests {
             positions.iter().zip(expected).all(|(p, e)| (p - e).abs() < 1e-9),
             "{positions:?}"
         );
+    }
+
+    #[test]
+    fn the_first_point_beyond_a_limit_is_found() {
+        let points = [(0.0, 0.0), (1.0, 1.0), (1.5, 2.0), (3.0, -1.0)];
+        assert_eq!(beyond_limits(&points, Some([0.0, 2.0]), Some(2.0)), (Some(3), None));
+        assert_eq!(beyond_limits(&points, Some([-1.0, 1.9]), Some(1.9)), (Some(2), Some(2)));
+        assert_eq!(beyond_limits(&points, Some([-1.0, 2.0]), Some(0.9)), (None, Some(1)));
+        assert_eq!(beyond_limits(&points, None, None), (None, None));
     }
 
     #[test]

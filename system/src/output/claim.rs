@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 use super::seal::is_ours;
 use super::target::Target;
 
+/// Ending of a machine file, which is somebody's work even where posicast wrote it.
+const MACHINE_FILE: &str = "toml";
+
 /// Why a command does not write to a name. With every variant, existing files stay untouched.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -27,6 +30,14 @@ pub enum OutputError {
          with --force", .path.display()
     )]
     Foreign {
+        /// The option that gave the name.
+        option: String,
+        /// The name.
+        path: PathBuf,
+    },
+    /// There is a machine file, and something else would be written.
+    #[error("{option} {}: there is a machine file: name another file, or replace it with --force", .path.display())]
+    MachineFile {
         /// The option that gave the name.
         option: String,
         /// The name.
@@ -72,6 +83,13 @@ pub enum OutputError {
     },
 }
 
+/// What is written to a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Content {
+    MachineFile,
+    Other,
+}
+
 /// The files that a command reads and writes.
 #[derive(Debug, Clone, Default)]
 pub struct OutputFiles {
@@ -94,11 +112,23 @@ impl OutputFiles {
         self.inputs.push((what, path.to_owned()));
     }
 
-    /// Claims a name to write to. `option` is the option that gave it, for messages.
+    /// Claims a name to write to, for something else than a machine file. `option` is the option that gave it, for messages.
     ///
     /// # Errors
     /// [`OutputError`] says why the name cannot be used.
     pub fn claim(&mut self, option: &str, path: &Path) -> Result<(), OutputError> {
+        self.claim_for(Content::Other, option, path)
+    }
+
+    /// Claims a name for a machine file.
+    ///
+    /// # Errors
+    /// [`OutputError`] says why the name cannot be used.
+    pub fn claim_machine_file(&mut self, option: &str, path: &Path) -> Result<(), OutputError> {
+        self.claim_for(Content::MachineFile, option, path)
+    }
+
+    fn claim_for(&mut self, content: Content, option: &str, path: &Path) -> Result<(), OutputError> {
         let (option, owned) = (option.to_owned(), path.to_owned());
         let target = match Target::of(path) {
             Ok(target) => target,
@@ -133,6 +163,10 @@ impl OutputFiles {
                 let ours = self.force || is_ours(file).unwrap_or(false);
                 if !ours {
                     return Err(OutputError::Foreign { option, path: owned });
+                }
+                let is_machine_file = file.extension().is_some_and(|ending| ending == MACHINE_FILE);
+                if is_machine_file && content == Content::Other && !self.force {
+                    return Err(OutputError::MachineFile { option, path: owned });
                 }
             }
             Target::New(file) => {

@@ -35,7 +35,14 @@ impl Draft {
         let place = match Target::of(path)? {
             Target::Existing(path) | Target::New(path) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-                Place::File(Beside::new(folder.unwrap_or(Path::new(".")))?, path)
+                let beside = Beside::new(folder.unwrap_or(Path::new("."))).map_err(|error| {
+                    // The system's error names the temporary file, of which the user knows nothing.
+                    io::Error::new(
+                        error.kind(),
+                        format!("{}: cannot write there: {}", path.display(), error.kind()),
+                    )
+                })?;
+                Place::File(beside, path)
             }
             Target::Stdout => Place::Stream(scratch::unnamed()?, None),
             Target::Stream(path) => Place::Stream(scratch::unnamed()?, Some(path)),
