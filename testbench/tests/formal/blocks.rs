@@ -63,6 +63,11 @@ fn formal_uart_bridge() {
 }
 
 #[test]
+fn formal_a_request_whose_crc_is_wrong_is_found() {
+    is_no_longer_proven("uart_bridge", "request_q <= whole", "request_q <= delimiter & begun");
+}
+
+#[test]
 fn formal_spi_bridge() {
     proven("spi_bridge", 0);
 }

@@ -1,6 +1,6 @@
 //! Proofs of the blocks that the bus writes: registers, commits, settings.
 
-use crate::formal::{fails, proven};
+use crate::formal::{fails, is_no_longer_proven, proven};
 
 #[test]
 fn formal_registers() {
@@ -21,6 +21,11 @@ fn formal_setting_banks() {
 #[test]
 fn formal_law_and_bank() {
     proven("law_and_bank", 0);
+}
+
+#[test]
+fn formal_a_law_that_changes_in_a_pass_is_found() {
+    is_no_longer_proven("law_and_bank", "applies = waits && ends", "applies = waits");
 }
 
 #[test]
