@@ -7,7 +7,7 @@ use crate::rtl::trace::SAMPLES;
 /// `[axis.trace]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TraceSection {
-    /// Samples of each signal that the memory holds: 256, 512, 1024 or 2048.
+    /// Words that the memory holds, 256, 512, 1024 or 2048: the rows of one signal; two or four share them.
     pub samples: u32,
 }
 
@@ -15,7 +15,7 @@ pub struct TraceSection {
 pub(super) const KEYS: &[Key] = &[Key::new(
     "samples",
     Values::OneOf(&SAMPLES),
-    "Samples that the memory holds of each signal.",
+    "Words that the memory holds; the recorded signals share them.",
 )
 .required()];
 
