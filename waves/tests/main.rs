@@ -4,6 +4,7 @@
 mod complaints;
 mod diff;
 mod files;
+mod fst;
 mod fuzz;
 mod hostile;
 mod options;

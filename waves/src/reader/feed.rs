@@ -163,7 +163,7 @@ impl Feed {
                 self.ended = true;
                 return Err(error);
             }
-            // The thread ended without a message: the crate that reads FST panicked on an unexpected file.
+            // The thread ended without a message.
             Err(_) => {
                 self.ended = true;
                 return Err(WaveError::Damaged {

@@ -1,52 +1,52 @@
-//! Reads FST, GTKWave's packed format, with the crate `fst-reader`.
+//! Reads FST, GTKWave's packed format: what is declared, and then the changes block by block ([`super::fst_blocks`]).
 //!
-//! That crate reads block by block and calls back in the order of time, so memory is bounded by the size of a block,
-//! which the writer chooses, and not by the length of the file; but a file that is packed as a whole, as GHDL writes
-//! it, is unpacked in memory first ([`super::fst_file`]). It is the reader inside `wellen`, by the same author, without what `wellen` keeps
-//! in memory; it is pinned to its minor version, since its interface still changes.
+//! Memory is bounded by the size of a block, which the writer chooses, and not by the length of the file; but a file that is
+//! packed as a whole, as GHDL writes it, is unpacked in memory first ([`super::fst_file`]).
 //!
-//! It does not report the periods of `$dumpoff`. It panics on some damaged files; that is caught here.
+//! How a signal's values are written is in a block of its own, and tells its kind: bits, a real number or text. Where that
+//! block is missing, because the writer was stopped, the kind follows from the hierarchy.
 
 use std::fs::File;
-use std::io::BufReader;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+use std::path::PathBuf;
 
-use fst_reader::{
-    FstFilter, FstHierarchyEntry, FstReader, FstSignalHandle, FstSignalValue, FstVarType, ReadSignalsError,
-};
-
-use super::batch::NOWHERE;
-use super::digits::pack;
-use super::fst_blocks::{Blocks, Stop};
-use super::fst_file::{self, Bytes, Cut, PACKED};
+use super::fst_blocks::hierarchy::{self, Entry, Signal};
+use super::fst_blocks::{self, BLACKOUT, Blocks, Form, GEOMETRY, HEADER, SKIPPED, Stop};
+use super::fst_file::{self, Bytes, PACKED};
 use super::gatherer::Gatherer;
 use super::header::{Declarations, Kind};
 use super::section::Ended;
-use super::values::pack_text;
 use crate::WaveError;
 
-type Source = FstReader<BufReader<Bytes>>;
-
 /// Beginning of a file with a header block: its first byte and the length.
-const HEADER: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 0x49];
+const BEGINNING: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 0x49];
+/// Length of the header.
+const HEADER_BYTES: u64 = 329;
+/// Position of the unit of time in the header: the exponent of ten of a second.
+const TIMESCALE_AT: u64 = 73;
+
+/// Types of variables.
+const EVENT: u8 = 0;
+const REALS: [u8; 4] = [3, 4, 20, 29];
+/// A port with its strengths: three characters a bit, and two.
+const PORT: u8 = 18;
+const STRING: u8 = 21;
 
 /// Returns whether the file begins like an FST.
 pub(super) fn is_fst(beginning: &[u8]) -> bool {
-    beginning.starts_with(&HEADER) || beginning.first() == Some(&PACKED)
+    beginning.starts_with(&BEGINNING) || beginning.first() == Some(&PACKED)
 }
 
 /// The values of an FST.
 pub(super) struct FstValues {
     path: PathBuf,
-    source: Source,
     /// Slot of each handle.
     slots: Vec<Option<u32>>,
     bytes: u64,
     /// Whether the file ends where its writer was stopped.
     is_cut: bool,
-    /// The blocks, if they can be read directly.
-    blocks: Option<Blocks>,
+    blocks: Blocks,
 }
 
 /// Path of the file in which a writer keeps the hierarchy until it appends it: `x.fst.hier`.
@@ -61,109 +61,133 @@ fn hierarchy_beside(path: &Path) -> Option<File> {
 
 /// Opens a file and reads its declarations.
 pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> {
-    let mut file = Bytes::open(path)?;
-    let cut = check(path, &mut file, false)?;
-    let bytes = file.length();
-    let up_to = |end| Ok::<_, WaveError>(BufReader::new(file.again(path, end)?));
-    let opened = match &cut {
-        None => {
-            let whole = up_to(bytes)?;
-            let source = guarded(path, || FstReader::open(whole))?;
-            source.map_err(|cause| damaged(path, &cause.to_string()))
-        }
-        Some((_, what)) => Err(damaged(path, what)),
-    };
-    // Its writer was stopped before it appended the hierarchy.
-    let (mut source, is_cut) = match (opened, hierarchy_beside(path)) {
-        (Ok(source), _) => (source, false),
-        (Err(why), None) => return Err(why),
-        (Err(_), Some(hierarchy)) => {
-            let whole = up_to(cut.map_or(bytes, |(at, _)| at))?;
-            let source = guarded(path, || FstReader::open_incomplete(whole, BufReader::new(hierarchy)))?;
-            (source.map_err(|cause| damaged(path, &cause.to_string()))?, true)
-        }
-    };
-    let unit_fs = unit_fs(source.get_header().timescale_exponent).map_err(|what| damaged(path, &what))?;
-    let mut declarations = Declarations::new(unit_fs);
-    let mut slots: Vec<Option<u32>> = Vec::new();
-    let mut problem = None;
-    let entries = guarded(path, || {
-        source.read_hierarchy(|entry| {
-            if problem.is_none()
-                && let Err(what) = declare(&mut declarations, &mut slots, entry)
-            {
-                problem = Some(what);
-            }
-        })
-    })?;
-    entries.map_err(|cause| damaged(path, &cause.to_string()))?;
-    match problem {
-        Some(what) => Err(damaged(path, &what)),
-        None => declarations.finish().map_err(|what| damaged(path, &what)),
-    }?;
-    let blocks = if is_cut {
-        None
-    } else {
-        let again = file.again(path, bytes)?;
-        Blocks::find(again, &slots, &declarations.kinds).unwrap_or(None)
-    };
-    if blocks.is_none() {
-        check(path, &mut file, true)?;
+    let file = Bytes::open(path)?;
+    read(path, file).map_err(|stop| refused(path, stop))
+}
+
+fn read(path: &Path, mut file: Bytes) -> Result<(Declarations, FstValues), Stop> {
+    let (blocks, cut) = fst_file::blocks(&mut file)?;
+    if !blocks
+        .first()
+        .is_some_and(|block| block.kind == HEADER && block.length >= HEADER_BYTES)
+    {
+        return Err(Stop::Unknown(
+            "the file does not begin with a whole header: it was cut off, or is no FST; write it again".to_owned(),
+        ));
     }
-    let path = path.to_owned();
+    let inside = blocks.iter().find(|block| hierarchy::is_hierarchy(block));
+    let hierarchy = match (inside, &cut, hierarchy_beside(path)) {
+        (Some(block), None, _) => hierarchy::unpack(&mut file, *block).map_err(|stop| stop.in_block(*block))?,
+        (_, _, Some(beside)) => hierarchy::beside(beside)?,
+        (_, Some((_, what)), None) => return Err(Stop::Unknown(format!("{what}; write it again"))),
+        (None, None, None) => {
+            return Err(Stop::Unknown(
+                "it has no hierarchy: it was cut off, or its writer is still running, or was killed and its `.hier` file \
+                 is not here; write it again"
+                    .to_owned(),
+            ));
+        }
+    };
+    let is_cut = cut.is_some() || inside.is_none();
+
+    let mut changes = Vec::new();
+    let mut blackouts = Vec::new();
+    let mut forms = None;
+    for block in blocks {
+        let at = |stop: Stop| stop.in_block(block);
+        match block.kind {
+            HEADER | SKIPPED => {}
+            GEOMETRY => forms = Some(fst_blocks::forms(&mut file, block).map_err(at)?),
+            BLACKOUT => blackouts = fst_blocks::blackouts(&mut file, block).map_err(at)?,
+            _ if block.is_changes() => changes.push(block),
+            _ if hierarchy::is_hierarchy(&block) => {}
+            kind => {
+                return Err(at(Stop::Unknown(format!(
+                    "a kind of block that is not known, {kind}: the file is damaged, or of a newer writer"
+                ))));
+            }
+        }
+    }
+    file.seek(SeekFrom::Start(TIMESCALE_AT))?;
+    let mut exponent = [0];
+    file.read_exact(&mut exponent)?;
+    let mut declaring = Declaring {
+        declarations: Declarations::new(unit_fs(i8::from_be_bytes(exponent))?),
+        slots: Vec::new(),
+        forms_are_known: forms.is_some(),
+        forms: forms.unwrap_or_default(),
+    };
+    hierarchy::each(&hierarchy, |entry| declaring.declare(entry))?;
+    let Declaring {
+        mut declarations,
+        slots,
+        forms,
+        ..
+    } = declaring;
+    declarations.finish_open();
+    let bytes = file.length();
     let values = FstValues {
-        path,
-        source,
+        path: path.to_owned(),
         slots,
         bytes,
         is_cut,
-        blocks,
+        blocks: Blocks::new(file, changes, forms, blackouts)?,
     };
     Ok((declarations, values))
 }
 
-fn check(path: &Path, file: &mut Bytes, chains: bool) -> Result<Option<Cut>, WaveError> {
-    let checked = fst_file::check(file, chains).map_err(WaveError::file(path, "read"))?;
-    checked.map_err(|what| damaged(path, &what))
+/// What has been declared so far.
+struct Declaring {
+    declarations: Declarations,
+    /// By handle.
+    slots: Vec<Option<u32>>,
+    forms: Vec<Form>,
+    forms_are_known: bool,
 }
 
-fn declare(
-    declarations: &mut Declarations,
-    slots: &mut Vec<Option<u32>>,
-    entry: FstHierarchyEntry,
-) -> Result<(), String> {
-    match entry {
-        FstHierarchyEntry::Scope { name, .. } => declarations.enter(&name),
-        FstHierarchyEntry::UpScope => declarations.leave(),
-        FstHierarchyEntry::Var {
-            tpe,
-            name,
-            length,
-            handle,
-            ..
-        } => {
-            let kind = match tpe {
-                FstVarType::Real | FstVarType::RealParameter | FstVarType::RealTime | FstVarType::ShortReal => {
-                    Kind::Real
-                }
-                FstVarType::GenericString => Kind::Text,
-                FstVarType::Event => Kind::Event,
-                // GHDL and nvc write VHDL's strings as variables without a length.
-                _ if length == 0 => Kind::Text,
-                _ => Kind::Bits(length),
-            };
-            let at = handle.get_index();
-            if at >= slots.len() {
-                slots.resize(at + 1, None);
-            }
-            let slot = match slots[at] {
-                Some(slot) => slot,
-                None => declarations.add_slot(kind, &name)?,
-            };
-            slots[at] = Some(slot);
-            declarations.add_name(&name.replace(" [", "["), slot)
+impl Declaring {
+    fn declare(&mut self, entry: Entry<'_>) -> Result<(), Stop> {
+        let declarations = &mut self.declarations;
+        let declared = match entry {
+            Entry::Scope { name } => declarations.enter(&String::from_utf8_lossy(name)),
+            Entry::End => declarations.leave(),
+            Entry::Signal(signal) => return self.signal(&signal),
+        };
+        declared.map_err(Stop::Unknown)
+    }
+
+    fn signal(&mut self, signal: &Signal<'_>) -> Result<(), Stop> {
+        if !self.forms_are_known && !signal.is_alias {
+            self.forms.push(match signal.kind {
+                kind if REALS.contains(&kind) => Form::Real,
+                STRING => Form::Text,
+                _ if signal.bits == 0 => Form::Text,
+                _ => Form::Bits(signal.bits),
+            });
         }
-        _ => Ok(()),
+        let handle = signal.handle;
+        let form = self.forms.get(handle);
+        let form = form.ok_or_else(|| Stop::Damaged("the hierarchy has more signals than the file".to_owned()))?;
+        if handle >= self.slots.len() {
+            self.slots.resize(handle + 1, None);
+        }
+        let name = String::from_utf8_lossy(signal.name);
+        let slot = match self.slots[handle] {
+            Some(slot) => slot,
+            None => {
+                let kind = match (signal.kind, form) {
+                    (EVENT, _) => Kind::Event,
+                    (PORT, _) => Kind::Text,
+                    (_, Form::Bits(bits)) => Kind::Bits(*bits),
+                    (_, Form::Real) => Kind::Real,
+                    (_, Form::Text) => Kind::Text,
+                };
+                self.declarations.add_slot(kind, &name).map_err(Stop::Unknown)?
+            }
+        };
+        self.slots[handle] = Some(slot);
+        let added = self.declarations.add_name(&name.replace(" [", "["), slot);
+        added.map_err(Stop::Unknown)
     }
 }
 
@@ -174,43 +198,10 @@ impl FstValues {
         gatherer: &mut Gatherer,
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
     ) -> Result<Ended, WaveError> {
-        if let Some(mut blocks) = self.blocks.take() {
-            match blocks.read(&self.slots, gatherer, hand_over) {
-                Ok(()) => {}
-                Err(Stop::Unheard) => return Ok(Ended::Unheard),
-                Err(Stop::Damaged(what)) => return Err(damaged(&self.path, &what)),
-                Err(Stop::Io(cause)) => return Err(WaveError::file(&self.path, "read")(cause)),
-            }
-            gatherer.end_step();
-            return Ok(Ended::File { unterminated: false });
-        }
-        let wanted = (0..self.slots.len()).filter(|at| self.slots[*at].is_some());
-        let filter = FstFilter::filter_signals(wanted.map(FstSignalHandle::from_index).collect());
-        let (slots, path, bytes) = (&self.slots, &self.path, self.bytes);
-        gatherer.batch.bytes = bytes;
-        let source = &mut self.source;
-        let read = guarded(path, || {
-            source.read_signals(&filter, |time, handle, value| {
-                if time < gatherer.time() {
-                    return Err(Some(format!("time goes back to {time}")));
-                }
-                if gatherer.advance(time, NOWHERE) {
-                    if !hand_over(gatherer) {
-                        return Err(None);
-                    }
-                    gatherer.batch.bytes = bytes;
-                }
-                match slots.get(handle.get_index()).copied().flatten() {
-                    Some(slot) => put(gatherer, slot, &value).map_err(Some),
-                    None => Ok(()),
-                }
-            })
-        })?;
-        match read {
+        match self.blocks.read(&self.slots, gatherer, hand_over) {
             Ok(()) => {}
-            Err(ReadSignalsError::CallbackError(None)) => return Ok(Ended::Unheard),
-            Err(ReadSignalsError::CallbackError(Some(what))) => return Err(damaged(path, &what)),
-            Err(ReadSignalsError::ReadError(cause)) => return Err(damaged(path, &cause.to_string())),
+            Err(Stop::Unheard) => return Ok(Ended::Unheard),
+            Err(stop) => return Err(refused(&self.path, stop)),
         }
         if self.is_cut {
             // More may have happened at the last time.
@@ -222,41 +213,24 @@ impl FstValues {
     }
 }
 
-fn put(gatherer: &mut Gatherer, slot: u32, value: &FstSignalValue<'_>) -> Result<(), String> {
-    match (gatherer.kind(slot), value) {
-        (Kind::Real, FstSignalValue::Real(real)) => gatherer.put_word(slot, real.to_bits(), 0),
-        (Kind::Bits(width), FstSignalValue::String(digits)) => {
-            if digits.is_empty() || digits.len() > width as usize {
-                return Err(format!("{} digits for a signal of {width} bits", digits.len()));
-            }
-            let words = gatherer.put_words(slot);
-            let (bits, unknown) = words.split_at_mut(words.len() / 2);
-            pack(digits, width, bits, unknown).map_err(|byte| format!("byte {byte} is not a digit"))?;
-            gatherer.watch_last(slot);
-        }
-        (Kind::Text, FstSignalValue::String(text)) => pack_text(text, gatherer.put_words(slot)),
-        (Kind::Event, _) => {}
-        _ => return Err("a value of another type than declared".to_owned()),
-    }
-    Ok(())
-}
-
-fn unit_fs(exponent: i8) -> Result<u64, String> {
+fn unit_fs(exponent: i8) -> Result<u64, Stop> {
     let zeros = u32::try_from(i32::from(exponent) + 15).ok();
     let unit = zeros.and_then(|zeros| 10u64.checked_pow(zeros));
     unit.filter(|unit| *unit <= 100_000_000_000_000_000)
-        .ok_or_else(|| format!("a timescale of 10^{exponent} s: 1 fs to 100 s are allowed"))
+        .ok_or_else(|| Stop::Unknown(format!("a timescale of 10^{exponent} s: 1 fs to 100 s are read")))
 }
 
-/// Runs a call into the crate; if that panics, the file is damaged.
-fn guarded<T>(path: &Path, call: impl FnOnce() -> T) -> Result<T, WaveError> {
-    catch_unwind(AssertUnwindSafe(call)).map_err(|_| damaged(path, "its reader gave up"))
-}
-
-pub(super) fn damaged(path: &Path, what: &str) -> WaveError {
+/// Returns the error of a file that is not read further.
+pub(super) fn refused(path: &Path, stop: Stop) -> WaveError {
+    let problem = match stop {
+        Stop::Io(cause) => return WaveError::file(path, "read")(cause),
+        Stop::Damaged(what) => format!("{what}: the file is damaged; write it again"),
+        Stop::Unknown(what) => what,
+        Stop::Unheard => String::new(),
+    };
     WaveError::Damaged {
         path: path.to_owned(),
         place: "FST".to_owned(),
-        problem: format!("{what}: the file is damaged, or of a kind that cannot be read; write it again"),
+        problem,
     }
 }

@@ -1,17 +1,16 @@
-//! The bytes of an FST, and a check of all lengths in it before anything relies on them.
+//! The bytes of an FST, and the blocks in it.
 //!
-//! The crate `fst-reader` reserves as much memory as a file says that it will need. A damaged file may say anything, and
-//! a program that cannot get its memory is ended by the system, so each length is compared here with what the packed
-//! bytes can hold. A file that is packed as a whole, as GHDL writes it, is unpacked here for the same reason.
+//! A damaged file may say anything of its lengths, and a program that cannot get its memory is ended by the system, so each
+//! length is compared with what the packed bytes can hold before memory is reserved for it. A file that is packed as a
+//! whole, as GHDL writes it, is unpacked here, in memory.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
-use std::sync::Arc;
 
 use flate2::read::GzDecoder;
 
-use super::fst_blocks::{self, Block};
+use super::fst_blocks::{Block, SKIPPED, Stop};
 use crate::WaveError;
 
 /// First byte of a file that is packed as a whole.
@@ -20,8 +19,6 @@ pub(super) const PACKED: u8 = 254;
 const PACKED_BYTES: u64 = 1 << 28;
 /// Number of bytes of a block's beginning: kind and length.
 const HEAD: u64 = 9;
-/// Length of the first block.
-const HEADER_LENGTH: u64 = 329;
 
 /// A file, or what was unpacked from it, up to the end of its last complete block.
 pub(super) struct Bytes {
@@ -32,13 +29,13 @@ pub(super) struct Bytes {
 
 enum Source {
     File(File),
-    Memory(Arc<[u8]>),
+    Memory(Vec<u8>),
 }
 
 impl Bytes {
     /// Opens a file, and unpacks it if it is packed as a whole.
     pub(super) fn open(path: &Path) -> Result<Self, WaveError> {
-        let read = || -> io::Result<Result<Self, String>> {
+        let read = || -> io::Result<Result<Self, Stop>> {
             let mut file = File::open(path)?;
             let end = file.metadata()?.len();
             let mut head = [0; 2 * HEAD as usize - 1];
@@ -50,32 +47,26 @@ impl Bytes {
             }
             let length = number(&head, HEAD as usize);
             if length > PACKED_BYTES {
-                return Ok(Err(format!(
-                    "the file is packed as a whole, {length} bytes, and at most {PACKED_BYTES} are unpacked in memory"
-                )));
+                return Ok(Err(Stop::Unknown(format!(
+                    "the file is packed as a whole, {length} bytes, and at most {PACKED_BYTES} are unpacked in memory: let its \
+                     writer not pack it, or dump fewer scopes"
+                ))));
             }
             let mut unpacked = Vec::new();
             if let Err(cause) = GzDecoder::new(file).take(length).read_to_end(&mut unpacked) {
-                return Ok(Err(format!("it cannot be unpacked: {cause}")));
+                return Ok(Err(Stop::Damaged(format!("it cannot be unpacked: {cause}"))));
             }
             let end = unpacked.len() as u64;
             if end != length {
-                return Ok(Err(format!("it unpacks to {end} bytes instead of {length}")));
+                return Ok(Err(Stop::Damaged(format!(
+                    "it unpacks to {end} bytes instead of {length}"
+                ))));
             }
-            let source = Source::Memory(unpacked.into());
+            let source = Source::Memory(unpacked);
             Ok(Ok(Self { source, at: 0, end }))
         };
         let opened = read().map_err(WaveError::file(path, "read"))?;
-        opened.map_err(|what| super::fst::damaged(path, &what))
-    }
-
-    /// Returns the same bytes, up to `end`, to be read independently.
-    pub(super) fn again(&self, path: &Path, end: u64) -> Result<Self, WaveError> {
-        let source = match &self.source {
-            Source::File(_) => Source::File(File::open(path).map_err(WaveError::file(path, "open"))?),
-            Source::Memory(bytes) => Source::Memory(Arc::clone(bytes)),
-        };
-        Ok(Self { source, at: 0, end })
+        opened.map_err(|stop| super::fst::refused(path, stop))
     }
 
     /// Returns the number of bytes.
@@ -115,21 +106,18 @@ impl Seek for Bytes {
     }
 }
 
-/// Byte of a block that does not lie within its file, and the reason.
+/// A place from which on a file has no complete block, and the reason.
 pub(super) type Cut = (u64, String);
 
-/// Walks through all blocks. Returns the first one that does not lie within the file, if there is one. With `chains`, the
-/// lengths of the chains of changes are checked, too, which [`fst_blocks::Blocks`] does itself.
-///
-/// # Errors
-/// What is wrong with a length.
-pub(super) fn check(bytes: &mut Bytes, chains: bool) -> io::Result<Result<Option<Cut>, String>> {
+/// Returns the blocks that lie within the file, in its order, and the place at which it was cut off, if it was.
+pub(super) fn blocks(bytes: &mut Bytes) -> io::Result<(Vec<Block>, Option<Cut>)> {
     let length = bytes.length();
+    let mut blocks = Vec::new();
     let mut at = 0;
     while at < length {
         if length - at < HEAD {
             let what = format!("the file ends inside a block at byte {at}: it was cut off");
-            return Ok(Ok(Some((at, what))));
+            return Ok((blocks, Some((at, what))));
         }
         let mut head = [0; HEAD as usize];
         bytes.seek(SeekFrom::Start(at))?;
@@ -142,23 +130,20 @@ pub(super) fn check(bytes: &mut Bytes, chains: bool) -> io::Result<Result<Option
         let next = block.at.checked_add(block.length);
         let Some(next) = next.filter(|next| block.length >= 8 && *next <= length) else {
             // A block that is still being written is marked to be skipped.
-            let what = format!(
-                "a block of {} bytes at byte {at} does not end in the file: it was cut off",
-                block.length
-            );
-            return Ok(Ok(Some((at, what))));
+            let what = match (block.kind, block.length) {
+                (SKIPPED, 0) => {
+                    format!("the block at byte {at} was never finished: the writer was stopped, or wrote no time")
+                }
+                (_, length) => {
+                    format!("a block of {length} bytes at byte {at} does not end in the file: it was cut off")
+                }
+            };
+            return Ok((blocks, Some((at, what))));
         };
-        let problem = match block.kind {
-            0 => (block.length != HEADER_LENGTH).then(|| "the header has another length".to_owned()),
-            PACKED => Some("a packed file inside another".to_owned()),
-            _ => fst_blocks::problem(bytes, block, chains)?,
-        };
-        if let Some(what) = problem {
-            return Ok(Err(format!("{what}, in the block at byte {at}")));
-        }
+        blocks.push(block);
         at = next;
     }
-    Ok(Ok(None))
+    Ok((blocks, None))
 }
 
 fn number(bytes: &[u8], at: usize) -> u64 {

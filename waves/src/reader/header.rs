@@ -2,10 +2,16 @@
 
 use std::collections::HashMap;
 
-const SIGNALS: usize = 1 << 18;
-const NAME_BYTES: usize = 1 << 25;
+/// Largest number of signals of a file.
+pub(super) const MOST_SIGNALS: u64 = 1 << 22;
+const NAME_BYTES: usize = 1 << 30;
 const DEPTH: usize = 256;
-const TOTAL_BITS: u64 = 1 << 24;
+const TOTAL_BITS: u64 = 1 << 27;
+
+/// Returns what is said of a file with too many signals.
+pub(super) fn too_many_signals() -> String {
+    format!("more than {MOST_SIGNALS} signals: dump fewer scopes")
+}
 
 /// Type of a signal's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,6 +97,12 @@ impl Declarations {
         Ok(())
     }
 
+    /// Ends the declarations of a file whose scopes need not have been left: their end changes no name.
+    pub(super) fn finish_open(&mut self) {
+        self.scope_ends.clear();
+        self.seen = HashMap::new();
+    }
+
     /// Checks that all scopes have been left.
     pub(super) fn finish(&mut self) -> Result<(), String> {
         if !self.scope_ends.is_empty() {
@@ -128,8 +140,8 @@ impl Declarations {
         if self.name_bytes > NAME_BYTES {
             return Err(format!("more than {NAME_BYTES} bytes of names: dump fewer scopes"));
         }
-        if self.names.len() == SIGNALS {
-            return Err(format!("more than {SIGNALS} signals: dump fewer scopes"));
+        if self.names.len() as u64 == MOST_SIGNALS {
+            return Err(too_many_signals());
         }
         let vector = format!("{}{name}", self.scope);
         let mut path = match range {

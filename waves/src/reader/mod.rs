@@ -3,13 +3,13 @@
 //! ```text
 //!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
 //!  x.vcd ────┤                                                  ├─► Wave ─►  section │ fst ─► batches ─► Feed ─► Values
-//!  x.fst ────┴─ declarations: crate `fst-reader` ───────────────┘                                       step by step
+//!  x.fst ────┴─ declarations: blocks of the file ───────────────┘                                       step by step
 //! ```
 //!
 //! The crate `vcd` reads the declarations, [`section`] the value changes, because the crate makes a string of each
 //! and is four times as slow. Tests compare the two, and `wellen`, on every fixture.
 //!
-//! Limits keep a hostile file from using up the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of
+//! Limits keep a hostile file from using up the memory: 2^22 signals, 2^27 bits of all signals together, 1 GiB of
 //! names, scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file
 //! that ends in the middle of something, the result is an error with the place.
 

@@ -2,9 +2,10 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-use super::packing::{most_unpacked, signed_varint, unpacked, varint, word};
+use super::packing::{signed_varint, unpacked, varint, word};
 use super::{Block, CHANGES_ALIAS_2, Form, Stop, damaged};
 use crate::reader::fst_file::Bytes;
+use crate::reader::header::{MOST_SIGNALS, too_many_signals};
 
 /// Bytes of a block of changes before the values: length, first and last time, memory.
 const HEAD: usize = 32;
@@ -14,9 +15,6 @@ const HANDLES: usize = 11;
 /// Bytes at the end: lengths of the times.
 const TAIL: u64 = 24;
 
-/// Largest number of signals in a block: more than a file may declare.
-pub(super) const MOST_HANDLES: u64 = 1 << 20;
-
 /// Where the parts of a block are.
 pub(super) struct Layout {
     block: Block,
@@ -24,6 +22,8 @@ pub(super) struct Layout {
     pub(super) start: u64,
     /// The values before the first change: place, bytes in the file, and unpacked.
     values: (u64, u64, u64),
+    /// Number of signals that have such a value.
+    pub(super) values_of: u64,
     /// Number of signals.
     pub(super) handles: u64,
     /// How the chains are packed: `4` is LZ4, `F` is FastLZ, and zlib any other.
@@ -39,7 +39,8 @@ impl Layout {
         let head = bytes_at(file, block, 0, (HEAD + NUMBERS) as u64)?;
         let mut at = HEAD;
         let mut number = || varint(&head, &mut at);
-        let (Some(start), Some(unpacked), Some(packed), Some(_)) = (word(&head, 8), number(), number(), number())
+        let (Some(start), Some(unpacked), Some(packed), Some(values_of)) =
+            (word(&head, 8), number(), number(), number())
         else {
             return Ok(None);
         };
@@ -55,6 +56,7 @@ impl Layout {
             block,
             start,
             values: (at as u64, packed, unpacked),
+            values_of,
             handles,
             packing: *packing,
             chains_at: block.at + behind + by as u64,
@@ -66,30 +68,6 @@ impl Layout {
     pub(super) fn values(&self, file: &mut Bytes) -> Result<Vec<u8>, Stop> {
         let (at, packed, length) = self.values;
         unpacked(&bytes_at(file, self.block, at, packed)?, length, true)
-    }
-
-    /// Checks that the lengths of the values and the times can be true; with `chains`, also those of the chains.
-    pub(super) fn check(&self, file: &mut Bytes, chains: bool) -> Result<(), Stop> {
-        let more = || damaged("it says that it holds more than it can");
-        let (_, packed, unpacked) = self.values;
-        let (tail, times_at) = self.tail(file)?;
-        let fits = unpacked <= most_unpacked(packed)
-            && self.handles <= MOST_HANDLES
-            && tail.length <= most_unpacked(tail.packed)
-            && tail.count <= tail.length;
-        if !fits {
-            return Err(more());
-        }
-        if !chains {
-            return Ok(());
-        }
-        for (from, to) in self.table(file, times_at)?.into_iter().flatten() {
-            let head = bytes_at(file, self.block, self.chains_from + from as u64, 10)?;
-            if varint(&head, &mut 0).is_none_or(|length| length > most_unpacked((to - from) as u64)) {
-                return Err(more());
-            }
-        }
-        Ok(())
     }
 
     /// Reads the times, and where the chains are.
@@ -149,41 +127,44 @@ pub(super) fn bytes_at(file: &mut Bytes, block: Block, at: u64, length: u64) -> 
 }
 
 /// Returns how the changes of each handle are written.
-pub(super) fn forms(file: &mut Bytes, block: Block) -> io::Result<Option<Vec<Form>>> {
-    let Some(packed) = block
-        .length
-        .checked_sub(24)
-        .and_then(|length| usize::try_from(length).ok())
-    else {
-        return Ok(None);
+pub(in crate::reader) fn forms(file: &mut Bytes, block: Block) -> Result<Vec<Form>, Stop> {
+    let wrong = || damaged("the widths of the signals cannot be read");
+    let bytes = bytes_at(file, block, 0, block.length)?;
+    let (Some(length), Some(count), Some(packed)) = (word(&bytes, 8), word(&bytes, 16), bytes.get(24..)) else {
+        return Err(wrong());
     };
-    let mut head = [0; 24];
-    file.seek(SeekFrom::Start(block.at))?;
-    file.read_exact(&mut head)?;
-    let mut bytes = vec![0; packed];
-    file.read_exact(&mut bytes)?;
-    let (Some(length), Some(count)) = (word(&head, 8), word(&head, 16)) else {
-        return Ok(None);
-    };
-    let Ok(bytes) = unpacked(&bytes, length, true) else {
-        return Ok(None);
-    };
+    if count > MOST_SIGNALS {
+        return Err(Stop::Unknown(too_many_signals()));
+    }
+    let bytes = unpacked(packed, length, true)?;
     let mut forms = Vec::new();
     let mut at = 0;
     while (forms.len() as u64) < count {
-        let Some(number) = varint(&bytes, &mut at) else {
-            return Ok(None);
-        };
+        let number = varint(&bytes, &mut at).ok_or_else(wrong)?;
         forms.push(match number {
             0 => Form::Real,
             0xffff_ffff => Form::Text,
-            bits => match u32::try_from(bits) {
-                Ok(bits) => Form::Bits(bits),
-                Err(_) => return Ok(None),
-            },
+            bits => Form::Bits(u32::try_from(bits).map_err(|_| wrong())?),
         });
     }
-    Ok(Some(forms))
+    Ok(forms)
+}
+
+/// Returns the times at which recording was switched on or off, in order, and whether it is off then.
+pub(in crate::reader) fn blackouts(file: &mut Bytes, block: Block) -> Result<Vec<(u64, bool)>, Stop> {
+    let wrong = || damaged("the periods without recording cannot be read");
+    let bytes = bytes_at(file, block, 8, block.length)?;
+    let (mut at, mut time) = (0, 0u64);
+    let count = varint(&bytes, &mut at).ok_or_else(wrong)?;
+    let mut blackouts = Vec::new();
+    while (blackouts.len() as u64) < count {
+        let is_on = *bytes.get(at).ok_or_else(wrong)? != 0;
+        at += 1;
+        let by = varint(&bytes, &mut at).ok_or_else(wrong)?;
+        time = time.checked_add(by).ok_or_else(wrong)?;
+        blackouts.push((time, !is_on));
+    }
+    Ok(blackouts)
 }
 
 fn times(packed: &[u8], length: u64, count: u64) -> Result<Vec<u64>, Stop> {

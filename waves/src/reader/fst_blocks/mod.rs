@@ -1,8 +1,7 @@
 //! Reads the value changes of an FST, block by block, directly into words.
 //!
-//! The crate `fst-reader` returns every value as text, which for a word costs more than everything else. It still reads
-//! the hierarchy, and the files that this module does not read: those that are packed as a whole, cut off, or packed by
-//! FastLZ.
+//! The crate `fst-reader` returns every value as text, which for a word costs more than everything else; it panics on some
+//! damaged files, and does not report periods without recording.
 //!
 //! ```text
 //!  block   kind │ length, first time, last time, memory │ values before │ handles, packing, a chain of changes per signal …
@@ -13,15 +12,17 @@
 //! All chains are unpacked, and each waits in the list of the time of its next change.
 
 mod chains;
+mod fastlz;
+pub(super) mod hierarchy;
 mod layout;
-mod lengths;
 mod packing;
 
+use std::collections::VecDeque;
 use std::io::{self, Read, Seek, SeekFrom};
 
 use self::chains::Chains;
-use self::layout::{Layout, forms};
-pub(super) use self::lengths::problem;
+use self::layout::Layout;
+pub(super) use self::layout::{blackouts, forms};
 use self::packing::varint;
 use super::batch::NOWHERE;
 use super::digits::pack;
@@ -31,10 +32,13 @@ use super::header::Kind;
 use super::values::pack_text;
 
 /// Kinds of blocks.
+pub(super) const HEADER: u8 = 0;
 const CHANGES: u8 = 1;
+pub(super) const BLACKOUT: u8 = 2;
+pub(super) const GEOMETRY: u8 = 3;
 const CHANGES_ALIAS: u8 = 5;
 const CHANGES_ALIAS_2: u8 = 8;
-const GEOMETRY: u8 = 3;
+pub(super) const SKIPPED: u8 = 255;
 
 /// Value in the header that shows the byte order of real numbers.
 const EULER: f64 = std::f64::consts::E;
@@ -43,7 +47,7 @@ const EULER_AT: u64 = 25;
 /// Digits of a signal of one bit other than 0 and 1: `xzhuwl-?`.
 const DIGITS: &[u8; 8] = b"xzhuwl-?";
 
-/// A block that holds changes.
+/// A block.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     pub(super) kind: u8,
@@ -52,9 +56,16 @@ pub(super) struct Block {
     pub(super) length: u64,
 }
 
+impl Block {
+    /// Whether it has changes.
+    pub(super) fn is_changes(&self) -> bool {
+        matches!(self.kind, CHANGES | CHANGES_ALIAS | CHANGES_ALIAS_2)
+    }
+}
+
 /// How a signal's changes are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
+pub(super) enum Form {
     Bits(u32),
     Real,
     Text,
@@ -66,6 +77,8 @@ pub(super) struct Blocks {
     blocks: Vec<Block>,
     /// Indexed by handle.
     forms: Vec<Form>,
+    /// Times at which recording is switched, and whether it is off then.
+    blackouts: VecDeque<(u64, bool)>,
     little_endian: bool,
 }
 
@@ -74,7 +87,21 @@ pub(super) enum Stop {
     /// The receiver is gone.
     Unheard,
     Damaged(String),
+    /// It may be in order, but it is not known, or too large.
+    Unknown(String),
     Io(io::Error),
+}
+
+impl Stop {
+    /// Adds where it was found.
+    pub(super) fn in_block(self, block: Block) -> Self {
+        let place = |what: String| format!("{what}, in the block at byte {}", block.at.saturating_sub(1));
+        match self {
+            Self::Damaged(what) => Self::Damaged(place(what)),
+            Self::Unknown(what) => Self::Unknown(place(what)),
+            other => other,
+        }
+    }
 }
 
 impl From<io::Error> for Stop {
@@ -88,75 +115,30 @@ fn damaged(what: &str) -> Stop {
 }
 
 impl Blocks {
-    /// Finds the blocks of a file that contains all of them completely; `None` if only `fst-reader` can read it.
-    /// `slots` and `kinds` are those of the declarations.
-    pub(super) fn find(mut file: Bytes, slots: &[Option<u32>], kinds: &[Kind]) -> io::Result<Option<Self>> {
-        let length = file.length();
-        let mut blocks = Vec::new();
-        let mut geometry = None;
-        let mut at = 0;
-        while at < length {
-            let mut head = [0; 9];
-            file.seek(SeekFrom::Start(at))?;
-            file.read_exact(&mut head)?;
-            let mut bytes = [0; 8];
-            bytes.copy_from_slice(&head[1..]);
-            let block = Block {
-                kind: head[0],
-                at: at + 1,
-                length: u64::from_be_bytes(bytes),
-            };
-            match block.kind {
-                CHANGES | CHANGES_ALIAS | CHANGES_ALIAS_2 => blocks.push(block),
-                GEOMETRY => geometry = Some(block),
-                0 | 2 | 4 | 6 | 7 | 255 => {}
-                _ => return Ok(None),
-            }
-            at = match at.checked_add(1).and_then(|at| at.checked_add(block.length)) {
-                Some(next) if block.length >= 8 && next <= length => next,
-                _ => return Ok(None),
-            };
-        }
-        let mut euler = [0; 8];
-        file.seek(SeekFrom::Start(EULER_AT))?;
-        file.read_exact(&mut euler)?;
-        let little_endian = f64::from_le_bytes(euler) == EULER;
-        let Some(geometry) = geometry else { return Ok(None) };
-        let Some(forms) = forms(&mut file, geometry)? else {
-            return Ok(None);
-        };
-        let fits = |(at, form): (usize, &Form)| match slots.get(at).copied().flatten() {
-            None => true,
-            Some(slot) => match (kinds[slot as usize], form) {
-                (Kind::Bits(width), Form::Bits(bits)) => width == *bits,
-                (Kind::Real, form) => *form == Form::Real,
-                (Kind::Text, form) => *form == Form::Text,
-                (Kind::Event, _) => true,
-                (Kind::Bits(_), _) => false,
-            },
-        };
-        let understood = forms.iter().enumerate().all(fits) && slots.len() <= forms.len();
-        if !understood || (!little_endian && f64::from_be_bytes(euler) != EULER) {
-            return Ok(None);
-        }
+    /// `changes` are the blocks with changes, and `forms` has how those of each handle are written.
+    pub(super) fn new(
+        file: Bytes,
+        changes: Vec<Block>,
+        forms: Vec<Form>,
+        blackouts: Vec<(u64, bool)>,
+    ) -> Result<Self, Stop> {
         let mut found = Self {
             file,
-            blocks,
+            blocks: changes,
             forms,
-            little_endian,
+            blackouts: blackouts.into(),
+            little_endian: true,
         };
-        for block in found.blocks.clone() {
-            if !found.is_packed_as_usual(block)? {
-                return Ok(None);
-            }
+        let mut euler = [0; 8];
+        found.file.seek(SeekFrom::Start(EULER_AT))?;
+        found.file.read_exact(&mut euler)?;
+        found.little_endian = f64::from_le_bytes(euler) == EULER;
+        if !found.little_endian && f64::from_be_bytes(euler) != EULER && found.forms.contains(&Form::Real) {
+            return Err(Stop::Unknown(
+                "its real numbers are written in a way that is not known".to_owned(),
+            ));
         }
-        Ok(Some(found))
-    }
-
-    /// Whether the chains are packed by zlib or LZ4.
-    fn is_packed_as_usual(&mut self, block: Block) -> io::Result<bool> {
-        let layout = Layout::read(&mut self.file, block)?;
-        Ok(layout.is_some_and(|layout| layout.packing != b'F'))
+        Ok(found)
     }
 
     /// Reads all blocks. `hand_over` takes full batches, and returns whether to continue.
@@ -168,9 +150,10 @@ impl Blocks {
     ) -> Result<(), Stop> {
         for (number, block) in self.blocks.clone().into_iter().enumerate() {
             gatherer.batch.bytes = block.at + block.length;
-            self.block(block, number == 0, slots, gatherer, hand_over)?;
+            let read = self.block(block, number == 0, slots, gatherer, hand_over);
+            read.map_err(|stop| stop.in_block(block))?;
         }
-        Ok(())
+        self.switch_up_to(u64::MAX, gatherer, hand_over)
     }
 
     fn block(
@@ -182,14 +165,15 @@ impl Blocks {
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
     ) -> Result<(), Stop> {
         let layout = Layout::read(&mut self.file, block)?.ok_or_else(|| damaged("a block ends too early"))?;
-        if layout.handles != self.forms.len() as u64 {
-            return Err(damaged("a block has another number of signals than the file"));
+        if layout.handles > self.forms.len() as u64 {
+            return Err(damaged("it has more signals than the file"));
         }
         let (times, table) = layout.times_and_table(&mut self.file)?;
         if is_first && times.first().is_none_or(|first| *first > layout.start) {
             let values = layout.values(&mut self.file)?;
+            self.switch_up_to(layout.start, gatherer, hand_over)?;
             advance(gatherer, layout.start, hand_over)?;
-            self.values_before(&values, slots, gatherer)?;
+            self.values_before(&values, layout.values_of, slots, gatherer)?;
         }
         let wanted = |handle: usize| slots.get(handle).copied().flatten().is_some();
         let mut chains = Chains::unpack(&mut self.file, &layout, &table, &self.forms, times.len(), wanted)?;
@@ -198,6 +182,7 @@ impl Blocks {
             if !chains.has_change(time_at) {
                 continue;
             }
+            self.switch_up_to(*time, gatherer, hand_over)?;
             advance(gatherer, *time, hand_over)?;
             while let Some(handle) = chains.next(time_at) {
                 let slot = slots[handle].ok_or_else(|| damaged("a signal was never declared"))?;
@@ -209,10 +194,34 @@ impl Blocks {
         Ok(())
     }
 
-    /// Reads the values before the first change, as text.
-    fn values_before(&self, values: &[u8], slots: &[Option<u32>], gatherer: &mut Gatherer) -> Result<(), Stop> {
+    /// Switches recording on and off as it was up to a time.
+    fn switch_up_to(
+        &mut self,
+        time: u64,
+        gatherer: &mut Gatherer,
+        hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
+    ) -> Result<(), Stop> {
+        while let Some((at, is_off)) = self.blackouts.front().copied()
+            && at <= time
+        {
+            self.blackouts.pop_front();
+            advance(gatherer, at.max(gatherer.time()), hand_over)?;
+            gatherer.off(is_off);
+        }
+        Ok(())
+    }
+
+    /// Reads the values of the first handles before the first change, as text.
+    fn values_before(
+        &self,
+        values: &[u8],
+        count: u64,
+        slots: &[Option<u32>],
+        gatherer: &mut Gatherer,
+    ) -> Result<(), Stop> {
         let mut at = 0;
-        for (handle, form) in self.forms.iter().enumerate() {
+        let count = usize::try_from(count).unwrap_or(usize::MAX);
+        for (handle, form) in self.forms.iter().enumerate().take(count) {
             let length = match form {
                 Form::Bits(width) => *width as usize,
                 Form::Real => 8,
@@ -227,6 +236,8 @@ impl Blocks {
             };
             match form {
                 Form::Bits(width) => put_digits(gatherer, slot, *width, value)?,
+                // Writers have no other number for one that has had no value yet.
+                Form::Real if self.real(value).is_nan() => {}
                 Form::Real => self.put_real(gatherer, slot, value),
                 Form::Text => {}
             }
@@ -255,9 +266,9 @@ impl Blocks {
                 let length = width.div_ceil(8) as usize;
                 let value = chain.get(at..at + length).ok_or_else(short)?;
                 at += length;
-                if gatherer.kind(slot) != Kind::Bits(width) {
-                    // It is an event, which has no value.
-                } else if width <= 64 {
+                if gatherer.kind(slot) == Kind::Event {
+                    // It has no value.
+                } else if width <= 64 && gatherer.kind(slot) == Kind::Bits(width) {
                     let word = value.iter().fold(0u64, |word, byte| word << 8 | u64::from(*byte));
                     gatherer.put_word(slot, word >> (8 * length as u32 - width), 0);
                 } else {
@@ -291,15 +302,18 @@ impl Blocks {
         Ok(at)
     }
 
-    fn put_real(&self, gatherer: &mut Gatherer, slot: u32, value: &[u8]) {
+    fn real(&self, value: &[u8]) -> f64 {
         let mut bytes = [0; 8];
         bytes.copy_from_slice(value);
-        let bits = match self.little_endian {
-            true => u64::from_le_bytes(bytes),
-            false => u64::from_be_bytes(bytes),
-        };
+        match self.little_endian {
+            true => f64::from_le_bytes(bytes),
+            false => f64::from_be_bytes(bytes),
+        }
+    }
+
+    fn put_real(&self, gatherer: &mut Gatherer, slot: u32, value: &[u8]) {
         if gatherer.kind(slot) == Kind::Real {
-            gatherer.put_word(slot, bits, 0);
+            gatherer.put_word(slot, self.real(value).to_bits(), 0);
         }
     }
 }
@@ -319,8 +333,14 @@ fn advance(gatherer: &mut Gatherer, time: u64, hand_over: &mut dyn FnMut(&mut Ga
 }
 
 fn put_digits(gatherer: &mut Gatherer, slot: u32, width: u32, digits: &[u8]) -> Result<(), Stop> {
-    if gatherer.kind(slot) != Kind::Bits(width) {
-        return Ok(());
+    match gatherer.kind(slot) {
+        Kind::Bits(declared) if declared == width => {}
+        // The states of a port, with their strengths.
+        Kind::Text => {
+            pack_text(digits, gatherer.put_words(slot));
+            return Ok(());
+        }
+        _ => return Ok(()),
     }
     let words = gatherer.put_words(slot);
     let (bits, unknown) = words.split_at_mut(words.len() / 2);

@@ -2,7 +2,10 @@
 
 use flate2::{Decompress, FlushDecompress};
 
-use super::{Stop, damaged};
+use super::{Stop, damaged, fastlz};
+
+/// Largest number of bytes that LZ4 or FastLZ make of one.
+const MOST_BY_LZ: u64 = 256;
 
 /// Returns the largest number of bytes to which so many can unpack: zlib packs by a factor of 1000 at most, LZ4 and FastLZ
 /// by less than 300.
@@ -16,16 +19,19 @@ pub(super) fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Resu
     let length = varint(chain, &mut at).ok_or_else(|| damaged("a chain of changes is empty"))?;
     if length == 0 {
         out.extend_from_slice(&chain[at..]);
-    } else if packing == b'4' {
+    } else if packing == b'4' || packing == b'F' {
         let from = out.len();
         let to = from as u64 + length;
-        if to > u64::from(u32::MAX) || length > 256 * (chain.len() as u64 + 64) {
+        if to > u64::from(u32::MAX) || length > MOST_BY_LZ * (chain.len() as u64 + 64) {
             return Err(damaged("a chain of changes is longer than its packing can be"));
         }
-        out.resize(to as usize, 0);
-        let count = lz4_flex::block::decompress_into(&chain[at..], &mut out[from..]);
-        if count.ok() != Some(length as usize) {
-            return Err(damaged("a chain of changes cannot be unpacked"));
+        let wrong = || damaged("a chain of changes cannot be unpacked");
+        if packing == b'F' {
+            fastlz::unpack(&chain[at..], length as usize, out).ok_or_else(wrong)?;
+        } else {
+            out.resize(to as usize, 0);
+            let count = lz4_flex::block::decompress_into(&chain[at..], &mut out[from..]);
+            count.ok().filter(|count| *count as u64 == length).ok_or_else(wrong)?;
         }
     } else {
         // The length of a chain includes this number, but its packed bytes begin after it.
@@ -35,6 +41,14 @@ pub(super) fn unpack_chain(chain: &[u8], packing: u8, out: &mut Vec<u8>) -> Resu
         return Err(damaged("a block unpacks to more than 4 GiB"));
     }
     Ok(())
+}
+
+/// Unpacks `length` bytes that LZ4 packed; `None` if it cannot.
+pub(super) fn lz4(packed: &[u8], length: u64) -> Option<Vec<u8>> {
+    let most = MOST_BY_LZ * (packed.len() as u64 + 64);
+    let mut out = vec![0; usize::try_from(length).ok().filter(|_| length <= most)?];
+    let count = lz4_flex::block::decompress_into(packed, &mut out).ok()?;
+    (count == out.len()).then_some(out)
 }
 
 /// Unpacks `length` bytes that zlib packed; where allowed, they may also be stored without packing.

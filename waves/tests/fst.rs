@@ -1,0 +1,289 @@
+//! FST: what writers may put into it, and what is said of what cannot be read.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use wavecmp::WaveError;
+use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name)
+}
+
+fn raw(a: &Path, b: &Path) -> Result<Comparison, WaveError> {
+    let options = DiffOptions {
+        raw: true,
+        ..DiffOptions::default()
+    };
+    diff::compare(a, b, &options, &mut |_| {})
+}
+
+fn equal(a: &Path, b: &Path) -> Comparison {
+    let result = raw(a, b).unwrap();
+    assert_eq!(result.result, DiffVerdict::Equal, "{result}");
+    result
+}
+
+/// Parts of a file: the hierarchy, and the width of each signal as it is written.
+struct File {
+    hierarchy: Vec<u8>,
+    widths: Vec<u64>,
+    /// The values of all signals before the first time.
+    values: Vec<u8>,
+    /// The changes of the first signal, of which each begins with a time.
+    chain: Vec<u8>,
+}
+
+const SCOPE: &[u8] = b"\xfe\0t\0\0";
+const UP: u8 = 255;
+
+fn number(mut value: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while value > 0x7f {
+        bytes.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    bytes.push(value as u8);
+    bytes
+}
+
+/// A variable of a kind (16 is a wire); `alias` is 0 for a signal of its own.
+fn variable(kind: u8, name: &str, width: u64, alias: u64) -> Vec<u8> {
+    [&[kind, 0], name.as_bytes(), &[0], &number(width), &number(alias)].concat()
+}
+
+impl File {
+    /// `a`, one bit, is 0 at 0 and 1 at 10.
+    fn one_bit(hierarchy: &[u8]) -> Self {
+        Self {
+            hierarchy: [SCOPE, &variable(16, "a", 1, 0), hierarchy].concat(),
+            widths: vec![1],
+            values: b"0".to_vec(),
+            chain: vec![0b10],
+        }
+    }
+
+    /// `a`, one bit, changes at the first time, 10.
+    fn write(&self, path: &Path) {
+        let block =
+            |kind: u8, content: &[u8]| [&[kind][..], &(content.len() as u64 + 8).to_be_bytes(), content].concat();
+        let mut header = vec![0; 321];
+        header[16..24].copy_from_slice(&std::f64::consts::E.to_le_bytes());
+        header[64] = (-9i8) as u8;
+        let mut hierarchy = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        hierarchy.write_all(&self.hierarchy).unwrap();
+        let length = (self.hierarchy.len() as u64).to_be_bytes();
+        let hierarchy = [&length[..], &hierarchy.finish().unwrap()].concat();
+        let widths: Vec<u8> = self.widths.iter().flat_map(|width| number(*width)).collect();
+        let geometry = [
+            &(widths.len() as u64).to_be_bytes()[..],
+            &(self.widths.len() as u64).to_be_bytes(),
+            &widths,
+        ]
+        .concat();
+        let count = number(self.widths.len() as u64);
+        let length = number(self.values.len() as u64);
+        // The chain begins one byte after the letter of the packing, and the others are missing.
+        let table = [vec![3], number((self.widths.len() as u64 - 1) << 1)].concat();
+        let table = if self.widths.len() == 1 {
+            &table[..1]
+        } else {
+            &table[..]
+        };
+        let changes = [
+            &[0; 8][..],
+            &10u64.to_be_bytes(),
+            &[0; 8],
+            &length,
+            &length,
+            &count,
+            &self.values,
+            &count,
+            b"4\0",
+            &self.chain,
+            table,
+            &(table.len() as u64).to_be_bytes(),
+            &[10],
+            &1u64.to_be_bytes(),
+            &1u64.to_be_bytes(),
+            &1u64.to_be_bytes(),
+        ]
+        .concat();
+        let file = [
+            block(0, &header),
+            block(8, &changes),
+            block(3, &geometry),
+            block(4, &hierarchy),
+        ]
+        .concat();
+        std::fs::write(path, file).unwrap();
+    }
+
+    fn compared(&self, vcd: &str) -> Result<Comparison, WaveError> {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.fst", "b.vcd"].map(|name| folder.path().join(name));
+        self.write(&a);
+        std::fs::write(&b, vcd).unwrap();
+        raw(&a, &b)
+    }
+
+    fn refused(&self) -> String {
+        self.compared(VCD).unwrap_err().to_string()
+    }
+}
+
+const VCD: &str = "$timescale 1 ns $end\n$scope module t $end\n$var wire 1 a a $end\n$upscope $end\n$enddefinitions $end\n\
+    #0\n0a\n#10\n1a\n";
+
+#[test]
+fn golden_a_hierarchy_shorter_than_a_head_of_gzip_is_read() {
+    let result = equal(&fixture("fst/small_hierarchy.fst"), &fixture("fst/small_hierarchy.vcd"));
+    assert_eq!((result.signals, result.samples), (1, 2));
+}
+
+#[test]
+fn golden_fastlz_unpacks_to_what_gtkwave_packed() {
+    let mut text = "$timescale 1ns $end\n$scope module t $end\n$var wire 1 ! clk $end\n$var wire 12 \" y $end\n\
+        $var real 64 # r $end\n$upscope $end\n$enddefinitions $end\n"
+        .to_owned();
+    for step in 0..400 {
+        writeln!(text, "#{}\n{}!", step * 5, step & 1).unwrap();
+        if step % 4 == 1 {
+            writeln!(text, "b{:b} \"", step * 37 % 4096).unwrap();
+        }
+        if step % 8 == 1 {
+            writeln!(text, "r{} #", f64::from(step) / 8.0).unwrap();
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.vcd");
+    std::fs::write(&path, &text).unwrap();
+    assert_eq!(equal(&path, &fixture("fst/fastlz.fst")).samples, 400);
+    let at = text.rfind("b1").unwrap() + 2;
+    text.replace_range(at..=at, if &text[at..=at] == "0" { "1" } else { "0" });
+    std::fs::write(&path, &text).unwrap();
+    assert_eq!(raw(&path, &fixture("fst/fastlz.fst")).unwrap().differences.len(), 1);
+}
+
+#[test]
+fn golden_periods_without_recording_are_those_of_the_vcd() {
+    let [vcd, fst, whole] =
+        ["icarus_dumpoff.vcd", "icarus_dumpoff.fst", "icarus.fst"].map(|name| fixture("waves").join(name));
+    let unrecorded = "not recorded in one file ($dumpoff) and not compared";
+    for (a, b, is_one_whole) in [(&vcd, &fst, false), (&fst, &whole, true), (&whole, &fst, true)] {
+        let result = diff::compare(a, b, &DiffOptions::default(), &mut |_| {}).unwrap();
+        assert_eq!((result.result, result.samples), (DiffVerdict::Equal, 30), "{result}");
+        let named = result.to_string().contains(&format!("{unrecorded}: 10 samples"));
+        assert_eq!(named, is_one_whole, "{result}");
+        assert!(raw(a, b).unwrap().to_string().contains(unrecorded), "{result}");
+    }
+}
+
+#[test]
+fn unit_attributes_of_any_kind_and_length_and_open_scopes_change_nothing() {
+    let long = [b"\xfc\0\0", "long ".repeat(100_000).as_bytes(), b"\0\x05\xfd"].concat();
+    let kinds: Vec<u8> = (0..=255u8)
+        .flat_map(|kind| [&[252, kind, kind][..], b"what?\0\x81\x01"].concat())
+        .collect();
+    for hierarchy in [
+        &[UP][..],
+        b"",
+        &long,
+        &kinds,
+        &[long.clone(), kinds.clone(), vec![UP]].concat(),
+    ] {
+        let result = File::one_bit(hierarchy).compared(VCD).unwrap();
+        assert_eq!(result.result, DiffVerdict::Equal, "{result}");
+        assert_eq!((result.signals, result.samples), (1, 2));
+    }
+    // Names that are no UTF-8 do not match, and do no harm.
+    let mut bytes = File::one_bit(&[UP]);
+    bytes.hierarchy.extend(b"\xfe\0\xff\xfe\0\0\x10\0\xe4\0\x01\x01\xff");
+    assert_eq!(bytes.compared(VCD).unwrap().result, DiffVerdict::Equal);
+}
+
+#[test]
+fn unit_the_states_of_a_port_are_compared_as_what_they_are() {
+    let port = |state: &[u8]| File {
+        hierarchy: [SCOPE, &variable(16, "a", 1, 0), &variable(18, "p", 5, 0), &[UP]].concat(),
+        widths: vec![1, 5],
+        values: [b"0", state].concat(),
+        chain: vec![0b10],
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.fst", "b.fst"].map(|name| folder.path().join(name));
+    port(b"D 6 0").write(&a);
+    port(b"D 6 0").write(&b);
+    assert_eq!(equal(&a, &b).signals, 2);
+    port(b"D 5 0").write(&b);
+    let result = raw(&a, &b).unwrap();
+    assert_eq!(result.differences.len(), 1, "{result}");
+    assert_eq!(result.differences[0].signal, "t.p");
+}
+
+#[test]
+fn long_hundreds_of_thousands_of_names_are_compared() {
+    let mut file = File::one_bit(&[]);
+    let mut vcd = VCD.replace("$upscope $end\n$enddefinitions $end\n", "");
+    let (head, changes) = VCD.split_once("$upscope").unwrap();
+    vcd.clear();
+    vcd.push_str(head);
+    for at in 0..420_000 {
+        let name = format!("n{at}");
+        file.hierarchy.extend(variable(16, &name, 1, 1));
+        writeln!(vcd, "$var wire 1 a {name} $end").unwrap();
+    }
+    write!(vcd, "$upscope{changes}").unwrap();
+    let result = file.compared(&vcd).unwrap();
+    assert_eq!((result.result, result.signals), (DiffVerdict::Equal, 420_001));
+}
+
+#[test]
+fn unit_damage_and_what_is_not_known_are_told_apart() {
+    let with = |hierarchy: &[u8]| File::one_bit(hierarchy).refused();
+    for (message, what) in [
+        (
+            with(b"\xc8"),
+            "an entry of kind 200 in the hierarchy, which is not known",
+        ),
+        (
+            with(b"\xfe\0unended"),
+            "the hierarchy ends in the middle of an entry: the file is damaged",
+        ),
+        (
+            with(&variable(16, "b", 1, 5)),
+            "the values of one that comes later, or never: the file is damaged",
+        ),
+        (
+            with(&variable(16, "b", 1, 0)),
+            "more signals than the file: the file is damaged",
+        ),
+        (with(&[UP, UP]), "$upscope without $scope"),
+    ] {
+        assert!(message.contains(what), "{message}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.fst");
+    File::one_bit(&[]).write(&path);
+    let whole = std::fs::read(&path).unwrap();
+    let changed = |at: usize, bytes: &[u8]| {
+        let mut content = whole.clone();
+        content[at..at + bytes.len()].copy_from_slice(bytes);
+        std::fs::write(&path, content).unwrap();
+        raw(&path, &path).unwrap_err().to_string()
+    };
+    assert!(changed(330, &[77]).contains("a kind of block that is not known, 77"));
+    // A writer that was stopped, or wrote no time, leaves a block like this.
+    let unfinished = changed(330, &[[255].as_slice(), &[0; 8]].concat());
+    assert!(
+        unfinished.contains("never finished") && !unfinished.contains("damaged"),
+        "{unfinished}"
+    );
+    let geometry = whole
+        .windows(9)
+        .position(|nine| nine[0] == 3 && nine[1..] == 25u64.to_be_bytes()[..])
+        .unwrap();
+    let many = changed(geometry + 17, &(1u64 << 40).to_be_bytes());
+    assert!(many.contains("more than 4194304 signals"), "{many}");
+}
