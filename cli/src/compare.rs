@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{self, Table, percent};
-use posicast_model::compare::{KindComparison, compare};
+use posicast_model::compare::{Candidate, KindComparison, compare};
 use posicast_model::machine_file::Machine;
 use serde::Serialize;
 use std::fmt::Write;
@@ -29,7 +29,7 @@ pub(crate) fn band(text: &str) -> Result<f64, String> {
 fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) -> String {
     let mut text = format!("{}: shapers for modes off by up to ±{band_percent} %\n", machine.name);
     for comparison in comparisons {
-        let _ = writeln!(text, "\naxis {}", comparison.axis);
+        let _ = writeln!(text, "\naxis {}{}", comparison.axis, tolerance(comparison));
         let mut table = Table::new(&[
             "",
             "kind",
@@ -51,7 +51,7 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
                 c.taps.to_string(),
                 format!("{:.3} … {:.3}", c.partial_sums.min, c.partial_sums.max),
                 format!("{:.4}", 1e3 * c.delay_s),
-                if c.in_file { "as in the file" } else { "" }.into(),
+                remark(c).into(),
             ]);
         }
         text += &table.text("  ");
@@ -60,7 +60,31 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
         }
     }
     text + "\n* no other kind is as good in duration, worst residual and taps, and better in one of them\n\
+            optimal: designed for this band and these tolerances, without negative amplitudes and with a step within −1 … 1\n\
             least there: what the best shaper without negative amplitudes leaves in the duration of a smooth kind\n"
+}
+
+/// The tolerance of an axis's modes, by which its kinds are judged.
+fn tolerance(comparison: &KindComparison) -> String {
+    let texts: Vec<String> = comparison
+        .tolerances
+        .iter()
+        .map(|tolerance| percent(*tolerance))
+        .collect();
+    match texts.split_first() {
+        None => String::new(),
+        Some((first, others)) if others.iter().all(|other| other == first) => format!(", tolerance {first} %"),
+        Some(_) => format!(", tolerances {} %", texts.join(", ")),
+    }
+}
+
+fn remark(candidate: &Candidate) -> &'static str {
+    match (candidate.in_file, candidate.shortest) {
+        (true, true) => "as in the file; the shortest that keeps the tolerance",
+        (true, false) => "as in the file",
+        (false, true) => "the shortest that keeps the tolerance",
+        (false, false) => "",
+    }
 }
 
 /// `design --compare --json`, and `kinds` in `report.json`.
@@ -74,6 +98,7 @@ pub(crate) struct Document<'a> {
 #[derive(Serialize)]
 struct AxisDocument<'a> {
     name: &'a str,
+    tolerances: &'a [f64],
     kinds: Vec<KindDocument<'a>>,
     missing: Vec<MissingDocument<'a>>,
 }
@@ -83,6 +108,8 @@ struct KindDocument<'a> {
     kind: &'a str,
     in_file: bool,
     pareto: bool,
+    keeps_tolerance: bool,
+    shortest: bool,
     duration_s: f64,
     worst_residual: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -103,6 +130,7 @@ impl<'a> Document<'a> {
     pub(crate) fn new(machine: &'a Machine, band_percent: f64, comparisons: &'a [KindComparison]) -> Self {
         let axes = comparisons.iter().map(|comparison| AxisDocument {
             name: &comparison.axis,
+            tolerances: &comparison.tolerances,
             kinds: comparison
                 .candidates
                 .iter()
@@ -110,6 +138,8 @@ impl<'a> Document<'a> {
                     kind: &c.kind,
                     in_file: c.in_file,
                     pareto: c.pareto,
+                    keeps_tolerance: c.keeps_tolerance,
+                    shortest: c.shortest,
                     duration_s: c.duration_s,
                     worst_residual: c.worst_residual,
                     least_residual: c.least_residual,

@@ -2,40 +2,61 @@
 
 mod arrays;
 mod firmware;
+mod place;
 
 use crate::failure::Failure;
 use crate::machine;
 use crate::output;
 use clap::ValueEnum;
+use firmware::Wish;
 use posicast_model::design::{AxisTables, MachineDesign, design_machine};
 use posicast_model::machine_file::{AxisSection, Machine};
 use std::path::PathBuf;
 
-/// The designed impulses for the firmware of a printer, for C, CSV, NumPy or MATLAB, on standard output
+/// The designed impulses for the firmware of a printer, for C, CSV, NumPy or MATLAB
 #[derive(clap::Args)]
-#[command(
-    after_help = "Examples:\n  posicast export printer.toml --to klipper >> printer.cfg\n  \
-                  posicast export examples/gantry.toml --to c > gantry.h\n\n\
-                  Exit status 2: the format cannot express the design; the message says why, and what to do."
-)]
+#[command(after_help = "\
+Examples:
+  posicast export printer.toml --to klipper --include posicast.cfg
+  posicast export printer.toml --to reprapfirmware --firmware-version 3.5
+  posicast export printer.toml --to klipper --closest
+  posicast export examples/gantry.toml --to c -o gantry.h
+
+The file is one of its own, and the command says which line includes it. Never append to a printer.cfg: behind its SAVE_CONFIG
+block, Klipper drops that block.
+
+Exit status 2: the format cannot express the design; the message says why, and which of the firmware's own shapers leaves least.")]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
     /// Form of the output
     #[arg(long, value_name = "FORMAT")]
     to: Format,
+    /// Version of the firmware, such as 3.5, v0.13.0-633 or 2026-03-31 [default: the newest, which the output names]
+    #[arg(long, value_name = "VERSION")]
+    firmware_version: Option<String>,
     /// Only this axis; may be given several times
     #[arg(long, value_name = "NAME")]
     axis: Vec<String>,
+    /// Where the firmware cannot take the design, write the one of its own shapers that leaves least
+    #[arg(long)]
+    closest: bool,
+    /// File to write, of its own; one that posicast did not write is never replaced [default: standard output]
+    #[arg(short, long, visible_alias = "include", value_name = "FILE")]
+    output: Option<PathBuf>,
 }
 
 /// What takes the impulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
+pub(crate) enum Format {
     /// Section [input_shaper] of Klipper's configuration
     Klipper,
+    /// Section [input_shaper] of Kalico's configuration
+    Kalico,
     /// M593 of Marlin
     Marlin,
+    /// M493 of Marlin, fixed-time motion (FT_MOTION)
+    MarlinFt,
     /// M593 P"custom" of RepRapFirmware
     Reprapfirmware,
     /// Header with arrays of double and of integers
@@ -48,7 +69,21 @@ enum Format {
     Matlab,
 }
 
+impl Format {
+    /// How a comment begins; `None` without comments.
+    fn comment(self) -> Option<&'static str> {
+        match self {
+            Format::Klipper | Format::Kalico | Format::Numpy => Some("#"),
+            Format::Marlin | Format::MarlinFt | Format::Reprapfirmware => Some(";"),
+            Format::C => Some("//"),
+            Format::Matlab => Some("%"),
+            Format::Csv => None,
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let place = place::Place::claim(args.to, args.output.as_deref(), &args.machine)?;
     let machine = machine::read(&args.machine)?.machine;
     let design = design_machine(&machine).map_err(|error| machine::of_design(&machine, &error, &args.machine))?;
     let selection = Selection::new(&machine, &design, &args.axis)?;
@@ -58,16 +93,27 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             selected.axis.name
         ));
     }
-    let text = match args.to {
-        Format::Klipper => firmware::klipper(&selection),
-        Format::Marlin => firmware::marlin(&selection),
-        Format::Reprapfirmware => firmware::reprapfirmware(&selection),
-        Format::C => Ok(arrays::c(&selection)),
-        Format::Csv => Ok(arrays::csv(&selection)),
-        Format::Numpy => Ok(arrays::numpy(&selection)),
-        Format::Matlab => Ok(arrays::matlab(&selection)),
+    let wish = Wish {
+        version: args.firmware_version.as_deref(),
+        closest: args.closest,
     };
-    output::print(&text.map_err(|failure| failure.in_file(&args.machine))?)
+    let text = match args.to {
+        Format::Klipper => firmware::klipper(&selection, &wish),
+        Format::Kalico => firmware::kalico(&selection, &wish),
+        Format::Marlin => firmware::marlin(&selection, &wish),
+        Format::MarlinFt => firmware::marlin_ft(&selection, &wish),
+        Format::Reprapfirmware => firmware::reprapfirmware(&selection, &wish),
+        Format::C | Format::Csv | Format::Numpy | Format::Matlab => {
+            wish.refuse_for_arrays()?;
+            Ok(match args.to {
+                Format::C => arrays::c(&selection),
+                Format::Csv => arrays::csv(&selection),
+                Format::Numpy => arrays::numpy(&selection),
+                _ => arrays::matlab(&selection),
+            })
+        }
+    };
+    place.write(&text.map_err(|failure| failure.in_file(&args.machine))?)
 }
 
 /// The axes to export, in the order of the file.
@@ -80,6 +126,7 @@ struct Selection<'a> {
 struct Selected<'a> {
     axis: &'a AxisSection,
     tables: &'a AxisTables,
+    sample_s: f64,
 }
 
 impl<'a> Selection<'a> {
@@ -97,7 +144,12 @@ impl<'a> Selection<'a> {
         }
         let axes = machine.axes.iter().zip(&design.axes);
         let wanted = axes.filter(|(axis, _)| names.is_empty() || names.contains(&axis.name));
-        let axes = wanted.map(|(axis, tables)| Selected { axis, tables }).collect();
+        let axes = wanted.map(|(axis, tables)| Selected {
+            axis,
+            tables,
+            sample_s: 1.0 / machine.clock.sample_hz,
+        });
+        let axes = axes.collect();
         Ok(Self { machine, design, axes })
     }
 }

@@ -3,6 +3,9 @@
 //! Each kind that this version builds is designed for the axis's modes and tolerances, digitised and rounded as the
 //! machine file says, and judged by its integer taps, with which the hardware computes. A kind is *Pareto-optimal* if
 //! no other is at least as good in duration, worst residual and taps, and better in one of them.
+//!
+//! `optimal` is designed for the question that the comparison asks: for the band of the frequencies by which every kind is judged and for the tolerances of the
+//! modes, once without negative amplitudes and once with a step that stays within −1 … 1. An `optimal` of the machine file is a row of its own.
 
 use thiserror::Error;
 
@@ -18,6 +21,9 @@ use posicast_optimal::{Band, Command, Request, least_ratio_at};
 /// Relative difference below which two costs are equal: kinds that give the same shaper for one mode differ by
 /// rounding.
 const EQUAL: f64 = 1e-6;
+
+/// Relative excess of a tolerance that is rounding of the arithmetic.
+const ROUNDING: f64 = 1e-9;
 
 /// Default of the relative frequency error of the modes: ±10 %.
 pub const DEFAULT_BAND: f64 = 0.1;
@@ -47,6 +53,10 @@ pub struct Candidate {
     pub partial_sums: PartialSums,
     /// Whether no other kind is at least as good in everything and better in something.
     pub pareto: bool,
+    /// Whether each mode keeps its tolerance in the whole band.
+    pub keeps_tolerance: bool,
+    /// Whether no other kind that keeps the tolerance is shorter. An axis without modes has none.
+    pub shortest: bool,
 }
 
 /// A kind that is not possible on this axis.
@@ -67,6 +77,8 @@ pub struct KindComparison {
     pub candidates: Vec<Candidate>,
     /// The kinds that are not possible.
     pub missing: Vec<Missing>,
+    /// Tolerance of each mode, in the order of the file.
+    pub tolerances: Vec<f64>,
 }
 
 /// Why a kind has no table.
@@ -90,38 +102,91 @@ pub fn compare(machine: &Machine, band: f64) -> Vec<KindComparison> {
         .collect()
 }
 
+/// An axis with a kind, under the name of its row.
+struct Row {
+    name: String,
+    axis: AxisSection,
+    in_file: bool,
+}
+
 fn compare_axis(machine: &Machine, axis: &AxisSection, band: f64) -> KindComparison {
-    let own = axis.kind_name();
+    let own = Row {
+        name: axis.kind_name(),
+        axis: axis.clone(),
+        in_file: true,
+    };
     let others = kinds_for(axis)
         .map(|kind| with_kind(axis, kind))
-        .filter(|other| other.kind_name() != own);
+        .filter(|other| other.kind_name() != own.name)
+        .map(|axis| Row {
+            name: axis.kind_name(),
+            axis,
+            in_file: false,
+        });
+    let sample_hz = machine.clock.sample_hz;
+    let asked = |axis: &AxisSection| {
+        (axis.joint_kind() == Some(ShaperKind::Optimal)).then(|| optimal::request(axis, sample_hz))
+    };
+    let of_the_file = asked(axis);
+    let optimal = optimal_rows(axis, band)
+        .into_iter()
+        .filter(|row| asked(&row.axis) != of_the_file);
+    let others: Vec<Row> = others.chain(optimal).collect();
     let (mut candidates, mut missing) = (Vec::new(), Vec::new());
-    for (axis, in_file) in std::iter::once((axis.clone(), true)).chain(others.map(|other| (other, false))) {
-        match candidate(machine, &axis, in_file, band) {
+    for row in std::iter::once(own).chain(others) {
+        match candidate(machine, &row, band) {
             Ok(candidate) => candidates.push(candidate),
             Err(error) => missing.push(Missing {
-                kind: axis.kind_name(),
+                kind: row.name,
                 reason: error.to_string(),
             }),
         }
     }
     mark_pareto(&mut candidates);
     candidates.sort_by(|a, b| a.duration_s.total_cmp(&b.duration_s));
+    if !axis.modes.is_empty()
+        && let Some(shortest) = candidates.iter_mut().find(|candidate| candidate.keeps_tolerance)
+    {
+        shortest.shortest = true;
+    }
     KindComparison {
         axis: axis.name.clone(),
         candidates,
         missing,
+        tolerances: axis.modes.iter().map(|mode| axis.tolerance_of(mode)).collect(),
     }
 }
 
-/// The kinds that can be tried without further data; on an axis without modes only `none`, which passes the command
-/// through.
+/// `optimal` for the band of the comparison: without negative amplitudes, and with a step that stays within −1 … 1.
+fn optimal_rows(axis: &AxisSection, band: f64) -> Vec<Row> {
+    let both_ways = Command::PartialSums { low: -1.0, high: 1.0 };
+    let rows = [("", Command::Positive), (" ±1", both_ways)].map(|(bounds, command)| {
+        let mut axis = with_kind(axis, ShaperKind::Optimal);
+        for mode in &mut axis.modes {
+            mode.frequency_band = Some(band);
+            mode.damping_band = None;
+        }
+        if let Some(shaper) = &mut axis.shaper {
+            shaper.command = Some(command);
+        }
+        Row {
+            name: format!("{}{bounds}", ShaperKind::Optimal),
+            axis,
+            in_file: false,
+        }
+    });
+    rows.into_iter().filter(|row| !row.axis.modes.is_empty()).collect()
+}
+
+/// The kinds that can be tried without further data, but `optimal`; on an axis without modes only `none`, which passes the
+/// command through.
 fn kinds_for(axis: &AxisSection) -> impl Iterator<Item = ShaperKind> {
     let modes = !axis.modes.is_empty();
     ShaperKind::ALL
         .into_iter()
         .map(|(kind, _)| kind)
-        .filter(move |kind| kind.is_built() && *kind != ShaperKind::Custom && (modes || *kind == ShaperKind::None))
+        .filter(|kind| kind.is_built() && !matches!(kind, ShaperKind::Custom | ShaperKind::Optimal))
+        .filter(move |kind| modes || *kind == ShaperKind::None)
 }
 
 /// The axis with another kind: its tolerances stay, and the parameters of the file's own kind are dropped.
@@ -141,7 +206,8 @@ pub(crate) fn with_kind(axis: &AxisSection, kind: ShaperKind) -> AxisSection {
     }
 }
 
-fn candidate(machine: &Machine, axis: &AxisSection, in_file: bool, band: f64) -> Result<Candidate, CandidateError> {
+fn candidate(machine: &Machine, row: &Row, band: f64) -> Result<Candidate, CandidateError> {
+    let axis = &row.axis;
     let sample_hz = machine.clock.sample_hz;
     let design = design_axis(axis, sample_hz)?;
     let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz)?;
@@ -149,12 +215,16 @@ fn candidate(machine: &Machine, axis: &AxisSection, in_file: bool, band: f64) ->
     let table = tables.first().ok_or(CandidateError::NoTable)?;
     let taps = tap_impulses(table, sample_hz);
     let residuals = axis.modes.iter().map(|mode| worst_residual(&taps, &mode.mode, band));
+    let residuals: Vec<f64> = residuals.collect();
+    let mut judged = residuals.iter().zip(&axis.modes);
     Ok(Candidate {
-        kind: axis.kind_name(),
-        in_file,
+        kind: row.name.clone(),
+        in_file: row.in_file,
         duration_s: design.impulses.duration_s(),
         delay_s: design.impulses.delay_s(),
-        worst_residual: residuals.fold(0.0, f64::max),
+        worst_residual: residuals.iter().copied().fold(0.0, f64::max),
+        keeps_tolerance: judged.all(|(residual, mode)| *residual <= axis.tolerance_of(mode) * (1.0 + ROUNDING)),
+        shortest: false,
         taps: taps.len(),
         least_residual: least_residual(axis, table, sample_hz, band),
         partial_sums: design.impulses.partial_sums(),
@@ -212,6 +282,13 @@ mod tests {
         machine_file::parse("m.toml", &text).unwrap()
     }
 
+    fn machine_of_band(band: f64) -> Machine {
+        machine(
+            "[axis.shaper]\nkind = \"optimal\"",
+            &format!("{MODE}frequency_band = {band}\n"),
+        )
+    }
+
     const MODE: &str = "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.02\n";
 
     fn find<'a>(comparison: &'a KindComparison, kind: &str) -> &'a Candidate {
@@ -227,7 +304,8 @@ mod tests {
         let built = ShaperKind::ALL
             .iter()
             .filter(|(kind, _)| kind.is_built() && *kind != ShaperKind::Custom);
-        assert_eq!(names.len(), built.count());
+        // `optimal` has two rows.
+        assert_eq!(names.len(), built.count() + 1);
         assert!(found.candidates.iter().all(|c| c.in_file == (c.kind == "zvd")));
         assert!(found.candidates.is_sorted_by(|a, b| a.duration_s <= b.duration_s));
     }
@@ -264,6 +342,8 @@ mod tests {
             least_residual: None,
             partial_sums: PartialSums { min: 0.0, max: 1.0 },
             pareto: false,
+            keeps_tolerance: false,
+            shortest: false,
         };
         // Worse in duration; worse in taps; equal to rounding; worse in duration, but better in residual.
         let mut candidates = [
@@ -275,6 +355,58 @@ mod tests {
         ];
         mark_pareto(&mut candidates);
         assert_eq!(candidates.map(|c| c.pareto), [true, false, false, true, true]);
+    }
+
+    #[test]
+    fn unit_optimal_keeps_the_tolerance_of_the_band_and_is_the_shortest_that_does() {
+        for (band, tolerance) in [(0.1, "0.05"), (0.2, "0.05"), (0.05, "0.02")] {
+            let machine = machine(&format!("[axis.shaper]\nkind = \"zvd\"\ntolerance = {tolerance}"), MODE);
+            let found = compare(&machine, band).remove(0);
+            let (positive, both) = (find(&found, "optimal"), find(&found, "optimal ±1"));
+            // Its integer taps, looked at far more often than the table does.
+            for optimal in [positive, both] {
+                assert!(
+                    optimal.keeps_tolerance && optimal.worst_residual <= found.tolerances[0] * (1.0 + 1e-9),
+                    "{optimal:?}"
+                );
+            }
+            let shortest: Vec<&Candidate> = found.candidates.iter().filter(|c| c.shortest).collect();
+            assert_eq!(shortest.len(), 1);
+            for other in found
+                .candidates
+                .iter()
+                .filter(|c| c.worst_residual <= found.tolerances[0])
+            {
+                assert!(
+                    other.keeps_tolerance && shortest[0].duration_s <= other.duration_s,
+                    "{other:?}"
+                );
+                // Without negative amplitudes nothing is shorter than the optimum; a tap after the last impulse is worth a sample.
+                let no_shorter = other.partial_sums.min < -1e-9 || positive.duration_s <= other.duration_s + 1e-4;
+                assert!(
+                    no_shorter || other.kind.contains("um-") || other.kind.contains("simultaneous"),
+                    "{other:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn unit_an_optimal_of_the_file_is_a_row_of_its_own() {
+        let machine = machine("[axis.shaper]\nkind = \"optimal\"", MODE);
+        let found = compare(&machine, 0.1).remove(0);
+        let rows: Vec<&Candidate> = found.candidates.iter().filter(|c| c.kind == "optimal").collect();
+        // Designed for no error at all, that of the file leaves far more than the tolerance.
+        let own = rows.iter().find(|c| c.in_file).unwrap();
+        assert!(!own.keeps_tolerance && own.worst_residual > 0.1, "{own:?}");
+        assert!(
+            rows.len() == 2 && rows.iter().any(|c| !c.in_file && c.keeps_tolerance),
+            "{rows:?}"
+        );
+        // One that is designed for the same band is the same row.
+        let banded = machine_of_band(0.1);
+        let found = compare(&banded, 0.1).remove(0);
+        assert_eq!(found.candidates.iter().filter(|c| c.kind == "optimal").count(), 1);
     }
 
     #[test]

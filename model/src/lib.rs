@@ -17,6 +17,7 @@ pub mod contour;
 pub mod control;
 pub mod design;
 pub mod digitise;
+pub mod firmware;
 pub mod hardware;
 pub mod impulse;
 pub mod link;

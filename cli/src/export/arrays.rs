@@ -92,11 +92,34 @@ pub(super) fn numpy(selection: &Selection<'_>) -> String {
     text + &lines(selection, " ", |number, _| number.to_string())
 }
 
+/// Keywords of MATLAB that the machine file allows as names.
+const KEYWORDS: [&str; 9] = [
+    "catch",
+    "classdef",
+    "elseif",
+    "otherwise",
+    "parfor",
+    "persistent",
+    "spmd",
+    "switch",
+    "try",
+];
+
+/// A name that MATLAB takes: a keyword gets an underscore.
+fn matlab_name(name: &str) -> String {
+    let underscore = if KEYWORDS.contains(&name) { "_" } else { "" };
+    format!("{name}{underscore}")
+}
+
 /// A script that makes `NAME.AXIS.time_s` and `NAME.AXIS.amplitude`, which Octave runs, too.
 pub(super) fn matlab(selection: &Selection<'_>) -> String {
     let mut text = heading(selection, "%");
     for selected in &selection.axes {
-        let name = format!("{}.{}", selection.machine.name, selected.axis.name);
+        let name = format!(
+            "{}.{}",
+            matlab_name(&selection.machine.name),
+            matlab_name(&selected.axis.name)
+        );
         let [times, amplitudes] = selected.columns();
         let _ = write!(
             text,

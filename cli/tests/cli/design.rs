@@ -288,3 +288,40 @@ fn cli_design_compares_smooth_kinds_with_the_best_at_their_duration() {
     let text = posicast().arg("design").arg(&file).arg("--compare").assert().success();
     text.stdout(predicates::str::contains("least there: what the best shaper"));
 }
+
+#[test]
+fn cli_design_compares_optimal_for_the_band_and_marks_the_shortest_that_keeps_the_tolerance() {
+    let (_folder, file) = scratch(&one_axis("kind = \"zv\"", MODE));
+    for (band, tolerance) in [("10", 0.05), ("20", 0.05)] {
+        let compare = posicast()
+            .arg("design")
+            .arg(&file)
+            .args(["--compare", "--json", "--band", band])
+            .assert()
+            .success();
+        let document = json(&compare.get_output().stdout);
+        let axis = &document["axes"][0];
+        assert_eq!(axis["tolerances"], serde_json::json!([tolerance]));
+        let kinds = axis["kinds"].as_array().unwrap();
+        for name in ["optimal", "optimal ±1"] {
+            let row = kinds.iter().find(|kind| kind["kind"] == name).unwrap();
+            assert!(row["worst_residual"].as_f64().unwrap() <= tolerance, "{row}");
+            assert_eq!(row["keeps_tolerance"], true);
+        }
+        let shortest: Vec<_> = kinds.iter().filter(|kind| kind["shortest"] == true).collect();
+        let duration = |kind: &serde_json::Value| kind["duration_s"].as_f64().unwrap();
+        let keeping = kinds
+            .iter()
+            .filter(|kind| kind["worst_residual"].as_f64().unwrap() <= tolerance);
+        let least = keeping.map(duration).fold(f64::INFINITY, f64::min);
+        assert_eq!(shortest.iter().map(|kind| duration(kind)).collect::<Vec<_>>(), [least]);
+    }
+    let text = posicast().arg("design").arg(&file).arg("--compare").assert().success();
+    let text = String::from_utf8_lossy(&text.get_output().stdout).into_owned();
+    assert!(text.contains("axis x, tolerance 5.000 %"), "{text}");
+    let marked: Vec<&str> = text
+        .lines()
+        .filter(|line| line.contains("the shortest that keeps the tolerance"))
+        .collect();
+    assert!(marked.len() == 1 && marked[0].contains("optimal"), "{text}");
+}

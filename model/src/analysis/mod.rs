@@ -9,6 +9,7 @@ mod band;
 mod command;
 mod insensitivity;
 mod residual;
+mod ringing;
 mod settling;
 mod start_control;
 
@@ -16,5 +17,7 @@ pub use band::{SensitivityGrid, sensitivity_grid, worst_residual};
 pub use command::{CommandFigures, Quantity, command_figures};
 pub use insensitivity::{INSENSITIVITY_LIMIT, Insensitivity, insensitivity};
 pub use residual::{pole_sum, residual_vibration, residual_vibration_at, sensitivity_curve, tap_impulses};
+pub(crate) use ringing::left as ringing_left_by;
+pub use ringing::{WeightedMode, ringing_left};
 pub use settling::settled_from;
 pub use start_control::{StartControl, StartFigures};

@@ -98,7 +98,7 @@ impl RunReport<'_> {
                             @let path = |name: &str| format!("/kinds/axes/{index}/kinds/{place}/{name}");
                             tr {
                                 td { @if kind.pareto { "*" } }
-                                td { (kind.kind) @if kind.in_file { " (this machine)" } }
+                                td { (kind.kind) @if kind.in_file { " (this machine)" } @if kind.shortest { " (the shortest that keeps the tolerance)" } }
                                 td.number { (figures.show(&path("duration_s"), |s| show_seconds(s, 3))) }
                                 td.number { (figures.show(&path("worst_residual"), |part| format!("{} %", percent(part)))) }
                                 td.number { (figures.show(&path("taps"), whole)) }

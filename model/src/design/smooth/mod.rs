@@ -107,7 +107,7 @@ impl Kernel {
     }
 
     /// Kernel at a time, not yet divided by its integral; 0 outside `0 … T`.
-    fn value(&self, time_s: f64) -> f64 {
+    pub(crate) fn value(&self, time_s: f64) -> f64 {
         let x = 2.0 * time_s / self.duration_s - 1.0;
         let y = x * x;
         let q = self
