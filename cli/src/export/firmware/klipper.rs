@@ -67,7 +67,7 @@ fn section(selection: &Selection<'_>, wish: &Wish<'_>, version: &KlipperVersion)
             text,
             "# As {} computes it, it {}.",
             version.firmware.name(),
-            residuals(selected, &told.read, version.firmware.name())
+            residuals(selected, &told.read, version.firmware.name(), remark.is_some())
         );
         lines += &told.lines;
     }

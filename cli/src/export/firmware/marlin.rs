@@ -214,7 +214,9 @@ fn axes(
     for selected in &selection.axes {
         let axis = axis_of(selected, &version.name, version.axes);
         let _ = writeln!(text, "; {}", selected.title());
-        let told = match axis.and_then(|axis| told(selected, &axis)) {
+        let told = axis.and_then(|axis| told(selected, &axis));
+        let is_closest = told.is_err();
+        let told = match told {
             Ok(told) => told,
             Err(refusal) if wish.closest && refusal.has_own => {
                 let found = own
@@ -233,7 +235,7 @@ fn axes(
         let _ = writeln!(
             text,
             "; As Marlin computes it, it {}.",
-            residuals(selected, &told.read, "Marlin")
+            residuals(selected, &told.read, "Marlin", is_closest)
         );
         text += &told.lines;
     }

@@ -145,8 +145,9 @@ fn heading(selection: &Selection<'_>, comment: &str, version: &str) -> String {
     )
 }
 
-/// What the firmware leaves at each mode and what the design leaves, as a comment; a warning where the difference matters.
-fn residuals(selected: &Selected<'_>, read: &Read, firmware: &str) -> String {
+/// What the firmware leaves at each mode and what the design leaves, as a comment; a warning where the difference matters and was not
+/// asked for by `--closest`.
+fn residuals(selected: &Selected<'_>, read: &Read, firmware: &str, is_closest: bool) -> String {
     let design = &selected.tables.design.impulses;
     let modes: Vec<Mode> = selected.axis.modes.iter().map(|mode| mode.mode).collect();
     if modes.is_empty() {
@@ -168,7 +169,7 @@ fn residuals(selected: &Selected<'_>, read: &Read, firmware: &str) -> String {
         .iter()
         .zip(&ours)
         .any(|(theirs, ours)| (theirs - ours).abs() > WORTH_A_WARNING);
-    if differs {
+    if differs && !is_closest {
         output::say(&format!(
             "warning: axis `{}`: as {firmware} computes the shaper, it leaves {their_text} {at}, and the design {our_text}",
             selected.axis.name

@@ -41,7 +41,9 @@ pub(crate) fn reprapfirmware(selection: &Selection<'_>, wish: &Wish<'_>) -> Resu
     let own = own();
     let all: Vec<&Selected<'_>> = selection.axes.iter().collect();
     let mut text = heading(selection, ";", &version);
-    let impulses = match shared(selection, form) {
+    let shared = shared(selection, form);
+    let is_closest = shared.is_err();
+    let impulses = match shared {
         Ok(impulses) => impulses,
         Err((_, refusal)) if wish.closest => {
             let found = own.search(&all).ok_or_else(|| own.refuse(&refusal, &all))?;
@@ -75,7 +77,7 @@ pub(crate) fn reprapfirmware(selection: &Selection<'_>, wish: &Wish<'_>) -> Resu
             text,
             "; {}: {}",
             selected.title(),
-            residuals(selected, &Read::Impulses(read), "RepRapFirmware")
+            residuals(selected, &Read::Impulses(read), "RepRapFirmware", is_closest)
         );
     }
     text += match form {
