@@ -3,29 +3,85 @@
 use crate::failure::Failure;
 use crate::output::{self, Table, UnitDocument};
 use crate::plot::{self, Curve, Panel, label, time_axis};
+use crate::progress::Late;
 use posicast_model::contour::{
-    self, Contour, ContourError, ContourLimits, ContourRow, FREQUENCY_FACTORS, Stroke, gcode, shapes,
+    self, Contour, ContourError, ContourLimits, ContourRow, CornerRules, FREQUENCY_FACTORS, FollowedContour, Stroke,
+    Survey, gcode, shapes,
 };
 use posicast_model::machine_file::Machine;
+use posicast_model::motion::SAMPLES_MAX;
 use posicast_model::unit::{AxisUnit, show_seconds};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use posicast_testbench::wording::counted;
 use serde::Serialize;
+use std::cell::Cell;
 use std::fmt::Write;
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// Default speed along a path, as a fraction of the slower axis's limit.
 const PART_OF_VELOCITY: f64 = 0.4;
 /// Default size of a circle or square, as a fraction of the smaller travel, and in m where there is no travel.
 const PART_OF_TRAVEL: f64 = 0.25;
 const SIZE_M: f64 = 0.02;
-/// Largest size in bytes of a file of points or G-code.
-const LARGEST_BYTES: u64 = 64 << 20;
+/// Largest size in bytes of points or G-code that come through a pipe, which is read once and kept.
+const PIPED_BYTES: u64 = 64 << 20;
+/// Bytes that are read from a file at a time.
+const BUFFER_BYTES: usize = 1 << 18;
+/// Number of strokes after which the progress of reading is looked at.
+const STROKES_LOOK: u32 = 1024;
 /// File name extensions of G-code.
-const GCODE_ENDINGS: [&str; 6] = ["gcode", "g", "nc", "ngc", "tap", "cnc"];
+const GCODE_ENDINGS: [&str; 9] = ["gcode", "gco", "gc", "g", "nc", "ngc", "tap", "cnc", "bgcode"];
+
+/// How bends of the path are passed.
+#[derive(clap::Args, Default, Clone, Copy)]
+pub(crate) struct CornerArgs {
+    /// Bends of the path: how far it could cut a corner to pass it within the acceleration, in the unit of the first
+    /// axis, which gives its speed (junction deviation); 0: stop at every bend [default: 0.01 mm, as grbl]
+    #[arg(long, value_name = "LENGTH", requires = "contour", allow_negative_numbers = true)]
+    corner_tolerance: Option<f64>,
+    /// Angle in degrees above which a bend of the path is a stop; 180: the tolerance alone decides, as in the firmware
+    /// of printers [default: 45]
+    #[arg(long, value_name = "DEGREES", requires = "contour", allow_negative_numbers = true)]
+    stop_angle: Option<f64>,
+}
+
+impl CornerArgs {
+    /// The options with their values, as on a command line.
+    pub(crate) fn given(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let options = [
+            ("corner-tolerance", self.corner_tolerance),
+            ("stop-angle", self.stop_angle),
+        ];
+        options.into_iter().filter_map(|(name, value)| Some((name, value?)))
+    }
+
+    fn rules(&self, unit: AxisUnit) -> Result<CornerRules, Failure> {
+        let tolerance = self.corner_tolerance.map(|tolerance| unit.to_si(tolerance));
+        let stop_angle = self.stop_angle.map(f64::to_radians);
+        for (option, value, most, remedy) in [
+            ("--corner-tolerance", tolerance, f64::MAX, "give a length from 0 on"),
+            (
+                "--stop-angle",
+                stop_angle,
+                std::f64::consts::PI,
+                "give an angle from 0 to 180 degrees",
+            ),
+        ] {
+            if value.is_some_and(|value| !(0.0..=most).contains(&value)) {
+                return Err(refused(option, "outside its range", remedy));
+            }
+        }
+        let default = CornerRules::default();
+        Ok(CornerRules {
+            tolerance: tolerance.unwrap_or(default.tolerance),
+            stop_angle: stop_angle.unwrap_or(default.stop_angle),
+        })
+    }
+}
 
 /// The options `--contour`, and its sizes.
 #[derive(clap::Args)]
@@ -44,6 +100,8 @@ pub(crate) struct ContourArgs {
     /// With --contour: draw the errors over time into this SVG file
     #[arg(long, value_name = "FILE.svg", requires = "contour")]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    corners: CornerArgs,
 }
 
 /// The path to drive.
@@ -61,6 +119,8 @@ impl ContourArgs {
             ("--radius", self.radius.is_some()),
             ("--side", self.side.is_some()),
             ("--plot", self.plot.is_some()),
+            ("--corner-tolerance", self.corners.corner_tolerance.is_some()),
+            ("--stop-angle", self.corners.stop_angle.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((option, _)) if self.contour.is_none() => Err(Failure::from(miette::miette!(
@@ -92,44 +152,44 @@ impl ContourArgs {
     }
 
     /// The path for `run`, where `--radius` is the circle's.
-    pub(crate) fn of_run(contour: Option<&str>, radius: Option<f64>) -> Option<Self> {
+    pub(crate) fn of_run(contour: Option<&str>, radius: Option<f64>, corners: CornerArgs) -> Option<Self> {
         Some(Self {
             contour: Some(contour?.to_owned()),
             radius,
             side: None,
             plot: None,
+            corners,
         })
     }
 
-    /// Plans the path within the limits and the travel of the machine; from `(0, 0)` if `from_reset`.
-    pub(crate) fn planned(&self, machine: &Machine, speed: Option<f64>, from_reset: bool) -> Result<Contour, Failure> {
+    /// Plans the path within the limits and the travel of the machine, from `(0, 0)`, in memory.
+    pub(crate) fn planned(&self, machine: &Machine, speed: Option<f64>) -> Result<Contour, Failure> {
+        let path = self.read(machine, speed)?;
+        let survey = path.survey(machine)?;
+        let samples = survey.duration_s * machine.clock.sample_hz;
+        if samples > SAMPLES_MAX as f64 {
+            let error = ContourError::TooLong {
+                seconds: survey.duration_s,
+                most: SAMPLES_MAX as u64,
+            };
+            return Err(path.failure(&error));
+        }
+        let strokes = path.strokes()?.collect::<Result<Vec<Stroke>, _>>();
+        let mut strokes = strokes.map_err(|error| path.failure(&error))?;
+        if survey.begin != [0.0, 0.0] {
+            strokes.iter_mut().take(1).for_each(|first| first.after_stop = true);
+            strokes.insert(0, shapes::approach(survey.begin));
+        }
+        let planned = Contour::new(&strokes, &path.limits, &path.rules);
+        let planned = planned.and_then(|contour| contour.survey().check_travel(machine).map(|()| contour));
+        planned.map_err(|error| path.failure(&error))
+    }
+
+    /// The path, which is read as often as it is needed; `speed` is in the unit of the first axis per second.
+    fn read<'a>(&'a self, machine: &Machine, speed: Option<f64>) -> Result<DrivenPath<'a>, Failure> {
         let two_axes =
             |error: ContourError| refused("--contour", &error.to_string(), "take a machine with two linear axes");
         let limits = ContourLimits::of_machine(machine).map_err(two_axes)?;
-        let mut strokes = self.strokes(machine, &limits, speed)?;
-        let name = self.contour.as_deref().unwrap_or_default();
-        let of_path = |error: ContourError| {
-            refused(
-                "--contour",
-                &format!("{name}: {error}"),
-                "give a smaller path, or another place for it",
-            )
-        };
-        let contour = |strokes: &[Stroke]| {
-            let contour = Contour::new(strokes, &limits, machine.clock.sample_period_s())?;
-            contour.check_travel(machine)?;
-            Ok(contour)
-        };
-        let planned = contour(&strokes).map_err(of_path)?;
-        if !from_reset || planned.begin() == [0.0, 0.0] {
-            return Ok(planned);
-        }
-        strokes.insert(0, shapes::approach(planned.begin()));
-        contour(&strokes).map_err(of_path)
-    }
-
-    /// The strokes of the path; `speed` is in the unit of the first axis per second.
-    fn strokes(&self, machine: &Machine, limits: &ContourLimits, speed: Option<f64>) -> Result<Vec<Stroke>, Failure> {
         let kind = self
             .kind()
             .ok_or_else(|| refused("--contour", "no path is given", "name one"))?;
@@ -147,24 +207,194 @@ impl ContourArgs {
             }
         }
         let units = [machine.axes[0].unit, machine.axes[1].unit];
-        let speed = speed_of(machine, limits, speed)?;
+        let rules = self.corners.rules(units[0])?;
+        let speed = speed_of(machine, &limits, speed)?;
         let in_unit = |figure: Option<f64>| figure.map(|figure| units[0].to_si(figure));
         let size = size(machine);
         let drawn = |strokes: Result<Vec<Stroke>, ContourError>| {
-            strokes.map_err(|error| refused("--contour", &error.to_string(), "give a size and a speed above 0"))
+            let strokes =
+                strokes.map_err(|error| refused("--contour", &error.to_string(), "give a size and a speed above 0"))?;
+            Ok::<_, Failure>(Source::Drawn(centred(machine, strokes, &limits)))
         };
-        match kind {
-            Path2d::Circle => drawn(shapes::circle(in_unit(self.radius).unwrap_or(size / 2.0), speed))
-                .map(|strokes| centred(machine, strokes, limits)),
-            Path2d::Square => drawn(shapes::square(in_unit(self.side).unwrap_or(size), speed))
-                .map(|strokes| centred(machine, strokes, limits)),
-            Path2d::Points(path) => {
-                let points = read(path)?;
-                let points = shapes::points(&points, units).map_err(|error| in_file(path, &error))?;
-                shapes::polyline(&points, speed).map_err(|error| in_file(path, &error))
+        let source = match kind {
+            Path2d::Circle => drawn(shapes::circle(in_unit(self.radius).unwrap_or(size / 2.0), speed))?,
+            Path2d::Square => drawn(shapes::square(in_unit(self.side).unwrap_or(size), speed))?,
+            Path2d::Points(path) => Source::Points {
+                file: PathFile::open(path)?,
+                units,
+                speed,
+            },
+            Path2d::Gcode(path) => {
+                let file = PathFile::open(path)?;
+                let extrudes =
+                    gcode::extrudes(&mut file.reader(&Rc::default())?).map_err(|error| in_file(path, &error))?;
+                Source::Gcode { file, extrudes }
             }
-            Path2d::Gcode(path) => gcode::strokes(&read(path)?).map_err(|error| in_file(path, &error)),
+        };
+        Ok(DrivenPath {
+            name: self.contour.as_deref().unwrap_or_default(),
+            source,
+            limits,
+            rules,
+        })
+    }
+}
+
+/// A path with how it is driven.
+struct DrivenPath<'a> {
+    name: &'a str,
+    source: Source<'a>,
+    limits: ContourLimits,
+    rules: CornerRules,
+}
+
+/// Where the strokes of a path come from.
+enum Source<'a> {
+    Drawn(Vec<Stroke>),
+    Points {
+        file: PathFile<'a>,
+        units: [AxisUnit; 2],
+        speed: f64,
+    },
+    Gcode {
+        file: PathFile<'a>,
+        extrudes: bool,
+    },
+}
+
+type Strokes<'a> = Box<dyn Iterator<Item = Result<Stroke, ContourError>> + 'a>;
+
+impl DrivenPath<'_> {
+    fn strokes(&self) -> Result<Strokes<'_>, Failure> {
+        self.counted_strokes(&Rc::default())
+    }
+
+    /// The strokes from the beginning; `bytes` counts what was read of the file.
+    fn counted_strokes(&self, bytes: &Rc<Cell<u64>>) -> Result<Strokes<'_>, Failure> {
+        Ok(match &self.source {
+            Source::Drawn(strokes) => Box::new(strokes.iter().copied().map(Ok)),
+            Source::Points { file, units, speed } => {
+                let points = shapes::Points::new(file.reader(bytes)?, *units, *speed);
+                Box::new(points.map_err(|error| self.failure(&error))?)
+            }
+            Source::Gcode { file, extrudes } => Box::new(gcode::Program::new(file.reader(bytes)?, *extrudes)),
+        })
+    }
+
+    /// Plans the path once without driving it, so that everything that is wrong with it is found.
+    fn survey(&self, machine: &Machine) -> Result<Survey, Failure> {
+        let bytes = Rc::default();
+        let mut bar = Late::new("reading the path", self.file().map_or(0, |file| file.bytes));
+        let mut seen = 0u32;
+        let mut strokes = self.counted_strokes(&bytes)?.inspect(|_| {
+            seen = seen.wrapping_add(1);
+            if seen.is_multiple_of(STROKES_LOOK) {
+                bar.reach(bytes.get());
+            }
+        });
+        let survey = Survey::new(&mut strokes, &self.limits, &self.rules);
+        drop(strokes);
+        bar.finish();
+        let survey = match (&self.source, survey) {
+            (Source::Gcode { .. }, Err(ContourError::Empty(_))) => {
+                Err(ContourError::Empty("the program moves neither X nor Y".to_owned()))
+            }
+            (Source::Points { .. }, Err(ContourError::Empty(_))) => {
+                Err(ContourError::Empty("it takes two points that differ".to_owned()))
+            }
+            (_, survey) => survey,
+        };
+        let survey = survey.and_then(|survey| survey.check_travel(machine).map(|()| survey));
+        survey.map_err(|error| self.failure(&error))
+    }
+
+    fn file(&self) -> Option<&PathFile<'_>> {
+        match &self.source {
+            Source::Drawn(_) => None,
+            Source::Points { file, .. } | Source::Gcode { file, .. } => Some(file),
         }
+    }
+
+    fn failure(&self, error: &ContourError) -> Failure {
+        let is_of_file = matches!(
+            error,
+            ContourError::Line { .. } | ContourError::Read { .. } | ContourError::Empty(_)
+        );
+        match self.file().filter(|_| is_of_file) {
+            Some(file) => in_file(file.path, error),
+            None => refused(
+                "--contour",
+                &format!("{}: {error}", self.name),
+                "give a smaller path, or another place for it",
+            ),
+        }
+    }
+}
+
+/// A file that is read from its beginning as often as it is needed.
+struct PathFile<'a> {
+    path: &'a Path,
+    bytes: u64,
+    /// What came through a pipe.
+    kept: Option<Vec<u8>>,
+}
+
+impl<'a> PathFile<'a> {
+    fn open(path: &'a Path) -> Result<Self, Failure> {
+        let file = File::open(path).map_err(|error| unreadable(path, &error.to_string()))?;
+        let kind = file.metadata().map_err(|error| unreadable(path, &error.to_string()))?;
+        if kind.is_dir() {
+            return Err(unreadable(path, "it is a folder"));
+        }
+        if kind.is_file() {
+            return Ok(Self {
+                path,
+                bytes: kind.len(),
+                kept: None,
+            });
+        }
+        let mut kept = Vec::new();
+        let read = file.take(PIPED_BYTES + 1).read_to_end(&mut kept);
+        let bytes = read.map_err(|error| unreadable(path, &error.to_string()))? as u64;
+        match bytes > PIPED_BYTES {
+            true => Err(unreadable(
+                path,
+                &format!("through a pipe it has more than {PIPED_BYTES} bytes; write it into a file"),
+            )),
+            false => Ok(Self {
+                path,
+                bytes,
+                kept: Some(kept),
+            }),
+        }
+    }
+
+    fn reader(&self, bytes: &Rc<Cell<u64>>) -> Result<Box<dyn BufRead + '_>, Failure> {
+        match &self.kept {
+            Some(kept) => Ok(Box::new(kept.as_slice())),
+            None => {
+                let file = File::open(self.path).map_err(|error| unreadable(self.path, &error.to_string()))?;
+                let counted = Counted {
+                    file,
+                    bytes: Rc::clone(bytes),
+                };
+                Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, counted)))
+            }
+        }
+    }
+}
+
+/// A file of which it is known how far it was read.
+struct Counted {
+    file: File,
+    bytes: Rc<Cell<u64>>,
+}
+
+impl Read for Counted {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.file.read(into)?;
+        self.bytes.set(self.bytes.get() + read as u64);
+        Ok(read)
     }
 }
 
@@ -200,10 +430,10 @@ fn size(machine: &Machine) -> f64 {
 
 /// Moves strokes to the middle of the travel of each axis that has one.
 fn centred(machine: &Machine, strokes: Vec<Stroke>, limits: &ContourLimits) -> Vec<Stroke> {
-    let Ok(contour) = Contour::new(&strokes, limits, machine.clock.sample_period_s()) else {
+    let Ok(survey) = Survey::new(&mut strokes.iter().copied().map(Ok), limits, &CornerRules::default()) else {
         return strokes;
     };
-    let middles = machine.axes.iter().zip(contour.extent()).map(|(axis, [low, high])| {
+    let middles = machine.axes.iter().zip(survey.extent).map(|(axis, [low, high])| {
         let travel = axis.limits.and_then(|limits| limits.travel);
         travel.map_or(0.0, |[least, most]| {
             f64::midpoint(least, most) - f64::midpoint(low, high)
@@ -213,22 +443,12 @@ fn centred(machine: &Machine, strokes: Vec<Stroke>, limits: &ContourLimits) -> V
     shapes::moved(&strokes, [middles[0], middles[1]])
 }
 
-fn read(path: &Path) -> Result<String, Failure> {
-    let unreadable = |found: String| {
-        Failure::from(miette::miette!(
-            help = "name `circle`, `square`, a CSV file with rows x,y, or a G-code file (.gcode, .nc, .ngc)",
-            "--contour: cannot read `{}`: {found}",
-            path.display()
-        ))
-    };
-    let file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
-    let mut text = String::new();
-    let read = file.take(LARGEST_BYTES + 1).read_to_string(&mut text);
-    let bytes = read.map_err(|error| unreadable(error.to_string()))? as u64;
-    match bytes > LARGEST_BYTES {
-        true => Err(unreadable(format!("it has more than {LARGEST_BYTES} bytes"))),
-        false => Ok(text),
-    }
+fn unreadable(path: &Path, found: &str) -> Failure {
+    Failure::from(miette::miette!(
+        help = "name `circle`, `square`, a CSV file with rows x,y, or a G-code file (.gcode, .nc, .ngc)",
+        "--contour: cannot read `{}`: {found}",
+        path.display()
+    ))
 }
 
 fn in_file(path: &Path, error: &ContourError) -> Failure {
@@ -254,18 +474,21 @@ pub(crate) fn run(
     outputs: &OutputFiles,
     json: bool,
 ) -> Result<(), Failure> {
-    let contour = args.planned(machine, speed, false)?;
-    let name = args.contour.as_deref().unwrap_or_default();
-    let of_path = |error: ContourError| refused("--contour", &format!("{name}: {error}"), "give a shorter path");
-    let rows = contour::compare(machine, &contour).map_err(of_path)?;
-    if rows.iter().take(2).all(|row| row.errors.is_err()) {
-        let reason = rows[0].errors.as_ref().err().cloned().unwrap_or_default();
-        return Err(refused("--contour", &reason, "`posicast design` tells more about it"));
+    let path = args.read(machine, speed)?;
+    let survey = path.survey(machine)?;
+    let samples = survey.duration_s * machine.clock.sample_hz;
+    let mut bar = Late::new("driving the path", samples as u64);
+    let rows = contour::compare(machine, &mut path.strokes()?, &path.rules, &mut |done| bar.reach(done));
+    bar.finish();
+    let rows = rows.map_err(|error| path.failure(&error))?;
+    if let Some(reason) = rows[0].followed.as_ref().err().filter(|_| rows[1].followed.is_err()) {
+        return Err(refused("--contour", reason, "`posicast design` tells more about it"));
     }
     let report = Report {
         machine,
-        name,
-        contour: &contour,
+        name: path.name,
+        survey: &survey,
+        rules: &path.rules,
         rows: &rows,
     };
     if let Some(path) = &args.plot {
@@ -280,7 +503,8 @@ pub(crate) fn run(
 struct Report<'a> {
     machine: &'a Machine,
     name: &'a str,
-    contour: &'a Contour,
+    survey: &'a Survey,
+    rules: &'a CornerRules,
     rows: &'a [ContourRow],
 }
 
@@ -292,8 +516,12 @@ struct Document {
     unit: UnitDocument,
     contour: String,
     length: f64,
+    /// Part of it that is rapids, or travels of a print.
+    rapid_length: f64,
     duration_s: f64,
     stops: usize,
+    corner_tolerance: f64,
+    stop_angle_deg: f64,
     frequency_factors: [f64; 5],
     shapers: Vec<RowDocument>,
 }
@@ -303,12 +531,15 @@ struct RowDocument {
     kind: String,
     in_file: bool,
     equal_delays: bool,
-    /// Largest distance from the path for each of `frequency_factors`.
+    /// Largest distance from the path for each of `frequency_factors`, on the feeds.
     #[serde(skip_serializing_if = "Option::is_none")]
     error_peak: Option<[f64; 5]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error_rms: Option<[f64; 5]>,
-    /// Largest distance while the path is driven at full speed, with the modes as in the file.
+    /// Largest distance on the rapids for each of `frequency_factors`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_rapid: Option<[f64; 5]>,
+    /// Largest distance while a feed is driven at full speed, with the modes as in the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     error_steady: Option<f64>,
     /// Why there are no figures.
@@ -323,24 +554,28 @@ impl Report<'_> {
 
     fn json(&self) -> Document {
         let rows = self.rows.iter().map(|row| {
-            let errors = row.errors.as_ref().ok();
+            let figures = |of: fn(&FollowedContour) -> Option<f64>| figures(row, of);
             RowDocument {
                 kind: row.kind.clone(),
                 in_file: row.in_file,
                 equal_delays: row.matched,
-                error_peak: errors.map(|errors| errors.map(|error| error.peak)),
-                error_rms: errors.map(|errors| errors.map(|error| error.rms)),
-                error_steady: row.nominal.as_ref().and_then(|nominal| Some(nominal.steady?.peak)),
-                reason: row.errors.as_ref().err().cloned(),
+                error_peak: figures(|followed| Some(followed.error?.peak)),
+                error_rms: figures(|followed| Some(followed.error?.rms)),
+                error_rapid: figures(|followed| Some(followed.rapid?.peak)),
+                error_steady: row.nominal().and_then(|nominal| Some(nominal.steady?.peak)),
+                reason: row.followed.as_ref().err().cloned(),
             }
         });
         Document {
             name: self.machine.name.clone(),
             unit: UnitDocument::new(self.unit()),
             contour: self.name.to_owned(),
-            length: self.contour.length(),
-            duration_s: self.contour.duration_s(),
-            stops: self.contour.stops(),
+            length: self.survey.length,
+            rapid_length: self.survey.rapid_length,
+            duration_s: self.survey.duration_s,
+            stops: self.survey.stops,
+            corner_tolerance: self.rules.tolerance,
+            stop_angle_deg: self.rules.stop_angle.to_degrees(),
             frequency_factors: FREQUENCY_FACTORS,
             shapers: rows.collect(),
         }
@@ -354,19 +589,30 @@ impl Report<'_> {
             .take(2)
             .map(|axis| axis.name.as_str())
             .collect();
+        let rapids = match self.survey.rapid_length > 0.0 {
+            true => format!(
+                " ({} of it rapids)",
+                self.unit().show_round(self.survey.rapid_length, "")
+            ),
+            false => String::new(),
+        };
         let mut text = format!(
-            "{}: {} of axes {}, {} in {}, {}\nlargest distance of the load from the path, its modes at\n",
+            "{}: {} of axes {}, {}{rapids} in {}, {}\nlargest distance of the load from the path{}, its modes at\n",
             self.machine.name,
             self.name,
             axes.join(" and "),
-            self.unit().show_round(self.contour.length(), ""),
-            show_seconds(self.contour.duration_s(), 3),
-            counted(self.contour.stops() as u64, "stop"),
+            self.unit().show_round(self.survey.length, ""),
+            show_seconds(self.survey.duration_s, 3),
+            counted(self.survey.stops as u64, "stop"),
+            if rapids.is_empty() { "" } else { " while feeding" },
         );
         let factors = FREQUENCY_FACTORS.map(|factor| format!(">{:.0} %", 100.0 * factor));
         let mut headings = vec!["shaper", "delays"];
         headings.extend(factors.iter().map(String::as_str));
         headings.push(">at speed");
+        if !rapids.is_empty() {
+            headings.push(">in rapids");
+        }
         let mut table = Table::new(&headings);
         let mut reasons = Vec::new();
         for row in self.rows {
@@ -376,24 +622,22 @@ impl Report<'_> {
                 row.kind.clone()
             };
             let delays = if row.matched { "equal" } else { "own" };
-            // A smaller distance is only a rounding error.
-            let show = |error: f64| {
-                if error < 1e-12 {
-                    "0".to_owned()
-                } else {
-                    self.unit().show(error, 3)
-                }
+            // A smaller distance is rounding, and what is left of the settling.
+            let show = |error: Option<f64>| match error {
+                None => "–".to_owned(),
+                Some(error) if error < 1e-10 => "0".to_owned(),
+                Some(error) => self.unit().show(error, 3),
             };
             let mut cells = vec![kind.clone(), delays.to_owned()];
-            match &row.errors {
-                Ok(errors) => cells.extend(errors.map(|error| show(error.peak))),
-                Err(reason) => {
-                    reasons.push(format!("  {kind}, {delays} delays: {reason}"));
-                    cells.extend(FREQUENCY_FACTORS.map(|_| "–".to_owned()));
-                }
+            let errors = figures(row, |followed| Some(followed.error?.peak));
+            cells.extend((0..FREQUENCY_FACTORS.len()).map(|factor| show(errors.map(|errors| errors[factor]))));
+            if let Err(reason) = &row.followed {
+                reasons.push(format!("  {kind}, {delays} delays: {reason}"));
             }
-            let steady = row.nominal.as_ref().and_then(|nominal| nominal.steady);
-            cells.push(steady.map_or_else(|| "–".to_owned(), |steady| show(steady.peak)));
+            cells.push(show(row.nominal().and_then(|nominal| Some(nominal.steady?.peak))));
+            if !rapids.is_empty() {
+                cells.push(show(row.nominal().and_then(|nominal| Some(nominal.rapid?.peak))));
+            }
             table.row(cells);
         }
         text += &table.text("  ");
@@ -408,18 +652,16 @@ impl Report<'_> {
         let drawn = |row: &&ContourRow| row.in_file || row.kind == "none" && !row.matched;
         let sample_s = self.machine.clock.sample_period_s();
         let rows = || {
-            self.rows
-                .iter()
-                .filter(drawn)
-                .filter_map(|row| Some((row, row.nominal.as_ref()?)))
+            let drawn = self.rows.iter().filter(drawn);
+            drawn.filter_map(|row| Some((row, row.nominal()?.distance.as_ref()?)))
         };
-        let samples = rows().map(|(_, followed)| followed.distance.len()).max().unwrap_or(0);
+        let samples = rows().map(|(_, distance)| distance.samples()).max().unwrap_or(0);
         let time = time_axis(samples as f64 * sample_s);
-        let peaks = rows().map(|(_, followed)| followed.error.peak);
+        let peaks = rows().flat_map(|(_, distance)| distance.points().map(|(_, distance)| distance));
         let length = self.unit().for_largest(peaks);
-        let curves = rows().map(|(row, followed)| {
-            let points = followed.distance.iter().enumerate();
-            let points = points.map(|(sample, distance)| (time.of(sample as f64 * sample_s), length.of(*distance)));
+        let curves = rows().map(|(row, distance)| {
+            let points = distance.points();
+            let points = points.map(|(sample, distance)| (time.of(sample as f64 * sample_s), length.of(distance)));
             let delays = if row.matched { "equal delays" } else { "own delays" };
             let name = if row.kind == "none" && !row.in_file {
                 "unshaped".to_owned()
@@ -439,4 +681,11 @@ impl Report<'_> {
             ..Panel::default()
         }
     }
+}
+
+/// A figure of a row at each frequency; `None` where one of them has none.
+fn figures(row: &ContourRow, of: impl Fn(&FollowedContour) -> Option<f64>) -> Option<[f64; 5]> {
+    let followed = row.followed.as_ref().ok()?;
+    let found: Vec<f64> = followed.iter().filter_map(of).collect();
+    found.try_into().ok()
 }

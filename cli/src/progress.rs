@@ -3,7 +3,7 @@
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Interval at which the times are redrawn.
 const TICK: Duration = Duration::from_millis(200);
@@ -16,6 +16,50 @@ pub(crate) fn bar(what: &str, length: u64) -> ProgressBar {
     // The elapsed time is redrawn also while a step takes long.
     bar.enable_steady_tick(TICK);
     bar
+}
+
+/// Time after which work counts as long.
+const LONG: Duration = Duration::from_secs(2);
+
+/// A bar that appears only if the work takes long.
+pub(crate) struct Late {
+    what: &'static str,
+    length: u64,
+    begun: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Late {
+    /// A bar over `length` steps, labelled `what`.
+    pub(crate) fn new(what: &'static str, length: u64) -> Self {
+        Self {
+            what,
+            length,
+            begun: Instant::now(),
+            bar: None,
+        }
+    }
+
+    /// Shows that this many steps are done.
+    pub(crate) fn reach(&mut self, done: u64) {
+        match &self.bar {
+            Some(bar) if bar.position() == done => (),
+            Some(bar) => bar.set_position(done.min(self.length)),
+            None if self.begun.elapsed() < LONG => (),
+            None => {
+                let shown = bar(self.what, self.length);
+                shown.set_position(done.min(self.length));
+                self.bar = Some(shown);
+            }
+        }
+    }
+
+    /// Removes the bar.
+    pub(crate) fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 /// A spinner for work whose length is not known.

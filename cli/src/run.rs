@@ -18,7 +18,7 @@ mod waves;
 use crate::bench::{self, Simulator};
 use crate::blocks;
 use crate::command;
-use crate::contour::ContourArgs;
+use crate::contour::{ContourArgs, CornerArgs};
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::hardware::Built;
@@ -62,6 +62,8 @@ pub(crate) struct Args {
     /// from where the axes stand at reset; --radius and --speed apply to it
     #[arg(long, value_name = "SHAPE|FILE", conflicts_with = "command")]
     contour: Option<String>,
+    #[command(flatten)]
+    corners: CornerArgs,
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
     #[arg(long)]
     simulator: Option<Simulator>,
@@ -95,6 +97,9 @@ impl Args {
             "contour",
             contour.map(|path| output::shell_word(&input::in_folder(path))),
         );
+        for (name, value) in self.corners.given() {
+            option(name, Some(value.to_string()));
+        }
         option("simulator", self.simulator.map(|simulator| simulator.to_string()));
         option("cycles", self.cycles.map(|cycles| cycles.to_string()));
         option("seed", (self.seed != DEFAULT_SEED).then(|| self.seed.to_string()));
@@ -113,7 +118,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Some(_) => moves::by_default(machine),
         None => args.motion.moves(machine, built.stage.is_some())?,
     };
-    let path = ContourArgs::of_run(args.contour.as_deref(), args.radius);
+    let path = ContourArgs::of_run(args.contour.as_deref(), args.radius, args.corners);
     let contour = closed_loop::contour(machine, path.as_ref(), &args.motion, built.stage.is_some())?;
     let circle = match &contour {
         Some(_) => Err("--contour drives another path".to_owned()),

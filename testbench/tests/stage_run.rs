@@ -1,6 +1,6 @@
 //! The closed loop of `run`: the expectations for a move, and its result on the stage.
 
-use posicast_model::contour::{Contour, ContourLimits, shapes};
+use posicast_model::contour::{Contour, ContourLimits, CornerRules, shapes};
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
 use posicast_model::machine_file::{self, Machine};
@@ -180,7 +180,7 @@ fn golden_the_stage_goes_round_a_contour_as_the_notes_say() {
     let machine = machine(XY);
     let limits = ContourLimits::of_machine(&machine).unwrap();
     let strokes = shapes::circle(0.01, 0.1).unwrap();
-    let circle = Contour::new(&strokes, &limits, machine.clock.sample_period_s()).unwrap();
+    let circle = Contour::new(&strokes, &limits, &CornerRules::default()).unwrap();
     for (equal, expected_um) in [(false, 71.06), (true, 4.2)] {
         let run = StageRun::with_delays(&machine, equal, 1).unwrap().unwrap();
         let contoured = run.contour(&circle).unwrap();

@@ -2,13 +2,13 @@
 //! differ from the file.
 
 use super::ContourError;
-use super::follow::{FollowedContour, follow};
-use super::plan::Contour;
+use super::corners::CornerRules;
+use super::follow::{FollowedContour, Followers, drive};
+use super::stroke::Stroke;
 use crate::compare::with_kind;
 use crate::design::design_machine;
 use crate::design::kind::ShaperKind;
 use crate::machine_file::{AxisSection, Machine, StageSection};
-use crate::plant::axis::ErrorFigures;
 
 /// Frequencies of the machine's modes, as multiples of those that the shapers are designed for.
 pub const FREQUENCY_FACTORS: [f64; 5] = [0.8, 0.9, 1.0, 1.1, 1.2];
@@ -27,22 +27,33 @@ pub struct ContourRow {
     pub in_file: bool,
     /// Whether the axes have equal delays.
     pub matched: bool,
-    /// Distance from the path at each of [`FREQUENCY_FACTORS`]; the error says why the axes have no such tables.
-    pub errors: Result<[ErrorFigures; 5], String>,
-    /// The followed contour of the machine whose modes are as in the file.
-    pub nominal: Option<FollowedContour>,
+    /// The followed contour at each of [`FREQUENCY_FACTORS`]; the error says why the axes have no such tables.
+    pub followed: Result<[FollowedContour; 5], String>,
 }
 
-/// Compares the machine's own shapers with other kinds.
+impl ContourRow {
+    /// The followed contour of the machine whose modes are as in the file.
+    pub fn nominal(&self) -> Option<&FollowedContour> {
+        self.followed.as_ref().ok().map(|followed| &followed[NOMINAL])
+    }
+}
+
+/// Compares the machine's own shapers with other kinds on a path, whose strokes are taken as they are needed.
+/// `progress` gets the number of samples that are done.
 ///
 /// # Errors
-/// [`ContourError`] where the machine cannot follow the contour at all.
-pub fn compare(machine: &Machine, contour: &Contour) -> Result<Vec<ContourRow>, ContourError> {
+/// Those of the strokes, and [`ContourError`] where the machine cannot follow the contour at all.
+pub fn compare(
+    machine: &Machine,
+    strokes: &mut dyn Iterator<Item = Result<Stroke, ContourError>>,
+    rules: &CornerRules,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Vec<ContourRow>, ContourError> {
     let own: Vec<String> = machine.axes.iter().take(2).map(AxisSection::kind_name).collect();
-    let own_kind = if own.iter().all(|kind| *kind == own[0]) {
-        own[0].clone()
-    } else {
-        own.join(", ")
+    let own_kind = match own.as_slice() {
+        [x, y] if x != y => own.join(", "),
+        [x, ..] => x.clone(),
+        [] => String::new(),
     };
     let of_file = (own_kind.clone(), machine.clone(), true);
     let others = KINDS.into_iter().filter(|kind| kind.name() != own_kind).map(|kind| {
@@ -54,44 +65,40 @@ pub fn compare(machine: &Machine, contour: &Contour) -> Result<Vec<ContourRow>, 
         (kind.name().to_owned(), other, false)
     });
     let mut rows = Vec::new();
+    let mut followers = Vec::new();
     for (kind, machine, in_file) in std::iter::once(of_file).chain(others) {
         for matched in [false, true] {
-            rows.push(row(&machine, contour, kind.clone(), in_file, matched)?);
+            let machine = with_delays(&machine, in_file, matched);
+            let design = design_machine(&machine).map_err(|reason| reason.to_string());
+            if let Ok(design) = &design {
+                followers.push(Followers::new(&machine, design, &FREQUENCY_FACTORS)?);
+            }
+            rows.push((kind.clone(), in_file, matched, design.map(|_| ())));
         }
     }
-    Ok(rows)
+    drive(machine, strokes, rules, &mut followers, progress)?;
+    let mut followers = followers.into_iter();
+    let rows = rows.into_iter().map(|(kind, in_file, matched, design)| ContourRow {
+        kind,
+        in_file,
+        matched,
+        followed: design.and_then(|()| {
+            let followed = followers.next().map(Followers::followed);
+            followed.ok_or_else(|| "it was not simulated".to_owned())
+        }),
+    });
+    Ok(rows.collect())
 }
 
-fn row(
-    machine: &Machine,
-    contour: &Contour,
-    kind: String,
-    in_file: bool,
-    matched: bool,
-) -> Result<ContourRow, ContourError> {
+/// The machine with equal delays of its axes, or with each axis's own.
+fn with_delays(machine: &Machine, in_file: bool, matched: bool) -> Machine {
     // Other kinds cannot be designed as one.
     let equal = StageSection {
         arrive_together: in_file && machine.stage.is_some_and(|stage| stage.arrive_together),
         ..machine.stage.unwrap_or_default()
     };
-    let machine = Machine {
+    Machine {
         stage: matched.then_some(equal),
         ..machine.clone()
-    };
-    let (errors, nominal) = match design_machine(&machine) {
-        Err(reason) => (Err(reason.to_string()), None),
-        Ok(design) => {
-            let follow = |factor: &f64| follow(&machine, &design, contour, *factor);
-            let followed: Vec<FollowedContour> = FREQUENCY_FACTORS.iter().map(follow).collect::<Result<_, _>>()?;
-            let errors = std::array::from_fn(|factor| followed[factor].error);
-            (Ok(errors), followed.into_iter().nth(NOMINAL))
-        }
-    };
-    Ok(ContourRow {
-        kind,
-        in_file,
-        matched,
-        errors,
-        nominal,
-    })
+    }
 }

@@ -10,7 +10,7 @@ pub enum ContourError {
     #[error("line {line}: {found}")]
     Line {
         /// Number of the line, from 1.
-        line: usize,
+        line: u64,
         /// What was found there.
         found: String,
         /// What to do about it.
@@ -42,6 +42,14 @@ pub enum ContourError {
         /// The largest speed.
         most: String,
     },
+    /// The file of the path cannot be read.
+    #[error("cannot read on after line {line}: {found}")]
+    Read {
+        /// Number of lines that were read.
+        line: u64,
+        /// What the operating system says.
+        found: String,
+    },
     /// A radius, a side or a speed is not a positive number.
     #[error("{what} is {}: it must be above 0", short(*.found))]
     Size {
@@ -56,7 +64,7 @@ pub enum ContourError {
         /// Its duration.
         seconds: f64,
         /// Largest number of samples.
-        most: usize,
+        most: u64,
     },
 }
 

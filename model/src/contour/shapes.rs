@@ -3,8 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use super::ContourError;
+use super::lines::Lines;
 use super::stroke::{PlanePoint, Shape, Stroke, minus};
 use crate::unit::AxisUnit;
+use std::io::BufRead;
 
 /// A circle counter-clockwise from `(0, 0)`, which is its right end, and back to it.
 ///
@@ -20,19 +22,21 @@ pub fn circle(radius: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
         sweep: TAU,
     };
     Ok(vec![Stroke {
-        shape,
-        speed,
         after_stop: true,
+        ..Stroke::feed(shape, speed)
     }])
 }
 
-/// A square counter-clockwise from `(0, 0)`, its corner with the smallest coordinates, and back to it.
+/// A square counter-clockwise from `(0, 0)`, its corner with the smallest coordinates, and back to it, with a stop in
+/// each corner.
 ///
 /// # Errors
 /// [`ContourError::Size`] where side or speed is not positive.
 pub fn square(side: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
     positive("the side", side)?;
-    polyline(&[[0.0, 0.0], [side, 0.0], [side, side], [0.0, side], [0.0, 0.0]], speed)
+    let mut lines = polyline(&[[0.0, 0.0], [side, 0.0], [side, side], [0.0, side], [0.0, 0.0]], speed)?;
+    lines.iter_mut().for_each(|line| line.after_stop = true);
+    Ok(lines)
 }
 
 /// Straight lines from point to point; a point that repeats the last one is left out.
@@ -42,13 +46,9 @@ pub fn square(side: f64, speed: f64) -> Result<Vec<Stroke>, ContourError> {
 /// positive.
 pub fn polyline(points: &[PlanePoint], speed: f64) -> Result<Vec<Stroke>, ContourError> {
     positive("the speed", speed)?;
-    let lines = points.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| Stroke {
-        shape: Shape::Line {
-            from: pair[0],
-            to: pair[1],
-        },
-        speed,
-        after_stop: false,
+    let lines = points.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| {
+        let [from, to] = [pair[0], pair[1]];
+        Stroke::feed(Shape::Line { from, to }, speed)
     });
     let lines: Vec<Stroke> = lines.collect();
     match lines.is_empty() {
@@ -66,6 +66,7 @@ pub fn approach(begin: PlanePoint) -> Stroke {
         },
         speed: f64::INFINITY,
         after_stop: true,
+        rapid: true,
     }
 }
 
@@ -95,41 +96,92 @@ pub fn moved(strokes: &[Stroke], [x, y]: PlanePoint) -> Vec<Stroke> {
     moved.collect()
 }
 
-/// Reads points from a text with a row `x,y` for each, in the units of the axes. A first row of words is a heading,
-/// and `#` begins a comment.
-///
-/// # Errors
-/// [`ContourError::Line`] for a row that is not two finite numbers, [`ContourError::Empty`] for a text without
-/// points.
-pub fn points(text: &str, units: [AxisUnit; 2]) -> Result<Vec<PlanePoint>, ContourError> {
-    let mut points = Vec::new();
-    let mut heading = true;
-    for (index, row) in text.lines().enumerate() {
-        let row = row.split('#').next().unwrap_or_default().trim();
+/// The lines through the points of a text with a row `x,y` for each, in the units of the axes, read row by row. A first
+/// row of words is a heading, and `#` begins a comment. A point that repeats the last one is left out.
+pub struct Points<'a> {
+    rows: Lines<Box<dyn BufRead + 'a>>,
+    units: [AxisUnit; 2],
+    speed: f64,
+    heading: bool,
+    at: Option<PlanePoint>,
+    ended: bool,
+}
+
+impl<'a> Points<'a> {
+    /// Reads this text, for lines at this speed in m/s.
+    ///
+    /// # Errors
+    /// [`ContourError::Size`] for a speed that is not positive.
+    pub fn new(source: Box<dyn BufRead + 'a>, units: [AxisUnit; 2], speed: f64) -> Result<Self, ContourError> {
+        positive("the speed", speed)?;
+        Ok(Self {
+            rows: Lines::new(source),
+            units,
+            speed,
+            heading: true,
+            at: None,
+            ended: false,
+        })
+    }
+
+    /// The point of a row; `None` for a heading, a comment or an empty row.
+    fn point(&mut self) -> Result<Option<PlanePoint>, ContourError> {
+        let text = String::from_utf8_lossy(&self.rows.text);
+        let row = text
+            .trim_start_matches('\u{feff}')
+            .split('#')
+            .next()
+            .unwrap_or_default()
+            .trim();
         if row.is_empty() {
-            continue;
+            return Ok(None);
         }
-        let fields: Vec<&str> = row.split([',', ';', '\t']).map(str::trim).collect();
-        let numbers: Vec<Option<f64>> = fields
-            .iter()
-            .map(|field| field.parse().ok().filter(|number: &f64| number.is_finite()))
-            .collect();
-        match numbers.as_slice() {
-            [Some(x), Some(y)] => points.push([units[0].to_si(*x), units[1].to_si(*y)]),
-            _ if heading && fields.len() == 2 && numbers.iter().all(Option::is_none) => (),
+        let mut fields = row.split([',', ';', '\t']).map(str::trim);
+        let fields = [fields.next(), fields.next(), fields.next()];
+        let number = |field: Option<&str>| field?.parse().ok().filter(|number: &f64| number.is_finite());
+        let is_heading = std::mem::take(&mut self.heading);
+        match (fields, [number(fields[0]), number(fields[1])]) {
+            ([_, _, None], [Some(x), Some(y)]) => Ok(Some([self.units[0].to_si(x), self.units[1].to_si(y)])),
+            ([Some(_), Some(_), None], [None, None]) if is_heading => Ok(None),
             _ => {
-                return Err(ContourError::Line {
-                    line: index + 1,
-                    found: format!("`{row}` is not a row x,y of two numbers"),
+                let shown: String = row.chars().take(40).collect();
+                Err(ContourError::Line {
+                    line: self.rows.number,
+                    found: format!("`{shown}` is not a row x,y of two numbers"),
                     remedy: "give a row of two numbers for each point, in the units of the first two axes".to_owned(),
-                });
+                })
             }
         }
-        heading = false;
     }
-    match points.is_empty() {
-        true => Err(ContourError::Empty("the file has no points".to_owned())),
-        false => Ok(points),
+}
+
+impl Iterator for Points<'_> {
+    type Item = Result<Stroke, ContourError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while !self.ended {
+            let point = match self.rows.next() {
+                Ok(true) => self.point(),
+                Ok(false) => {
+                    self.ended = true;
+                    Ok(None)
+                }
+                Err(error) => Err(error),
+            };
+            match point {
+                Ok(None) => (),
+                Ok(Some(to)) => {
+                    if let Some(from) = self.at.replace(to).filter(|from| *from != to) {
+                        return Some(Ok(Stroke::feed(Shape::Line { from, to }, self.speed)));
+                    }
+                }
+                Err(error) => {
+                    self.ended = true;
+                    return Some(Err(error));
+                }
+            }
+        }
+        None
     }
 }
 

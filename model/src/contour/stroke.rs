@@ -37,6 +37,20 @@ pub struct Stroke {
     pub speed: f64,
     /// Whether the path stops before it even where it continues straight on.
     pub after_stop: bool,
+    /// Whether it only goes somewhere, as G0 does: its error is reported apart.
+    pub rapid: bool,
+}
+
+impl Stroke {
+    /// A line or an arc of the work, at this speed per s, that the path goes on to without a stop.
+    pub fn feed(shape: Shape, speed: f64) -> Self {
+        Self {
+            shape,
+            speed,
+            after_stop: false,
+            rapid: false,
+        }
+    }
 }
 
 /// The difference `a − b` of two points.
@@ -99,6 +113,31 @@ impl Shape {
         match self {
             Self::Line { .. } => 0.0,
             Self::Arc { radius, .. } => radius.recip(),
+        }
+    }
+
+    /// Widens a range, `[low, high]` for each axis, so that it holds the shape.
+    pub(super) fn extend(&self, range: &mut [[f64; 2]; 2]) {
+        let mut hold = |place: PlanePoint| {
+            for (axis, [low, high]) in range.iter_mut().enumerate() {
+                (*low, *high) = (low.min(place[axis]), high.max(place[axis]));
+            }
+        };
+        match self {
+            Self::Line { from, to } => {
+                hold(*from);
+                hold(*to);
+            }
+            Self::Arc {
+                centre: [x, y], radius, ..
+            } => {
+                hold(self.at(0.0));
+                hold(self.at(self.length()));
+                // An arc is widest where its direction is parallel to an axis.
+                for widest in [[x + radius, *y], [x - radius, *y], [*x, y + radius], [*x, y - radius]] {
+                    hold(self.at(self.nearest(widest)));
+                }
+            }
         }
     }
 

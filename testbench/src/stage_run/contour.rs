@@ -60,7 +60,8 @@ pub(super) fn measure(
     let followed = match recorded.as_slice() {
         [x, y, ..] if trouble.is_none() => {
             let (at, load) = aligned(run, &samples, x, y);
-            Some(contour::judged(run.machine, design, contour, &at, load))
+            let followed = contour::judged(run.machine, design, contour, &at, &load);
+            Some(followed.map_err(|error| StageRunError::Contour(Box::new(error)))?)
         }
         _ => None,
     };
@@ -88,15 +89,7 @@ fn aligned(
     let first_tick = (0..ticks).find(|tick| moved(of(*tick), of(0))).unwrap_or(0);
     let pairs = (first_tick..ticks).map(|tick| {
         let sample = (first_command + tick - first_tick).min(samples.len() - 1);
-        let command = ContourSample {
-            speed: if sample + 1 == samples.len() {
-                0.0
-            } else {
-                samples[sample].speed
-            },
-            ..samples[sample]
-        };
-        (command, [x[tick].load, y[tick].load])
+        (samples[sample], [x[tick].load, y[tick].load])
     });
     pairs.unzip()
 }

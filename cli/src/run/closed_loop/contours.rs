@@ -48,7 +48,7 @@ pub(crate) fn contour(
             "--contour: the machine has no stage, whose closed loop would drive it"
         )));
     }
-    let contour = path.planned(machine, motion.along_contour()?, true)?;
+    let contour = path.planned(machine, motion.along_contour()?)?;
     Ok(Some(NamedContour {
         name: path.contour.clone().unwrap_or_default(),
         contour,
@@ -60,6 +60,8 @@ pub(crate) fn contour(
 pub(super) struct ContourDocument {
     path: String,
     length: f64,
+    /// Part of it that is rapids: at least the way to its beginning.
+    rapid_length: f64,
     duration_s: f64,
     stops: usize,
     compared_clocks: Option<u64>,
@@ -71,14 +73,19 @@ pub(super) struct ContourDocument {
 struct DistanceDocument {
     peak: f64,
     rms: f64,
+    /// Largest distance on the rapids, which the other figures do not count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rapid_peak: Option<f64>,
 }
 
 impl DistanceDocument {
-    fn new(followed: &FollowedContour) -> Self {
-        Self {
-            peak: followed.error.peak,
-            rms: followed.error.rms,
-        }
+    fn new(followed: &FollowedContour) -> Option<Self> {
+        let error = followed.error?;
+        Some(Self {
+            peak: error.peak,
+            rms: error.rms,
+            rapid_peak: followed.rapid.map(|rapid| rapid.peak),
+        })
     }
 }
 
@@ -116,20 +123,28 @@ impl Contours<'_> {
 
     pub(super) fn text(&self, machine: &Machine) -> String {
         let unit = machine.axes[0].unit;
-        let mut table = Table::new(&["tap tables", ">distance from the path, peak", ">rms"]);
-        for (name, followed) in self.rows() {
-            let [peak, rms] = unit.show_all([followed.error.peak, followed.error.rms]);
-            table.row([name.to_owned(), peak, rms]);
+        let survey = self.path.contour.survey();
+        let has_rapids = survey.rapid_length > 0.0;
+        let mut headings = vec!["tap tables", ">distance from the path, peak", ">rms"];
+        if has_rapids {
+            headings.push(">in rapids, peak");
         }
-        let contour = &self.path.contour;
+        let mut table = Table::new(&headings);
+        for (name, followed) in self.rows() {
+            let shown = |figure: Option<f64>| figure.map_or_else(|| "–".to_owned(), |figure| unit.show(figure, 3));
+            let error = followed.error.map(|error| unit.show_all([error.peak, error.rms]));
+            let [peak, rms] = error.unwrap_or_else(|| [shown(None), shown(None)]);
+            let rapid = has_rapids.then(|| shown(followed.rapid.map(|rapid| rapid.peak)));
+            table.row([name.to_owned(), peak, rms].into_iter().chain(rapid));
+        }
         let mut text = format!(
             "\nContour {} of axes {} and {}: {} in {}, {}\n{}",
             self.path.name,
             machine.axes[0].name,
             machine.axes[1].name,
-            unit.show_round(contour.length(), ""),
-            show_seconds(contour.duration_s(), 3),
-            counted(contour.stops() as u64, "stop"),
+            unit.show_round(survey.length, ""),
+            show_seconds(survey.duration_s, 3),
+            counted(survey.stops as u64, "stop"),
             table.text("  ")
         );
         if let Err(reason) = &self.matched {
@@ -139,12 +154,14 @@ impl Contours<'_> {
     }
 
     pub(super) fn json(&self) -> ContourDocument {
-        let of = |contoured: &Contoured| contoured.followed.as_ref().map(DistanceDocument::new);
+        let of = |contoured: &Contoured| DistanceDocument::new(contoured.followed.as_ref()?);
+        let survey = self.path.contour.survey();
         ContourDocument {
             path: self.path.name.clone(),
-            length: self.path.contour.length(),
-            duration_s: self.path.contour.duration_s(),
-            stops: self.path.contour.stops(),
+            length: survey.length,
+            rapid_length: survey.rapid_length,
+            duration_s: survey.duration_s,
+            stops: survey.stops,
             compared_clocks: self.compared.as_ref().map(|compared| compared.clocks),
             own_delays: of(&self.apart),
             equal_delays: self.matched.as_ref().ok().and_then(of),
@@ -154,14 +171,17 @@ impl Contours<'_> {
     /// The distance over time; `None` where the stage never moved.
     pub(super) fn panel(&self, machine: &Machine) -> Option<Panel> {
         let sample_s = machine.clock.sample_period_s();
-        let samples = self.rows().map(|(_, followed)| followed.distance.len()).max()?;
+        let rows = || {
+            let rows = self.rows();
+            rows.filter_map(|(name, followed)| Some((name, followed.distance.as_ref()?)))
+        };
+        let samples = rows().map(|(_, distance)| distance.samples()).max()?;
         let time = time_axis(samples as f64 * sample_s);
-        let unit = machine.axes[0]
-            .unit
-            .for_largest(self.rows().map(|(_, followed)| followed.error.peak));
-        let curves = self.rows().map(|(name, followed)| {
-            let points = followed.distance.iter().enumerate();
-            let points = points.map(|(tick, distance)| (time.of(tick as f64 * sample_s), unit.of(*distance)));
+        let distances = rows().flat_map(|(_, distance)| distance.points().map(|(_, distance)| distance));
+        let unit = machine.axes[0].unit.for_largest(distances);
+        let curves = rows().map(|(name, distance)| {
+            let points = distance.points();
+            let points = points.map(|(tick, distance)| (time.of(tick as f64 * sample_s), unit.of(distance)));
             Curve::new(name, points.collect())
         });
         Some(Panel {
