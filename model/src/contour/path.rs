@@ -139,6 +139,7 @@ impl PathWindow {
     /// Drops strokes that end before `along`, sooner or later.
     pub(super) fn drop_before(&mut self, along: f64) {
         let behind = self.pieces.partition_point(|piece| piece.end < along);
+        let behind = behind.min(self.pieces.len().saturating_sub(1));
         if behind >= DROP {
             self.pieces.drain(..behind);
             self.dropped += behind;
@@ -158,7 +159,7 @@ impl PathWindow {
     /// because a point of the path at a distance `D` has no point of the path closer than `D − s` within the length
     /// `s` of it.
     pub(super) fn nearest(&self, point: PlanePoint, first: usize, last: usize, guess: usize) -> Nearest {
-        let last = (last - self.dropped).min(self.pieces.len() - 1);
+        let last = last.saturating_sub(self.dropped).min(self.pieces.len() - 1);
         let first = (first.max(self.dropped) - self.dropped).min(last);
         let guess = guess.saturating_sub(self.dropped).clamp(first, last);
         let (mut distance, mut nearest) = (self.pieces[guess].distance(point), guess);
