@@ -29,7 +29,8 @@ fn equal(a: &Path, b: &Path) -> Comparison {
 struct File {
     hierarchy: Vec<u8>,
     widths: Vec<u64>,
-    /// The values of all signals before the first time.
+    /// The time at which the recording begins, and the values of all signals before any change.
+    start: u64,
     values: Vec<u8>,
     /// The changes of the first signal, of which each begins with a time.
     chain: Vec<u8>,
@@ -59,6 +60,7 @@ impl File {
         Self {
             hierarchy: [SCOPE, &variable(16, "a", 1, 0), hierarchy].concat(),
             widths: vec![1],
+            start: 0,
             values: b"0".to_vec(),
             chain: vec![0b10],
         }
@@ -92,7 +94,7 @@ impl File {
             &table[..]
         };
         let changes = [
-            &[0; 8][..],
+            &self.start.to_be_bytes()[..],
             &10u64.to_be_bytes(),
             &[0; 8],
             &length,
@@ -208,6 +210,7 @@ fn unit_the_states_of_a_port_are_compared_as_what_they_are() {
     let port = |state: &[u8]| File {
         hierarchy: [SCOPE, &variable(16, "a", 1, 0), &variable(18, "p", 5, 0), &[UP]].concat(),
         widths: vec![1, 5],
+        start: 0,
         values: [b"0", state].concat(),
         chain: vec![0b10],
     };
@@ -220,6 +223,30 @@ fn unit_the_states_of_a_port_are_compared_as_what_they_are() {
     let result = raw(&a, &b).unwrap();
     assert_eq!(result.differences.len(), 1, "{result}");
     assert_eq!(result.differences[0].signal, "t.p");
+}
+
+#[test]
+fn unit_values_that_were_written_before_any_time_are_there_though_changes_are_at_the_same_time() {
+    // As GTKWave's vcd2fst writes the parameters that Icarus dumps before `#0`.
+    let mut file = File::one_bit(&[variable(2, "size", 4, 0), variable(16, "later", 4, 0), vec![UP]].concat());
+    file.widths = vec![1, 4, 4];
+    file.start = 10;
+    file.values = b"x0110xxxx".to_vec();
+    let vcd = |size: &str| {
+        VCD.replace(
+            "$upscope",
+            "$var parameter 4 s size $end\n$var wire 4 l later $end\n$upscope",
+        )
+        .replace("#0\n0a\n", "")
+        .replace("1a\n", &format!("1a\nb{size} s\n"))
+    };
+    let result = file.compared(&vcd("110")).unwrap();
+    assert_eq!(
+        (result.result, result.signals, result.samples),
+        (DiffVerdict::Equal, 3, 1)
+    );
+    let result = file.compared(&vcd("111")).unwrap();
+    assert_eq!(result.differences[0].signal, "t.size", "{result}");
 }
 
 #[test]

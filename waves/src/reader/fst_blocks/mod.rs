@@ -169,11 +169,15 @@ impl Blocks {
             return Err(damaged("it has more signals than the file"));
         }
         let (times, table) = layout.times_and_table(&mut self.file)?;
-        if is_first && times.first().is_none_or(|first| *first > layout.start) {
+        let is_before = |first: &u64| *first >= layout.start;
+        if is_first && times.first().is_none_or(is_before) {
             let values = layout.values(&mut self.file)?;
             self.switch_up_to(layout.start, gatherer, hand_over)?;
             advance(gatherer, layout.start, hand_over)?;
-            self.values_before(&values, layout.values_of, slots, gatherer)?;
+            // At the time of the first changes, the values are those that were written before any time, as parameters are in
+            // a VCD; what has none is unknown anyway.
+            let all = times.first() != Some(&layout.start);
+            self.values_before(&values, layout.values_of, all, slots, gatherer)?;
         }
         let wanted = |handle: usize| slots.get(handle).copied().flatten().is_some();
         let mut chains = Chains::unpack(&mut self.file, &layout, &table, &self.forms, times.len(), wanted)?;
@@ -211,11 +215,12 @@ impl Blocks {
         Ok(())
     }
 
-    /// Reads the values of the first handles before the first change, as text.
+    /// Reads the values of the first handles before the first change, as text; unless `all`, only those that are known.
     fn values_before(
         &self,
         values: &[u8],
         count: u64,
+        all: bool,
         slots: &[Option<u32>],
         gatherer: &mut Gatherer,
     ) -> Result<(), Stop> {
@@ -235,6 +240,7 @@ impl Blocks {
                 continue;
             };
             match form {
+                Form::Bits(_) if !all && value.iter().all(|digit| matches!(digit, b'x' | b'X')) => {}
                 Form::Bits(width) => put_digits(gatherer, slot, *width, value)?,
                 // Writers have no other number for one that has had no value yet.
                 Form::Real if self.real(value).is_nan() => {}
