@@ -38,6 +38,7 @@ mod error;
 pub mod files;
 pub mod merge;
 mod pile;
+mod quiet;
 mod reader;
 pub mod unit;
 pub mod wording;

@@ -21,8 +21,9 @@ use vcd::{IdCode, VarType, Writer};
 
 use self::views::write_views;
 use crate::WaveError;
+use crate::diff::{Reading, Reread};
 use crate::files::{OutputSink, write_error};
-use crate::reader::{Feed, Kind, Named, Step, Value, Values, Wave};
+use crate::reader::{Kind, Named, Value};
 use crate::unit::unit_for;
 
 /// One of the waveforms.
@@ -88,10 +89,10 @@ const DIFFERENCE: &str = "difference";
 struct Open {
     scope: String,
     names: Vec<Named>,
-    feed: Feed,
-    now: Values,
+    read: Reread,
     unit_fs: u64,
-    step: Option<Step>,
+    /// Time of the current step.
+    time: Option<u64>,
     /// Name below the shared scopes, and slot.
     signals: Vec<(String, u32)>,
     /// Id in the merged file, by slot.
@@ -101,13 +102,13 @@ struct Open {
 }
 
 impl Open {
-    fn new(part: &MergePart<'_>, only: Option<&HashSet<String>>) -> Result<Self, WaveError> {
-        let (declarations, feed) = Wave::open(part.path)?.play(None, true)?;
-        let mut names = declarations.names;
+    fn new(part: &MergePart<'_>, mut read: Reread, only: Option<&HashSet<String>>) -> Self {
+        let mut names = std::mem::take(&mut read.declarations.names);
         if let Some(only) = only {
             names.retain(|named| only.contains(&named.path));
         }
-        let now = Values::new(&declarations.kinds);
+        let now = &read.values;
+        let slots = now.count();
         let shared = names.first().map_or(0, |first| {
             let shares = |top: &str| names.iter().all(|named| named.path.starts_with(top));
             let ends = first.path.match_indices('.').map(|(at, _)| at + 1);
@@ -115,27 +116,27 @@ impl Open {
         });
         let mut signals: Vec<(String, u32)> = names
             .iter()
-            .filter(|named| matches!(now.kind(named.slot), Kind::Bits(_) | Kind::Real))
+            // A VCD has no place for a signal without bits.
+            .filter(|named| now.kind(named.slot) != Kind::Bits(0))
             .map(|named| (named.path[shared..].to_owned(), named.slot))
             .collect();
         // The signals are sorted by scope, so that each scope is opened once; within a scope they stay in the order
         // of the file.
         signals.sort_by(|(a, _), (b, _)| scope_of(a).cmp(scope_of(b)));
-        Ok(Self {
+        Self {
             scope: part.scope.to_owned(),
-            ids: vec![None; declarations.kinds.len()],
-            values: vec![0; declarations.kinds.len()],
+            ids: vec![None; slots],
+            values: vec![0; slots],
             signals,
             names,
-            feed,
-            now,
-            unit_fs: declarations.unit_fs,
-            step: None,
-        })
+            unit_fs: read.declarations.unit_fs,
+            read,
+            time: None,
+        }
     }
 
     fn next_fs(&self) -> Option<u128> {
-        Some(u128::from(self.step?.time) * u128::from(self.unit_fs))
+        Some(u128::from(self.time?) * u128::from(self.unit_fs))
     }
 
     fn find(&self, name: &str) -> Option<u32> {
@@ -181,9 +182,25 @@ pub fn merge_around(
     differences: &[DifferenceSignal<'_>],
     focus: Option<&Focus>,
 ) -> Result<(), WaveError> {
+    let sources = parts.iter().map(|part| Reading::default().open(part.path, false));
+    let sources = sources.collect::<Result<Vec<_>, WaveError>>()?;
+    merge_reread(sink, path, parts, sources, differences, focus)
+}
+
+/// Like [`merge_around`], with files that are open.
+pub(crate) fn merge_reread(
+    sink: &dyn OutputSink,
+    path: &Path,
+    parts: &[MergePart<'_>],
+    sources: Vec<Reread>,
+    differences: &[DifferenceSignal<'_>],
+    focus: Option<&Focus>,
+) -> Result<(), WaveError> {
     let only = |at: usize| focus.and_then(|focus| focus.signals.get(at));
-    let opened = parts.iter().enumerate().map(|(at, part)| Open::new(part, only(at)));
-    let mut parts = opened.collect::<Result<Vec<_>, WaveError>>()?;
+    let opened = parts.iter().zip(sources).enumerate();
+    let mut parts: Vec<Open> = opened
+        .map(|(at, (part, read))| Open::new(part, read, only(at)))
+        .collect();
     let (unit, unit_fs) = unit_for(parts.iter().map(|p| p.unit_fs).min().unwrap_or(1_000_000));
     let mark = sink.mark();
     let mut end = 0;
@@ -220,7 +237,7 @@ fn changes(
     unit_fs: u64,
 ) -> Result<u64, WaveError> {
     for part in &mut *parts {
-        part.step = part.feed.next_step()?;
+        part.time = part.read.next_time()?;
     }
     let mut end = 0;
     while let Some(time_fs) = parts.iter().filter_map(Open::next_fs).min() {
@@ -233,21 +250,17 @@ fn changes(
             if part.next_fs() != Some(time_fs) {
                 continue;
             }
-            let mut written = Ok(());
-            let Open {
-                feed, now, values, ids, ..
-            } = &mut *part;
-            feed.each_change(|slot, words| {
-                if written.is_ok() && now.set(slot, words) {
-                    values[slot as usize] += 1;
-                    written = write_value(output, ids[slot as usize], now.get(slot));
-                }
-            });
-            written?;
-            part.step = part.feed.next_step()?;
+            let Open { read, values, ids, .. } = &mut *part;
+            read.take_in();
+            for slot in &read.changed {
+                values[*slot as usize] += 1;
+                let now = &read.values;
+                write_value(output, ids[*slot as usize], now.kind(*slot), now.get(*slot))?;
+            }
+            part.time = part.read.next_time()?;
         }
         for subtraction in &mut *subtractions {
-            let value = |(part, slot): (usize, u32)| number(parts[part].now.get(slot));
+            let value = |(part, slot): (usize, u32)| number(parts[part].read.values.get(slot));
             let (Some(a), Some(b)) = (value(subtraction.minuend), value(subtraction.subtrahend)) else {
                 continue;
             };
@@ -270,7 +283,7 @@ fn number(value: Value<'_>) -> Option<f64> {
 
 /// Declares the part's scopes and signals.
 fn declare(output: &mut Output<'_>, part: &mut Open) -> Result<(), WaveError> {
-    let (now, ids) = (&part.now, &mut part.ids);
+    let (now, ids) = (&part.read.values, &mut part.ids);
     output.write(|vcd| {
         vcd.add_module(&part.scope)?;
         let mut open: Vec<&str> = Vec::new();
@@ -287,7 +300,9 @@ fn declare(output: &mut Output<'_>, part: &mut Open) -> Result<(), WaveError> {
             }
             let (var_type, width) = match now.kind(*slot) {
                 Kind::Bits(width) => (VarType::Wire, width),
-                Kind::Real | Kind::Text | Kind::Event => (VarType::Real, 64),
+                Kind::Real => (VarType::Real, 64),
+                Kind::Text | Kind::Any(_) => (VarType::String, 1),
+                Kind::Event => (VarType::Event, 1),
             };
             let reference = name.rsplit('.').next().unwrap_or(name);
             let id = &mut ids[*slot as usize];
@@ -330,12 +345,30 @@ fn subtractions(
     Ok(made)
 }
 
-fn write_value(output: &mut Output<'_>, id: Option<IdCode>, value: Value<'_>) -> Result<(), WaveError> {
+fn write_value(output: &mut Output<'_>, id: Option<IdCode>, kind: Kind, value: Value<'_>) -> Result<(), WaveError> {
     let Some(id) = id else { return Ok(()) };
+    let is_text = matches!(kind, Kind::Text | Kind::Any(_));
     output.write(|vcd| match value {
+        Value::Bits { width, .. } if is_text => write_text(vcd, id, &format!("b{}", value.digits(width, false))),
+        Value::Real(Some(real)) if is_text => write_text(vcd, id, &real.to_string()),
+        Value::Text(_) => value.text().map_or(Ok(()), |text| write_text(vcd, id, &text)),
+        Value::Bits { width: 0, .. } | Value::Real(None) => Ok(()),
         Value::Bits { width: 1, .. } => writeln!(vcd.writer(), "{}{id}", value.digits(1, false)),
         Value::Bits { width, .. } => writeln!(vcd.writer(), "b{} {id}", value.digits(width, false)),
         Value::Real(Some(real)) => write_real(vcd, id, real),
-        Value::Real(None) | Value::Text(_) | Value::Event => Ok(()),
+        Value::Event(_) => writeln!(vcd.writer(), "1{id}"),
     })
+}
+
+/// Writes a text, with the escapes of C for what a VCD cannot have in it.
+fn write_text(vcd: &mut Vcd<'_>, id: IdCode, text: &str) -> io::Result<()> {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '\\' => escaped.push_str("\\\\"),
+            ..=' ' | '\x7f' => escaped.push_str(&format!("\\{:03o}", u32::from(character))),
+            other => escaped.push(other),
+        }
+    }
+    writeln!(vcd.writer(), "s{escaped} {id}")
 }

@@ -10,5 +10,6 @@ mod hostile;
 mod options;
 mod producers;
 mod program;
+mod recordings;
 mod support;
 mod text;

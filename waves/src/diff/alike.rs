@@ -89,7 +89,8 @@ impl Engine<'_> {
         let Self {
             a, b, touched, before, ..
         } = self;
-        let mut apply = |slot: u32, words: &[u64]| {
+        let mut apply = |slot: u32, words: &[u64], state: u64| {
+            touched.states.set_both(slot, state, a.values.count());
             let cell = touched.cells.of(0, slot);
             if cell != GENERAL
                 && let [bits, unknown] = *words

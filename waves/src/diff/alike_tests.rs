@@ -61,7 +61,12 @@ fn text(rows: &[Row], odd: &[(prop::sample::Index, usize)]) -> String {
 /// Returns everything that a result says, or its error.
 fn said(path: [&Path; 2], options: &DiffOptions, plainly: bool) -> String {
     let compared = compare_by(path[0], path[1], options, &mut |_| {}, plainly);
-    let whole = |comparison: Comparison| format!("{comparison}\n{comparison:?}");
+    let whole = |mut comparison: Comparison| {
+        // What equal bytes have between the samples is equal, and is not counted.
+        comparison.unsampled = None;
+        comparison.notes.retain(|note| !note.contains("were not compared"));
+        format!("{comparison}\n{comparison:?}")
+    };
     compared.map_or_else(|error| error.to_string(), whole)
 }
 

@@ -322,7 +322,7 @@ pub(super) fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u
         }
     }
     let width = |pair: &Pair| match (a.values.kind(pair.a?), b.values.kind(pair.b?)) {
-        (Kind::Bits(a), Kind::Bits(b)) if a == b && a <= 64 => Some(a),
+        (Kind::Bits(a), Kind::Bits(b)) if a == b && (1..=64).contains(&a) => Some(a),
         _ => None,
     };
     for (pair, rule) in pairs {

@@ -27,7 +27,10 @@ impl Engine<'_> {
             }
             let (a, b) = match (a, b) {
                 (Some(a), Some(b)) => (a, b),
-                (None, None) => return Ok(()),
+                (None, None) => {
+                    self.look_behind_last_edge();
+                    return Ok(());
+                }
                 (Some(_), None) if self.b.feed().cut().is_some() => return Ok(()),
                 (None, Some(_)) if self.a.feed().cut().is_some() => return Ok(()),
                 (Some(edge), None) => {
@@ -58,6 +61,10 @@ impl Engine<'_> {
                 side.release(sample, &mut self.touched);
             }
             if self.options.start_fs.is_none_or(|start| a.time_fs >= start) {
+                if self.samples == 0 && self.options.start_fs.is_some() {
+                    self.a.hidden.forget();
+                    self.b.hidden.forget();
+                }
                 self.compare(a.time_fs, progress);
                 if self.is_stopped() {
                     return Ok(());
@@ -128,6 +135,7 @@ impl Engine<'_> {
             persistent: true,
             a_number: None,
             b_number: None,
+            largest: None,
             view: View::Bits,
         });
         Ok(())

@@ -3,6 +3,8 @@
 //! The cost of a sample is the number of signals that changed since the previous one: a pair that did not change
 //! stays as equal or as different as it was, and its count is added when that state ends.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::alike::Alike;
 use super::cells::{GENERAL, cells};
 use super::gather::Gathering;
@@ -56,6 +58,8 @@ pub(super) struct State {
     pub(super) since: Option<(u64, First)>,
     pub(super) count: u64,
     pub(super) first: Option<First>,
+    /// The largest distance of its two numbers where they differ; `None` where a value was no number.
+    pub(super) largest: Option<f64>,
 }
 
 pub(super) struct Engine<'a> {
@@ -79,6 +83,13 @@ pub(super) struct Engine<'a> {
     /// Number of differences that did not last longer than the time tolerance.
     pub(super) forgiven: u64,
     pub(super) alike: Alike,
+    /// Pairs that are equal only as 0, 1, `x` and `z`, while the files have further states.
+    pub(super) collapsed: BTreeSet<u32>,
+    /// Pairs of real numbers that are equal only to the digits that a VCD has.
+    pub(super) rounded: BTreeSet<u32>,
+    /// Pairs with changes after the last edge, and whether their values then differ; and the number of these changes.
+    pub(super) behind: BTreeMap<u32, bool>,
+    pub(super) behind_changes: u64,
     /// All signals at the first difference, if they were requested.
     pub(super) state: Vec<SignalState>,
 }
@@ -113,6 +124,7 @@ impl<'a> Engine<'a> {
                 since: None,
                 count: 0,
                 first: None,
+                largest: Some(0.0),
             });
         }
         let mut touched = Touched::new(states.len());
@@ -133,6 +145,10 @@ impl<'a> Engine<'a> {
             unrecorded: 0,
             forgiven: 0,
             alike: Alike::default(),
+            collapsed: BTreeSet::new(),
+            rounded: BTreeSet::new(),
+            behind: BTreeMap::new(),
+            behind_changes: 0,
             state: Vec::new(),
         }
     }
@@ -175,6 +191,7 @@ impl<'a> Engine<'a> {
             if (in_a || in_b) && wanted {
                 if self.a.is_off() || self.b.is_off() {
                     self.unrecorded += 1;
+                    self.forget_events();
                 } else {
                     self.compare(began, progress);
                     if self.is_stopped() {
@@ -198,6 +215,7 @@ impl<'a> Engine<'a> {
             states,
             touched,
             before,
+            rounded,
             ..
         } = self;
         let mut diverged: Vec<u32> = Vec::new();
@@ -221,10 +239,20 @@ impl<'a> Engine<'a> {
                 return;
             }
             let pair = hot[at as usize];
+            let state = &mut states[at as usize];
             let equal = match (pair.a, pair.b) {
-                (Some(slot_a), Some(slot_b)) => states[at as usize]
-                    .rule
-                    .equal(a.values.get(slot_a), b.values.get(slot_b)),
+                (Some(slot_a), Some(slot_b)) => {
+                    let (a, b) = (a.values.get(slot_a), b.values.get(slot_b));
+                    let equal = state.rule.equal(a, b);
+                    if equal && state.rule.rounds(a, b) {
+                        rounded.insert(at);
+                    }
+                    if !equal {
+                        let largest = state.largest.zip(state.rule.distance(a, b));
+                        state.largest = largest.map(|(largest, distance)| largest.max(distance));
+                    }
+                    equal
+                }
                 _ => false,
             };
             if equal && let (Some((before, _)), Some(slot)) = (before.as_mut(), pair.a) {
@@ -244,7 +272,16 @@ impl<'a> Engine<'a> {
             self.begin(*at as usize, time_fs);
         }
         self.gather(&diverged, time_fs);
+        for at in self.touched.states.take() {
+            let pair = self.hot[at as usize];
+            if let (Some(a), Some(b), false) = (pair.a, pair.b, pair.different)
+                && self.touched.states.get(0, a) != self.touched.states.get(1, b)
+            {
+                self.collapsed.insert(at);
+            }
+        }
         self.touched.cells.forget_noted();
+        self.forget_events();
         self.samples += 1;
         if self.samples.is_multiple_of(PROGRESS_SAMPLES) {
             progress(Progress {
@@ -253,6 +290,34 @@ impl<'a> Engine<'a> {
                 total_bytes: self.total_bytes,
             });
         }
+    }
+
+    /// Looks at what comes after the last edge, which no sample sees.
+    pub(super) fn look_behind_last_edge(&mut self) {
+        let mut behind = Vec::new();
+        for side in [&self.a, &self.b] {
+            let changed = side.hidden.changed();
+            self.behind_changes += changed.len() as u64;
+            behind.extend(changed.into_iter().filter_map(|slot| side.pair_of(slot)));
+        }
+        for pair in behind {
+            let equal = match self.values(pair as usize) {
+                (Some(a), Some(b)) => self.states[pair as usize].rule.equal(a, b),
+                _ => true,
+            };
+            let was_equal = !self.hot[pair as usize].different;
+            self.behind.insert(pair, was_equal && !equal);
+        }
+    }
+
+    /// Returns the slots of each file with values of another kind than declared.
+    pub(super) fn odd(&self) -> [BTreeSet<u32>; 2] {
+        [&self.a, &self.b].map(|side| side.odd().into_iter().collect())
+    }
+
+    fn forget_events(&mut self) {
+        self.a.forget_events(&mut self.touched);
+        self.b.forget_events(&mut self.touched);
     }
 
     pub(super) fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {

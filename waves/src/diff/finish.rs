@@ -1,12 +1,67 @@
 //! Converts the engine's findings into the result.
 
+use std::collections::BTreeSet;
+
 use super::engine::Engine;
-use super::result::{Comparison, CutFile, Difference, seconds};
+use super::result::{Comparison, CutFile, Difference, Unsampled, seconds};
 use crate::wording::{counted, time};
 
 impl Engine<'_> {
+    /// Returns what no sample saw; `None` if there is nothing.
+    fn unsampled(&self, has_clock: bool) -> Option<Unsampled> {
+        let mut unsampled = Unsampled::default();
+        let mut signals = BTreeSet::new();
+        for side in [&self.a, &self.b] {
+            for (slot, count) in side.hidden.counts() {
+                if let Some(pair) = side.pair_of(*slot) {
+                    signals.insert(pair);
+                    unsampled.changes += count;
+                }
+            }
+        }
+        let name = |pair: &u32| self.states[*pair as usize].name.clone();
+        unsampled.between_edges = has_clock;
+        unsampled.signals = signals.iter().map(name).collect();
+        unsampled.changes_after = self.behind_changes;
+        unsampled.signals_after = self.behind.keys().map(name).collect();
+        let differ = self.behind.iter().filter(|(_, differs)| **differs);
+        unsampled.differ_after = differ.map(|(pair, _)| name(pair)).collect();
+        (unsampled.changes + unsampled.changes_after > 0).then_some(unsampled)
+    }
+
     /// Writes the findings into the result.
     pub(super) fn finish(self, comparison: &mut Comparison) {
+        for at in &self.collapsed {
+            comparison.collapsed.push(self.states[*at as usize].name.clone());
+        }
+        if let [first, ..] = comparison.collapsed.as_slice() {
+            comparison.notes.push(format!(
+                "equal only as 0, 1, x and z, for which further states are taken (VHDL's L as 0, H as 1, U, W and - as x; an EVCD's \
+                 drivers and strengths): {}, such as {first}",
+                counted(comparison.collapsed.len() as u64, "signal")
+            ));
+            comparison.exact = false;
+        }
+        for at in &self.rounded {
+            comparison.rounded.push(self.states[*at as usize].name.clone());
+        }
+        comparison.unsampled = self.unsampled(comparison.clock.is_some());
+        comparison
+            .notes
+            .extend(comparison.unsampled.iter().flat_map(Unsampled::notes));
+        if let [first, ..] = comparison.rounded.as_slice() {
+            comparison.notes.push(format!(
+                "equal to 16 digits, as many as a VCD has of a real number, but not to the last bit of the FST: {}, such as {first}",
+                counted(comparison.rounded.len() as u64, "signal")
+            ));
+            comparison.exact = false;
+        }
+        for (side, file) in [(&self.a, "first"), (&self.b, "second")] {
+            let notes = side.feed().notes().iter();
+            comparison
+                .notes
+                .extend(notes.map(|note| format!("the {file} file: {note}")));
+        }
         let mut differences: Vec<(u128, Difference)> = Vec::new();
         for state in self.states {
             // A difference at the end of the files has no end within the tolerance.
@@ -24,6 +79,7 @@ impl Engine<'_> {
                 persistent,
                 a_number: first.a_number,
                 b_number: first.b_number,
+                largest: state.largest.filter(|largest| *largest > 0.0),
                 view: state.rule.reading(),
             };
             differences.push((first.time_fs, difference));
@@ -50,6 +106,7 @@ impl Engine<'_> {
                 "not recorded in one file ($dumpoff) and not compared: {}",
                 counted(self.unrecorded, "sample")
             ));
+            comparison.exact = false;
         }
         if self.forgiven > 0 {
             comparison.notes.push(format!(

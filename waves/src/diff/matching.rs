@@ -1,11 +1,14 @@
 //! Matches the signals of the first file with those of the second.
 
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet, VecDeque};
 
 use super::names::{Entry, Names, canonical};
+use super::parts::{Bits, Common, Derived, Meeting, Shape, meeting};
 use super::pattern::Pattern;
 use super::scopes::{below, best_tops, tops};
 use crate::WaveError;
+use crate::reader::Range;
 
 /// Why two signals were paired.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -43,10 +46,14 @@ impl Pair {
 
 pub(super) struct Matched {
     pub(super) pairs: Vec<Pair>,
-    /// Names of events, which have no value to compare.
+    /// Names of signals that both files have and that cannot be compared.
     pub(super) not_compared: Vec<String>,
-    /// Vectors of each file that were assembled from parts and have a partner: indices in [`Names::groups`].
-    pub(super) groups: [Vec<usize>; 2],
+    /// Slots of each file that are made of bits of others, after those of the file.
+    pub(super) derived: [Vec<Derived>; 2],
+    /// Vectors whose bits were placed without a file that says where.
+    pub(super) assumed: Vec<String>,
+    /// Vectors that both files declare with other indices, or the other way round: first file, second file.
+    pub(super) ranges: Vec<(String, [Range; 2])>,
 }
 
 struct Partners<'a> {
@@ -59,7 +66,8 @@ struct Partners<'a> {
 }
 
 impl Matched {
-    pub(super) fn new(a: &Names, b: &Names, maps: &[(String, String)]) -> Result<Self, WaveError> {
+    /// Matches the names of two files that have so many slots.
+    pub(super) fn new(a: &Names, b: &Names, maps: &[(String, String)], slots: [usize; 2]) -> Result<Self, WaveError> {
         let mut partners = Partners {
             a: &a.entries,
             b: &b.entries,
@@ -71,14 +79,15 @@ impl Matched {
         partners.map(maps)?;
         partners.meet_by_name();
         partners.meet_by_canonical_name();
-        Ok(partners.finish(a, b))
+        Ok(partners.finish(slots.map(|count| count as u32)))
     }
 
-    /// Removes the events, which have no comparable value, from the pairs.
-    pub(super) fn leave_out(&mut self, other_a: impl Fn(u32) -> bool, other_b: impl Fn(u32) -> bool) {
-        let other = |pair: &Pair| pair.a.is_some_and(&other_a) || pair.b.is_some_and(&other_b);
-        self.not_compared = self.pairs.iter().filter(|p| other(p)).map(|p| p.name.clone()).collect();
-        self.pairs.retain(|p| !other(p));
+    /// Removes pairs that cannot be compared.
+    pub(super) fn leave_out(&mut self, is_left_out: impl Fn(&Pair) -> bool) {
+        let pairs = std::mem::take(&mut self.pairs).into_iter();
+        let (left_out, kept): (Vec<Pair>, Vec<Pair>) = pairs.partition(is_left_out);
+        self.not_compared = left_out.into_iter().map(|pair| pair.name).collect();
+        self.pairs = kept;
     }
 
     /// Returns the pairs that `name` means: those that the pattern fits, else the one with this full name, else all
@@ -223,60 +232,156 @@ impl Partners<'_> {
         }
     }
 
-    fn finish(mut self, a: &Names, b: &Names) -> Matched {
-        // Two vectors that are in parts in both files are compared part by part.
-        for (at, partner) in self.of_a.iter_mut().enumerate() {
-            if let Some(other) = *partner
-                && self.a[at].group.is_some()
-                && self.b[other].group.is_some()
-            {
-                *partner = None;
-                self.claimed_b.remove(&other);
+    fn finish(self, slots: [u32; 2]) -> Matched {
+        let mut matched = Matched {
+            pairs: Vec::new(),
+            not_compared: Vec::new(),
+            derived: Default::default(),
+            assumed: Vec::new(),
+            ranges: Vec::new(),
+        };
+        let mut next = slots;
+        let widths: [OnceCell<HashMap<u32, u32>>; 2] = Default::default();
+        let width = |side: usize, slot: u32, entries: &[Entry]| {
+            let widths = widths[side].get_or_init(|| {
+                let wholes = entries.iter().filter_map(|entry| match entry.shape {
+                    Some(Shape::Whole { slot, width, .. }) => Some((slot, width)),
+                    _ => None,
+                });
+                wholes.collect()
+            });
+            widths.get(&slot).copied().unwrap_or(0)
+        };
+        // Parts that are compared as bits of their vector, and bits that only one file has.
+        let mut parts: [HashSet<u32>; 2] = Default::default();
+        let mut alone: [Vec<(String, u32)>; 2] = Default::default();
+        let mut unpaired: HashSet<usize> = HashSet::new();
+        let mut by_bits: Vec<Pair> = Vec::new();
+        let entries = [self.a, self.b];
+        for (at, partner) in self.of_a.iter().enumerate() {
+            let Some(other) = *partner else { continue };
+            let met = [&self.a[at], &self.b[other]];
+            let [Some(shape_a), Some(shape_b)] = met.map(|entry| entry.shape.as_ref()) else {
+                if met.iter().any(|entry| entry.is_in_parts()) {
+                    unpaired.insert(at);
+                }
+                continue;
+            };
+            match meeting(shape_a, shape_b) {
+                Meeting::AsDeclared => {
+                    let ranges = [shape_a, shape_b].map(|shape| match shape {
+                        Shape::Whole { range, .. } => *range,
+                        Shape::Parts(_) => None,
+                    });
+                    if let [Some(a), Some(b)] = ranges
+                        && a != b
+                        && a.left.abs_diff(a.right) == b.left.abs_diff(b.right)
+                    {
+                        matched.ranges.push((met[0].full.clone(), [a, b]));
+                    }
+                }
+                Meeting::PartByPart => {
+                    unpaired.insert(at);
+                }
+                Meeting::Apart => {
+                    unpaired.insert(at);
+                }
+                Meeting::ByIndex {
+                    whole,
+                    common,
+                    only,
+                    assumed,
+                } => {
+                    unpaired.insert(at);
+                    if assumed {
+                        matched.assumed.push(met[0].full.clone());
+                    }
+                    for (side, shape) in [shape_a, shape_b].into_iter().enumerate() {
+                        match shape {
+                            Shape::Parts(of) => parts[side].extend(of.iter().map(|(slot, _)| *slot)),
+                            Shape::Whole { slot, .. } => {
+                                parts[side].insert(*slot);
+                            }
+                        }
+                    }
+                    let mut slot_of = |side: usize, bits: &Bits| {
+                        bits.slot(|slot| width(side, slot, entries[side])).unwrap_or_else(|| {
+                            matched.derived[side].push(Derived {
+                                slot: next[side],
+                                width: bits.width(),
+                                runs: bits.runs(),
+                            });
+                            next[side] += 1;
+                            next[side] - 1
+                        })
+                    };
+                    for Common { of } in &common {
+                        let suffix = if whole { String::new() } else { of[0].suffix() };
+                        by_bits.push(Pair {
+                            by: self.by[at],
+                            name: format!("{}{suffix}", met[0].full),
+                            a: Some(slot_of(0, &of[0])),
+                            b_name: Some(format!("{}{suffix}", met[1].full)),
+                            b: Some(slot_of(1, &of[1])),
+                        });
+                    }
+                    for (side, only) in only.iter().enumerate() {
+                        for bits in only {
+                            let name = format!("{}{}", met[side].full, bits.suffix());
+                            alone[side].push((name, slot_of(side, bits)));
+                        }
+                    }
+                }
             }
         }
-        let groups_a: HashSet<usize> = (0..self.a.len())
-            .filter(|at| self.of_a[*at].is_some())
-            .filter_map(|at| self.a[at].group)
-            .collect();
-        let groups_b: HashSet<usize> = self.claimed_b.iter().filter_map(|at| self.b[*at].group).collect();
-        let (parts_a, parts_b) = (a.parts_of(&groups_a), b.parts_of(&groups_b));
-        let listed = |entry: &Entry, parts: &HashSet<u32>, paired: bool| {
-            paired || (entry.group.is_none() && !parts.contains(&entry.slot))
-        };
-        let of_a = self
-            .a
-            .iter()
-            .zip(self.of_a.iter().zip(&self.by))
-            .filter(|(entry, (partner, _))| listed(entry, &parts_a, partner.is_some()));
-        let of_a = of_a.map(|(entry, (partner, by))| Pair {
-            by: by.filter(|_| partner.is_some()),
-            name: entry.full.clone(),
-            a: Some(entry.slot),
-            b_name: partner.map(|at| self.b[at].full.clone()),
-            b: partner.map(|at| self.b[at].slot),
-        });
-        let alone = self
+        let mut met_b: HashSet<usize> = HashSet::new();
+        for (at, entry) in self.a.iter().enumerate() {
+            let partner = self.of_a[at].filter(|_| !unpaired.contains(&at));
+            if let Some(other) = partner {
+                met_b.insert(other);
+                matched.pairs.push(Pair {
+                    by: self.by[at],
+                    name: entry.full.clone(),
+                    a: Some(entry.slot),
+                    b_name: Some(self.b[other].full.clone()),
+                    b: Some(self.b[other].slot),
+                });
+            } else if !entry.is_in_parts() && !parts[0].contains(&entry.slot) {
+                matched.pairs.push(Pair {
+                    by: None,
+                    name: entry.full.clone(),
+                    a: Some(entry.slot),
+                    b_name: None,
+                    b: None,
+                });
+            }
+        }
+        // A part that has a partner of its own is compared once.
+        let known: HashSet<[Option<u32>; 2]> = matched.pairs.iter().map(|pair| [pair.a, pair.b]).collect();
+        by_bits.retain(|pair| !known.contains(&[pair.a, pair.b]));
+        matched.pairs.append(&mut by_bits);
+        let [alone_a, alone_b] = alone;
+        matched.pairs.extend(alone_a.into_iter().map(|(name, slot)| Pair {
+            by: None,
+            name,
+            a: Some(slot),
+            b_name: None,
+            b: None,
+        }));
+        let of_b = self
             .b
             .iter()
             .enumerate()
-            .filter(|(at, entry)| !self.claimed_b.contains(at) && listed(entry, &parts_b, false));
-        let of_b = alone.map(|(_, entry)| Pair {
-            name: entry.full.clone(),
-            b_name: Some(entry.full.clone()),
+            .filter(|(at, entry)| !met_b.contains(at) && !entry.is_in_parts() && !parts[1].contains(&entry.slot));
+        let of_b = of_b.map(|(_, entry)| (entry.full.clone(), entry.slot));
+        matched.pairs.extend(of_b.chain(alone_b).map(|(name, slot)| Pair {
+            b_name: Some(name.clone()),
+            name,
             by: None,
             a: None,
-            b: Some(entry.slot),
-        });
-        let sorted = |groups: HashSet<usize>| {
-            let mut groups: Vec<usize> = groups.into_iter().collect();
-            groups.sort_unstable();
-            groups
-        };
-        Matched {
-            pairs: of_a.chain(of_b).collect(),
-            not_compared: Vec::new(),
-            groups: [sorted(groups_a), sorted(groups_b)],
-        }
+            b: Some(slot),
+        }));
+        matched
     }
 }
 
@@ -289,18 +394,17 @@ mod tests {
             path: (*path).to_owned(),
             full: (*path).to_owned(),
             slot: slot as u32,
-            group: None,
+            shape: None,
         };
         Names {
             entries: paths.iter().enumerate().map(entry).collect(),
-            groups: Vec::new(),
             left_out: 0,
         }
     }
 
     fn partners(a: &[&str], b: &[&str], maps: &[(&str, &str)]) -> Vec<(Option<u32>, Option<u32>)> {
         let maps: Vec<_> = maps.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
-        let matched = Matched::new(&names(a), &names(b), &maps).unwrap();
+        let matched = Matched::new(&names(a), &names(b), &maps, [a.len(), b.len()]).unwrap();
         matched.pairs.iter().map(|p| (p.a, p.b)).collect()
     }
 
@@ -361,7 +465,7 @@ mod tests {
     fn unit_maps_that_meet_nothing_are_errors() {
         for (from, to) in [("nothing", "t.x"), ("t.x", "nothing"), ("no_*", "t.*"), ("t.*", "no_*")] {
             let maps = [(from.to_owned(), to.to_owned())];
-            assert!(Matched::new(&names(&["t.x"]), &names(&["t.x"]), &maps).is_err());
+            assert!(Matched::new(&names(&["t.x"]), &names(&["t.x"]), &maps, [1; 2]).is_err());
         }
     }
 }

@@ -48,8 +48,10 @@ mod matching;
 mod names;
 mod options;
 mod page;
+mod parts;
 mod pattern;
 mod picture;
+mod reading;
 mod result;
 mod rule;
 pub mod sample;
@@ -60,6 +62,7 @@ mod text;
 mod touched;
 mod value;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The JSON Schema of a [`Comparison`], as `--json` prints it.
@@ -79,13 +82,14 @@ use self::names::{Filter, Names};
 pub use self::options::{DiffOptions, Latency, Reset, SamplingEdge, parse_time_fs};
 pub use self::page::html;
 pub use self::picture::{merged, merged_files, show, shown_files};
+pub(crate) use self::reading::{Reading, Reread};
 pub use self::result::{Comparison, Context, ContextRow, CutFile, DiffVerdict, Difference, Leniency, SignalState};
 use self::rule::Rule;
 pub use self::rule::{Tolerance, View};
 use self::side::{Delayed, Side, slot_of};
 pub use self::value::{Shown, UnknownPolicy};
 use crate::WaveError;
-use crate::reader::{Declarations, Kind, Watch, Wave};
+use crate::reader::{self, Declarations, FileEnd, Kind, Watch, Wave};
 use crate::wording::{counted, time};
 
 /// Compares file `a` with file `b`. `progress` is called now and then.
@@ -103,6 +107,9 @@ pub fn compare(
 }
 
 /// As [`compare`]; with `plainly`, every change of both files is read.
+///
+/// Where signals turn out to have values of another kind than declared, the files are read again with a kind for these
+/// that holds any value.
 fn compare_by(
     a: &Path,
     b: &Path,
@@ -110,7 +117,37 @@ fn compare_by(
     progress: &mut dyn FnMut(Progress),
     plainly: bool,
 ) -> Result<Comparison, WaveError> {
+    let mut odd: [BTreeSet<u32>; 2] = Default::default();
+    loop {
+        let (mut comparison, found) = compare_once([a, b], options, progress, plainly, &odd)?;
+        let more = odd.iter().zip(&found).any(|(odd, found)| !found.is_subset(odd));
+        if !more {
+            return Ok(comparison);
+        }
+        if ![a, b].into_iter().all(reader::can_be_read_again) {
+            comparison
+                .not_compared_because("a value of another kind than declared came through a pipe: save it in a file");
+            return Ok(comparison);
+        }
+        for (odd, mut found) in odd.iter_mut().zip(found) {
+            odd.append(&mut found);
+        }
+    }
+}
+
+/// Reads both files once, with signals that hold values of any kind. Returns also those that should have held them.
+fn compare_once(
+    [a, b]: [&Path; 2],
+    options: &DiffOptions,
+    progress: &mut dyn FnMut(Progress),
+    plainly: bool,
+    odd: &[BTreeSet<u32>; 2],
+) -> Result<(Comparison, [BTreeSet<u32>; 2]), WaveError> {
     let mut waves = [Wave::open(a)?, Wave::open(b)?];
+    for (wave, odd) in waves.iter_mut().zip(odd) {
+        wave.hold_any(odd);
+    }
+    let slots = waves.each_ref().map(|wave| wave.declarations.kinds.len());
     let plan = Plan::new(&mut waves, options)?;
     let widths = widths(&plan.matched, &waves);
     let mut comparison = Comparison::new(&plan.matched, &plan.rules, &plan.latency_texts(), &widths);
@@ -125,10 +162,33 @@ fn compare_by(
             let note = format!("the {file} file has no $timescale: its times are taken as nanoseconds");
             comparison.notes.push(note);
         }
+        let notes = wave.declarations.notes.iter();
+        comparison
+            .notes
+            .extend(notes.map(|note| format!("the {file} file: {note}")));
     }
     if options.explain {
         let left_out = plan.names.iter().map(|names| names.left_out).sum();
         comparison.matching = Some(MatchReport::new(&plan.matched, left_out));
+    }
+    if let [first, ..] = plan.matched.assumed.as_slice() {
+        comparison.exact = false;
+        comparison.notes.push(format!(
+            "a vector in parts in one file, without a range in the other: the lowest index is taken for the last digit, in {}, \
+             such as {first}",
+            counted(plan.matched.assumed.len() as u64, "vector")
+        ));
+    }
+    if let [(first, [a, b]), ..] = plan.matched.ranges.as_slice() {
+        comparison.exact = false;
+        comparison.notes.push(format!(
+            "declared with other indices in each file and compared digit by digit: {}, such as {first}, [{}:{}] and [{}:{}]",
+            counted(plan.matched.ranges.len() as u64, "vector"),
+            a.left,
+            a.right,
+            b.left,
+            b.right
+        ));
     }
     comparison.signals = comparison.compared.len() as u64;
     let clock = plan.clocking.clock;
@@ -146,8 +206,10 @@ fn compare_by(
             true => "of the signals that --only and --ignore leave, none but the clock is in both files",
             false => "the files have no signal in common; say with --map A=B which belong together",
         });
-        return Ok(comparison);
+        return Ok((comparison, Default::default()));
     }
+    comparison.readings = readings(&plan.matched, &slots, odd);
+    let plan_not_compared: Vec<String> = plan.matched.not_compared.clone();
     let mut engine = plan.start(waves, options)?;
     if !plainly {
         engine.look_for_alike();
@@ -156,8 +218,13 @@ fn compare_by(
         Some(clock) => engine.at_edges(clock, progress)?,
         None => engine.at_changes(progress)?,
     }
+    let found = engine.odd();
     engine.finish(&mut comparison);
-    Ok(comparison)
+    if !plan_not_compared.is_empty() {
+        comparison
+            .not_compared_because("they are events in one file and values in the other: leave them out with --ignore");
+    }
+    Ok((comparison, found))
 }
 
 /// The pairs, and how they are compared.
@@ -174,12 +241,24 @@ impl Plan {
     fn new([wave_a, wave_b]: &mut [Wave; 2], options: &DiffOptions) -> Result<Self, WaveError> {
         let filter = Filter::new(&options.only, &options.ignore)?;
         let [root_a, root_b] = &options.roots;
-        let a = Names::new(&mut wave_a.declarations, root_a.as_deref(), &filter, "first")?;
-        let b = Names::new(&mut wave_b.declarations, root_b.as_deref(), &filter, "second")?;
-        let (a_kinds, b_kinds) = (&wave_a.declarations.kinds, &wave_b.declarations.kinds);
-        let mut matched = Matched::new(&a, &b, &options.maps)?;
-        let is_event = |kinds: &[Kind], slot: u32| kinds[slot as usize] == Kind::Event;
-        matched.leave_out(|slot| is_event(a_kinds, slot), |slot| is_event(b_kinds, slot));
+        let a = Names::new(&wave_a.declarations, root_a.as_deref(), &filter, "first")?;
+        let b = Names::new(&wave_b.declarations, root_b.as_deref(), &filter, "second")?;
+        let (a_kinds, b_kinds) = (&mut wave_a.declarations.kinds, &mut wave_b.declarations.kinds);
+        let mut matched = Matched::new(&a, &b, &options.maps, [a_kinds.len(), b_kinds.len()])?;
+        for (kinds, derived) in [&mut *a_kinds, &mut *b_kinds].into_iter().zip(&matched.derived) {
+            kinds.extend(derived.iter().map(|derived| Kind::Bits(derived.width)));
+        }
+        let (a_kinds, b_kinds) = (&*a_kinds, &*b_kinds);
+        // Filtering glitches keeps values, and an event has none.
+        let events_fit = options.glitch_fs == 0;
+        matched.leave_out(|pair| {
+            let kind = |kinds: &[Kind], slot: Option<u32>| slot.map(|slot| kinds[slot as usize]);
+            match [kind(a_kinds, pair.a), kind(b_kinds, pair.b)] {
+                [Some(Kind::Event), Some(Kind::Event)] => !events_fit,
+                [Some(Kind::Event), Some(_)] | [Some(_), Some(Kind::Event)] => true,
+                _ => false,
+            }
+        });
         let clocking = Clocking::find(&matched, options, |pair| {
             let one_bit = |kinds: &[Kind], slot: Option<u32>| slot.is_some_and(|s| kinds[s as usize] == Kind::Bits(1));
             one_bit(a_kinds, pair.a) && one_bit(b_kinds, pair.b)
@@ -190,10 +269,12 @@ impl Plan {
                 "--time-tolerance and --glitch are for files that are compared at every change: add --raw".to_owned(),
             ));
         }
-        let rules = rules(&matched, options, |pair| {
+        let mut rules = rules(&matched, options, |pair| {
             let kind = |kinds: &[Kind], slot: Option<u32>| slot.map(|s| kinds[s as usize]);
             [kind(a_kinds, pair.a), kind(b_kinds, pair.b)]
         })?;
+        let to_16_digits = wave_a.is_fst() != wave_b.is_fst();
+        rules.iter_mut().for_each(|rule| rule.to_16_digits = to_16_digits);
         Ok(Self {
             latencies: latencies(&matched, options, sampled)?,
             names: [a, b],
@@ -220,7 +301,7 @@ impl Plan {
     fn start(self, [wave_a, wave_b]: [Wave; 2], options: &DiffOptions) -> Result<Engine<'_>, WaveError> {
         let total_bytes = wave_a.bytes().zip(wave_b.bytes()).map(|(a, b)| a + b);
         let Self {
-            names,
+            names: _,
             matched,
             clocking,
             rules,
@@ -248,17 +329,20 @@ impl Plan {
                 slot: slot_of(clock, of_b),
                 falling: options.edge == SamplingEdge::Falling,
             });
-            let (declarations, feed) = wave.play(watch, options.allow_truncated)?;
+            let file_end = match options.allow_truncated {
+                true => FileEnd::UpToLastTime,
+                false => FileEnd::Refuse,
+            };
+            let (declarations, feed) = wave.play(watch, file_end)?;
             let Declarations { kinds, unit_fs, .. } = declarations;
-            let groups: Vec<_> = matched.groups[at]
-                .iter()
-                .map(|group| &names[at].groups[*group])
-                .collect();
             let slot = |pair: &mut Pair| if of_b { pair.b } else { pair.a };
             let mut slots: Vec<Option<u32>> = pairs.iter_mut().map(|(pair, _)| slot(pair)).collect();
-            let mut side = Side::new(at, feed, &kinds, unit_fs, &groups, &mut slots, &delays[at]);
+            let mut side = Side::new(at, feed, &kinds, unit_fs, &matched.derived[at], &mut slots, &delays[at]);
             for ((pair, _), slot) in pairs.iter_mut().zip(slots) {
                 *(if of_b { &mut pair.b } else { &mut pair.a }) = slot;
+            }
+            if let Some(clock) = clocking.clock {
+                side.hidden.set_clock(slot_of(clock, of_b));
             }
             if let Some((reset, active)) = clocking.reset {
                 side.wait_for_release(slot_of(reset, of_b), active);
@@ -276,11 +360,29 @@ impl Plan {
     }
 }
 
+/// Returns how each file is read again. `slots` are the numbers of slots of the files.
+fn readings(matched: &Matched, slots: &[usize; 2], odd: &[BTreeSet<u32>; 2]) -> [Reading; 2] {
+    [0, 1].map(|side| {
+        let names = matched.pairs.iter().filter_map(|pair| {
+            let (name, slot) = match side {
+                0 => (Some(&pair.name), pair.a?),
+                _ => (pair.b_name.as_ref(), pair.b?),
+            };
+            (slot as usize >= slots[side]).then_some((name?.clone(), slot))
+        });
+        Reading {
+            any: odd[side].clone(),
+            names: names.collect(),
+            derived: matched.derived[side].clone(),
+        }
+    })
+}
+
 /// Returns the widths of each pair of vectors, if they differ.
 fn widths(matched: &Matched, [a, b]: &[Wave; 2]) -> Vec<Option<[u32; 2]>> {
     let width = |wave: &Wave, slot: Option<u32>| match wave.declarations.kinds[slot? as usize] {
         Kind::Bits(width) => Some(width),
-        Kind::Real | Kind::Text | Kind::Event => None,
+        Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => None,
     };
     let widths = |pair: &Pair| Some([width(a, pair.a)?, width(b, pair.b)?]).filter(|[a, b]| a != b);
     matched.pairs.iter().map(widths).collect()

@@ -9,11 +9,12 @@
 //! | `mem(3)`, `mem<3>`, `mem__BRA__3__KET__` | VHDL, Yosys, Verilator | `mem[3]` |
 //! | `Count`, `count` | Verilog, GHDL | `count` |
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 
+use super::parts::Shape;
 use super::pattern::Pattern;
 use crate::WaveError;
-use crate::reader::{Declarations, Kind};
+use crate::reader::{Declarations, Kind, Range};
 
 /// A signal that may find a partner.
 #[derive(Debug, Clone)]
@@ -22,26 +23,23 @@ pub(super) struct Entry {
     pub(super) path: String,
     /// Full name.
     pub(super) full: String,
+    /// The first slot, if it is a vector in parts.
     pub(super) slot: u32,
-    /// Index in [`Names::groups`], if it is assembled from parts.
-    pub(super) group: Option<usize>,
+    /// Its bits, if it has any.
+    pub(super) shape: Option<Shape>,
 }
 
-/// A vector assembled from signals that are its parts.
-#[derive(Debug, Clone)]
-pub(super) struct Group {
-    /// Slot of the whole vector, after those of the file.
-    pub(super) slot: u32,
-    /// Slot of each part, its width, and the position of its last digit, where index 0 or the lowest index is the
-    /// least significant bit.
-    pub(super) parts: Vec<(u32, u32, u32)>,
+impl Entry {
+    /// Whether it is a vector of which the file has only parts.
+    pub(super) fn is_in_parts(&self) -> bool {
+        matches!(self.shape, Some(Shape::Parts(_)))
+    }
 }
 
 /// The names of one file.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     pub(super) entries: Vec<Entry>,
-    pub(super) groups: Vec<Group>,
     /// Names of the file that do not take part.
     pub(super) left_out: usize,
 }
@@ -82,10 +80,9 @@ impl Filter {
 }
 
 impl Names {
-    /// Takes the names below `root` that pass the filter, and gives each vector that exists only in parts a slot of
-    /// its own, after those of the file.
+    /// Takes the names below `root` that pass the filter, and adds the vectors that exist only in parts.
     pub(super) fn new(
-        declarations: &mut Declarations,
+        declarations: &Declarations,
         root: Option<&str>,
         filter: &Filter,
         file: &str,
@@ -116,7 +113,10 @@ impl Names {
                 "the {file} file has no scope `{root}` to be the root"
             )));
         }
-        vectors.retain(|_, members| members.len() >= 2);
+        let parts: BTreeMap<String, Vec<(u32, Range)>> = vectors
+            .into_iter()
+            .filter_map(|(vector, members)| Some((vector, parts(declarations, &members)?)))
+            .collect();
         let mut names = Self {
             left_out: declarations.names.len() - taken.len(),
             ..Self::default()
@@ -124,10 +124,19 @@ impl Names {
         for (at, mut path) in taken {
             let named = &declarations.names[at];
             let mut full = named.path.clone();
+            let range = named.part.as_ref().map(|(_, range)| *range);
+            let shape = match declarations.kinds[named.slot as usize] {
+                Kind::Bits(width @ 1..) => Some(Shape::Whole {
+                    slot: named.slot,
+                    width,
+                    range,
+                }),
+                _ => None,
+            };
             // The first part of a vector has the name of the whole vector.
             if let Some((vector, range)) = &named.part
                 && *vector == full
-                && vectors.contains_key(vector)
+                && parts.contains_key(vector)
             {
                 let range = format!("[{}:{}]", range.left, range.right);
                 path.push_str(&range);
@@ -137,58 +146,42 @@ impl Names {
                 path,
                 full,
                 slot: named.slot,
-                group: None,
+                shape,
             });
         }
-        for (vector, members) in vectors {
-            if let (Some(group), Some(path)) = (group(declarations, &members), below(&vector)) {
+        for (vector, parts) in parts {
+            if let (Some((slot, _)), Some(path)) = (parts.first().copied(), below(&vector)) {
                 names.entries.push(Entry {
                     path,
                     full: vector,
-                    slot: group.slot,
-                    group: Some(names.groups.len()),
+                    slot,
+                    shape: Some(Shape::Parts(parts)),
                 });
-                names.groups.push(group);
             }
         }
         Ok(names)
     }
-
-    /// Returns the slots of the parts of these groups.
-    pub(super) fn parts_of(&self, groups: &HashSet<usize>) -> HashSet<u32> {
-        let groups = groups.iter().filter_map(|at| self.groups.get(*at));
-        groups.flat_map(|group| group.parts.iter().map(|part| part.0)).collect()
-    }
 }
 
-/// Assembles a vector of parts that lie side by side without a gap.
-fn group(declarations: &mut Declarations, members: &[usize]) -> Option<Group> {
+/// Returns the parts of a vector, if the file has it in parts: none that holds all the others, and none over another.
+fn parts(declarations: &Declarations, members: &[usize]) -> Option<Vec<(u32, Range)>> {
     let mut parts = Vec::new();
     for at in members {
         let named = &declarations.names[*at];
-        let (_, range) = named.part.as_ref()?;
-        let low = range.left.min(range.right);
-        let width = u32::try_from(range.left.abs_diff(range.right)).ok()? + 1;
-        parts.push((low, width, named.slot));
-    }
-    parts.sort_unstable();
-    let (lowest, ..) = *parts.first()?;
-    let mut at = 0u32;
-    let mut placed = Vec::new();
-    for (low, width, slot) in parts {
-        if low.checked_sub(lowest)? != i64::from(at) {
+        let (vector, range) = named.part.as_ref()?;
+        // A vector that is there once as a whole is no part of anything.
+        if members.len() == 1 && *vector == named.path
+            || !matches!(declarations.kinds[named.slot as usize], Kind::Bits(_))
+        {
             return None;
         }
-        placed.push((slot, width, at));
-        at = at.checked_add(width)?;
+        parts.push((named.slot, *range));
     }
-    let width = at;
-    // The parts were counted already; the whole vector counts again, within the same limit.
-    declarations.kinds.push(Kind::Bits(width));
-    Some(Group {
-        slot: declarations.kinds.len() as u32 - 1,
-        parts: placed,
-    })
+    let ends = |range: &Range| (range.left.min(range.right), range.left.max(range.right));
+    let mut ordered: Vec<(i64, i64)> = parts.iter().map(|(_, range)| ends(range)).collect();
+    ordered.sort_unstable();
+    let is_apart = ordered.windows(2).all(|pair| pair[0].1 < pair[1].0);
+    is_apart.then_some(parts)
 }
 
 /// Returns the common form of a name; see the module documentation.
@@ -236,20 +229,20 @@ mod tests {
     #[test]
     fn unit_a_root_and_filters_choose() {
         let mut declarations = Declarations::default();
-        let slot = declarations.add_slot(Kind::Bits(8), "").unwrap();
+        let slot = declarations.add_slot(Kind::Bits(8)).unwrap();
         for (scope, names) in [("tb", ["clk", "y"]), ("dut", ["y", "z"])] {
             declarations.enter(scope).unwrap();
             for name in names {
                 declarations.add_name(name, slot).unwrap();
             }
         }
-        let paths = |root: Option<&str>, only: &[&str], ignore: &[&str], declarations: &mut Declarations| {
+        let paths = |root: Option<&str>, only: &[&str], ignore: &[&str], declarations: &Declarations| {
             let owned = |texts: &[&str]| texts.iter().map(|t| (*t).to_owned()).collect::<Vec<_>>();
             let filter = Filter::new(&owned(only), &owned(ignore)).unwrap();
             let names = Names::new(declarations, root, &filter, "first")?;
             Ok::<Vec<String>, WaveError>(names.entries.into_iter().map(|e| e.path).collect())
         };
-        let all = &mut declarations;
+        let all = &declarations;
         assert_eq!(paths(Some("tb.dut"), &[], &[], all).unwrap(), ["y", "z"]);
         assert_eq!(paths(None, &["dut"], &["z"], all).unwrap(), ["tb.dut.y"]);
         assert_eq!(paths(None, &["tb.*"], &[], all).unwrap(), ["tb.clk", "tb.y"]);

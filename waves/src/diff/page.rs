@@ -48,8 +48,8 @@ pub fn html(a: &Path, b: &Path, comparison: &Comparison) -> Result<String, WaveE
         });
         each.collect()
     };
-    let of_a = picture::traces(a, &requests(|names| &names.0))?;
-    let of_b = picture::traces(b, &requests(|names| &names.1))?;
+    let of_a = picture::traces(comparison, 0, a, &requests(|names| &names.0))?;
+    let of_b = picture::traces(comparison, 1, b, &requests(|names| &names.1))?;
 
     let (class, verdict) = match comparison.result {
         DiffVerdict::Equal => ("equal", "equal"),

@@ -14,8 +14,8 @@ use super::svg::{self, Lane, Trace, Window};
 use super::{Comparison, Shown};
 use crate::WaveError;
 use crate::files::{OutputSink, write_text};
-use crate::merge::{DifferenceSignal, Focus, MergePart, merge_around};
-use crate::reader::{Kind, Value, Values, Wave};
+use crate::merge::{DifferenceSignal, Focus, MergePart, merge_reread};
+use crate::reader::{Kind, Value, Values};
 
 /// Largest number of signals that are shown, the earliest first.
 const SIGNALS: usize = 8;
@@ -62,14 +62,14 @@ pub fn show(
 
     let of = |side: fn(&(String, String)) -> &String| lanes.iter().map(|pair| side(pair).clone()).collect();
     let signals: [Vec<String>; 2] = [of(|pair| &pair.0), of(|pair| &pair.1)];
-    let all = |path: &Path, signals: &[String]| -> Result<Vec<Trace>, WaveError> {
+    let all = |file: usize, path: &Path| -> Result<Vec<Trace>, WaveError> {
         let request = Request {
-            signals: signals.to_vec(),
+            signals: signals[file].clone(),
             window,
         };
-        Ok(traces(path, &[request])?.pop().unwrap_or_default())
+        Ok(traces(comparison, file, path, &[request])?.pop().unwrap_or_default())
     };
-    let [traces_a, traces_b] = [all(a, &signals[0])?, all(b, &signals[1])?];
+    let [traces_a, traces_b] = [all(0, a)?, all(1, b)?];
     let lanes = lanes
         .iter()
         .zip(traces_a.into_iter().zip(traces_b))
@@ -97,9 +97,8 @@ pub fn show(
     let leaves: Vec<String> = shown.iter().map(|(name, _)| name.replace('.', "_")).collect();
     let numeric = |signal: &str| {
         let d = comparison.differences.iter().find(|d| d.signal == signal);
-        // A vector that is assembled from parts has no trace of its own for the difference.
-        let traced = |lane: &Lane| lane.signal == signal && !lane.a.values.is_empty() && !lane.b.values.is_empty();
-        d.is_some_and(|d| matches!(d.a, Shown::Bits(_) | Shown::Real(_))) && lanes.iter().any(traced)
+        let is_number = |shown: &Shown| matches!(shown, Shown::Bits(_) | Shown::Real(_));
+        d.is_some_and(|d| is_number(&d.a) && is_number(&d.b))
     };
     let differences: Vec<DifferenceSignal<'_>> = shown
         .iter()
@@ -120,7 +119,15 @@ pub fn show(
         span_fs: window.to - window.from,
     };
     let parts = [MergePart { scope: "a", path: a }, MergePart { scope: "b", path: b }];
-    merge_around(sink, &base.with_extension("vcd"), &parts, &differences, Some(&focus))?;
+    let sources = [comparison.read_again(0, a)?, comparison.read_again(1, b)?];
+    merge_reread(
+        sink,
+        &base.with_extension("vcd"),
+        &parts,
+        sources.into(),
+        &differences,
+        Some(&focus),
+    )?;
     Ok(true)
 }
 
@@ -146,29 +153,35 @@ pub(super) struct Request {
 
 /// Returns for each request the traces of its signals in its window, read in one pass; an empty trace for a signal that
 /// the file does not have under that name.
-pub(super) fn traces(path: &Path, requests: &[Request]) -> Result<Vec<Vec<Trace>>, WaveError> {
-    let (declarations, mut feed) = Wave::open(path)?.play(None, true)?;
-    let by_name: HashMap<&str, u32> = declarations.names.iter().map(|n| (n.path.as_str(), n.slot)).collect();
-    let mut values = Values::new(&declarations.kinds);
-    let mut drawings: Vec<Drawing> = requests.iter().map(|r| Drawing::new(r, &by_name, &values)).collect();
-    while let Some(step) = feed.next_step()? {
-        let time = u128::from(step.time) * u128::from(declarations.unit_fs);
+pub(super) fn traces(
+    comparison: &Comparison,
+    file: usize,
+    path: &Path,
+    requests: &[Request],
+) -> Result<Vec<Vec<Trace>>, WaveError> {
+    let mut read = comparison.read_again(file, path)?;
+    let names = read.declarations.names.iter();
+    let by_name: HashMap<&str, u32> = names.map(|n| (n.path.as_str(), n.slot)).collect();
+    let mut drawings: Vec<Drawing> = requests
+        .iter()
+        .map(|request| Drawing::new(request, &by_name, &read.values))
+        .collect();
+    while let Some(time) = read.next_time()? {
+        let time = u128::from(time) * u128::from(read.declarations.unit_fs);
         for drawing in drawings.iter_mut().filter(|d| !d.entered && time > d.window.from) {
-            drawing.note(drawing.window.from, &values);
+            drawing.note(drawing.window.from, &read.values);
             drawing.entered = true;
         }
         if drawings.iter().all(|drawing| time >= drawing.window.to) {
             break;
         }
-        feed.each_change(|slot, words| {
-            values.set(slot, words);
-        });
+        read.take_in();
         for drawing in drawings.iter_mut().filter(|d| d.entered && time < d.window.to) {
-            drawing.note(time, &values);
+            drawing.note(time, &read.values);
         }
     }
     for drawing in drawings.iter_mut().filter(|drawing| !drawing.entered) {
-        drawing.note(drawing.window.from, &values);
+        drawing.note(drawing.window.from, &read.values);
     }
     Ok(drawings.into_iter().map(|drawing| drawing.traces).collect())
 }
@@ -233,13 +246,16 @@ pub fn merged(
     comparison: &Comparison,
 ) -> Result<(), WaveError> {
     let is_number = |shown: &Shown| matches!(shown, Shown::Bits(_) | Shown::Real(_));
-    let traced = [traced(a)?, traced(b)?];
+    let compared: HashMap<&str, &(String, String)> = comparison
+        .compared
+        .iter()
+        .map(|names| (names.0.as_str(), names))
+        .collect();
     let differing: Vec<(&(String, String), String)> = comparison
         .differences
         .iter()
         .filter(|d| is_number(&d.a) && is_number(&d.b))
-        .filter_map(|d| comparison.compared.iter().find(|(name, _)| *name == d.signal))
-        .filter(|(of_a, of_b)| traced[0].contains(of_a) && traced[1].contains(of_b))
+        .filter_map(|d| compared.get(d.signal.as_str()).copied())
         .map(|names| (names, names.0.replace('.', "_")))
         .collect();
     let differences: Vec<DifferenceSignal<'_>> = differing
@@ -251,13 +267,8 @@ pub fn merged(
         })
         .collect();
     let parts = [MergePart { scope: "a", path: a }, MergePart { scope: "b", path: b }];
-    merge_around(sink, path, &parts, &differences, None)
-}
-
-/// Returns the names in the file, without those of vectors that were assembled from parts.
-fn traced(path: &Path) -> Result<HashSet<String>, WaveError> {
-    let names = Wave::open(path)?.declarations.names;
-    Ok(names.into_iter().map(|named| named.path).collect())
+    let sources = [comparison.read_again(0, a)?, comparison.read_again(1, b)?];
+    merge_reread(sink, path, &parts, sources.into(), &differences, None)
 }
 
 /// Formats a value for a drawing: a bit, hexadecimal digits, a number, text.
@@ -272,6 +283,6 @@ fn text(value: Value<'_>) -> String {
         Value::Bits { width, .. } => value.digits(width, false),
         Value::Real(real) => real.map_or_else(|| "x".to_owned(), |real| format!("{real}")),
         Value::Text(_) => value.text().unwrap_or_else(|| "x".to_owned()),
-        Value::Event => String::new(),
+        Value::Event(count) => count.to_string(),
     }
 }

@@ -1,21 +1,26 @@
 //! The result of a comparison as data (the document of `diff --json`).
 
+use std::path::Path;
+
 use serde::Serialize;
 
 use super::explain::MatchReport;
 use super::matching::{Matched, Pair};
+use super::reading::{Reading, Reread};
 use super::rule::{Rule, View};
 use super::value::{Shown, UnknownPolicy};
+use crate::WaveError;
+use crate::wording::counted;
 
 /// Verdict of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DiffVerdict {
-    /// Every compared value was equal, and every signal had a partner or was left out on request.
+    /// Every compared value of every signal that both files have was equal.
     Equal,
     /// At least one value was not equal.
     Different,
-    /// Nothing was compared: exit status 2.
+    /// Nothing was compared, or not all that both files have: exit status 2.
     Incomparable,
 }
 
@@ -40,6 +45,9 @@ pub struct Difference {
     /// `b` as a number, if it is read as one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_number: Option<f64>,
+    /// The largest distance of the two numbers, of which at least one is real: a tolerance of as much makes them equal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest: Option<f64>,
     /// How the text reads the bits.
     #[serde(skip)]
     pub view: View,
@@ -97,6 +105,59 @@ pub struct CutFile {
     pub place: String,
 }
 
+/// Changes that no sample saw.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Unsampled {
+    /// Number of changes, in both files together, that others replaced before the next edge, or at the same time.
+    pub changes: u64,
+    /// Their signals.
+    pub signals: Vec<String>,
+    /// Whether they lie between edges of the clock; otherwise, each at the time of another.
+    pub between_edges: bool,
+    /// Number of changes, in both files together, at and after the last edge.
+    pub changes_after: u64,
+    /// Their signals, and those of them that differ at the end of the files, but did not at the last sample.
+    pub signals_after: Vec<String>,
+    /// See `signals_after`.
+    pub differ_after: Vec<String>,
+}
+
+impl Unsampled {
+    /// Returns what is to be said of it.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let named = |changes: u64, signals: &[String]| {
+            let first = signals.first().map_or("", String::as_str);
+            let such = if signals.len() > 1 {
+                format!(", such as {first}")
+            } else {
+                format!(", {first}")
+            };
+            let signals = counted(signals.len() as u64, "signal");
+            (format!("{} of {signals}", counted(changes, "change")), such)
+        };
+        if self.changes > 0 {
+            let (what, such) = named(self.changes, &self.signals);
+            notes.push(match self.between_edges {
+                true => format!("{what} between the edges were not compared{such}: --raw"),
+                false => format!("{what} were not compared, since others follow at the same time{such}"),
+            });
+        }
+        if self.changes_after > 0 {
+            let (what, such) = named(self.changes_after, &self.signals_after);
+            let differ = match self.differ_after.as_slice() {
+                [] => String::new(),
+                [only] => format!("; 1 signal differs there, {only}"),
+                [first, ..] => format!("; {} signals differ there, such as {first}", self.differ_after.len()),
+            };
+            notes.push(format!(
+                "{what} after the last edge were not compared{such}{differ}: --raw"
+            ));
+        }
+        notes
+    }
+}
+
 /// How a signal is compared, if it is not compared bit by bit in equal widths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Leniency {
@@ -131,7 +192,8 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Time of the first difference of all in seconds.
     pub first_time: Option<f64>,
-    /// Whether nothing was tolerated: no tolerance, no latency, equal widths, unknown bits equal only to themselves.
+    /// Whether nothing was tolerated: no tolerance, no latency, equal widths, unknown bits and further states equal only to
+    /// themselves, everything recorded in both files.
     pub exact: bool,
     /// Signals that are not compared bit by bit at the same time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -147,9 +209,19 @@ pub struct Comparison {
     /// Signals that only the second file has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub only_in_b: Vec<String>,
-    /// Names of events, which are not compared.
+    /// Signals of both files that cannot be compared, such as an event with a value. If there are any, the result is not
+    /// `equal`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
+    /// Real numbers that are equal to the 16 digits that a VCD has, but not to the last bit of the FST.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rounded: Vec<String>,
+    /// Signals that are equal only as 0, 1, `x` and `z`, while the files have further states (VHDL, EVCD).
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub collapsed: Vec<String>,
+    /// Changes that no sample saw.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unsampled: Option<Unsampled>,
     /// With [`DiffOptions::first`](super::DiffOptions::first): all signals at the first difference.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub state: Vec<SignalState>,
@@ -168,6 +240,9 @@ pub struct Comparison {
     /// Number of femtoseconds per unit of time of the files, the finer of the two.
     #[serde(skip)]
     pub unit_fs: u64,
+    /// How both files are read again.
+    #[serde(skip)]
+    pub(crate) readings: [Reading; 2],
     /// The clock's names, if there is one.
     #[serde(skip)]
     pub clock: Option<(String, String)>,
@@ -217,18 +292,38 @@ impl Comparison {
             only_in_a: names(|pair| pair.b.is_none()),
             only_in_b: names(|pair| pair.a.is_none()),
             not_compared: matched.not_compared.clone(),
+            collapsed: Vec::new(),
+            rounded: Vec::new(),
+            unsampled: None,
             state: Vec::new(),
             cut: Vec::new(),
             matching: None,
             compared: matched.pairs.iter().filter_map(Pair::names).collect(),
+            readings: Default::default(),
             clock: None,
             notes: Vec::new(),
         }
     }
 
+    /// Opens the first file (0) or the second (1) again, to be read as it was compared.
+    pub(crate) fn read_again(&self, file: usize, path: &Path) -> Result<Reread, WaveError> {
+        let name = ["first", "second"][file];
+        let is_cut = self.cut.iter().any(|cut| cut.file == name);
+        self.readings[file].open(path, is_cut)
+    }
+
     pub(super) fn incomparable(&mut self, why: &str) {
         self.result = DiffVerdict::Incomparable;
         self.notes.push(why.to_owned());
+    }
+
+    /// Says that some signals were not compared, and why; the result is then not `equal`.
+    pub(super) fn not_compared_because(&mut self, why: &str) {
+        self.exact = false;
+        self.notes.push(format!("some signals were not compared: {why}"));
+        if self.result == DiffVerdict::Equal {
+            self.result = DiffVerdict::Incomparable;
+        }
     }
 
     pub(super) fn conclude(&mut self, samples: u64, differences: Vec<Difference>) {

@@ -126,6 +126,13 @@ pub(super) struct Rule {
     pub(super) view: View,
     pub(super) tolerance: Option<Tolerance>,
     pub(super) unknown: UnknownPolicy,
+    /// Whether real numbers are compared to the 16 digits that a VCD has: the other file is an FST.
+    pub(super) to_16_digits: bool,
+}
+
+/// Returns whether two numbers are the same as a VCD has them, `%.16g`.
+fn same_16_digits(a: f64, b: f64) -> bool {
+    a.is_finite() && b.is_finite() && format!("{a:.15e}") == format!("{b:.15e}")
 }
 
 impl Rule {
@@ -166,6 +173,11 @@ impl Rule {
                 unknown.iter().any(|word| *word != 0)
             }
             (Value::Text(a), Value::Text(b)) => a == b,
+            (Value::Event(a), Value::Event(b)) => a == b,
+            // No value yet, of which the kind is not known.
+            (Value::Text([0, ..]), Value::Real(None)) | (Value::Real(None), Value::Text([0, ..])) => true,
+            (Value::Text([0, ..]), Value::Bits { unknown, .. })
+            | (Value::Bits { unknown, .. }, Value::Text([0, ..])) => unknown.iter().any(|word| *word != 0),
             _ => false,
         }
     }
@@ -176,12 +188,38 @@ impl Rule {
             self.tolerance
                 .is_some_and(|t| (a - b).is_finite() && (a - b).abs() <= t.limit(a, b, self.lsb()))
         };
-        a == b || (a.is_nan() && b.is_nan()) || within()
+        a == b || (a.is_nan() && b.is_nan()) || within() || (self.to_16_digits && same_16_digits(a, b))
+    }
+
+    /// Returns whether two values that are equal are so only to the digits that a VCD has.
+    pub(super) fn rounds(&self, a: Value<'_>, b: Value<'_>) -> bool {
+        let exactly = Self {
+            to_16_digits: false,
+            ..*self
+        };
+        self.to_16_digits && matches!((a, b), (Value::Real(_), Value::Real(_))) && !exactly.equal(a, b)
+    }
+
+    /// Returns by how much two numbers differ, of which at least one is real.
+    pub(super) fn distance(&self, a: Value<'_>, b: Value<'_>) -> Option<f64> {
+        let number = |value: Value<'_>| match value {
+            Value::Real(real) => real,
+            Value::Bits { .. } => self.whole(value).map(|whole| whole as f64 * self.lsb()),
+            _ => None,
+        };
+        let is_real = [a, b].iter().any(|value| matches!(value, Value::Real(_)));
+        let distance = (number(a)? - number(b)?).abs();
+        (is_real && distance.is_finite()).then_some(distance)
     }
 
     /// Returns the bits as a whole number of LSB; `None` with unknown bits that are not zero by the policy.
     fn whole(&self, value: Value<'_>) -> Option<i128> {
-        let known = value.integer(self.view.signed());
+        // A single bit is 0 or 1, if no view says otherwise.
+        let signed = match (self.view, value) {
+            (View::Bits, Value::Bits { width: 1, .. }) => false,
+            (view, _) => view.signed(),
+        };
+        let known = value.integer(signed);
         if known.is_some() || self.unknown != UnknownPolicy::Zero {
             return known;
         }
@@ -199,7 +237,7 @@ impl Rule {
             bits: &words,
             unknown: &zeros,
         };
-        cleared.integer(self.view.signed())
+        cleared.integer(signed)
     }
 
     /// Compares bit by bit; the narrower value is extended with zeros, or in a signed view with its sign.
@@ -228,7 +266,8 @@ impl Rule {
             Some(bits @ Value::Bits { .. }) => Shown::Bits(bits.digits(wider, signed)),
             Some(Value::Real(Some(real))) => Shown::Real(real),
             Some(text @ Value::Text(_)) => text.text().map_or(Shown::Missing, Shown::Text),
-            Some(Value::Real(None) | Value::Event) | None => Shown::Missing,
+            Some(Value::Event(count)) => Shown::Real(count as f64),
+            Some(Value::Real(None)) | None => Shown::Missing,
         };
         (show(a), show(b))
     }
@@ -290,7 +329,7 @@ mod tests {
         let rule = |view, tolerance| Rule {
             view,
             tolerance,
-            unknown: UnknownPolicy::Strict,
+            ..Rule::default()
         };
         let minus_half = bits(4, &[0b1110, 0]);
         let q2 = View::Signed { fraction: 2 };

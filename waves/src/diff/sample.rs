@@ -25,12 +25,13 @@ use std::path::{Path, PathBuf};
 
 use super::clocking::{Clocking, Slots};
 use super::matching::{Matched, Pair};
-use super::names::{Filter, Group, Names};
+use super::names::{Filter, Names};
+use super::parts::Derived;
 use super::side::Side;
 use super::touched::Touched;
 use super::{DiffOptions, SamplingEdge};
 use crate::WaveError;
-use crate::reader::{Declarations, Kind, Value, Watch, Wave};
+use crate::reader::{Declarations, FileEnd, Kind, Value, Watch, Wave};
 use crate::wording::{counted, time};
 
 const CLOCK: &str = "clk";
@@ -59,7 +60,7 @@ pub struct PortMap {
     path: PathBuf,
     /// Slot in the file of each port, in the order of the ports.
     slots: Vec<Option<u32>>,
-    groups: Vec<Group>,
+    derived: Vec<Derived>,
     clock: Slots,
     reset: Option<(Slots, bool)>,
     options: DiffOptions,
@@ -88,15 +89,24 @@ impl PortMap {
             let pipe = std::io::Error::other("it is not a regular file, and must be read several times; save it first");
             return Err(WaveError::file(path, "replay")(pipe));
         }
-        let mut declared = declarations(top, ports).map_err(WaveError::Option)?;
+        let declared = declarations(top, ports).map_err(WaveError::Option)?;
         let mut options = options.clone();
         if let Some(clock) = &options.clock {
             options.maps.push((clock.clone(), CLOCK.to_owned()));
         }
         let filter = Filter::new(&options.only, &options.ignore)?;
-        let file = Names::new(&mut wave.declarations, options.roots[0].as_deref(), &filter, "recorded")?;
-        let block = Names::new(&mut declared, None, &Filter::new(&[], &[])?, "block's")?;
-        let matched = Matched::new(&file, &block, &options.maps)?;
+        let file = Names::new(&wave.declarations, options.roots[0].as_deref(), &filter, "recorded")?;
+        let block = Names::new(&declared, None, &Filter::new(&[], &[])?, "block's")?;
+        let slots = [wave.declarations.kinds.len(), declared.kinds.len()];
+        let mut matched = Matched::new(&file, &block, &options.maps, slots)?;
+        // A port of which the file has only some bits is not in the file.
+        matched
+            .pairs
+            .retain(|pair| pair.b.is_none_or(|slot| (slot as usize) < slots[1]));
+        let derived = std::mem::take(&mut matched.derived[0]);
+        wave.declarations
+            .kinds
+            .extend(derived.iter().map(|derived| Kind::Bits(derived.width)));
         let kinds = &wave.declarations.kinds;
         let one_bit = |pair: &Pair| pair.a.is_some_and(|slot| kinds[slot as usize] == Kind::Bits(1));
         let is_port = |pair: &&Pair| pair.a.is_some() && pair.b.is_some_and(|slot| slot > 0);
@@ -127,11 +137,10 @@ impl PortMap {
             }
             slots[place as usize - 1] = Some(slot);
         }
-        let groups = matched.groups[0].iter().map(|group| file.groups[*group].clone());
         Ok(Some(Self {
             path: path.to_owned(),
             slots,
-            groups: groups.collect(),
+            derived,
             clock,
             reset: clocking.reset,
             notes: clocking.notes,
@@ -156,24 +165,19 @@ impl PortMap {
     /// As [`PortMap::find`].
     pub fn play(&self) -> Result<Player, WaveError> {
         let mut wave = Wave::open(&self.path)?;
-        // The filter is built in the same way, so that assembled vectors get the same slots.
-        let filter = Filter::new(&self.options.only, &self.options.ignore)?;
-        Names::new(
-            &mut wave.declarations,
-            self.options.roots[0].as_deref(),
-            &filter,
-            "recorded",
-        )?;
+        let derived = self.derived.iter();
+        wave.declarations
+            .kinds
+            .extend(derived.map(|derived| Kind::Bits(derived.width)));
         let (declarations, feed) = wave.play(
             Some(Watch {
                 slot: self.clock[0],
                 falling: self.options.edge == SamplingEdge::Falling,
             }),
-            false,
+            FileEnd::Refuse,
         )?;
-        let groups: Vec<&Group> = self.groups.iter().collect();
         let Declarations { kinds, unit_fs, .. } = declarations;
-        let mut side = Side::new(0, feed, &kinds, unit_fs, &groups, &mut [], &[]);
+        let mut side = Side::new(0, feed, &kinds, unit_fs, &self.derived, &mut [], &[]);
         side.start()?;
         Ok(Player {
             side,
@@ -190,10 +194,10 @@ impl PortMap {
 fn declarations(top: &str, ports: &[WantedSignal]) -> Result<Declarations, String> {
     let mut declarations = Declarations::default();
     declarations.enter(top)?;
-    let clock = declarations.add_slot(Kind::Bits(1), CLOCK)?;
+    let clock = declarations.add_slot(Kind::Bits(1))?;
     declarations.add_name(CLOCK, clock)?;
     for port in ports {
-        let slot = declarations.add_slot(Kind::Bits(port.width), &port.name)?;
+        let slot = declarations.add_slot(Kind::Bits(port.width))?;
         declarations.add_name(&port.name, slot)?;
     }
     Ok(declarations)

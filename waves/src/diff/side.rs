@@ -8,25 +8,19 @@
 //! ```
 
 mod delayed;
+mod hidden;
 mod settle;
 
 use std::collections::VecDeque;
 
+use self::hidden::Hidden;
 use self::settle::Settle;
 use super::clocking::Slots;
 use super::delay::DelayLine;
-use super::names::Group;
+use super::parts::{Derived, PartOf, parts_by_slot};
 use super::touched::{Listed, Lists, Touched};
 use crate::WaveError;
 use crate::reader::{Feed, Kind, Step, Values};
-
-/// Destination of the bits of a part of a vector.
-#[derive(Debug, Clone, Copy)]
-struct PartOf {
-    whole: u32,
-    width: u32,
-    low: u32,
-}
 
 /// An edge of the clock.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +52,11 @@ pub(super) struct Side {
     at_edge: bool,
     off: bool,
     gap: bool,
+    /// Events that happened since the last sample.
+    events: Vec<u32>,
+    /// Whether the first step has been taken in.
+    began: bool,
+    pub(super) hidden: Hidden,
 }
 
 /// A delayed signal: its delay, its slot, and the pair that uses it.
@@ -75,24 +74,12 @@ impl Side {
         feed: Feed,
         kinds: &[Kind],
         unit_fs: u64,
-        groups: &[&Group],
+        derived: &[Derived],
         slots: &mut [Option<u32>],
         delays: &[Delayed],
     ) -> Self {
         let mut values = Values::new(kinds);
-        let mut parts = Vec::new();
-        if !groups.is_empty() {
-            parts = vec![Vec::new(); kinds.len()];
-            for group in groups {
-                for (slot, width, low) in &group.parts {
-                    parts[*slot as usize].push(PartOf {
-                        whole: group.slot,
-                        width: *width,
-                        low: *low,
-                    });
-                }
-            }
-        }
+        let parts = parts_by_slot(derived.iter(), kinds.len());
         let mut lines: Vec<DelayLine> = Vec::new();
         let mut delayed = Vec::new();
         if !delays.is_empty() {
@@ -137,6 +124,9 @@ impl Side {
             at_edge: false,
             off: false,
             gap: false,
+            events: Vec::new(),
+            began: false,
+            hidden: Hidden::default(),
         }
     }
 
@@ -176,7 +166,10 @@ impl Side {
     ///
     /// The reader marks edges: a step is examined only to take its changes in.
     pub(super) fn next_edge(&mut self, touched: &mut Touched) -> Result<Option<ClockEdge>, WaveError> {
-        while let Some(step) = self.feed.step() {
+        if self.at_edge {
+            self.begin_interval();
+        }
+        while let Some(step) = self.feed.step().copied() {
             if step.edge && !std::mem::take(&mut self.at_edge) {
                 if self.reset.is_none_or(|reset| self.is_released(reset)) {
                     self.reset = None;
@@ -186,9 +179,11 @@ impl Side {
                     return Ok(Some(ClockEdge { time_fs, gap }));
                 }
                 self.held_in_reset += 1;
+                self.forget_events(touched);
             }
             self.off = step.off;
             self.gap |= step.off;
+            self.count_hidden(touched);
             self.take_in(touched);
             self.feed.advance()?;
         }
@@ -234,6 +229,10 @@ impl Side {
             if self.settle.is_some() {
                 self.hold_back(time_fs)?;
             } else {
+                if !step.distinct {
+                    self.hidden.begin(true);
+                    self.count_hidden(touched);
+                }
                 self.take_in(touched);
                 happened = true;
             }
@@ -244,7 +243,12 @@ impl Side {
     }
 
     fn take_in(&mut self, touched: &mut Touched) {
+        if self.feed.has_states() || touched.states.any() {
+            self.note_states(touched);
+        }
         let Self {
+            events,
+            began,
             number,
             feed,
             values,
@@ -258,7 +262,14 @@ impl Side {
         let (pairs, parts, delayed) = (&*pairs, &**parts, &**delayed);
         let plain = parts.is_empty() && lines.is_empty();
         let Touched { cells, listed, .. } = touched;
+        let from = events.len();
         cells.take(number, feed.changes(), |slot, changed| {
+            if values.kind(slot) == Kind::Event {
+                if !events[from..].contains(&slot) {
+                    events.push(slot);
+                }
+                return;
+            }
             if !values.set(slot, changed.words()) {
                 return;
             }
@@ -266,10 +277,73 @@ impl Side {
                 listed.touch(*pair);
             }
             if !plain {
-                let derived = Derived { pairs, parts, delayed };
-                derived.follow(slot, values, lines, listed);
+                let following = Following { pairs, parts, delayed };
+                following.follow(slot, values, lines, listed);
             }
         });
+        // What the first step says of events is how they begin.
+        if !std::mem::replace(began, true) {
+            events.truncate(from);
+        }
+        for slot in &events[from..] {
+            let count = values.words(*slot)[0] + 1;
+            values.set(*slot, &[count, 0]);
+            for pair in pairs.get(*slot) {
+                listed.touch(*pair);
+            }
+        }
+    }
+
+    /// Puts the states of the step's changes beside those of the other file.
+    fn note_states(&mut self, touched: &mut Touched) {
+        let slots = self.values.count();
+        for (at, (slot, _)) in self.feed.changes().enumerate() {
+            self.note_state(slot, self.feed.state(at), slots, touched);
+        }
+    }
+
+    fn note_state(&self, slot: u32, state: u64, slots: usize, touched: &mut Touched) {
+        let before = touched.states.set(self.number, slot, state, slots);
+        for pair in self.pairs.get(slot) {
+            touched.states.touch(*pair);
+        }
+        if before == state {
+            return;
+        }
+        for (line, place) in self.delayed.get(slot as usize).into_iter().flatten() {
+            let (_, shown) = self.lines[*line as usize].slots[*place as usize];
+            self.note_state(shown, state, slots, touched);
+        }
+        // An assembled vector has a state as long as a part of it has one.
+        let mixed = |state: u64| state.wrapping_mul(2 * u64::from(slot) + 1);
+        for part in self.parts.get(slot as usize).into_iter().flatten() {
+            let whole = touched.states.get(self.number, part.whole) ^ mixed(before) ^ mixed(state);
+            self.note_state(part.whole, whole, slots, touched);
+        }
+    }
+
+    /// Forgets the events since the last sample: they have been compared, or are not to be.
+    pub(super) fn forget_events(&mut self, touched: &mut Touched) {
+        for slot in self.events.drain(..) {
+            if self.values.set(slot, &[0, 0]) {
+                for pair in self.pairs.get(slot) {
+                    touched.listed.touch(*pair);
+                }
+            }
+        }
+    }
+
+    /// Returns the slots with values of another kind than declared that take part in the comparison.
+    pub(super) fn odd(&self) -> Vec<u32> {
+        let takes_part = |slot: &u32| {
+            !self.pairs.get(*slot).is_empty()
+                || self.parts.get(*slot as usize).is_some_and(|parts| !parts.is_empty())
+                || self.delayed.get(*slot as usize).is_some_and(|lines| !lines.is_empty())
+        };
+        let mut odd: Vec<u32> = self.feed.odd().iter().copied().filter(takes_part).collect();
+        odd.sort_unstable();
+        odd.dedup();
+        odd
     }
 
     /// Returns whether every value goes directly to the pairs: none is assembled, delayed or held back.
@@ -299,7 +373,8 @@ impl Side {
     /// Continues with another feed of the same file. Its first step is either an edge that was already returned or not
     /// an edge.
     pub(super) fn go_on(&mut self, feed: Feed, at_edge: bool) -> Result<(), WaveError> {
-        self.feed = feed;
+        let before = std::mem::replace(&mut self.feed, feed);
+        self.feed.continue_from(before);
         self.feed.advance()?;
         self.at_edge = at_edge;
         Ok(())
@@ -312,24 +387,19 @@ impl Side {
 }
 
 /// Values that follow from a slot's value.
-struct Derived<'a> {
+struct Following<'a> {
     pairs: &'a Lists,
     parts: &'a [Vec<PartOf>],
     delayed: &'a [Vec<(u32, u32)>],
 }
 
-impl Derived<'_> {
+impl Following<'_> {
     fn follow(&self, slot: u32, values: &mut Values, lines: &mut [DelayLine], listed: &mut Listed) {
         for (line, place) in self.delayed.get(slot as usize).into_iter().flatten() {
             lines[*line as usize].mark(*place);
         }
         for part in self.parts.get(slot as usize).into_iter().flatten() {
-            for bit in 0..part.width {
-                let words = values.words(slot);
-                let half = words.len() / 2;
-                let digit = [0, half].map(|from| words[from + bit as usize / 64] >> (bit % 64) & 1);
-                values.set_bit(part.whole, part.low + bit, digit);
-            }
+            part.copy(values);
             for pair in self.pairs.get(part.whole) {
                 listed.touch(*pair);
             }

@@ -1,5 +1,6 @@
 //! The result of a comparison as text, at most 100 columns wide.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use super::human::{value, value_and_digits};
@@ -66,7 +67,8 @@ impl fmt::Display for Comparison {
 impl Comparison {
     /// Returns how many signals differ, in words: `1 of 39 signals differs`.
     pub fn differing(&self) -> String {
-        let is_common = |d: &&Difference| self.compared.iter().any(|(name, _)| *name == d.signal);
+        let compared: HashSet<&str> = self.compared.iter().map(|(name, _)| name.as_str()).collect();
+        let is_common = |d: &&Difference| compared.contains(d.signal.as_str());
         let common = self.differences.iter().filter(is_common).count() as u64;
         let alone = self.differences.len() as u64 - common;
         let differ = if common == 1 { "differs" } else { "differ" };
@@ -95,11 +97,17 @@ impl Comparison {
         let is_width = |l: &Leniency| l.widths.is_some() && l.tolerance.is_none() && l.latency.is_none();
         let only_widths = self.only_widths && self.lenient.iter().any(is_width);
         match (self.exact, only_widths) {
+            _ if self.is_lenient_by_rule_only() => "equal by the rules below",
             (true, _) if !self.cut.is_empty() => "equal up to where a file was cut off",
             (true, _) => "equal",
             (false, true) => "equal, but for the widths below",
             (false, false) => "equal within the tolerances below",
         }
+    }
+
+    /// Whether the options tolerate nothing, and only what the files have made the comparison inexact.
+    fn is_lenient_by_rule_only(&self) -> bool {
+        !self.exact && self.unknown == UnknownPolicy::Strict && self.lenient.is_empty() && self.only_widths
     }
 
     fn write_context(&self, context: &Context, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -159,8 +167,15 @@ impl Comparison {
                 short(&value(shown, d.view), VALUE)
             }
         });
+        let tolerance = d.largest.map_or_else(String::new, |largest| {
+            let signal = short(&d.signal, NAME);
+            let option = signal
+                .strip_prefix('…')
+                .map_or_else(|| signal.clone(), |end| format!("*{end}"));
+            format!("\n      --tolerance '{option}={largest:e}abs' makes them equal")
+        });
         format!(
-            "{:width$}  first at {}, {}, {}\n      a {a} | b {b}{cause}",
+            "{:width$}  first at {}, {}, {}\n      a {a} | b {b}{cause}{tolerance}",
             short(&d.signal, NAME),
             self.time(d.time),
             counted(d.count, "sample"),

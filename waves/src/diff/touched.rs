@@ -10,6 +10,8 @@ pub(super) struct Touched {
     pub(super) waiting: Vec<bool>,
     /// The pairs that are simpler than that.
     pub(super) cells: Cells,
+    /// The states beside the values.
+    pub(super) states: States,
 }
 
 impl Touched {
@@ -22,6 +24,13 @@ impl Touched {
             },
             waiting: vec![false; pairs],
             cells: Cells::default(),
+            states: States {
+                changed: Listed {
+                    flags: vec![false; pairs],
+                    list: Vec::new(),
+                },
+                ..States::default()
+            },
         }
     }
 
@@ -38,6 +47,67 @@ impl Touched {
             flags[pair as usize] = false;
             each(pair);
         }
+    }
+}
+
+/// States that a file has beside its values, such as VHDL's weak ones, which are compared as 0, 1, `x` and `z`. Most files
+/// have none.
+#[derive(Debug, Default)]
+pub(super) struct States {
+    /// State of each slot, for both files; empty as long as there is none.
+    of: [Vec<u64>; 2],
+    /// Number of slots that have one now.
+    live: [usize; 2],
+    /// Pairs of which the state of one side, or its value, has changed.
+    changed: Listed,
+}
+
+impl States {
+    /// Whether any slot of any file has a state.
+    #[inline]
+    pub(super) fn any(&self) -> bool {
+        self.live != [0; 2]
+    }
+
+    /// Sets the state of a slot of a file that has so many slots. Returns the state before.
+    pub(super) fn set(&mut self, side: usize, slot: u32, state: u64, slots: usize) -> u64 {
+        let of = &mut self.of[side];
+        if of.is_empty() {
+            if state == 0 {
+                return 0;
+            }
+            of.resize(slots, 0);
+        }
+        let before = std::mem::replace(&mut of[slot as usize], state);
+        self.live[side] = self.live[side] + usize::from(state != 0) - usize::from(before != 0);
+        before
+    }
+
+    /// Sets the state of a slot of both files.
+    pub(super) fn set_both(&mut self, slot: u32, state: u64, slots: usize) {
+        if state != 0 || self.any() {
+            for side in 0..2 {
+                self.set(side, slot, state, slots);
+            }
+        }
+    }
+
+    pub(super) fn get(&self, side: usize, slot: u32) -> u64 {
+        self.of[side].get(slot as usize).copied().unwrap_or(0)
+    }
+
+    /// Notes that a pair is to be looked at.
+    pub(super) fn touch(&mut self, pair: u32) {
+        self.changed.touch(pair);
+    }
+
+    /// Takes the pairs to be looked at.
+    pub(super) fn take(&mut self) -> Vec<u32> {
+        let list = std::mem::take(&mut self.changed.list);
+        for pair in &list {
+            self.changed.flags[*pair as usize] = false;
+        }
+        list
     }
 }
 

@@ -51,7 +51,7 @@ pub(super) fn write_views(
         heading(&mut gtkwave, &part.scope);
         let moves = |slot: &u32| spot.is_some() || part.values[*slot as usize] > 1;
         for (name, slot) in part.signals.iter().filter(|(_, slot)| moves(slot)) {
-            let line = match part.now.kind(*slot) {
+            let line = match part.read.values.kind(*slot) {
                 Kind::Bits(1) => format!("{GTKWAVE_BIT}\n{}.{name}\n", part.scope),
                 Kind::Bits(width) if width >= CURVE_BITS => {
                     format!(
@@ -61,7 +61,8 @@ pub(super) fn write_views(
                     )
                 }
                 Kind::Bits(width) => format!("{GTKWAVE_SIGNED}\n{}.{name}[{}:0]\n", part.scope, width - 1),
-                Kind::Real | Kind::Text | Kind::Event => {
+                Kind::Text | Kind::Event | Kind::Any(_) => format!("{GTKWAVE_BIT}\n{}.{name}\n", part.scope),
+                Kind::Real => {
                     format!("{GTKWAVE_CURVE}\n{}.{name}\n{GTKWAVE_ROOM}", part.scope)
                 }
             };

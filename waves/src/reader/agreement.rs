@@ -55,7 +55,7 @@ fn finished(signals: impl Iterator<Item = Vec<(u64, String)>>) -> Changes {
 }
 
 fn ours(path: &Path) -> Changes {
-    let (declarations, mut feed) = Wave::open(path).unwrap().play(None, false).unwrap();
+    let (declarations, mut feed) = Wave::open(path).unwrap().play(None, FileEnd::Refuse).unwrap();
     let mut values = Values::new(&declarations.kinds);
     let mut changes = vec![Vec::new(); declarations.kinds.len()];
     while let Some(step) = feed.next_step().unwrap() {
@@ -65,7 +65,7 @@ fn ours(path: &Path) -> Changes {
                 bits @ Value::Bits { width, .. } => bits.digits(width, false),
                 Value::Real(Some(real)) => real.to_string(),
                 text @ Value::Text(_) => text.text().unwrap(),
-                Value::Real(None) | Value::Event => return,
+                Value::Real(None) | Value::Event(_) => return,
             };
             note(&mut changes[slot as usize], step.time, value);
         });

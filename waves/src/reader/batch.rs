@@ -26,6 +26,8 @@ pub(crate) struct Step {
     pub(super) words_end: u32,
     /// Whether the watched clock has its edge here.
     pub(crate) edge: bool,
+    /// Whether each slot changes once at most: they rise from change to change.
+    pub(crate) distinct: bool,
     /// Whether nothing is recorded from here on (`$dumpoff`), until a later step.
     pub(crate) off: bool,
 }
@@ -39,7 +41,7 @@ pub(super) struct Change(u32);
 
 const IN_WORDS: u32 = 1 << 31;
 const KNOWN: u32 = 1;
-/// The bits of a slot's number, which is below 2^18 for a signal of a file.
+/// The bits of a slot's number, which is below 2^22 for a signal of a file.
 const SLOT_SHIFT: u32 = 2;
 
 impl Change {
@@ -88,6 +90,12 @@ pub(super) struct Batch {
     pub(super) steps: Vec<Step>,
     pub(super) changes: Pile<Change>,
     pub(super) words: Vec<u64>,
+    /// States beside the values, by the number of the change ([`super::digits::state`]).
+    pub(super) states: Vec<(u32, u64)>,
+    /// Slots that got a value of another kind than declared, each once.
+    pub(super) odd: Vec<u32>,
+    /// What is unusual in the file.
+    pub(super) notes: Vec<String>,
     /// Number of bytes of the file that were read up to here.
     pub(super) bytes: u64,
 }
@@ -97,6 +105,18 @@ impl Batch {
         self.steps.clear();
         self.changes.truncate(0);
         self.words.clear();
+        self.states.clear();
+        self.odd.clear();
+        self.notes.clear();
+    }
+
+    /// Returns the state of the change with this number; 0 if it has none beside its value.
+    #[inline]
+    pub(super) fn state(&self, change: usize) -> u64 {
+        let found = self
+            .states
+            .binary_search_by_key(&(change as u32), |(change, _)| *change);
+        found.map_or(0, |at| self.states[at].1)
     }
 
     /// Returns the changes from `first` to `end`, the words of which begin at `first_word`. `lengths` has the number of

@@ -4,25 +4,37 @@
 //! |---|---|---|
 //! | `0`, VHDL's weak `L` | 0 | 0 |
 //! | `1`, `H` | 1 | 0 |
-//! | `x`, and what VHDL has beside it: `U`, `W`, `-` | 0 | 1 |
+//! | `x`, and what VHDL has beside it: `U`, `W`, `-`; `?` | 0 | 1 |
 //! | `z` | 1 | 1 |
+//!
+//! What a value with one of VHDL's additional states was written as is kept besides ([`state`]), so that the comparison
+//! can say where it took two states for one.
 
-/// Meaning of a byte: bit 0 is the value, bit 1 unknown, [`NO_DIGIT`] for any other byte.
+use super::values::hash;
+
+/// Meaning of a byte: bit 0 is the value, bit 1 unknown, bit 2 one of VHDL's additional states, [`NO_DIGIT`] for any
+/// other byte.
 pub(super) static DIGITS: [u8; 256] = {
     let mut table = [NO_DIGIT; 256];
     let digits = [
-        (b"0Ll", 0),
-        (b"1Hh", 1),
-        (b"xX-", 2),
-        (b"uUw", 2),
-        (b"WWW", 2),
+        (b"000", 0),
+        (b"111", 1),
+        (b"xXx", 2),
         (b"zZz", 3),
+        (b"Ll0", 4),
+        (b"Hh1", 5),
+        (b"-??", 6),
+        (b"uUu", 6),
+        (b"wWw", 6),
     ];
     let mut row = 0;
     while row < digits.len() {
         let mut at = 0;
         while at < 3 {
-            table[digits[row].0[at] as usize] = digits[row].1;
+            let byte = digits[row].0[at] as usize;
+            if table[byte] == NO_DIGIT {
+                table[byte] = digits[row].1;
+            }
             at += 1;
         }
         row += 1;
@@ -30,13 +42,32 @@ pub(super) static DIGITS: [u8; 256] = {
     table
 };
 const NO_DIGIT: u8 = 0xff;
+/// The flag of VHDL's additional states.
+const STATE: u8 = 4;
 /// The digit `x`.
 pub(super) const UNKNOWN: u8 = 2;
 
 /// Returns the digit of a byte: bit 0 is the value, bit 1 tells whether it is unknown.
 pub(super) fn digit(byte: u8) -> Option<u8> {
     let digit = DIGITS[byte as usize];
-    (digit != NO_DIGIT).then_some(digit)
+    (digit != NO_DIGIT).then_some(digit & 3)
+}
+
+/// Returns whether a byte is one of VHDL's additional states.
+pub(super) fn is_state(byte: u8) -> bool {
+    let digit = DIGITS[byte as usize];
+    digit != NO_DIGIT && digit & STATE != 0
+}
+
+/// Returns a number that stands for the states of digits, of which one is one of VHDL's additional states: equal for
+/// equal states however many equal ones lead, and never 0.
+pub(super) fn state(digits: &[u8]) -> u64 {
+    let plain = digits.to_ascii_uppercase();
+    let repeated = plain
+        .windows(2)
+        .take_while(|pair| pair[0] == pair[1] && pair[0] != b'H')
+        .count();
+    hash(&plain[repeated..]) | 1
 }
 
 /// Packs up to 64 known digits, most significant first; `None` if one is anything but `0` or `1`.
@@ -137,18 +168,23 @@ fn decimal_by_digit(data: &[u8], at: usize) -> Option<(u64, usize)> {
 
 /// Packs `digits`, most significant first, into `bits` and `unknown`, which hold `width` bits, least significant word
 /// first. Missing digits are as in VCD: zeros, or the first digit if that is unknown. There must not be more digits
-/// than `width`.
+/// than `width`. Returns whether VHDL's additional states are among them.
 ///
 /// # Errors
 /// The first byte that is not a digit.
-pub(super) fn pack(digits: &[u8], width: u32, bits: &mut [u64], unknown: &mut [u64]) -> Result<(), u8> {
+pub(super) fn pack(digits: &[u8], width: u32, bits: &mut [u64], unknown: &mut [u64]) -> Result<bool, u8> {
+    let mut has_states = false;
     let words = bits.iter_mut().zip(unknown.iter_mut());
     let mut chunks = digits.rchunks(64);
     for (bits, unknown) in words {
         let chunk = chunks.next().unwrap_or(&[]);
         (*bits, *unknown) = match known_word(chunk) {
             Some(word) => (word, 0),
-            None => mixed_word(chunk)?,
+            None => {
+                let (word, states) = mixed_word(chunk)?;
+                has_states |= states;
+                word
+            }
         };
         if chunk.len() < 64 {
             let first = digits.first().and_then(|byte| digit(*byte)).unwrap_or(0);
@@ -161,7 +197,7 @@ pub(super) fn pack(digits: &[u8], width: u32, bits: &mut [u64], unknown: &mut [u
     }
     trim(width, bits);
     trim(width, unknown);
-    Ok(())
+    Ok(has_states)
 }
 
 /// Clears the bits above the width in the last word.
@@ -171,14 +207,19 @@ fn trim(width: u32, words: &mut [u64]) {
     }
 }
 
-fn mixed_word(digits: &[u8]) -> Result<(u64, u64), u8> {
-    let (mut bits, mut unknown) = (0, 0);
+/// Returns bits and unknown bits, and whether VHDL's additional states are among the digits.
+fn mixed_word(digits: &[u8]) -> Result<((u64, u64), bool), u8> {
+    let (mut bits, mut unknown, mut flags) = (0, 0, 0);
     for byte in digits {
-        let digit = digit(*byte).ok_or(*byte)?;
+        let digit = DIGITS[*byte as usize];
+        if digit == NO_DIGIT {
+            return Err(*byte);
+        }
+        flags |= digit;
         bits = bits << 1 | u64::from(digit & 1);
-        unknown = unknown << 1 | u64::from(digit >> 1);
+        unknown = unknown << 1 | u64::from(digit >> 1 & 1);
     }
-    Ok((bits, unknown))
+    Ok(((bits, unknown), flags & STATE != 0))
 }
 
 #[cfg(test)]
@@ -193,7 +234,8 @@ mod tests {
             let width = digits.len() as u32 + more;
             let words = width.div_ceil(64) as usize;
             let (mut bits, mut unknown) = (vec![7; words], vec![7; words]);
-            pack(digits.as_bytes(), width, &mut bits, &mut unknown).unwrap();
+            let states = pack(digits.as_bytes(), width, &mut bits, &mut unknown).unwrap();
+            prop_assert_eq!(states, digits.contains(['U', 'L', 'H', 'W', '-']));
             let first = digit(digits.as_bytes()[0]).unwrap();
             for at in 0..64 * words {
                 let expected = match digits.bytes().rev().nth(at) {

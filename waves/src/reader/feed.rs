@@ -20,6 +20,7 @@ use super::section::Ended;
 use super::twin::Reopen;
 use super::words::truncated;
 use crate::WaveError;
+use crate::quiet::caught;
 
 const BATCHES: usize = 3;
 
@@ -45,6 +46,10 @@ pub(crate) struct Feed {
     unterminated: bool,
     cut: Option<u64>,
     reopen: Option<Arc<Reopen>>,
+    /// Slots that got a value of another kind than declared.
+    odd: Vec<u32>,
+    /// What is unusual in the file.
+    notes: Vec<String>,
 }
 
 impl Feed {
@@ -66,7 +71,11 @@ impl Feed {
                 Ok(empty) => send_full.send(Message::Batch(gatherer.take(empty))).is_ok(),
                 Err(_) => false,
             };
-            let end = match read(&mut gatherer, &mut hand_over) {
+            // A panic ends the thread without a message; the receiver says so.
+            let Some(read) = caught(|| read(&mut gatherer, &mut hand_over)) else {
+                return;
+            };
+            let end = match read {
                 Ok(Ended::Unheard) => return,
                 Ok(Ended::File { unterminated }) => Message::Ended {
                     unterminated,
@@ -99,6 +108,8 @@ impl Feed {
             unterminated: false,
             cut: None,
             reopen: None,
+            odd: Vec::new(),
+            notes: Vec::new(),
         })
     }
 
@@ -151,6 +162,8 @@ impl Feed {
         match self.full.recv() {
             Ok(Message::Batch(batch)) => {
                 let used = std::mem::replace(&mut self.batch, batch);
+                self.odd.append(&mut self.batch.odd);
+                self.notes.append(&mut self.batch.notes);
                 // The first batch, which never held anything, is one too many; so is one that the reader no longer
                 // takes.
                 let _ = self.empty.try_send(used);
@@ -193,6 +206,58 @@ impl Feed {
             .get(self.step)
             .map_or(self.first.0, |step| step.end as usize);
         self.batch.changes(self.first, end, &self.lengths)
+    }
+
+    /// Whether no signal but the clock can change twice from the current step on until the next edge, as far as that is
+    /// known: at one time only do others change, and each once.
+    pub(crate) fn is_simple_until_edge(&self, clock: u32) -> bool {
+        let mut from = self.first.0;
+        let mut busy = false;
+        for (at, step) in self.batch.steps[self.step.min(self.batch.steps.len())..]
+            .iter()
+            .enumerate()
+        {
+            if at > 0 && step.edge {
+                return true;
+            }
+            let changes = &self.batch.changes.as_slice()[from..step.end as usize];
+            from = step.end as usize;
+            if changes.is_empty() || matches!(changes, [only] if only.slot() == clock) {
+                continue;
+            }
+            if busy || !step.distinct {
+                return false;
+            }
+            busy = true;
+        }
+        false
+    }
+
+    /// Whether a change of the current step has a state beside its value.
+    #[inline]
+    pub(crate) fn has_states(&self) -> bool {
+        !self.batch.states.is_empty()
+    }
+
+    /// Returns the state beside the value of the current step's change with this number; 0 if there is none.
+    pub(crate) fn state(&self, change: usize) -> u64 {
+        self.batch.state(self.first.0 + change)
+    }
+
+    /// Returns the slots that got a value of another kind than declared, so far.
+    pub(crate) fn odd(&self) -> &[u32] {
+        &self.odd
+    }
+
+    /// Returns what is unusual in the file, so far.
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Takes over what was found in the file by the feed that this one continues.
+    pub(crate) fn continue_from(&mut self, before: Self) {
+        self.odd.splice(..0, before.odd);
+        self.notes.splice(..0, before.notes);
     }
 
     /// Returns the number of bytes of the file that were read so far.

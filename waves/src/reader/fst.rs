@@ -150,7 +150,10 @@ impl Declaring {
         let declarations = &mut self.declarations;
         let declared = match entry {
             Entry::Scope { name } => declarations.enter(&String::from_utf8_lossy(name)),
-            Entry::End => declarations.leave(),
+            Entry::End => {
+                declarations.leave();
+                Ok(())
+            }
             Entry::Signal(signal) => return self.signal(&signal),
         };
         declared.map_err(Stop::Unknown)
@@ -182,7 +185,7 @@ impl Declaring {
                     (_, Form::Real) => Kind::Real,
                     (_, Form::Text) => Kind::Text,
                 };
-                self.declarations.add_slot(kind, &name).map_err(Stop::Unknown)?
+                self.declarations.add_slot(kind).map_err(Stop::Unknown)?
             }
         };
         self.slots[handle] = Some(slot);

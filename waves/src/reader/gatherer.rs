@@ -50,6 +50,12 @@ pub(super) struct Gatherer {
     from: (usize, usize),
     /// With more changes or words than this, the step is compacted.
     press_at: (usize, usize),
+    /// Whether the file repeats all values at the moment.
+    pub(super) in_dump: bool,
+    /// Whether each slot got a value of another kind than declared; empty if none did.
+    odd: Vec<bool>,
+    /// The keys of the notes so far.
+    noted: Vec<&'static str>,
 }
 
 impl Gatherer {
@@ -66,6 +72,9 @@ impl Gatherer {
             was_off: false,
             from: (0, 0),
             press_at: (2 * CHANGES, 2 * WORDS),
+            in_dump: false,
+            odd: Vec::new(),
+            noted: Vec::new(),
         }
     }
 
@@ -188,6 +197,43 @@ impl Gatherer {
         }
     }
 
+    /// Notes the state beside the value of the change that was added last.
+    pub(super) fn note_state(&mut self, state: u64) {
+        let change = (self.batch.changes.len() as u32).saturating_sub(1);
+        match self.batch.states.last_mut() {
+            Some(last) if last.0 == change => last.1 = state,
+            _ => self.batch.states.push((change, state)),
+        }
+    }
+
+    /// Notes that an event happens. A block in which the file repeats all values does not tell so.
+    pub(super) fn put_event(&mut self, slot: u32) {
+        if self.in_dump {
+            return;
+        }
+        self.batch.changes.push(Change::known(slot));
+        self.batch.words.push(1);
+        self.press_if_long();
+    }
+
+    /// Notes that a slot got a value of another kind than declared, which is not kept.
+    pub(super) fn put_odd(&mut self, slot: u32) {
+        if self.odd.is_empty() {
+            self.odd = vec![false; self.kinds.len()];
+        }
+        if !std::mem::replace(&mut self.odd[slot as usize], true) {
+            self.batch.odd.push(slot);
+        }
+    }
+
+    /// Adds a note for the reader of the result, once for each `key`.
+    pub(super) fn note_once(&mut self, key: &'static str, note: impl FnOnce() -> String) {
+        if !self.noted.contains(&key) {
+            self.noted.push(key);
+            self.batch.notes.push(note());
+        }
+    }
+
     pub(super) fn off(&mut self, off: bool) {
         self.off = off;
     }
@@ -218,7 +264,10 @@ impl Gatherer {
         if end == self.from.0 && self.off == self.was_off {
             return;
         }
+        let changes = &self.batch.changes.as_slice()[self.from.0..end];
+        let distinct = changes.windows(2).all(|pair| pair[0].slot() < pair[1].slot());
         self.batch.steps.push(Step {
+            distinct,
             time: self.time,
             place: self.place,
             end: end as u32,
@@ -238,6 +287,7 @@ impl Gatherer {
         let (changes, words) = self.from;
         self.batch.changes.truncate(changes);
         self.batch.words.truncate(words);
+        self.batch.states.retain(|(change, _)| (*change as usize) < changes);
     }
 
     /// Takes the complete steps out, leaving `empty` in their place. The current step must have ended.
@@ -261,19 +311,28 @@ impl Gatherer {
         }
         let mut seen = vec![false; self.kinds.len()];
         let mut kept = Vec::new();
-        for (change, place) in self.batch.changes.as_slice()[first..].iter().zip(places).rev() {
+        for (at, (change, place)) in (first..)
+            .zip(self.batch.changes.as_slice()[first..].iter().zip(places))
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+        {
             if !std::mem::replace(&mut seen[change.slot() as usize], true) {
-                kept.push((*change, place));
+                kept.push((*change, place, self.batch.state(at)));
             }
         }
         kept.reverse();
         let words: Vec<u64> = kept
             .iter()
-            .flat_map(|(_, place)| &self.batch.words[place.clone()])
+            .flat_map(|(_, place, _)| &self.batch.words[place.clone()])
             .copied()
             .collect();
         self.batch.changes.truncate(first);
-        for (change, _) in kept {
+        self.batch.states.retain(|(change, _)| (*change as usize) < first);
+        for (change, _, state) in kept {
+            if state != 0 {
+                self.batch.states.push((self.batch.changes.len() as u32, state));
+            }
             self.batch.changes.push(change);
         }
         self.batch.words.truncate(first_word);

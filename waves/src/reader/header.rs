@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use crate::wording::counted;
+
 /// Largest number of signals of a file.
 pub(super) const MOST_SIGNALS: u64 = 1 << 22;
 const NAME_BYTES: usize = 1 << 30;
@@ -16,14 +18,39 @@ pub(super) fn too_many_signals() -> String {
 /// Type of a signal's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A vector of this many bits, at least one.
+    /// A vector of this many bits; it may have none.
     Bits(u32),
     /// A real number.
     Real,
     /// Text.
     Text,
-    /// An event, which happens and has no value that can be compared.
+    /// An event, which happens and has no value.
     Event,
+    /// Values of any kind: some were of another kind than declared.
+    Any(Declared),
+}
+
+/// How a signal of [`Kind::Any`] is declared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Declared {
+    /// A vector of this many bits.
+    Bits(u32),
+    /// A real number.
+    Real,
+    /// Text.
+    Text,
+}
+
+impl Kind {
+    /// Returns the kind that holds values of any kind in place of this one.
+    pub(crate) fn any(self) -> Self {
+        match self {
+            Self::Bits(width) => Self::Any(Declared::Bits(width)),
+            Self::Real => Self::Any(Declared::Real),
+            Self::Text => Self::Any(Declared::Text),
+            Self::Event | Self::Any(_) => self,
+        }
+    }
 }
 
 /// The part of a vector that is declared: `[7:0]`, or a single bit `[3]`.
@@ -62,6 +89,8 @@ pub(crate) struct Declarations {
     scope_ends: Vec<usize>,
     name_bytes: usize,
     bits: u64,
+    /// What is unusual in the file and was read nevertheless, with its line.
+    pub(crate) notes: Vec<String>,
     /// Number of times that a path was declared, and its first slot.
     seen: HashMap<String, (u32, u32)>,
 }
@@ -77,7 +106,7 @@ impl Declarations {
 
     pub(crate) fn enter(&mut self, name: &str) -> Result<(), String> {
         if self.scope_ends.len() == DEPTH || self.scope.len() + name.len() > NAME_BYTES {
-            return Err(format!("scopes more than {DEPTH} deep: the file is damaged"));
+            return Err(format!("scopes more than {DEPTH} deep: dump fewer scopes"));
         }
         // An unnamed scope (FST has them) adds nothing to the path.
         if !name.is_empty() {
@@ -88,13 +117,12 @@ impl Declarations {
         Ok(())
     }
 
-    pub(super) fn leave(&mut self) -> Result<(), String> {
-        if self.scope_ends.pop().is_none() {
-            return Err("$upscope without $scope: the file is damaged".to_owned());
-        }
+    /// Leaves a scope; returns `false` if none is open.
+    pub(super) fn leave(&mut self) -> bool {
+        let was_open = self.scope_ends.pop().is_some();
         let end = self.scope_ends.last().copied().unwrap_or(0);
         self.scope.truncate(end);
-        Ok(())
+        was_open
     }
 
     /// Ends the declarations of a file whose scopes need not have been left: their end changes no name.
@@ -103,21 +131,46 @@ impl Declarations {
         self.seen = HashMap::new();
     }
 
-    /// Checks that all scopes have been left.
-    pub(super) fn finish(&mut self) -> Result<(), String> {
+    /// Ends the declarations.
+    pub(super) fn finish(&mut self) {
         if !self.scope_ends.is_empty() {
-            return Err("a $scope is still open at $enddefinitions: the file is damaged".to_owned());
+            let open = counted(self.scope_ends.len() as u64, "scope");
+            self.notes.push(format!("{open} still open at $enddefinitions"));
         }
         self.seen = HashMap::new();
-        Ok(())
+    }
+
+    /// Adds a note, unless there is one that has `key` in it.
+    pub(super) fn note_once(&mut self, key: &str, note: String) {
+        if !self.notes.iter().any(|known| known.contains(key)) {
+            self.notes.push(note);
+        }
+    }
+
+    /// Makes a slot, which is declared again with another kind, hold both.
+    pub(super) fn merge_kinds(&mut self, slot: u32, kind: Kind) -> Result<(), String> {
+        let known = &mut self.kinds[slot as usize];
+        match (*known, kind) {
+            (Kind::Bits(width), Kind::Bits(other)) => {
+                self.bits += u64::from(other.saturating_sub(width));
+                *known = Kind::Bits(width.max(other));
+                Ok(())
+            }
+            (Kind::Event, _) | (_, Kind::Event) => {
+                Err("an id code is declared twice, once as an event and once as a value".to_owned())
+            }
+            _ => {
+                *known = Kind::Any(Declared::Real);
+                Ok(())
+            }
+        }
     }
 
     /// Adds a value of `kind`; returns its slot.
-    pub(crate) fn add_slot(&mut self, kind: Kind, name: &str) -> Result<u32, String> {
+    pub(crate) fn add_slot(&mut self, kind: Kind) -> Result<u32, String> {
         let bits = match kind {
-            Kind::Bits(0) => return Err(format!("signal `{name}` has 0 bits: the file is damaged")),
             Kind::Bits(width) => u64::from(width),
-            Kind::Real | Kind::Text | Kind::Event => 64,
+            Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => 64,
         };
         self.bits += bits;
         if self.bits > TOTAL_BITS {
@@ -133,9 +186,10 @@ impl Declarations {
     pub(crate) fn add_name(&mut self, name: &str, slot: u32) -> Result<(), String> {
         let width = match self.kinds[slot as usize] {
             Kind::Bits(width) => u64::from(width),
-            Kind::Real | Kind::Text | Kind::Event => 0,
+            Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => 0,
         };
-        let (name, range) = split_range(plain(name), width);
+        let whole_name = plain(name);
+        let (name, range) = split_range(whole_name, width);
         self.name_bytes += self.scope.len() + name.len();
         if self.name_bytes > NAME_BYTES {
             return Err(format!("more than {NAME_BYTES} bytes of names: dump fewer scopes"));
@@ -145,7 +199,11 @@ impl Declarations {
         }
         let vector = format!("{}{name}", self.scope);
         let mut path = match range {
-            Some(Range { left, right }) if left == right => format!("{vector}[{left}]"),
+            // With the brackets that the file has.
+            Some(Range { left, right }) if left == right => match whole_name.ends_with(']') {
+                true => format!("{vector}[{left}]"),
+                false => format!("{}{whole_name}", self.scope),
+            },
             _ => vector.clone(),
         };
         let (count, first) = self.seen.entry(path.clone()).or_insert((0, slot));
@@ -171,19 +229,28 @@ fn plain(name: &str) -> &str {
     name.strip_prefix('\\').unwrap_or(name)
 }
 
-/// Cuts `[7:0]` off the name of a vector, and `[3]` off that of a single bit; a range that does not have the signal's
-/// width does not describe its bits.
+/// Cuts `[7:0]` off the name of a vector, and `[3]` off that of a single bit; also `(7 downto 0)`, `(3)` and `<3>`, as
+/// tools for VHDL and netlists write them. A range that does not have the signal's width does not describe its bits.
 fn split_range(name: &str, width: u64) -> (&str, Option<Range>) {
-    let cut = name.rfind('[').filter(|at| *at > 0 && name.ends_with(']'));
-    let Some(at) = cut else { return (name, None) };
+    let bracket = match name.as_bytes().last() {
+        Some(b']') => '[',
+        Some(b')') => '(',
+        Some(b'>') => '<',
+        _ => return (name, None),
+    };
+    let Some(at) = name.rfind(bracket).filter(|at| *at > 0) else {
+        return (name, None);
+    };
     let inside = &name[at + 1..name.len() - 1];
-    let of_vector = inside.split_once(':');
-    let (left, right) = of_vector.unwrap_or((inside, inside));
-    match (left.parse::<i64>(), right.parse::<i64>()) {
+    let cut = [":", " downto ", " to "]
+        .into_iter()
+        .find_map(|between| inside.split_once(between));
+    let (left, right) = cut.unwrap_or((inside, inside));
+    match (left.trim().parse::<i64>(), right.trim().parse::<i64>()) {
         (Ok(left), Ok(right)) if left.abs_diff(right).checked_add(1) == Some(width) => {
             (name[..at].trim_end(), Some(Range { left, right }))
         }
-        _ if of_vector.is_some() => (&name[..at], None),
+        _ if cut.is_some() && bracket == '[' => (&name[..at], None),
         _ => (name, None),
     }
 }
@@ -195,9 +262,9 @@ mod tests {
     #[test]
     fn unit_ranges_leave_the_name_and_indices_stay() {
         let mut declarations = Declarations::default();
-        let byte = declarations.add_slot(Kind::Bits(8), "").unwrap();
-        let bit = declarations.add_slot(Kind::Bits(1), "").unwrap();
-        let other = declarations.add_slot(Kind::Bits(8), "").unwrap();
+        let byte = declarations.add_slot(Kind::Bits(8)).unwrap();
+        let bit = declarations.add_slot(Kind::Bits(1)).unwrap();
+        let other = declarations.add_slot(Kind::Bits(8)).unwrap();
         declarations.enter("t").unwrap();
         for (name, slot) in [
             ("y[7:0]", byte),
@@ -208,6 +275,10 @@ mod tests {
             ("array[3][7:0]", byte),
             ("odd[x]", byte),
             ("wrong[9:0]", byte),
+            ("word(7 downto 0)", byte),
+            ("word(2)", bit),
+            ("net<-1>", bit),
+            ("call(x)", bit),
         ] {
             declarations.add_name(name, slot).unwrap();
         }
@@ -220,7 +291,14 @@ mod tests {
             "t.array[3][7:0]",
             "t.odd[x]",
             "t.wrong",
+            "t.word",
+            "t.word(2)",
+            "t.net<-1>",
+            "t.call(x)",
         ];
         assert_eq!(paths, expected);
+        let part = |at: usize| declarations.names[at].part.clone();
+        assert_eq!(part(9), Some(("t.net".to_owned(), Range { left: -1, right: -1 })));
+        assert_eq!(part(10), None);
     }
 }

@@ -7,7 +7,8 @@ const TABLE_IDS: u64 = 1 << 20;
 const NO_SLOT: u32 = u32::MAX;
 
 /// Returns the number of an id code and the position after it. The first character is the least significant, as most
-/// writers have it, so that numbers are dense. Ten characters and more do not fit, and give `None`.
+/// writers have it, so that numbers are dense. Ten characters and more do not fit, and give `None`, as do other bytes than
+/// IEEE 1364 allows.
 #[inline]
 pub(super) fn id_number(data: &[u8], mut at: usize) -> (Option<u64>, usize) {
     let (from, mut number, mut scale) = (at, 0u64, 1u64);
@@ -54,14 +55,29 @@ fn short_id_number(data: &[u8], at: usize) -> (Option<u64>, usize) {
 pub(super) struct Ids {
     table: Vec<u32>,
     others: HashMap<u64, u32>,
+    /// Those without a number: some producers take the whole name.
+    long: HashMap<Box<[u8]>, u32>,
 }
 
 impl Ids {
-    pub(super) fn number(id: &str) -> Option<u64> {
-        id_number(id.as_bytes(), 0).0
+    fn number(id: &[u8]) -> Option<u64> {
+        let (number, end) = id_number(id, 0);
+        number.filter(|_| end == id.len())
     }
 
-    pub(super) fn insert(&mut self, number: u64, slot: u32) {
+    /// Returns the slot of an id code.
+    pub(super) fn find(&self, id: &[u8]) -> Option<u32> {
+        match Self::number(id) {
+            Some(number) => self.get(number),
+            None => self.long.get(id).copied(),
+        }
+    }
+
+    pub(super) fn insert(&mut self, id: &[u8], slot: u32) {
+        let Some(number) = Self::number(id) else {
+            self.long.insert(id.into(), slot);
+            return;
+        };
         if number >= TABLE_IDS {
             self.others.insert(number, slot);
             return;
@@ -99,7 +115,12 @@ impl Ids {
 
     fn long_slot_at(&self, data: &[u8], at: usize) -> (Option<u32>, usize) {
         let (number, end) = short_id_number(data, at);
-        (number.and_then(|number| self.get(number)), end)
+        let rest = data.get(end..).unwrap_or_default();
+        let word_end = end + rest.iter().take_while(|byte| **byte > b' ').count();
+        match number {
+            Some(number) if word_end == end => (self.get(number), end),
+            _ => (self.long.get(&data[at.min(word_end)..word_end]).copied(), word_end),
+        }
     }
 }
 
@@ -123,8 +144,25 @@ mod tests {
             prop_assert_eq!(short_id_number(&data, 0).1, id.len());
             let mut ids = Ids::default();
             prop_assert_eq!(ids.slot_at(&data, 0), (None, id.len()));
-            ids.insert(Ids::number(&id).unwrap(), 7);
+            ids.insert(id.as_bytes(), 7);
             prop_assert_eq!(ids.slot_at(&data, 0), (Some(7), id.len()));
+        }
+
+        #[test]
+        fn prop_ids_of_any_length_and_of_any_letters_are_found(
+            known in prop::collection::btree_set("[!-~]{1,14}|[a-zäß]{1,20}", 1..20), which: prop::sample::Index,
+        ) {
+            let known: Vec<String> = known.into_iter().collect();
+            let mut ids = Ids::default();
+            for (id, slot) in known.iter().zip(0..) {
+                ids.insert(id.as_bytes(), slot);
+            }
+            let id = which.get(&known);
+            let data = [id.as_bytes(), b"\n#1234567"].concat();
+            prop_assert_eq!(ids.slot_at(&data, 0), (Some(which.index(known.len()) as u32), id.len()));
+            let other = [id.as_bytes(), b"~~~~~~~~~~\n"].concat();
+            let slot = known.iter().position(|known| *known == format!("{id}~~~~~~~~~~"));
+            prop_assert_eq!(ids.slot_at(&other, 0), (slot.map(|slot| slot as u32), id.len() + 10));
         }
     }
 }

@@ -74,7 +74,7 @@ impl Lines {
         let most = ids.most().map_or(0, |most| (most + 1).min(NUMBERS));
         let width = |kind: &Kind| match kind {
             Kind::Bits(width) => *width,
-            Kind::Real | Kind::Text | Kind::Event => 0,
+            Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => 0,
         };
         Self {
             one,
@@ -109,6 +109,7 @@ impl Lines {
         let line = eight(data, at)?;
         let digit = DIGITS[line as u8 as usize];
         if digit > 3 {
+            // It is none, or one of VHDL's, which are noted.
             return None;
         }
         let (entry, length) = self.entry(line >> 8)?;
@@ -174,7 +175,7 @@ mod tests {
             let known: Vec<String> = known.into_iter().collect();
             let mut ids = Ids::default();
             for (id, slot) in known.iter().zip(0..) {
-                ids.insert(Ids::number(id).unwrap(), slot);
+                ids.insert(id.as_bytes(), slot);
             }
             let kinds: Vec<Kind> = widths.iter().map(|width| Kind::Bits(*width)).collect();
             let clock = clock.index(known.len()) as u32;

@@ -1,13 +1,12 @@
 //! Reads waveforms in steps of time, in bounded memory, whatever the file contains.
 //!
 //! ```text
-//!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
+//!            ┌─ declarations ───────────────────────► header ─┐          a thread per file         the caller's
 //!  x.vcd ────┤                                                  ├─► Wave ─►  section │ fst ─► batches ─► Feed ─► Values
 //!  x.fst ────┴─ declarations: blocks of the file ───────────────┘                                       step by step
 //! ```
 //!
-//! The crate `vcd` reads the declarations, [`section`] the value changes, because the crate makes a string of each
-//! and is four times as slow. Tests compare the two, and `wellen`, on every fixture.
+//! [`declarations`] and [`section`] read a VCD. Tests compare them with the crates `vcd` and `wellen` on every fixture.
 //!
 //! Limits keep a hostile file from using up the memory: 2^22 signals, 2^27 bits of all signals together, 1 GiB of
 //! names, scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file
@@ -17,7 +16,7 @@
 mod agreement;
 mod batch;
 mod counted;
-mod dialect;
+mod declarations;
 mod digits;
 mod feed;
 mod fst;
@@ -35,22 +34,22 @@ mod unpack;
 mod values;
 mod words;
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use vcd::{Command, IdCode, ParseError, Parser, VarType};
-
 pub(crate) use self::batch::{Changed, Changes, NOWHERE, Step};
 use self::counted::Counted;
-use self::dialect::Dialect;
+use self::declarations::Stop;
 pub(crate) use self::feed::Feed;
 use self::fst::FstValues;
 use self::gatherer::Gatherer;
 pub(crate) use self::gatherer::Watch;
-pub(crate) use self::header::{Declarations, Kind, Named};
+pub(crate) use self::header::{Declarations, Kind, Named, Range};
 use self::ids::Ids;
+pub(crate) use self::section::FileEnd;
 use self::section::Section;
 use self::twin::Reopen;
 pub(crate) use self::twin::{Stretch, Twins};
@@ -128,19 +127,31 @@ impl Wave {
         })
     }
 
+    /// Lets these slots hold values of any kind.
+    pub(crate) fn hold_any(&mut self, slots: &BTreeSet<u32>) {
+        for slot in slots {
+            if let Some(kind) = self.declarations.kinds.get_mut(*slot as usize) {
+                *kind = kind.any();
+            }
+        }
+    }
+
+    pub(crate) fn is_fst(&self) -> bool {
+        matches!(self.rest, Rest::Fst(_))
+    }
+
     /// Returns the length of the file; `None` for a pipe.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.bytes
     }
 
-    /// Starts to read the values in a separate thread, and marks the edges of a clock. A file that is cut off in the
-    /// middle of a line is an error, or with `allow_truncated` is read up to its last complete time.
-    pub(crate) fn play(self, watch: Option<Watch>, allow_truncated: bool) -> Result<(Declarations, Feed), WaveError> {
+    /// Starts to read the values in a separate thread, and marks the edges of a clock.
+    pub(crate) fn play(self, watch: Option<Watch>, file_end: FileEnd) -> Result<(Declarations, Feed), WaveError> {
         let kinds = self.declarations.kinds.clone();
         let gatherer = Gatherer::new(kinds.clone(), watch);
         let feed = match self.rest {
             Rest::Vcd(mut section) => {
-                section.allow_truncated = allow_truncated;
+                section.file_end = file_end;
                 Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
                     section.read(gatherer, hand_over)
                 })
@@ -157,11 +168,16 @@ impl Wave {
                 ids,
                 kinds,
                 watch,
-                allow_truncated,
+                file_end,
             }));
         }
         Ok((self.declarations, feed))
     }
+}
+
+/// Returns whether a file can be opened again: it is no pipe.
+pub(crate) fn can_be_read_again(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|data| data.is_file())
 }
 
 /// Reads a VCD up to the value changes.
@@ -169,9 +185,8 @@ fn read_declarations(path: &Path, input: &mut BufReader<Counted>) -> Result<(Dec
     if input.buffer().starts_with(BYTE_ORDER_MARK) {
         input.consume(BYTE_ORDER_MARK.len());
     }
-    let mut parser = Parser::new(Dialect::new(input));
-    let read = declarations(&mut parser);
-    let line = parser.line();
+    let mut line = 1;
+    let read = declarations::read(input, &mut line);
     read.map_err(|stop| match stop {
         Stop::Cut(inside) => truncated(path, input.get_ref().bytes, inside),
         Stop::Wrong(problem) => WaveError::Damaged {
@@ -180,92 +195,4 @@ fn read_declarations(path: &Path, input: &mut BufReader<Counted>) -> Result<(Dec
             problem,
         },
     })
-}
-
-/// Why the declarations could not be read.
-enum Stop {
-    Wrong(String),
-    Cut(&'static str),
-}
-
-impl From<String> for Stop {
-    fn from(what: String) -> Self {
-        Self::Wrong(what)
-    }
-}
-
-fn declarations<R: BufRead>(parser: &mut Parser<R>) -> Result<(Declarations, Ids), Stop> {
-    let mut declarations = Declarations::new(1_000_000);
-    declarations.unit_is_assumed = true;
-    let mut ids = Ids::default();
-    loop {
-        let command = match parser.next() {
-            None => return Err(Stop::Cut("before $enddefinitions")),
-            Some(Ok(command)) => command,
-            Some(Err(cause)) if cause.kind() == io::ErrorKind::UnexpectedEof => {
-                return Err(Stop::Cut("in the middle of a command"));
-            }
-            Some(Err(cause)) => {
-                let parse: Option<&ParseError> = cause.get_ref().and_then(|e| e.downcast_ref());
-                return Err(Stop::Wrong(match parse {
-                    Some(parse) => format!("{}: this is not a VCD, or it is damaged", parse.kind()),
-                    None => cause.to_string(),
-                }));
-            }
-        };
-        match command {
-            Command::Enddefinitions => break,
-            Command::Timescale(number, unit) => {
-                let exponent = match unit {
-                    vcd::TimescaleUnit::S => 15,
-                    vcd::TimescaleUnit::MS => 12,
-                    vcd::TimescaleUnit::US => 9,
-                    vcd::TimescaleUnit::NS => 6,
-                    vcd::TimescaleUnit::PS => 3,
-                    vcd::TimescaleUnit::FS => 0,
-                };
-                if ![1, 10, 100].contains(&number) {
-                    return Err(format!("timescale {number} {unit}: the number is 1, 10 or 100").into());
-                }
-                declarations.unit_fs = u64::from(number) * 10u64.pow(exponent);
-                declarations.unit_is_assumed = false;
-            }
-            Command::ScopeDef(_, name) => declarations.enter(&name)?,
-            Command::Upscope => declarations.leave()?,
-            Command::VarDef(var_type, width, id, name, _) => {
-                declare(&mut declarations, &mut ids, var_type, width, id, &name)?;
-            }
-            _ => return Err("a value before $enddefinitions: the file is damaged".to_owned().into()),
-        }
-    }
-    declarations.finish()?;
-    Ok((declarations, ids))
-}
-
-fn declare(
-    declarations: &mut Declarations,
-    ids: &mut Ids,
-    var_type: VarType,
-    width: u32,
-    id: IdCode,
-    name: &str,
-) -> Result<(), String> {
-    let kind = match var_type {
-        VarType::Real => Kind::Real,
-        VarType::String => Kind::Text,
-        VarType::Event => Kind::Event,
-        _ => Kind::Bits(width),
-    };
-    let id = id.to_string();
-    let number = Ids::number(&id).ok_or_else(|| format!("`{id}` is too long for an id code: 9 characters at most"))?;
-    let slot = match ids.get(number) {
-        Some(slot) if declarations.kinds[slot as usize] == kind => slot,
-        Some(_) => return Err(format!("`{id}` is declared twice, with different widths or types")),
-        None => {
-            let slot = declarations.add_slot(kind, name)?;
-            ids.insert(number, slot);
-            slot
-        }
-    };
-    declarations.add_name(name, slot)
 }

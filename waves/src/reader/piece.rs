@@ -10,7 +10,7 @@ use super::gatherer::Gatherer;
 use super::header::Kind;
 use super::ids::Ids;
 use super::lines::Lines;
-use super::put::{put_digits, put_real, put_text};
+use super::put::{put_digits, put_real, put_text, real};
 use super::twin::{Twins, read_at};
 
 /// Number of bytes of a piece, and per signal: what is done once for a piece goes by the signal. Fewer in tests, whose
@@ -84,7 +84,7 @@ impl<'a> Worker<'a> {
         let width = |(kind, stop): (&Kind, &bool)| match kind {
             _ if *stop => STOP,
             Kind::Bits(width) => *width,
-            Kind::Real | Kind::Text | Kind::Event => 0,
+            Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => 0,
         };
         Self {
             twins,
@@ -254,9 +254,9 @@ impl<'a> Worker<'a> {
                     let word = &data[at + 1..at + length];
                     let (slot, next) = line_end(ids, data, at + length + 1)?;
                     let right = match self.gatherer.kind(slot) {
-                        Kind::Real => first == b'r' && put_real(&mut self.gatherer, slot, word).is_ok(),
+                        Kind::Real => first == b'r' && real(word).is_some(),
                         Kind::Text => first == b's',
-                        Kind::Bits(_) | Kind::Event => false,
+                        Kind::Bits(_) | Kind::Event | Kind::Any(_) => false,
                     };
                     if !right || data[at + length] != b' ' || self.widths[slot as usize] == STOP {
                         return None;

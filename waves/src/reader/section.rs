@@ -4,7 +4,10 @@
 //!  #25              time                          1!   0"   x#      one digit and an id code
 //!  b1010 $          digits and an id code         r2.5 %  sword &   a real number, a text
 //!  $dumpoff … $end  blocks around changes         $comment … $end   nothing
+//!  pDU 60 06 <1     states and strengths of a port, in an extended VCD
 //! ```
+//!
+//! A block that no `$end` closes ends at the next time, as Treadle and `fst2vcd` write it.
 //!
 //! Nothing is allocated per change: digits are packed into words eight at a time, and id codes are numbers that index
 //! a table. The buffer is refilled when it does not contain a whole command, and grows only for a command that is
@@ -14,20 +17,31 @@ use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::batch::NOWHERE;
 use super::counted::Counted;
-use super::digits::{decimal, digit};
+use super::digits::{decimal, digit, is_state, state};
 use super::gatherer::Gatherer;
 use super::header::Kind;
 use super::ids::Ids;
 use super::lines::Lines;
-use super::put::{put_digits, put_real, put_text, shown};
+use super::put::{put_digits, put_port, put_real, put_text, shown};
 use super::words::{Fault, leading_word, line_of, skip_space, truncated, unknown_id, word_end};
 use crate::WaveError;
 
 const BUFFER_BYTES: usize = 1 << 18;
 /// Largest number of bytes of a command: a vector of 2^24 bits, twice over.
 const COMMAND_BYTES: usize = 1 << 25;
+
+/// What becomes of a file that ends in the middle of something.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum FileEnd {
+    /// It is refused.
+    #[default]
+    Refuse,
+    /// It is read up to its last complete time.
+    UpToLastTime,
+    /// It was read before, perhaps not to its end: it is read as far as it can be.
+    AsFarAsPossible,
+}
 
 /// How the reading ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +78,7 @@ pub(super) struct Section {
     is_plain: bool,
     in_dump: bool,
     in_comment: bool,
-    /// Whether a file that is cut off is read up to its last complete time.
-    pub(super) allow_truncated: bool,
+    pub(super) file_end: FileEnd,
     /// Number of bytes after which it was cut off, once that is known; and whether the cut is in a time, so that the
     /// time before it is complete.
     cut: Option<u64>,
@@ -94,7 +107,7 @@ impl Section {
             is_plain,
             in_dump: false,
             in_comment: false,
-            allow_truncated: false,
+            file_end: FileEnd::Refuse,
             cut: None,
             cut_in_time: false,
         }
@@ -116,7 +129,7 @@ impl Section {
             is_plain: true,
             in_dump: false,
             in_comment: false,
-            allow_truncated: false,
+            file_end: FileEnd::Refuse,
             cut: None,
             cut_in_time: false,
         }
@@ -131,7 +144,10 @@ impl Section {
         let lines = Lines::new(&self.ids, gatherer.kinds(), gatherer.watched(), |_| false);
         loop {
             let pause = self.parse(&lines, gatherer, hand_over);
-            let pause = pause.map_err(|fault| self.problem(&fault))?;
+            let pause = match pause {
+                Err(_) if self.file_end == FileEnd::AsFarAsPossible => return Ok(self.cut_before_step(gatherer)),
+                other => other.map_err(|fault| self.problem(&fault))?,
+            };
             gatherer.batch.bytes = self.start + self.from as u64;
             match pause {
                 Pause::Stop => return Ok(Ended::Unheard),
@@ -141,7 +157,7 @@ impl Section {
         }
         let whole =
             self.from == self.to && !self.in_dump && !self.in_comment && !self.broken && self.last_byte == b'\n';
-        if self.allow_truncated && !whole {
+        if self.file_end == FileEnd::UpToLastTime && !whole {
             if self.cut_in_time {
                 gatherer.end_step();
             } else {
@@ -151,22 +167,34 @@ impl Section {
             let byte = self.cut.unwrap_or(self.start + self.to as u64 - 1);
             return Ok(Ended::Cut { byte });
         }
-        if self.broken {
-            return Err(self.truncated("in the middle of its packed data"));
-        }
-        if self.from < self.to {
-            return Err(self.truncated("in the middle of a command"));
-        }
-        if self.in_dump || self.in_comment {
-            return Err(self.truncated(if self.in_dump {
-                "inside a $dump block"
-            } else {
-                "inside a $comment"
-            }));
+        let inside = if self.broken {
+            "in the middle of its packed data"
+        } else if self.from < self.to {
+            "in the middle of a command"
+        } else if self.in_dump {
+            "inside a $dump block"
+        } else if self.in_comment {
+            "inside a $comment"
+        } else {
+            ""
+        };
+        if !inside.is_empty() {
+            return match self.file_end {
+                FileEnd::AsFarAsPossible => Ok(self.cut_before_step(gatherer)),
+                _ => Err(self.truncated(inside)),
+            };
         }
         gatherer.end_step();
         let unterminated = self.last_byte != b'\n';
         Ok(Ended::File { unterminated })
+    }
+
+    /// Ends the reading before the current step.
+    fn cut_before_step(&self, gatherer: &mut Gatherer) -> Ended {
+        gatherer.drop_step();
+        Ended::Cut {
+            byte: self.start + self.from as u64,
+        }
     }
 
     fn fill(&mut self) -> Result<(), WaveError> {
@@ -203,7 +231,7 @@ impl Section {
         }
         self.at_end = true;
         let ends_within = self.broken || self.in_dump || self.in_comment || self.last_byte != b'\n';
-        if self.allow_truncated && ends_within {
+        if self.file_end == FileEnd::UpToLastTime && ends_within {
             // Half a line could be taken for another time, value or id code.
             self.cut = Some(self.start + self.to as u64);
             let unread = &self.buffer[self.from..self.to];
@@ -287,7 +315,9 @@ impl Section {
                         });
                     }
                     self.from = end;
-                    let place = if self.in_dump { NOWHERE } else { self.start + at as u64 };
+                    self.in_dump = false;
+                    gatherer.in_dump = false;
+                    let place = self.start + at as u64;
                     if gatherer.advance(time, place) && !hand_over(gatherer) {
                         return Ok(Pause::Stop);
                     }
@@ -301,16 +331,51 @@ impl Section {
                     if end >= data.len() {
                         return Ok(Pause::More);
                     }
+                    let is_real = first.eq_ignore_ascii_case(&b'r');
+                    let (word, slot, end) = match slot {
+                        // A text with spaces, which are escaped by those who follow the format.
+                        None if !is_real => {
+                            let Some(length) = memchr::memchr(b'\n', &data[at..]) else {
+                                return Ok(Pause::More);
+                            };
+                            let line = data[at + 1..at + length].trim_ascii_end();
+                            let last = line.iter().rposition(|byte| *byte <= b' ').map_or(0, |space| space + 1);
+                            let Some(slot) = ids.find(&line[last..]) else {
+                                return Err(unknown_id(data, id_at, end));
+                            };
+                            (line[..last].trim_ascii_end(), slot, at + length)
+                        }
+                        None => return Err(unknown_id(data, id_at, end)),
+                        Some(slot) => (&data[at + 1..word_to], slot, end),
+                    };
+                    let put = if is_real { put_real } else { put_text };
+                    put(gatherer, slot, word).map_err(|what| Fault { at, what })?;
+                    self.from = end;
+                }
+                b'p' | b'P' => {
+                    let mut words = [(at + 1, at + 1); 3];
+                    let mut end = at + 1;
+                    for word in &mut words {
+                        let begin = skip_space(data, end);
+                        let Some(word_to) = word_end(data, begin) else {
+                            return Ok(Pause::More);
+                        };
+                        *word = (begin, word_to);
+                        end = word_to;
+                    }
+                    let id_at = skip_space(data, end);
+                    let (slot, end) = ids.slot_at(data, id_at);
+                    if end >= data.len() {
+                        return Ok(Pause::More);
+                    }
                     let Some(slot) = slot else {
                         return Err(unknown_id(data, id_at, end));
                     };
-                    let word = &data[at + 1..word_to];
-                    let put = if first.eq_ignore_ascii_case(&b'r') {
-                        put_real
-                    } else {
-                        put_text
-                    };
-                    put(gatherer, slot, word).map_err(|what| Fault { at, what })?;
+                    let [states, weak, strong] = words.map(|(from, to)| &data[from..to]);
+                    put_port(gatherer, slot, states, [weak, strong]).map_err(|what| Fault { at, what })?;
+                    gatherer.note_once("EVCD", || {
+                        "an extended VCD (EVCD): states of ports are read as 0, 1, x and z".to_owned()
+                    });
                     self.from = end;
                 }
                 b'$' => {
@@ -320,29 +385,39 @@ impl Section {
                     match &data[at..end] {
                         b"$comment" => self.in_comment = true,
                         b"$end" => self.in_dump = false,
-                        b"$dumpvars" | b"$dumpall" => self.in_dump = true,
-                        b"$dumpon" => {
+                        b"$dumpvars" | b"$dumpall" | b"$dumpports" | b"$dumpportsall" => self.in_dump = true,
+                        b"$dumpon" | b"$dumpportson" => {
                             self.in_dump = true;
                             gatherer.off(false);
                         }
-                        b"$dumpoff" => {
+                        b"$dumpoff" | b"$dumpportsoff" => {
                             self.in_dump = true;
                             gatherer.off(true);
                         }
-                        word => {
+                        word @ (b"$var" | b"$scope" | b"$upscope" | b"$timescale" | b"$enddefinitions") => {
                             let what = format!(
-                                "`{}`, a declaration after $enddefinitions: the file is damaged",
+                                "`{}`, a declaration after $enddefinitions: two files were joined, or the file is damaged",
                                 shown(word)
                             );
                             return Err(Fault { at, what });
                         }
+                        word => {
+                            let place = self.start + at as u64;
+                            let word = shown(word);
+                            gatherer.note_once("unknown command", || {
+                                let line = self.line(place);
+                                format!("{line}: `{word}` is not known, and is skipped up to its $end")
+                            });
+                            self.in_comment = true;
+                        }
                     }
+                    gatherer.in_dump = self.in_dump;
                     self.from = end;
                 }
                 byte => {
                     let Some(digit) = digit(byte) else {
                         let what = format!(
-                            "unexpected character `{}`: this is not a VCD, or it is damaged",
+                            "unexpected character `{}`, with which no change begins: this is not a VCD, or it is damaged",
                             shown(&[byte])
                         );
                         return Err(Fault { at, what });
@@ -358,6 +433,9 @@ impl Section {
                     };
                     if gatherer.kind(slot) == Kind::Bits(1) {
                         gatherer.put_digit(slot, digit);
+                        if is_state(byte) {
+                            gatherer.note_state(state(&[byte]));
+                        }
                     } else {
                         put_digits(gatherer, slot, &[byte]).map_err(|what| Fault { at, what })?;
                     }
@@ -372,13 +450,17 @@ impl Section {
         if self.at_end && self.cut.is_none() && self.last_byte != b'\n' && memchr::memchr(b'\n', unread).is_none() {
             return self.truncated("in the middle of a line");
         }
-        let byte = self.start + fault.at as u64;
-        let line = if self.is_plain { line_of(&self.path, byte) } else { None };
         WaveError::Damaged {
             path: self.path.clone(),
-            place: line.map_or_else(|| format!("byte {byte}"), |line| format!("line {line}")),
+            place: self.line(self.start + fault.at as u64),
             problem: fault.what.clone(),
         }
+    }
+
+    /// Names the line of a byte, or the byte if its line is not known.
+    fn line(&self, byte: u64) -> String {
+        let line = if self.is_plain { line_of(&self.path, byte) } else { None };
+        line.map_or_else(|| format!("byte {byte}"), |line| format!("line {line}"))
     }
 
     fn truncated(&self, inside: &str) -> WaveError {

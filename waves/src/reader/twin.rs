@@ -26,7 +26,7 @@ use super::gatherer::{Gatherer, Watch};
 use super::header::Kind;
 use super::ids::Ids;
 use super::piece::{Found, Piece, UpTo, Worker};
-use super::section::Section;
+use super::section::{FileEnd, Section};
 use crate::WaveError;
 
 /// Number of bytes that are compared before threads are started.
@@ -40,7 +40,7 @@ pub(crate) struct Reopen {
     pub(super) ids: Arc<Ids>,
     pub(super) kinds: Vec<Kind>,
     pub(super) watch: Option<Watch>,
-    pub(super) allow_truncated: bool,
+    pub(super) file_end: FileEnd,
 }
 
 impl Reopen {
@@ -52,7 +52,7 @@ impl Reopen {
             bytes: place,
         };
         let mut section = Section::resumed(&self.path, input, Arc::clone(&self.ids));
-        section.allow_truncated = self.allow_truncated;
+        section.file_end = self.file_end;
         let gatherer = Gatherer::resumed(self.kinds.clone(), self.watch, before);
         let feed = Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
             section.read(gatherer, hand_over)
@@ -115,13 +115,13 @@ impl Twins {
 
     /// Follows the two files from these places as long as they are equal. With a clock, the time at each place is that
     /// of an edge that has been sampled. `stop` tells by slot whose next change ends the stretch. `apply` is called
-    /// with the latest values before each piece's last sample, and with the progress of the stretch. Returns `None` if
+    /// with the latest values before each piece's last sample and their states, `progress` with the progress of the stretch. Returns `None` if
     /// the stretch is too short.
     pub(crate) fn follow(
         &self,
         places: [u64; 2],
         stop: &[bool],
-        apply: &mut dyn FnMut(u32, &[u64]),
+        apply: &mut dyn FnMut(u32, &[u64], u64),
         progress: &mut dyn FnMut(&Stretch),
     ) -> Option<Stretch> {
         let mut looks = [vec![0; FIRST_LOOK], vec![0; FIRST_LOOK]];
@@ -217,7 +217,7 @@ impl<'a> Joined<'a> {
     }
 
     /// Adds the next piece.
-    fn join(&mut self, piece: &Piece, apply: &mut dyn FnMut(u32, &[u64])) {
+    fn join(&mut self, piece: &Piece, apply: &mut dyn FnMut(u32, &[u64], u64)) {
         let stretch = &mut self.stretch;
         let mut sampled_before = stretch.times[0];
         if let (Some(watch), Some((after, time))) = (self.twins.files[0].watch, piece.open_edge) {
@@ -233,8 +233,9 @@ impl<'a> Joined<'a> {
             self.clock = Some(piece.clock);
         }
         let values = &piece.values;
-        for (slot, changed) in values.changes((0, 0), values.changes.len(), &self.twins.lengths) {
-            apply(slot, changed.words());
+        let changes = values.changes((0, 0), values.changes.len(), &self.twins.lengths);
+        for (at, (slot, changed)) in changes.enumerate() {
+            apply(slot, changed.words(), values.state(at));
         }
         stretch.samples += piece.samples;
         let [last, before] = [piece.times[0], piece.times[1].or(sampled_before)];

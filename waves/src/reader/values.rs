@@ -17,8 +17,8 @@ pub(crate) enum Value<'a> {
     Real(Option<f64>),
     /// Length, a hash of the whole text, and its beginning; see [`pack_text`].
     Text(&'a [u64]),
-    /// An event, which is not comparable.
-    Event,
+    /// Number of times that an event has happened.
+    Event(u64),
 }
 
 /// Number of words of a text: length + 1 (0 before the first change), hash, the first 64 bytes.
@@ -30,21 +30,59 @@ pub(super) fn words_of(kind: Kind) -> usize {
     match kind {
         Kind::Bits(width) => 2 * width.div_ceil(64) as usize,
         Kind::Real => 2,
-        Kind::Text => TEXT_WORDS,
-        Kind::Event => 0,
+        Kind::Text | Kind::Any(_) => TEXT_WORDS,
+        Kind::Event => 2,
     }
+}
+
+/// Returns a hash of bytes.
+pub(super) fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3)
+    })
 }
 
 /// Packs a text into words: equal texts give equal words; different ones give different words except with a
 /// probability of 1 in 2^64.
 pub(super) fn pack_text(text: &[u8], words: &mut [u64]) {
-    let hash = text.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3)
-    });
     words[0] = text.len() as u64 + 1;
-    words[1] = hash;
+    words[1] = hash(text);
     for (at, byte) in text.iter().take(8 * (TEXT_WORDS - 2)).enumerate() {
         words[2 + at / 8] |= u64::from(*byte) << (8 * (at % 8));
+    }
+}
+
+/// Place of what a value of [`Kind::Any`] is: text if it is 0.
+const ANY_SHIFT: u32 = 56;
+const ANY_REAL: u64 = 1;
+const ANY_BITS: u64 = 2;
+
+/// Packs a real number into the words of a value of any kind.
+pub(super) fn pack_any_real(real: f64, words: &mut [u64]) {
+    words[0] = ANY_REAL << ANY_SHIFT;
+    words[1] = real.to_bits();
+}
+
+/// Packs at most 256 bits into the words of a value of any kind.
+pub(super) fn pack_any_bits(width: u32, bits: &[u64], unknown: &[u64], words: &mut [u64]) {
+    words[0] = ANY_BITS << ANY_SHIFT | u64::from(width);
+    words[2..2 + bits.len()].copy_from_slice(bits);
+    words[6..6 + unknown.len()].copy_from_slice(unknown);
+}
+
+fn any(words: &[u64]) -> Value<'_> {
+    match words[0] >> ANY_SHIFT {
+        ANY_REAL => Value::Real(Some(f64::from_bits(words[1]))),
+        ANY_BITS => {
+            let width = words[0] as u32;
+            let count = width.div_ceil(64) as usize;
+            Value::Bits {
+                width,
+                bits: &words[2..2 + count],
+                unknown: &words[6..6 + count],
+            }
+        }
+        _ => Value::Text(words),
     }
 }
 
@@ -54,7 +92,7 @@ impl Value<'_> {
         let Value::Bits { width, bits, unknown } = *self else {
             return None;
         };
-        if width > 128 || unknown.iter().any(|word| *word != 0) {
+        if width == 0 || width > 128 || unknown.iter().any(|word| *word != 0) {
             return None;
         }
         let words = bits.iter().rev();
@@ -80,7 +118,7 @@ impl Value<'_> {
                 _ => 'z',
             }
         };
-        let extension = if signed { digit(width - 1) } else { '0' };
+        let extension = if signed && width > 0 { digit(width - 1) } else { '0' };
         let extended = std::iter::repeat_n(extension, to_width.saturating_sub(width) as usize);
         extended.chain((0..width).rev().map(digit)).collect()
     }
@@ -92,7 +130,8 @@ impl Value<'_> {
         let bytes: Vec<u8> = words[2..].iter().flat_map(|word| word.to_le_bytes()).collect();
         let mut text = String::from_utf8_lossy(&bytes[..length.min(bytes.len())]).into_owned();
         if length > bytes.len() {
-            text.push('…');
+            // Texts that differ only behind what is kept are distinguished.
+            text.push_str(&format!("… ({length} bytes, {:016x})", words[1]));
         }
         Some(text)
     }
@@ -126,12 +165,12 @@ impl Values {
             Kind::Bits(width) => {
                 let words = words_of(kind) / 2;
                 self.words[from + words..].fill(u64::MAX);
-                if let (Some(last), 1..) = (self.words.last_mut(), width % 64) {
+                if let (Some(last), 1..) = (self.words[from..].last_mut(), width % 64) {
                     *last &= u64::MAX >> (64 - width % 64);
                 }
             }
             Kind::Real => self.words[from + 1] = u64::MAX,
-            Kind::Text | Kind::Event => {}
+            Kind::Text | Kind::Event | Kind::Any(_) => {}
         }
         self.kinds.len() as u32 - 1
     }
@@ -193,6 +232,7 @@ pub(crate) fn value(kind: Kind, words: &[u64]) -> Value<'_> {
         Kind::Bits(width) => Value::Bits { width, bits, unknown },
         Kind::Real => Value::Real((unknown[0] == 0).then_some(f64::from_bits(bits[0]))),
         Kind::Text => Value::Text(words),
-        Kind::Event => Value::Event,
+        Kind::Event => Value::Event(bits[0]),
+        Kind::Any(_) => any(words),
     }
 }

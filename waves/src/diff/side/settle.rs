@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Derived, Side};
+use super::{Following, Side};
 use crate::WaveError;
 use crate::diff::touched::Touched;
 use crate::reader::Values;
@@ -54,12 +54,12 @@ impl Side {
                 for pair in self.pairs.get(slot) {
                     touched.listed.touch(*pair);
                 }
-                let derived = Derived {
+                let following = Following {
                     pairs: &self.pairs,
                     parts: &self.parts,
                     delayed: &self.delayed,
                 };
-                derived.follow(slot, &mut self.values, &mut self.lines, &mut touched.listed);
+                following.follow(slot, &mut self.values, &mut self.lines, &mut touched.listed);
             }
         }
         happened

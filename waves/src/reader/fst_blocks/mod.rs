@@ -25,7 +25,7 @@ use self::layout::Layout;
 pub(super) use self::layout::{blackouts, forms};
 use self::packing::varint;
 use super::batch::NOWHERE;
-use super::digits::pack;
+use super::digits::{is_state, pack, state};
 use super::fst_file::Bytes;
 use super::gatherer::Gatherer;
 use super::header::Kind;
@@ -264,8 +264,13 @@ impl Blocks {
                     _ => DIGITS[(head >> 1 & 7) as usize],
                 };
                 if gatherer.kind(slot) == Kind::Bits(1) {
-                    let digit = super::digits::digit(digit).ok_or_else(|| damaged("a bit is not a digit"))?;
-                    gatherer.put_digit(slot, digit);
+                    let value = super::digits::digit(digit).ok_or_else(|| damaged("a bit is not a digit"))?;
+                    gatherer.put_digit(slot, value);
+                    if head & 1 != 0 && is_state(digit) {
+                        gatherer.note_state(state(&[digit]));
+                    }
+                } else if digit == b'1' && gatherer.kind(slot) == Kind::Event {
+                    gatherer.put_event(slot);
                 }
             }
             Form::Bits(width) if head & 1 == 0 => {
@@ -350,7 +355,11 @@ fn put_digits(gatherer: &mut Gatherer, slot: u32, width: u32, digits: &[u8]) -> 
     }
     let words = gatherer.put_words(slot);
     let (bits, unknown) = words.split_at_mut(words.len() / 2);
-    pack(digits, width, bits, unknown).map_err(|byte| Stop::Damaged(format!("byte {byte} is not a digit")))?;
+    let packed = pack(digits, width, bits, unknown);
+    let has_states = packed.map_err(|byte| Stop::Damaged(format!("byte {byte} is not a digit")))?;
     gatherer.watch_last(slot);
+    if has_states {
+        gatherer.note_state(state(digits));
+    }
     Ok(())
 }
