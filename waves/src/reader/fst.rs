@@ -150,10 +150,8 @@ impl Declaring {
         let declarations = &mut self.declarations;
         let declared = match entry {
             Entry::Scope { name } => declarations.enter(&String::from_utf8_lossy(name)),
-            Entry::End => {
-                declarations.leave();
-                Ok(())
-            }
+            Entry::End if declarations.leave() => Ok(()),
+            Entry::End => Err("$upscope without $scope: the file is damaged".to_owned()),
             Entry::Signal(signal) => return self.signal(&signal),
         };
         declared.map_err(Stop::Unknown)

@@ -206,9 +206,10 @@ impl Gatherer {
         }
     }
 
-    /// Notes that an event happens. A block in which the file repeats all values does not tell so.
+    /// Notes that an event happens. Where the file repeats all values, as after a period without recording, it does not tell
+    /// so.
     pub(super) fn put_event(&mut self, slot: u32) {
-        if self.in_dump {
+        if self.in_dump || self.off || self.was_off {
             return;
         }
         self.batch.changes.push(Change::known(slot));
