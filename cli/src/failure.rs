@@ -43,6 +43,16 @@ impl Failure {
         }
     }
 
+    /// The failure with a help text, if it has none.
+    pub(crate) fn or_help(self, help: &str) -> Self {
+        match self {
+            Self::Input(report) if report.help().is_none() => {
+                Self::Input(miette::miette!(help = help, "{}", with_causes(&report)))
+            }
+            other => other,
+        }
+    }
+
     /// A missing tool.
     pub(crate) fn missing_tool(message: impl fmt::Display) -> Self {
         Self::MissingTool(miette::miette!("{message}"))

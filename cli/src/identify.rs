@@ -3,6 +3,7 @@
 mod document;
 mod excitation;
 mod findings;
+mod log_flags;
 mod machine_file;
 mod pictures;
 mod text;
@@ -14,13 +15,11 @@ use crate::plot;
 use crate::schema;
 use excitation::ExcitationFlags;
 use findings::Findings;
+use log_flags::{LogFlags, read};
 use machine_file::Written;
-use posicast_identify::log::{self, Reading};
 use posicast_identify::recommend::Judgement;
 use posicast_system::output::{self as files, OutputFiles};
 use posicast_testbench::wave::write_text;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Modes from a measured log, with their uncertainty, shapers for them, and a machine file
@@ -31,6 +30,8 @@ Examples:
   posicast identify raw_data_x.csv --plot x.svg -o printer.toml
   posicast identify raw_data_y.csv --machine printer.toml --axis y -o both.toml
   posicast identify step.csv --json                   columns time,command,response
+  posicast identify stop.csv --columns time_ms,accel_x_g,-,-
+                                                      what rings after a stop, in a file whose header does not say it
 
 The columns of a log, and what each method needs: docs/identify.md")]
 pub(crate) struct Args {
@@ -55,6 +56,8 @@ pub(crate) struct Args {
     plot: Option<PathBuf>,
     #[command(flatten)]
     excitation: ExcitationFlags,
+    #[command(flatten)]
+    log_flags: LogFlags,
     /// Jump of the acceleration by which shapers are judged, in m/s² or rad/s²
     #[arg(long, value_name = "M/S2", default_value = "5", value_parser = excitation::positive)]
     acceleration: f64,
@@ -85,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         plot::check_name("--plot", path)?;
     }
     output::one_document(&outputs, args.json)?;
-    let reading = read(&args.log)?;
+    let reading = read(&args.log, &args.log_flags)?;
     let judgement = Judgement {
         acceleration: args.acceleration,
         margin: args.margin / 100.0,
@@ -118,27 +121,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Largest log in bytes: three hours at 3,200 samples per second.
-const LARGEST_LOG_BYTES: u64 = 1 << 31;
-
-fn read(path: &Path) -> Result<Reading, Failure> {
-    let unreadable = |found: &dyn std::fmt::Display| {
-        Failure::from(miette::miette!(
-            help = "name a log in CSV, with a header such as time,accel_x,accel_y,accel_z or time,command,response",
-            "cannot read the log `{}`: {found}",
-            path.display()
-        ))
-    };
-    let file = File::open(path).map_err(|error| unreadable(&error))?;
-    let mut text = Vec::new();
-    // A device or a pipe may never end.
-    let limit = file.take(LARGEST_LOG_BYTES + 1).read_to_end(&mut text);
-    if limit.map_err(|error| unreadable(&error))? as u64 > LARGEST_LOG_BYTES {
-        return Err(unreadable(&format!("it goes on after {LARGEST_LOG_BYTES} bytes")));
-    }
-    log::read(&text).map_err(|error| Failure::because(error).in_file(path))
-}
-
 /// Writes a machine file with the modes of a log, found with default settings.
 pub(crate) fn new_machine(
     log: &Path,
@@ -146,8 +128,10 @@ pub(crate) fn new_machine(
     kind: Option<MachineKind>,
     outputs: &OutputFiles,
 ) -> Result<(), Failure> {
+    const OPTIONS: &str = "`posicast identify LOG -o FILE` has the options --columns, --rate and --direction";
     let flags = ExcitationFlags::default();
-    let mut findings = Findings::of(read(log)?, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
+    let reading = read(log, &LogFlags::default()).map_err(|failure| failure.or_help(OPTIONS))?;
+    let mut findings = Findings::of(reading, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
     if findings.modes.is_empty() {
         return Err(none_found(log, true));
     }

@@ -45,6 +45,12 @@ pub struct FoundMode {
 }
 
 impl FoundMode {
+    /// Amplitude in m (rad) with which the mode rings after a jump of the axis's acceleration by `acceleration`, in m/s² (rad/s²):
+    /// `p·a/ω²`, by which modes count.
+    pub fn ringing(&self, acceleration: f64) -> f64 {
+        self.participation * acceleration / self.mode.omega().powi(2)
+    }
+
     /// 95 % interval of the undamped frequency in Hz.
     pub fn frequency_interval_hz(&self) -> Interval {
         Interval::of_95_percent(self.mode.frequency_hz, self.frequency_sd_hz)
@@ -57,5 +63,61 @@ impl FoundMode {
             low: interval.low.max(0.0),
             ..interval
         }
+    }
+}
+
+/// Share of all ringing from which on a mode is reported.
+pub const LEAST_RINGING: f64 = 0.05;
+/// The same for a mode whose participation is [`LEAST_PARTICIPATION`] of all at least: a peak that is plain to see, although it rings little.
+pub const LEAST_RINGING_OF_SEEN: f64 = 0.005;
+/// See [`LEAST_RINGING_OF_SEEN`].
+pub const LEAST_PARTICIPATION: f64 = 0.05;
+
+/// The modes that ring enough to be reported, in order of frequency, with participations that sum to one.
+pub(crate) fn that_ring(mut modes: Vec<FoundMode>) -> Vec<FoundMode> {
+    let rung: f64 = modes.iter().map(|found| found.ringing(1.0)).sum();
+    let whole: f64 = modes.iter().map(|found| found.participation).sum();
+    modes.retain(|found| {
+        let least = match found.participation >= LEAST_PARTICIPATION * whole {
+            true => LEAST_RINGING_OF_SEEN,
+            false => LEAST_RINGING,
+        };
+        found.ringing(1.0) >= least * rung
+    });
+    let sum: f64 = modes.iter().map(|found| found.participation).sum();
+    for found in &mut modes {
+        found.participation /= sum;
+    }
+    modes.sort_by(|a, b| a.mode.frequency_hz.total_cmp(&b.mode.frequency_hz));
+    modes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_modes_count_by_what_they_ring_with() {
+        let found = |frequency_hz: f64, participation: f64| FoundMode {
+            mode: Mode {
+                frequency_hz,
+                damping: 0.03,
+            },
+            participation,
+            frequency_sd_hz: 0.01,
+            damping_sd: 0.001,
+        };
+        // 0.04·5/(2π·12)² is 35.2 µm.
+        assert!((found(12.0, 0.04).ringing(5.0) - 35.2e-6).abs() < 0.05e-6);
+        let frequencies = |modes: &[FoundMode]| -> Vec<f64> {
+            let kept = that_ring(modes.to_vec());
+            assert!((kept.iter().map(|found| found.participation).sum::<f64>() - 1.0).abs() < 1e-12);
+            kept.iter().map(|found| found.mode.frequency_hz).collect()
+        };
+        // Kept although 4 % are little; left out because 4 % ring with 0.4 %; kept as a plain peak of 1 %; left out because 6 % ring with 0.1 %.
+        assert_eq!(frequencies(&[found(90.0, 0.96), found(12.0, 0.04)]), [12.0, 90.0]);
+        assert_eq!(frequencies(&[found(40.0, 0.96), found(130.0, 0.04)]), [40.0]);
+        assert_eq!(frequencies(&[found(40.0, 0.9), found(120.0, 0.1)]), [40.0, 120.0]);
+        assert_eq!(frequencies(&[found(20.0, 0.94), found(150.0, 0.06)]), [20.0]);
     }
 }

@@ -15,6 +15,7 @@ pub mod modal;
 pub mod output_only;
 pub mod position;
 pub mod recommend;
+pub mod ring_down;
 mod separable;
 pub mod signal;
 pub mod spectrum;

@@ -5,8 +5,8 @@
 //! such as a fan's, look like modes, and the shares are rough. Where the sweep is known, [`crate::sweep`] determines
 //! more.
 
-use crate::found::FoundMode;
-use crate::position::{self, FoundInPosition, PositionError};
+use crate::found::{FoundMode, that_ring};
+use crate::position::{self, FoundInPosition, PositionError, Quantity};
 use crate::signal::{AccelerationLog, Between, PositionLog};
 use crate::spectrum::{Transform, fast_length};
 
@@ -41,23 +41,23 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
     let (direction, record) = strongest.ok_or(PositionError::Short(0))?;
     let lags = ((LONGEST_LAG_S / log.sample_s) as usize).min(record.len() / LONGEST_PART);
     let correlation = correlation(record, lags);
-    let decay = position::identify(&PositionLog {
+    let log = PositionLog {
         sample_s: log.sample_s,
         command: Vec::new(),
         between: Between::Held,
         // The noise of the sensor is only in the first value.
         response: correlation.get(1..).unwrap_or_default().to_vec(),
-    })?;
+    };
+    let decay = position::identify_response(&log, Quantity::Acceleration)?;
     // For a mode that an acceleration with an even spectrum drives, the square of the share relates to the power as
     // ζ/ω.
     let share = |found: &FoundMode| (found.participation * found.mode.damping / found.mode.omega()).sqrt();
-    let whole: f64 = decay.modes.iter().map(share).sum();
     let modes = decay.modes.iter().map(|found| FoundMode {
-        participation: share(found) / whole,
+        participation: share(found),
         ..*found
     });
     Ok(FoundInOutput {
-        modes: modes.collect(),
+        modes: that_ring(modes.collect()),
         direction: direction.clone(),
         decay,
     })

@@ -234,7 +234,11 @@ fn unit_gaps_irregular_times_dead_and_saturated_columns_are_mended_and_said() {
     );
 
     let flat = rows("time,accel_x,accel_y", |n| {
-        format!("{n},9.8,{}", (20.0 * (0.2 * n as f64).sin()).clamp(-15.0, 15.0))
+        format!(
+            "{},9.8,{}",
+            1e-3 * n as f64,
+            (20.0 * (0.2 * n as f64).sin()).clamp(-15.0, 15.0)
+        )
     });
     let reading = log::read(flat.as_bytes()).unwrap();
     assert!(

@@ -1,8 +1,10 @@
 //! The tests of `posicast-identify` in one program, because linking takes most of the time of a small test program.
 #![cfg(test)]
 
+mod columns;
 mod irregular;
 mod log;
+mod low_modes;
 mod motor;
 mod position;
 mod position_bad;

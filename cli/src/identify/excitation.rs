@@ -10,6 +10,9 @@ pub(super) struct ExcitationFlags {
     /// The excitation is not known: look for modes in the spectrum alone, as if it were even
     #[arg(long, conflicts_with = "sweep")]
     pub(super) output_only: bool,
+    /// The log of an accelerometer is of a stop: look for modes in what rings after it
+    #[arg(long, conflicts_with_all = ["sweep", "output_only"])]
+    pub(super) ring_down: bool,
 }
 
 /// Parses a positive number.

@@ -1,6 +1,7 @@
 //! The modes found in a log, by whichever method.
 
 use super::excitation::ExcitationFlags;
+use super::log_flags::axis_of;
 use crate::failure::Failure;
 use crate::new::MachineKind;
 use posicast_identify::log::{Log, Reading};
@@ -8,6 +9,7 @@ use posicast_identify::modal::ResponsePoint;
 use posicast_identify::output_only;
 use posicast_identify::position::{self, FoundInPosition, PositionError, motor};
 use posicast_identify::recommend::{Judgement, Recommendation, recommend};
+use posicast_identify::ring_down::{self, FoundInRingDown, RingDownError};
 use posicast_identify::spectrum::{PowerSpectrum, welch};
 use posicast_identify::sweep::{self, Band, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
@@ -81,7 +83,8 @@ impl Findings {
         }
         let mut findings = match &reading.log {
             Log::Acceleration(log) if flags.output_only => of_output(log)?,
-            Log::Acceleration(log) => of_sweep(log, &flags.sweep)?,
+            Log::Acceleration(log) if flags.ring_down => of_ring_down(log)?,
+            Log::Acceleration(log) => of_accelerometer(log, flags)?,
             Log::Position(log) => of_position(log)?,
             Log::Drive(log) => of_motor(log)?,
         };
@@ -106,7 +109,69 @@ impl Findings {
 /// Time between samples above which it is asked whether it was given in milliseconds.
 const SLOW_S: f64 = 0.2;
 const MILLISECONDS: &str =
-    "the log has less than 5 samples per second; if its times are in milliseconds, write them in seconds";
+    "the log has less than 5 samples per second; if its times are in milliseconds, say so: --columns time_ms,…";
+
+/// A log of an accelerometer of which nothing is said: a sweep, or else what rings after a stop.
+fn of_accelerometer(log: &AccelerationLog, flags: &ExcitationFlags) -> Result<Findings, Failure> {
+    /// Length of a log in seconds below which it has no sweep.
+    const SHORT_S: f64 = 2.0;
+    let samples = log.directions.iter().map(|(_, record)| record.len()).min().unwrap_or(0);
+    if (samples as f64) * log.sample_s < SHORT_S {
+        return of_ring_down(log);
+    }
+    let no_sweep = match of_sweep(log, &flags.sweep) {
+        Err(failure) => failure,
+        Ok(findings) => return Ok(findings),
+    };
+    match ring_down::identify(log) {
+        Ok(found) if !found.modes.is_empty() && found.explained > RINGS => Ok(of_decay(log, found)),
+        Err(error @ RingDownError::Directions(..)) => Err(of_ring_down_error(error)),
+        _ => Err(no_sweep),
+    }
+}
+
+/// Fraction of the power after the last push that modes must explain if nothing says that the log is of a stop.
+const RINGS: f64 = 0.8;
+
+/// What rings after a stop.
+fn of_ring_down(log: &AccelerationLog) -> Result<Findings, Failure> {
+    Ok(of_decay(log, ring_down::identify(log).map_err(of_ring_down_error)?))
+}
+
+fn of_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
+    let mut remarks: Vec<String> = found.decay.remarks.iter().map(ToString::to_string).collect();
+    if found.modes.is_empty() {
+        remarks.push("what follows the last push does not decay as a mode would: log a sudden stop, until the machine is at rest".into());
+    }
+    Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: format!("accelerometer, direction {}", found.direction),
+        method: format!(
+            "modes that decay freely after a stop, fitted from {} s after the first sample on; they explain {:.2} % of it",
+            trimmed(found.begin_s, 4),
+            100.0 * found.explained
+        ),
+        method_name: "ring-down",
+        is_motor_held: false,
+        axis: axis_of(&found.direction),
+        evidence: Evidence::response("acceleration", &found.decay),
+        modes: found.modes,
+        recommended: Vec::new(),
+        unit: AxisUnit::default(),
+        judgement: Judgement::default(),
+        remarks,
+        spectrum: spectrum(log, &found.direction),
+    }
+}
+
+fn of_ring_down_error(error: RingDownError) -> Failure {
+    let help = match error {
+        RingDownError::Directions(..) => "--direction names the direction of the sensor along the axis",
+        RingDownError::Log(_) => "log from before the stop until the machine is at rest",
+    };
+    Failure::from(miette::miette!(help = help, "{error}"))
+}
 
 fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
     let found = sweep::identify(log, sweep).map_err(|error| {
@@ -261,13 +326,7 @@ fn of_position_error(error: PositionError) -> Failure {
     Failure::from(miette::miette!(help = help, "{error}"))
 }
 
-/// The axis of a column: `accel_x` is the log of axis `x`.
-fn axis_of(direction: &str) -> Option<String> {
-    let letter = direction.strip_prefix("accel_")?.chars().next()?;
-    Some(letter.to_string())
-}
-
-fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
+fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
     /// Ratio of the square of the remainder to that of the noise, above which the fit is incomplete.
     const LEFT_OVER: f64 = 4.0;
     /// Part by which clocks differ that is told: less moves no mode.
@@ -296,7 +355,7 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
             "the log fits this sweep if the axis moved in one direction, shaken at twice the sweep's frequencies; if it did not, it was another sweep: --sweep".to_owned(),
         );
     }
-    if low_hz > sweep.start_hz * PART || high_hz * PART < sweep.end_hz {
+    if low_hz > swept.start_hz * PART || high_hz * PART < swept.end_hz {
         remarks.push(format!(
             "the log has a part of this sweep only, from {low} to {high} Hz, and modes near a missing end are doubtful; if it was another sweep, describe it: \
              --sweep START:END:RATE:ACCEL"
@@ -307,8 +366,18 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
             "between {low} and {high} Hz the sensor follows the sweep without a resonance that could be told from noise"
         )
     } else {
+        // A slow mode rings much for its share of the response, and is shaken less.
+        let part = trimmed(100.0 * sweep::TOLD_RINGING, 3);
+        let visible = found.visible_from_hz.unwrap_or(low_hz);
+        let slower = match visible > PART * low_hz {
+            true => {
+                format!("; of slower ones it shows those that ring more, and none below {low} Hz or above {high} Hz")
+            }
+            false => format!("; none below that or above {high} Hz"),
+        };
         format!(
-            "modes below {low} Hz and above {high} Hz are not told, nor is one with less than 5 % of the displacement"
+            "from {} Hz on the log shows every mode that rings with {part} % of all{slower}",
+            trimmed(visible.max(low_hz), 3)
         )
     });
     remarks

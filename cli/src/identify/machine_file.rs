@@ -16,6 +16,8 @@ pub(super) struct Written {
     pub(super) text: String,
     /// Unit of the axis that has the modes.
     pub(super) unit: AxisUnit,
+    /// The axis whose other values it has, where it was added.
+    pub(super) copied_from: Option<String>,
 }
 
 /// The template, with only the axis that was measured.
@@ -53,7 +55,8 @@ fn without_stale_step(text: String) -> String {
     }
 }
 
-/// An existing machine file, with the modes in one of its axes.
+/// An existing machine file, with the modes in one of its axes. Where `identify` has written the file with the other axis of such a
+/// machine alone, the axis is added.
 pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings) -> Result<Written, Failure> {
     let text = machine::read(path)?.text;
     let mut document = parsed(&text, path)?;
@@ -65,6 +68,16 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
         None if axes.len() == 1 => Some(0),
         None => None,
     };
+    if let (None, Some(wanted), [only]) = (index, wanted, &names[..])
+        && is_pair(only, wanted)
+    {
+        let index = add_beside(axes, wanted, wanted < only.as_str(), findings);
+        let written = checked(document.to_string(), path, index)?;
+        return Ok(Written {
+            copied_from: Some(only.clone()),
+            ..written
+        });
+    }
     let Some((index, target)) = index.and_then(|index| Some((index, axes.get_mut(index)?))) else {
         let what = wanted.map_or("the log does not name its axis".into(), |wanted| {
             format!("no axis \"{wanted}\"")
@@ -77,6 +90,38 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
     };
     fill(target, findings);
     checked(document.to_string(), path, index)
+}
+
+/// Whether two axes are those of a machine that `posicast new` writes.
+fn is_pair(one: &str, other: &str) -> bool {
+    matches!((one, other), ("x", "y") | ("y", "x"))
+}
+
+/// Adds an axis with the values of the only other one, but for modes and shaper; its place among the axes.
+fn add_beside(axes: &mut ArrayOfTables, wanted: &str, is_first: bool, findings: &Findings) -> usize {
+    let mut added = axes.iter().next().cloned().unwrap_or_default();
+    put(&mut added, "name", wanted.into());
+    fill(&mut added, findings);
+    let mut both: Vec<Table> = axes.iter().cloned().collect();
+    both.insert(if is_first { 0 } else { both.len() }, added);
+    axes.clear();
+    for mut axis in both {
+        // Tables are written in the order of their places in the file that was read, which two axes now share.
+        without_place(&mut axis);
+        axes.push(axis);
+    }
+    if is_first { 0 } else { axes.len() - 1 }
+}
+
+fn without_place(table: &mut Table) {
+    table.set_position(None);
+    for (_, item) in table.iter_mut() {
+        match item {
+            Item::Table(inner) => without_place(inner),
+            Item::ArrayOfTables(inner) => inner.iter_mut().for_each(without_place),
+            Item::None | Item::Value(_) => {}
+        }
+    }
 }
 
 fn parsed(text: &str, path: &Path) -> Result<DocumentMut, Failure> {
@@ -137,7 +182,7 @@ fn fill(axis: &mut Table, findings: &Findings) {
         let mut shaper = Table::new();
         shaper.insert("kind", value(best.kind.name()));
         if best.kind.name().ends_with("ei") {
-            shaper.insert("tolerance", value(findings.judgement.tolerance));
+            shaper.insert("tolerance", value(rounded(best.tolerance)));
         }
         axis.insert("shaper", Item::Table(shaper));
     }
@@ -159,5 +204,9 @@ fn noted(number: f64, low: f64, high: f64) -> Item {
 fn checked(text: String, path: &Path, index: usize) -> Result<Written, Failure> {
     let machine = machine::parse(path, &text)?;
     let unit = machine.axes.get(index).map(|axis| axis.unit).unwrap_or_default();
-    Ok(Written { text, unit })
+    Ok(Written {
+        text,
+        unit,
+        copied_from: None,
+    })
 }

@@ -2,9 +2,10 @@
 
 use super::findings::Findings;
 use super::machine_file::Written;
-use crate::new::to_measure;
+use crate::new::{MachineKind, to_measure};
 use crate::output::{Table, percent, shell_word};
-use posicast_identify::Interval;
+use posicast_identify::recommend::Recommendation;
+use posicast_identify::{FoundMode, Interval};
 use posicast_model::unit::{show_seconds, trimmed};
 use posicast_testbench::wording::counted;
 use std::fmt::Write;
@@ -26,12 +27,10 @@ pub(super) fn text(log: &Path, findings: &Findings, written: Option<(&Path, &Wri
         text += &modes(findings);
         let _ = write!(
             text,
-            "\nshapers after a jump of the acceleration by {} {}/s², frequencies anywhere in their intervals and ±{} %: first the \
-             shortest that leave {} % at most\n",
+            "\nshapers after a jump of the acceleration by {} {}/s², frequencies anywhere in their intervals and ±{} %\n",
             trimmed(findings.judgement.acceleration, 4),
             findings.unit.si_name(),
             trimmed(100.0 * findings.judgement.margin, 4),
-            trimmed(100.0 * findings.judgement.enough, 4),
         );
         text += &shapers(findings);
     }
@@ -43,6 +42,12 @@ pub(super) fn text(log: &Path, findings: &Findings, written: Option<(&Path, &Wri
     }
     if let Some((path, machine)) = written {
         let file = shell_word(path);
+        if let Some(other) = &machine.copied_from {
+            let _ = write!(
+                text,
+                "\nthe axis is new in this machine file: its other values are copies of those of axis {other}, so check them\n"
+            );
+        }
         let _ = writeln!(
             text,
             "\n{} written\nnext: {}`posicast design {file}`, then `posicast run {file}`",
@@ -61,10 +66,14 @@ fn modes(findings: &Findings) -> String {
         ">interval",
         ">damping ratio",
         ">interval",
-        ">share of the displacement %",
+        ">participation %",
+        ">rings with",
+        ">share %",
     ]);
     let interval =
         |interval: Interval, digits| format!("{} … {}", trimmed(interval.low, digits), trimmed(interval.high, digits));
+    let ringing = |found: &FoundMode| found.ringing(findings.judgement.acceleration);
+    let whole: f64 = findings.modes.iter().map(ringing).sum();
     for found in &findings.modes {
         table.row([
             trimmed(found.mode.frequency_hz, 5),
@@ -72,29 +81,61 @@ fn modes(findings: &Findings) -> String {
             trimmed(found.mode.damping, 4),
             interval(found.damping_interval(), 4),
             format!("{:.1}", 100.0 * found.participation),
+            findings.unit.show(ringing(found), 3),
+            format!("{:.1}", 100.0 * ringing(found) / whole),
         ]);
     }
     table.text("  ")
 }
 
+/// The shapers in two tables: those that leave little enough, the shortest first, and the others.
 fn shapers(findings: &Findings) -> String {
-    let mut table = Table::new(&[
+    let enough = trimmed(100.0 * findings.judgement.enough, 4);
+    let (few, more): (Vec<_>, Vec<_>) = findings
+        .recommended
+        .iter()
+        .partition(|shaper| findings.judgement.is_enough(shaper));
+    let mut text = String::new();
+    for (title, shapers) in [
+        (format!("{enough} % or less is left, the shortest first"), few),
+        (format!("more than {enough} % is left"), more),
+    ] {
+        if !shapers.is_empty() {
+            text += &format!("  {title}\n{}", table_of(&shapers, findings));
+        }
+    }
+    text
+}
+
+fn table_of(shapers: &[&Recommendation], findings: &Findings) -> String {
+    let mut heads = vec![
         "kind",
         ">duration",
         ">delay",
         ">residual",
         ">of unshaped %",
         ">smoothing",
-    ]);
-    for shaper in &findings.recommended {
-        table.row([
+    ];
+    // The rule of printers is for lengths, and for machines that may take their corners with some acceleration.
+    let is_printer = findings.unit.si_name() == "m" && findings.kind() == MachineKind::Printer;
+    if is_printer {
+        heads.extend([">max_accel mm/s²", ">smoothing at it"]);
+    }
+    let mut table = Table::new(&heads);
+    for shaper in shapers {
+        let mut row = vec![
             shaper.kind.name().to_owned(),
             show_seconds(shaper.impulses.duration_s(), 3),
             show_seconds(shaper.impulses.delay_s(), 3),
             findings.unit.show(shaper.residual_displacement, 3),
             percent(shaper.ratio()),
             findings.unit.show(shaper.smoothing, 3),
-        ]);
+        ];
+        if is_printer {
+            row.push(format!("{:.0}", (1e3 * shaper.max_acceleration).floor()));
+            row.push(findings.unit.show(shaper.smoothing_in_corners(), 3));
+        }
+        table.row(row);
     }
-    table.text("  ")
+    table.text("    ")
 }

@@ -24,6 +24,7 @@ mod hardware;
 mod host;
 mod host_udp;
 mod identify;
+mod identify_logs;
 mod kit;
 mod moves;
 mod new;

@@ -7,15 +7,21 @@
 //! | `time`, `response` | a free decay |
 //! | `time`, `drive_command`, `position` | what a drive was told, and where its own motor went |
 //! | `time`, `captured_position`, `deviation` | a trace of the stage: motor, and motor against scale; the scale moves as the motor drives it |
+//! | `Sample`, `X`, `Y`, `Z` (any of them), the rate in the last line | accelerations in g as RepRapFirmware writes them |
+//! | `time`, `x`, `y`, `z` | accelerations, if the three directions measure gravity; else it is asked what they are |
 //!
-//! Names may include a unit: `time_ms`, `command_mm`, `response_um`, `accel_x_m_s2`. A `#` before the first name is
-//! ignored.
+//! Names may include a unit: `time_ms`, `command_mm`, `response_um`, `Accel X (g)`. A `#` before the first name is
+//! ignored. [`ReadOptions`] say what a file leaves open.
 
 mod columns;
+mod names;
+mod text;
 mod time;
+mod uses;
 
 use crate::signal::{AccelerationLog, Between, DriveLog, PositionLog};
-use columns::{Column, Meaning};
+use columns::Column;
+use names::Meaning;
 use thiserror::Error;
 
 /// A log that was read.
@@ -40,6 +46,15 @@ pub struct Reading {
     pub remarks: Vec<Remark>,
 }
 
+/// What a log's file does not say, or says otherwise.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Names of the columns in their order, in the place of the header's; `-` for a column that is not used.
+    pub columns: Option<Vec<String>>,
+    /// Samples per second, in the place of the times.
+    pub rate_hz: Option<f64>,
+}
+
 /// Why a log cannot be read. Lines count from 1, the header included.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LogError {
@@ -49,9 +64,12 @@ pub enum LogError {
     /// It has bytes that no text has.
     #[error("this is no text: a log is a file of comma-separated values, with a header and rows of numbers")]
     Binary,
+    /// It is packed.
+    #[error("the file is {0}")]
+    Packed(&'static str),
     /// The first line has numbers.
     #[error(
-        "line {line} is the first and has no column names: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
+        "line {line} is the first and has no column names: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it, or give them with `--columns time,accel_x_g,-`"
     )]
     NoHeader {
         /// Number of the line.
@@ -59,7 +77,7 @@ pub enum LogError {
     },
     /// A column that is needed is not there.
     #[error(
-        "there is no column `{missing}`: the columns are {}; name them in the header as posicast knows them: `time` with `command` and `response`, `drive_command` and `position`, or `accel_x`",
+        "there is no column `{missing}`: the columns are {}; name them in the header as posicast knows them, or with `--columns NAME,NAME,…` (`-` for one that is not used): `time` with `command` and `response`, `drive_command` and `position`, or `accel_x_g`",
         .found.join(", ")
     )]
     Missing {
@@ -69,8 +87,67 @@ pub enum LogError {
         found: Vec<String>,
     },
     /// Two columns have the same meaning.
-    #[error("the columns `{0}` and `{1}` mean the same: leave one out")]
+    #[error(
+        "the columns `{0}` and `{1}` mean the same: name those to be used with `--columns NAME,NAME,…`, and write `-` for the others"
+    )]
     Twice(String, String),
+    /// The names do not say what the columns are.
+    #[error(
+        "{} may be accelerations or positions: say which. `--columns {accelerations}` if they are accelerations in g (or `_mg`, `_m_s2`, `_mm_s2`), `--columns {position}` for one position",
+        listed(.columns)
+    )]
+    Ambiguous {
+        /// The columns.
+        columns: Vec<String>,
+        /// Names for `--columns` if they are accelerations.
+        accelerations: String,
+        /// Names for `--columns` if one is a position.
+        position: String,
+    },
+    /// A name of `--columns` is not known.
+    #[error(
+        "`--columns`: `{0}` is none of the names that posicast knows: `time`, `sample`, `accel_x`, `accel_y`, `accel_z`, `command`, `response`, `drive_command`, each with a unit behind it (`time_ms`, `accel_x_g`, `response_um`), or `-` for a column that is not used"
+    )]
+    GivenName(String),
+    /// `--columns` has more names than the file has columns.
+    #[error("`--columns` has {given} names, a row of the log {fields} fields")]
+    GivenCount {
+        /// Number of names.
+        given: usize,
+        /// Number of fields.
+        fields: usize,
+    },
+    /// The log numbers its samples, and does not say how many there are in a second.
+    #[error(
+        "the log has no times, and no line such as `Rate 1344, overflows 0` says how many samples there are in a second: give `--rate HZ`"
+    )]
+    NoRate,
+    /// The times of an accelerometer are too far apart to be seconds.
+    #[error(
+        "column `{column}` rises by {step} from row to row: in seconds, no accelerometer is as slow. Give its unit with `--columns {column}_ms,…` (or `_us`, `_ns`), or `--rate HZ`"
+    )]
+    TimeUnit {
+        /// Name of the column.
+        column: String,
+        /// Usual step.
+        step: f64,
+    },
+    /// The file has a spectrum.
+    #[error(
+        "this is a spectrum ({}), not a log of the motion over time, and the modes' phases and dampings are not in it: record a log. Klipper: `TEST_RESONANCES AXIS=X OUTPUT=raw_data` writes raw_data_x_….csv; RepRapFirmware: M956; others: export the time signal",
+        .0.join(", ")
+    )]
+    Spectrum(Vec<String>),
+    /// The recorder reports a failure.
+    #[error(
+        "line {line}: `{text}`, the firmware wrote in the place of samples: the recording is not whole; record it again"
+    )]
+    Recorder {
+        /// Number of the line.
+        line: u64,
+        /// What it says.
+        text: String,
+    },
     /// A row has a different number of fields than the header.
     #[error("line {line} has {found} fields, the header {expected}")]
     Fields {
@@ -95,7 +172,7 @@ pub enum LogError {
     },
     /// The time does not increase.
     #[error(
-        "line {line}: the time {time_s} s is not after {before_s} s of the line before; sort the rows by time, or cut the log where it starts anew"
+        "line {line}: the time {time_s} s is not after {before_s} s of the line before; sort the rows by time, cut the log where it starts anew, or, if the rows are equally spaced, give `--rate HZ`"
     )]
     Unsorted {
         /// Number of the line.
@@ -107,7 +184,7 @@ pub enum LogError {
     },
     /// The times are so irregular that the course of the command between the rows is not known.
     #[error(
-        "the steps from row to row differ by {:.0} % of a step (root mean square), most at line {line}: what the command was between two rows cannot be told, and the log would show modes that the machine does not have; log at a constant rate, in every tick of the controller, or, if the rows are equally spaced and only their time stamps waver, write row number times period in the place of the time",
+        "the steps from row to row differ by {:.0} % of a step (root mean square), most at line {line}: what the command was between two rows cannot be told, and the log would show modes that the machine does not have; log at a constant rate, in every tick of the controller, or, if the rows are equally spaced and only their time stamps waver, give `--rate HZ`",
         100.0 * .deviation
     )]
     Irregular {
@@ -190,10 +267,26 @@ pub enum Remark {
     /// The meaning of a column is not known.
     #[error("column `{0}` was not used: posicast does not know its name")]
     Unknown(String),
-    /// A column of another kind of log.
+    /// There is a second column of times.
+    #[error("column `{0}` was not used: the times are those of `{1}`, whose unit is stated")]
+    OtherTime(String, String),
+    /// Gravity decided the unit of the accelerations.
     #[error(
-        "column `{column}` was not used: the log was taken as {taken}; leave other columns out to have it taken otherwise"
+        "the accelerations were taken to be in {unit}: their means together are {measured:.4}, the acceleration of gravity in that unit; if they are not, `--columns` says what they are"
     )]
+    Gravity {
+        /// The unit.
+        unit: &'static str,
+        /// What the three directions measure together, in the log's numbers.
+        measured: f64,
+    },
+    /// The sensor's memory has overflowed.
+    #[error(
+        "the sensor's memory has overflowed {0} times: samples are lost at places that the log does not say, and frequencies and dampings may be wrong; record again at a lower rate or with fewer axes"
+    )]
+    Overflows(u64),
+    /// A column of another kind of log.
+    #[error("column `{column}` was not used: the log was taken as {taken}; `--columns` names those to be used instead")]
     Beside {
         /// The column.
         column: String,
@@ -205,12 +298,32 @@ pub enum Remark {
 /// Smallest number of rows of a log.
 const LEAST_ROWS: usize = 32;
 
+/// Time between the samples of an accelerometer in seconds above which the unit of the time is asked.
+const SLOWEST_ACCELEROMETER_S: f64 = 0.1;
+
+/// Names in a sentence.
+fn listed(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.len() {
+        1 => format!("column {}", quoted[0]),
+        _ => format!("columns {}", quoted.join(", ")),
+    }
+}
+
 /// Reads a log from the text of its file.
 ///
 /// # Errors
 /// [`LogError`] with the line and the column.
 pub fn read(text: &[u8]) -> Result<Reading, LogError> {
-    let table = columns::read(text)?;
+    read_with(text, &ReadOptions::default())
+}
+
+/// Reads a log from the text of its file, which these options explain.
+///
+/// # Errors
+/// [`LogError`] with the line and the column.
+pub fn read_with(text: &[u8], options: &ReadOptions) -> Result<Reading, LogError> {
+    let table = columns::read(text, options)?;
     if table.times_s.len() < LEAST_ROWS {
         return Err(LogError::Rows {
             rows: table.times_s.len(),
@@ -241,6 +354,12 @@ pub fn read(text: &[u8]) -> Result<Reading, LogError> {
     }
     let accelerometer = columns.iter().any(|column| column.meaning == Meaning::Acceleration);
     let log = if accelerometer {
+        if let (Some(column), true) = (table.plain_time, grid.sample_s > SLOWEST_ACCELEROMETER_S) {
+            return Err(LogError::TimeUnit {
+                column,
+                step: grid.sample_s,
+            });
+        }
         Log::Acceleration(acceleration(columns, grid.sample_s, &mut remarks)?)
     } else {
         position(columns, grid.sample_s)?

@@ -331,6 +331,20 @@ impl<'a> Gains<'a> {
         }
     }
 
+    /// What a pole with a share of 1 explains beside its moving part, if nothing else explains it.
+    pub(super) fn of_unit_share(&self, pole: &Pole) -> f64 {
+        let (mut cc, mut rr, mut cr) = (0.0, 0.0, 0.0);
+        for (point, turn) in self.points.iter().zip(&self.turns) {
+            let (below, ratio) = denominator(pole, point.frequency_hz);
+            let still = turn / below;
+            let moving = I * ratio * still;
+            cc += still.norm_sqr();
+            rr += moving.norm_sqr();
+            cr += (still.conj() * moving).re;
+        }
+        cc - cr * cr / rr.max(f64::MIN_POSITIVE)
+    }
+
     /// The gain of a pole with both its coefficients.
     pub(super) fn of(&self, pole: &Pole) -> f64 {
         // These are the products of the two columns `c` and `r`, and those with the residual.

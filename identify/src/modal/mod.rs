@@ -16,7 +16,8 @@ mod fit;
 mod select;
 
 pub(crate) use fit::{Fit, Lateness, Phase, refine, square};
-pub(crate) use select::{grown, pruned, select};
+pub use select::TOLD_RINGING;
+pub(crate) use select::{grown, pruned, select, visible_from_hz};
 
 use nalgebra::Complex;
 

@@ -2,6 +2,7 @@
 
 use super::ResponsePoint;
 use super::fit::{Fit, Gains, Phase, Pole, refine};
+use crate::found::FoundMode;
 use crate::separable::Effort;
 
 /// Largest number of poles that are searched.
@@ -88,6 +89,37 @@ fn added(poles: &[Pole], pole: Pole) -> Vec<Pole> {
     let mut poles = poles.to_vec();
     poles.push(pole);
     poles
+}
+
+/// Share of all ringing for which [`visible_from_hz`] is told.
+pub const TOLD_RINGING: f64 = 0.05;
+
+/// The frequency in Hz from which on a further mode would have been found that rings with [`TOLD_RINGING`] of what these modes ring with. The slower a mode is, the smaller the share of the response that rings as much, and the weaker its excitation.
+pub(crate) fn visible_from_hz(points: &[ResponsePoint], fit: &Fit, modes: &[FoundMode]) -> Option<f64> {
+    /// Damping ratio of the mode that would have been found.
+    const DAMPING: f64 = 0.04;
+    /// Distance of the frequencies that are looked at.
+    const STEP: f64 = 1.02;
+    let whole: f64 = modes.iter().map(|found| found.ringing(1.0)).sum();
+    modes.first()?;
+    let (low, high) = (points.first()?.frequency_hz, points.last()?.frequency_hz);
+    let gains = Gains::new(points, fit, STRIDE);
+    let is_visible = |frequency_hz: f64| {
+        let share = TOLD_RINGING * whole * (std::f64::consts::TAU * frequency_hz).powi(2);
+        let mode = Pole {
+            frequency_hz,
+            damping: DAMPING,
+        };
+        share.powi(2) * gains.of_unit_share(&mode) * STRIDE as f64 > LEAST_GAIN * fit.reduced_square().max(1.0)
+    };
+    let steps = ((high / low).ln() / STEP.ln()).max(0.0) as i32;
+    let tried = (0..=steps).map(|step| high / STEP.powi(step));
+    Some(
+        tried
+            .take_while(|frequency_hz| is_visible(*frequency_hz))
+            .last()
+            .unwrap_or(high),
+    )
 }
 
 /// The pole that explains most of a fit's residual.

@@ -12,6 +12,7 @@
 //! This is the zero-order hold without approximation. Rows are means over `decimation` samples, of the response and of these columns
 //! alike, so that nothing of the relation is lost.
 
+use super::Quantity;
 use super::memory::NoiseMemory;
 use crate::separable::Separable;
 use crate::signal::{Between, PositionLog};
@@ -32,6 +33,7 @@ pub(super) struct HeldModes<'a> {
     /// Rows that are ignored: they are zero in all columns. Empty where all rows count.
     clipped: Vec<bool>,
     body: Option<RigidBody>,
+    quantity: Quantity,
 }
 
 /// How a motor moves as a whole: `1/s` and `1/(s(s + rate))` of its drive's command.
@@ -106,6 +108,7 @@ impl<'a> HeldModes<'a> {
             memory: None,
             clipped: Vec::new(),
             body: None,
+            quantity: Quantity::Position,
         };
         this.measured = DVector::from_vec(this.rows(response.iter().copied()));
         this
@@ -121,6 +124,11 @@ impl<'a> HeldModes<'a> {
             self.measured = DVector::from_vec(measured);
         }
         self
+    }
+
+    /// The same for a response that is another quantity.
+    pub(super) fn of(self, quantity: Quantity) -> Self {
+        Self { quantity, ..self }
     }
 
     /// The same for a motor that moves as a whole.
@@ -309,6 +317,15 @@ impl<'a> HeldModes<'a> {
             }
             [along, across, ..] => along.hypot(*across),
             _ => 0.0,
+        }
+    }
+
+    /// Participation of a mode, except for a factor of all: the static gain of a forced one. A free one is taken as excited by a jump of
+    /// the acceleration, after which the amplitudes of the accelerations are participations.
+    pub(super) fn participation(&self, mode: &Mode, strength: f64) -> f64 {
+        match (self.is_forced(), self.quantity) {
+            (true, _) | (false, Quantity::Acceleration) => strength,
+            (false, Quantity::Position) => strength * mode.omega().powi(2),
         }
     }
 

@@ -12,7 +12,7 @@ pub mod recursive;
 mod rigid;
 mod search;
 
-use crate::found::FoundMode;
+use crate::found::{FoundMode, that_ring};
 use crate::separable::{self, Effort, Separable};
 use crate::signal::{Between, PositionLog};
 use held::HeldModes;
@@ -145,7 +145,9 @@ pub enum PositionRemark {
         samples: f64,
     },
     /// The response decays without forcing, so the shares are those of the decay.
-    #[error("the command does not move in this log: the shares are those of the amplitudes at its first sample")]
+    #[error(
+        "the command does not move in this log: the participations follow from the amplitudes at its first sample, as if a jump of the acceleration had made them"
+    )]
     Free,
     /// A drive whose command does not move.
     #[error(
@@ -209,8 +211,11 @@ const ROWS_PER_PERIOD: f64 = 8.0;
 const MOST_ROWS: usize = 30_000;
 /// Damping ratio from which on a pole does not count as a vibration.
 const NO_VIBRATION: f64 = 0.6;
-/// Share of the displacement below which a mode is not reported.
+/// Share of the response below which a mode must be sure to be reported, with a relative deviation of its damping and periods in the log
+/// that make it so.
 const LEAST_SHARE: f64 = 0.05;
+const SURE_DAMPING: f64 = 0.2;
+const SURE_PERIODS: f64 = 5.0;
 /// Relative standard deviations of a mode's damping and frequency above which the log does not determine it.
 const VAGUE_DAMPING: f64 = 0.4;
 const VAGUE_FREQUENCY: f64 = 0.03;
@@ -226,14 +231,29 @@ const STRETCHES: (f64, f64) = (6.0, 40.0);
 /// # Errors
 /// [`PositionError`] for a log that cannot be analysed.
 pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
+    identify_response(log, Quantity::Position)
+}
+
+/// What a response is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    Position,
+    Acceleration,
+}
+
+/// The same for a response that is another quantity: it decides what the amplitudes of a free decay are.
+pub(crate) fn identify_response(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition, PositionError> {
     check(log)?;
     let (response_unit, command_unit) = (largest(&log.response), largest(&log.command));
     let in_units = |values: &[f64], unit: f64| values.iter().map(|value| value / unit).collect::<Vec<f64>>();
-    let found = of_size_one(&PositionLog {
-        command: in_units(&log.command, command_unit),
-        response: in_units(&log.response, response_unit),
-        ..*log
-    })?;
+    let found = of_size_one(
+        &PositionLog {
+            command: in_units(&log.command, command_unit),
+            response: in_units(&log.response, response_unit),
+            ..*log
+        },
+        quantity,
+    )?;
     let in_log = |values: Vec<f64>| values.iter().map(|value| value * response_unit).collect();
     let mut remarks = found.remarks;
     for remark in &mut remarks {
@@ -257,17 +277,20 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// The modes of a log whose largest command and response are 1, so that its squares are finite whatever its units.
-fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
+fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition, PositionError> {
     let begin = match held::moves(&log.command) {
         true => 0,
         false => onset(&log.response),
     };
     if begin > 0 && log.response.len() >= begin + LEAST_SAMPLES {
-        let mut found = of_size_one(&PositionLog {
-            command: Vec::new(),
-            response: log.response[begin..].to_vec(),
-            ..*log
-        })?;
+        let mut found = of_size_one(
+            &PositionLog {
+                command: Vec::new(),
+                response: log.response[begin..].to_vec(),
+                ..*log
+            },
+            quantity,
+        )?;
         found.remarks.push(PositionRemark::Onset { samples: begin });
         return Ok(found);
     }
@@ -275,7 +298,9 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let coarse = samples.div_ceil(SEARCH_ROWS);
     let clipped = clipped(&log.response);
     let problem = |range: std::ops::Range<usize>, decimation| {
-        HeldModes::new(log, range.clone(), decimation).without(&clipped[range])
+        HeldModes::new(log, range.clone(), decimation)
+            .of(quantity)
+            .without(&clipped[range])
     };
     let mut found = search(&problem(0..samples, coarse), &[]);
     if coarse > 1 {
@@ -391,19 +416,21 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
             && found.mode.frequency_hz * seconds > ONE_PERIOD
             && !is_tone(&found.mode, problem.is_forced(), seconds)
     };
-    let mut kept: Vec<(FoundMode, f64)> = all.into_iter().filter(|(found, _)| is_vibration(found)).collect();
+    let kept: Vec<(FoundMode, f64)> = all.into_iter().filter(|(found, _)| is_vibration(found)).collect();
     let whole: f64 = kept.iter().map(|(_, strength)| strength).sum();
-    kept.retain(|(_, strength)| *strength >= LEAST_SHARE * whole);
-    let whole: f64 = kept.iter().map(|(_, strength)| strength).sum();
-    let mut modes: Vec<FoundMode> = kept
+    // A drift looks like a slow mode of little strength, which would ring most of all.
+    let is_sure = |found: &FoundMode| {
+        found.damping_sd < SURE_DAMPING * found.mode.damping.max(0.01)
+            && found.mode.frequency_hz * seconds > SURE_PERIODS
+    };
+    let modes = kept
         .into_iter()
+        .filter(|(found, strength)| *strength >= LEAST_SHARE * whole || is_sure(found))
         .map(|(found, strength)| FoundMode {
-            participation: strength / whole,
+            participation: problem.participation(&found.mode, strength),
             ..found
-        })
-        .collect();
-    modes.sort_by(|a, b| a.mode.frequency_hz.total_cmp(&b.mode.frequency_hz));
-    modes
+        });
+    that_ring(modes.collect())
 }
 
 /// Reasons why a fit's results are not modes.
@@ -473,7 +500,7 @@ fn remarks(
 fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Option<PositionRemark> {
     const DEVIATIONS: f64 = 5.0;
     const LEAST: f64 = 0.005;
-    let strongest = (0..modes.len()).max_by(|a, b| modes[*a].participation.total_cmp(&modes[*b].participation))?;
+    let strongest = (0..modes.len()).max_by(|a, b| modes[*a].ringing(1.0).total_cmp(&modes[*b].ringing(1.0)))?;
     let mut others: Vec<Mode> = modes.iter().map(|found| found.mode).collect();
     let start = HeldModes::unknowns(&others);
     others.remove(strongest);

@@ -19,7 +19,7 @@ use super::{
     FoundInPosition, LEAST_SAMPLES, LEAST_SHARE, MOST_ROWS, NO_VIBRATION, PositionError, PositionRemark,
     ROWS_PER_PERIOD, SEARCH_ROWS, VAGUE_DAMPING, VAGUE_FREQUENCY, check, largest, stretches,
 };
-use crate::found::FoundMode;
+use crate::found::{FoundMode, that_ring};
 use crate::separable::{Effort, Gram, Separable, deviation_over_stretches, refine};
 use crate::signal::{Between, DriveLog, PositionLog};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -391,6 +391,8 @@ fn value_and_slope(polynomial: &[f64], at: Complex<f64>) -> (Complex<f64>, Compl
 fn told(problem: &HeldModes<'_>, found: &Found, model: &Model) -> Vec<FoundMode> {
     /// How far above the free modes a held one may be: below them with a torque drive, beside them with a velocity drive.
     const ABOVE: f64 = 1.3;
+    /// Smallest part of the mass of a mode that rings much for its mass, because it is slow.
+    const LEAST_MASS: f64 = 0.015;
     if found.modes.is_empty() || !problem.is_forced() {
         return Vec::new();
     }
@@ -419,19 +421,16 @@ fn told(problem: &HeldModes<'_>, found: &Found, model: &Model) -> Vec<FoundMode>
         }
     }
     let whole: f64 = kept.iter().map(|(_, mass)| mass).sum();
+    let rings = |(found, mass): &(FoundMode, f64)| mass / found.mode.omega().powi(2);
+    let all: f64 = kept.iter().map(rings).sum();
     // A pole of noise has a zero beside it, with next to no mass.
-    let least = LEAST_SHARE * if model.is_force() { whole.max(1.0) } else { whole };
-    kept.retain(|(_, mass)| *mass >= least);
-    let whole: f64 = kept.iter().map(|(_, mass)| mass).sum();
-    let mut modes: Vec<FoundMode> = kept
-        .into_iter()
-        .map(|(found, mass)| FoundMode {
-            participation: mass / whole,
-            ..found
-        })
-        .collect();
-    modes.sort_by(|a, b| a.mode.frequency_hz.total_cmp(&b.mode.frequency_hz));
-    modes
+    let one = if model.is_force() { whole.max(1.0) } else { whole };
+    kept.retain(|mode| mode.1 >= LEAST_SHARE * one || (mode.1 >= LEAST_MASS * one && rings(mode) >= LEAST_SHARE * all));
+    let modes = kept.into_iter().map(|(found, mass)| FoundMode {
+        participation: mass,
+        ..found
+    });
+    that_ring(modes.collect())
 }
 
 fn remarks(

@@ -6,10 +6,11 @@
 mod excitation;
 mod transfer;
 
+pub use crate::modal::TOLD_RINGING;
 pub use excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 pub use transfer::{Band, Transfer};
 
-use crate::found::FoundMode;
+use crate::found::{FoundMode, that_ring};
 use crate::modal::{self, Fit, Lateness, Phase, ResponsePoint};
 use crate::separable::Effort;
 use crate::signal::AccelerationLog;
@@ -36,6 +37,9 @@ pub struct FoundInSweep {
     pub rise: Rise,
     /// The frequencies at which the log has the axis shaken; modes outside are not reported.
     pub covered: Band,
+    /// Frequency in Hz from which on a further mode below the lowest would have been found, if it rang with [`TOLD_RINGING`] of what
+    /// all ring with; `None` without modes.
+    pub visible_from_hz: Option<f64>,
     /// The measured transfer function.
     pub transfer: Transfer,
     /// The fitted transfer function, at the same points.
@@ -200,8 +204,10 @@ fn followed(
     if told < LEAST_TOLD {
         return Err(SweepError::Unlike(told));
     }
+    let modes = modes(&fit, &covered);
     Ok(Pass::Ended(Box::new(FoundInSweep {
-        modes: modes(&fit, &covered),
+        visible_from_hz: modal::visible_from_hz(points, &fit, &modes),
+        modes,
         direction,
         start_s: start_s + fit.phase.lateness().delay_s,
         clock_error: 0.0,
@@ -339,8 +345,6 @@ fn told(transfer: &Transfer, fit: &Fit) -> f64 {
 
 /// Damping ratio from which on a pole does not count as a vibration, but as a slope of the transfer function.
 const NO_VIBRATION: f64 = 0.5;
-/// Share of the displacement below which a mode is not reported.
-const LEAST_SHARE: f64 = 0.05;
 /// Number of standard deviations by which a share must exceed zero.
 const SIGNIFICANT: f64 = 6.0;
 
@@ -351,22 +355,14 @@ fn modes(fit: &Fit, band: &Band) -> Vec<FoundMode> {
         let inside = pole.frequency_hz > band.low_hz && pole.frequency_hz < band.high_hz;
         inside && pole.damping < NO_VIBRATION && share > SIGNIFICANT * deviation
     };
-    let mut told: Vec<usize> = (0..fit.poles.len()).filter(told).collect();
-    let whole: f64 = told.iter().map(|k| fit.shares[*k].0).sum();
-    told.retain(|k| fit.shares[*k].0 >= LEAST_SHARE * whole);
-    let whole: f64 = told.iter().map(|k| fit.shares[*k].0).sum();
-    let mut modes: Vec<FoundMode> = told
-        .iter()
-        .map(|&k| FoundMode {
-            mode: Mode {
-                frequency_hz: fit.poles[k].frequency_hz,
-                damping: fit.poles[k].damping,
-            },
-            participation: fit.shares[k].0 / whole,
-            frequency_sd_hz: fit.deviations[k].0,
-            damping_sd: fit.deviations[k].1,
-        })
-        .collect();
-    modes.sort_by(|a, b| a.mode.frequency_hz.total_cmp(&b.mode.frequency_hz));
-    modes
+    let modes = (0..fit.poles.len()).filter(told).map(|k| FoundMode {
+        mode: Mode {
+            frequency_hz: fit.poles[k].frequency_hz,
+            damping: fit.poles[k].damping,
+        },
+        participation: fit.shares[k].0,
+        frequency_sd_hz: fit.deviations[k].0,
+        damping_sd: fit.deviations[k].1,
+    });
+    that_ring(modes.collect())
 }
