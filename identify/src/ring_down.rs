@@ -26,6 +26,8 @@ pub struct FoundInRingDown {
     pub begin_s: f64,
     /// Fraction of the power after it that the modes explain.
     pub explained: f64,
+    /// Fraction of the whole log's power that is in the decay: little where most of the log is another motion, such as a sweep.
+    pub part: f64,
     /// The decay, with the modes fitted to it.
     pub decay: FoundInPosition,
 }
@@ -91,10 +93,12 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInRingDown, RingDownError>
         return Err(RingDownError::Directions(strongest.0.clone(), name.clone()));
     }
     let whole = power(&decay.response);
+    let energy = |record: &[f64]| power(record) * record.len() as f64;
     Ok(FoundInRingDown {
         modes: decay.modes.clone(),
         direction: strongest.0.clone(),
         begin_s: begin as f64 * log.sample_s,
+        part: energy(rung(record, begin)) / energy(record).max(f64::MIN_POSITIVE),
         explained: 1.0 - decay.noise.powi(2) / whole.max(f64::MIN_POSITIVE),
         decay,
     })

@@ -124,14 +124,17 @@ fn of_accelerometer(log: &AccelerationLog, flags: &ExcitationFlags) -> Result<Fi
         Ok(findings) => return Ok(findings),
     };
     match ring_down::identify(log) {
-        Ok(found) if !found.modes.is_empty() && found.explained > RINGS => Ok(of_decay(log, found)),
-        Err(error @ RingDownError::Directions(..)) => Err(of_ring_down_error(error)),
+        Ok(found) if !found.modes.is_empty() && found.explained > RINGS && found.part > PART => {
+            Ok(of_decay(log, found))
+        }
         _ => Err(no_sweep),
     }
 }
 
-/// Fraction of the power after the last push that modes must explain if nothing says that the log is of a stop.
+/// Fraction of the power after the last push that modes must explain if nothing says that the log is of a stop, and fraction of the whole
+/// log's power that this must be: the end of a sweep rings too.
 const RINGS: f64 = 0.8;
+const PART: f64 = 0.1;
 
 /// What rings after a stop.
 fn of_ring_down(log: &AccelerationLog) -> Result<Findings, Failure> {
@@ -177,7 +180,7 @@ fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
     let found = sweep::identify(log, sweep).map_err(|error| {
         let help = match error {
             SweepError::Unrelated(_) | SweepError::Unlike(_) | SweepError::Piece(_) => {
-                "--sweep START:END:RATE:ACCEL describes another sweep; --output-only looks for modes without knowing the excitation"
+                "--sweep START:END:RATE:ACCEL describes another sweep; --ring-down says that it is the log of a stop; --output-only looks for modes without knowing the excitation"
             }
             SweepError::Description(_) if log.sample_s > SLOW_S => MILLISECONDS,
             SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",

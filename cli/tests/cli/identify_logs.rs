@@ -186,7 +186,7 @@ fn cli_the_two_commands_for_x_and_y_work_from_either_axis() {
 fn cli_shapers_that_leave_more_than_said_stand_below_another_heading() {
     let folder = tempfile::tempdir().unwrap();
     write_test(folder.path(), "x.csv", "accel_x", 60.0);
-    let words = ["x.csv", "--sweep", "5:135:10:60", "--margin", "3.2"];
+    let words = ["x.csv", "--sweep", "5:135:10:60", "--margin", "6"];
     let (status, said, problems) = identify(folder.path(), &words);
     assert_eq!(status, Some(0), "{problems}");
     let (few, more) = said.split_once("more than 5 % is left").unwrap();
