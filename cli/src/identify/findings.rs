@@ -133,7 +133,7 @@ fn of_accelerometer(log: &AccelerationLog, flags: &ExcitationFlags) -> Result<Fi
 
 /// Fraction of the power after the last push that modes must explain if nothing says that the log is of a stop, and fraction of the whole
 /// log's power that this must be: the end of a sweep rings too.
-const RINGS: f64 = 0.8;
+const RINGS: f64 = 0.95;
 const PART: f64 = 0.1;
 
 /// What rings after a stop.
