@@ -31,6 +31,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     verdict(&merged.results, true)
 }
 
+/// Number of digits that the verdict shows of a machine's checksum.
+const SHOWN_DIGITS: usize = 12;
+
 /// A missing shard is a check that fails; files of something else are bad input.
 fn of_merge(error: MergeError) -> Failure {
     match error {
@@ -67,19 +70,20 @@ fn text(merged: &Merged, costs: &str, repeat: &str) -> String {
         text += &format!("the first one alone: {repeat} --unit {}\n", first.unit);
     }
     let head = &merged.head;
-    let machine = head
-        .machine
-        .as_ref()
-        .map_or_else(String::new, |machine| format!(" of {}", machine.name));
+    let machine = head.machine.as_ref().map_or_else(String::new, |machine| {
+        let digits: String = machine.sha256.chars().take(SHOWN_DIGITS).collect();
+        format!(" of {} (sha256 {digits}…)", machine.name)
+    });
     text += &format!("{costs}\n");
     text += &format!(
-        "{} {}{machine}, seed {}: {}\n",
+        "{} {}{machine}, posicast {}, seed {}: {}\n",
         crate::style::message(if verdict(&merged.results, true).is_ok() {
             "PASS:"
         } else {
             "FAIL:"
         }),
         head.kind,
+        head.version,
         head.seed,
         counts(&merged.results)
     );

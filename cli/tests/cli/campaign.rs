@@ -124,6 +124,44 @@ fn cli_campaign_merge_names_what_is_missing_doubled_or_of_another_campaign() {
     );
 }
 
+/// A shard has the checksum with which it was written.
+#[test]
+fn cli_campaign_merge_refuses_a_shard_that_was_edited() {
+    let folder = tempfile::tempdir().unwrap();
+    for number in [1, 2] {
+        shard(folder.path(), number, 2, "1");
+    }
+    assert_eq!(merged(folder.path()).status.code(), Some(0));
+    let file = folder.path().join("2.json");
+    let whole = std::fs::read_to_string(&file).unwrap();
+    let without_seal = whole
+        .lines()
+        .filter(|line| !line.contains("$comment"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    for (edited, what) in [
+        (whole.replace("none-such", "none-Such"), "another result"),
+        (whole.replace("\"seconds\": ", "\"seconds\": 1"), "another time"),
+        (whole.clone() + "\n", "a line more"),
+        (without_seal, "no checksum"),
+    ] {
+        assert_ne!(edited, whole, "{what}");
+        std::fs::write(&file, &edited).unwrap();
+        for command in [merged(folder.path()), shard(folder.path(), 2, 2, "1")] {
+            assert_eq!(command.status.code(), Some(2), "{what}: {}", said(&command));
+            assert!(command.stdout.is_empty());
+            let said = said(&command);
+            assert!(
+                said.contains("2.json: was changed since this shard was written"),
+                "{what}: {said}"
+            );
+        }
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), edited, "it is not replaced");
+    }
+    std::fs::write(&file, whole).unwrap();
+    assert_eq!(merged(folder.path()).status.code(), Some(0));
+}
+
 #[test]
 fn cli_campaign_names_a_broken_block_and_the_command_that_repeats_it() {
     let folder = tempfile::tempdir().unwrap();

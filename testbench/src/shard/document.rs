@@ -84,6 +84,15 @@ pub enum DocumentError {
         /// Why it failed.
         cause: std::io::Error,
     },
+    /// It is not as it was written: its checksum does not fit, or it has none.
+    #[error(
+        "{}: was changed since this shard was written: its checksum does not fit. Remove the file and run the shard again",
+        path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// Its contents are something else.
     #[error("{}: is not the file of a shard that this posicast reads: {reason}", path.display())]
     Other {
@@ -98,7 +107,7 @@ impl ShardDocument {
     /// Reads a file; `None` if there is none.
     ///
     /// # Errors
-    /// [`DocumentError`] for a file that cannot be read, or that is something else.
+    /// [`DocumentError`] for a file that cannot be read, that is something else, or that was changed since it was written.
     pub fn read(path: &Path) -> Result<Option<Self>, DocumentError> {
         let text = match std::fs::read(path) {
             Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
@@ -110,8 +119,12 @@ impl ShardDocument {
         };
         let document: Self = serde_json::from_slice(&text).map_err(|error| other(error.to_string()))?;
         match document.head.posicast_campaign {
-            FORMAT => Ok(Some(document)),
-            format => Err(other(format!("its format is {format}, not {FORMAT}"))),
+            FORMAT => {}
+            format => return Err(other(format!("its format is {format}, not {FORMAT}"))),
+        }
+        match output::is_ours(path).map_err(|cause| of_file(path, "read it", cause))? {
+            true => Ok(Some(document)),
+            false => Err(DocumentError::Changed { path: path.to_owned() }),
         }
     }
 
