@@ -202,6 +202,34 @@ fn a_late_entry_finds_the_axis_at_its_velocity_and_a_missing_one_stops_it() {
     assert_eq!(shown[4].late_ticks, 5);
 }
 
+/// `late_ticks` counts where a tick is decided, at the end of the one before; a quick stop may come in between.
+#[test]
+fn a_late_tick_counts_one_tick_before_it_is_played_even_if_a_quick_stop_replaces_it() {
+    let patient = Inputs {
+        extrapolation: 3,
+        stop_deceleration: 1 << 20,
+        ..QUIET
+    };
+    let stopping = Inputs {
+        quick_stop: true,
+        ..patient
+    };
+    for (next, late_ticks, state) in [(&patient, 2, SegmentsState::Move), (&stopping, 1, SegmentsState::Stop)] {
+        let mut segments = Segments::new(3);
+        write(&mut segments, &cubic(4, 3 << 16, 1 << 20, 0));
+        for _ in 0..5 {
+            tick_with(&mut segments, &patient);
+        }
+        // The entry has just ended: no tick was extrapolated yet, and one counts already.
+        assert_eq!(segments.outputs(2).late_ticks, 1);
+        tick_with(&mut segments, next);
+        assert_eq!(
+            (segments.outputs(2).late_ticks, segments.outputs(2).state),
+            (late_ticks, state)
+        );
+    }
+}
+
 #[test]
 fn a_batch_is_taken_whole_or_not_at_all() {
     let entries = [jerk(1, 5), cubic(2, 7, 0, 0), jerk(1, -5)];
