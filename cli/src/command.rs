@@ -5,8 +5,11 @@ use crate::failure::Failure;
 use crate::output;
 use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{AxisMove, SAMPLES_MAX, beyond_limits, command_words, modulo_words, resample, settle_s};
+use posicast_model::motion::{
+    AxisMove, SAMPLES_MAX, beyond_limits, command_words, end_velocity, modulo_words, resample, settle_s,
+};
 use posicast_model::rtl::shaper::wrap;
+use posicast_model::spelling::did_you_mean;
 use std::fs::File;
 use std::path::Path;
 
@@ -26,6 +29,7 @@ pub(crate) fn words(
     let points = path.map(|path| read(machine, path)).transpose()?;
     if let (Some(path), Some(points)) = (path, &points) {
         warn_of_limits(machine, path, points);
+        warn_of_jumps(machine, path, points);
     }
     let sample_hz = machine.clock.sample_hz;
     let mut words = Words::new();
@@ -114,6 +118,64 @@ fn warn_of_limits(machine: &Machine, path: &Path, points: &Points) {
     }
 }
 
+/// Says where a command jumps: to its first point, from where the axis stands at reset, and to rest, from a motion in which it ends.
+fn warn_of_jumps(machine: &Machine, path: &Path, points: &Points) {
+    let path = path.display();
+    for (axis, of_axis) in machine.axes.iter().zip(&points.of_axes) {
+        let (Some(first), Some(last)) = (of_axis.first(), of_axis.last()) else {
+            continue;
+        };
+        let (unit, name, counts) = (axis.unit, &axis.name, axis.loop_counts_per_file_unit());
+        if (first.1 * counts).abs() >= 1.0 {
+            output::say(&format!(
+                "warning: command file `{path}`, line {}: axis `{name}` begins at {}, and stands at 0 after a reset: the command jumps \
+                 there",
+                points.lines[0],
+                unit.as_in_file(unit.to_si(first.1), "")
+            ));
+        }
+        let before = of_axis.len().checked_sub(2).map_or(last, |before| &of_axis[before]);
+        let velocity = end_velocity(of_axis);
+        if velocity != 0.0 && ((last.1 - before.1) * counts).abs() >= 1.0 {
+            output::say(&format!(
+                "warning: command file `{path}`, line {}: axis `{name}` ends in mid-motion, at {}: the command stops there at once; add \
+                 the points in which it comes to rest",
+                points.lines[points.lines.len() - 1],
+                unit.as_in_file(unit.to_si(velocity), "/s")
+            ));
+        }
+    }
+}
+
+/// Refuses a column that is there twice, or is most likely a misspelt one, and says which others are not used.
+fn check_columns(machine: &Machine, path: &Path, headings: &csv::StringRecord) -> Result<(), String> {
+    let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let known: Vec<&str> = ["time_s", "position"].into_iter().chain(axes.iter().copied()).collect();
+    let is_there = |name: &str| headings.iter().any(|heading| heading == name);
+    for (index, heading) in headings.iter().enumerate() {
+        if !heading.is_empty() && headings.iter().take(index).any(|earlier| earlier == heading) {
+            return Err(format!("line 1: the column `{heading}` is there twice"));
+        }
+        let absent: Vec<&str> = known.iter().copied().filter(|name| !is_there(name)).collect();
+        let unused = match heading {
+            "" => format!("column {} has no name and", index + 1),
+            // All axes have columns of their own.
+            "position" if axes.iter().all(|axis| is_there(axis)) => "column `position`".to_owned(),
+            _ if known.contains(&heading) => continue,
+            _ => match did_you_mean(heading, &absent, '`') {
+                Some(question) => return Err(format!("line 1: unknown column `{heading}`: {question}")),
+                None => format!("column `{heading}`"),
+            },
+        };
+        output::say(&format!(
+            "warning: command file `{}`, line 1: {unused} is not used; the columns are `time_s`, and `position` or one per axis: {}",
+            path.display(),
+            axes.join(", ")
+        ));
+    }
+    Ok(())
+}
+
 /// Reads the points `(time_s, position)` of every axis, with positions in its unit. The columns are `time_s` and
 /// either `position` for all axes or one per axis.
 fn read(machine: &Machine, path: &Path) -> Result<Points, Failure> {
@@ -140,6 +202,7 @@ fn read(machine: &Machine, path: &Path) -> Result<Points, Failure> {
             _ => "line 1: no column `time_s`".to_owned(),
         })
     })?;
+    check_columns(machine, path, &headings).map_err(refused)?;
     let columns: Vec<usize> = machine
         .axes
         .iter()

@@ -113,9 +113,54 @@ pub fn beyond_limits(
     (outside, too_fast)
 }
 
+/// Fraction of the largest velocity that counts as rest at the end of a command.
+const REST: f64 = 0.01;
+
+/// Velocity with which a command arrives at its last point, in the unit of the points per second; 0 where it comes to rest there. Points
+/// are in time order. Velocities are those in the middle of the lines between points, continued to the end, so that a command
+/// which brakes evenly into its last point comes to rest.
+pub fn end_velocity(points: &[(f64, f64)]) -> f64 {
+    let lines: Vec<(f64, f64)> = points
+        .windows(2)
+        .map(|pair| (pair[1].0 - pair[0].0, (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)))
+        .collect();
+    let Some((&(time_s, velocity), before)) = lines.split_last() else {
+        return 0.0;
+    };
+    let end = match before.last() {
+        Some((before_s, before)) => velocity + (velocity - before) * time_s / (time_s + before_s),
+        None => velocity,
+    };
+    let largest = lines.iter().map(|(_, velocity)| velocity.abs()).fold(0.0, f64::max);
+    match end * velocity > 0.0 && end.abs() > REST * largest {
+        true => end,
+        false => 0.0,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_command_that_brakes_into_its_last_point_comes_to_rest_and_one_that_is_cut_does_not() {
+        // Even braking from 2 per second over 1 s, and a move without jumps of acceleration, at several sample rates.
+        for samples in [4, 10, 1000] {
+            let times = (0..=samples).map(|n| f64::from(n) / f64::from(samples));
+            let braking: Vec<_> = times.clone().map(|t| (t, 2.0 * t - t * t)).collect();
+            assert_eq!(end_velocity(&braking), 0.0, "{samples}");
+            let smooth: Vec<_> = times
+                .map(|t| (t, t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)))
+                .collect();
+            assert_eq!(end_velocity(&smooth), 0.0, "{samples}");
+            let (braking, smooth) = (&braking[..braking.len() / 2 + 1], &smooth[..smooth.len() / 2 + 1]);
+            assert!(end_velocity(braking) > 0.9 && end_velocity(smooth) > 1.5, "{samples}");
+        }
+        assert_eq!(end_velocity(&[(0.0, 0.0), (2.0, -3.0)]), -1.5);
+        assert_eq!(end_velocity(&[(0.0, 0.0), (2.0, -3.0), (2.1, -3.0)]), 0.0);
+        assert_eq!(end_velocity(&[(0.0, 1.0)]), 0.0);
+        assert_eq!(end_velocity(&[]), 0.0);
+    }
 
     #[test]
     fn points_are_joined_by_straight_lines_and_the_last_is_held() {

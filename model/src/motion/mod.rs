@@ -24,7 +24,7 @@ mod words;
 
 pub use axis_move::{AxisMove, AxisMoveError};
 pub use by_period::{BetterMove, MoveComparison, MoveFigures, PeriodMove, compare_move};
-pub use command::{PointsError, beyond_limits, resample, settle_s};
+pub use command::{PointsError, beyond_limits, end_velocity, resample, settle_s};
 pub use planner::{POINTS_MAX, PlanError, plan_circle, plan_move, plan_places, plan_to_and_fro};
 pub(crate) use profile::motion_limits;
 pub use profile::{Profile, ProfileError, SAMPLES_MAX};
