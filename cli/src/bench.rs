@@ -4,12 +4,13 @@ use crate::failure::Failure;
 use crate::{output, progress};
 use clap::ValueEnum;
 use indicatif::ProgressBar;
-use posicast_testbench::Error;
 use posicast_testbench::asynchronous;
 use posicast_testbench::blocks::{self, Block, Sources};
 use posicast_testbench::lockstep::Device;
-use posicast_testbench::lockstep::report::LockstepReport;
-use posicast_testbench::verilator;
+use posicast_testbench::lockstep::report::{BlockReport, LockstepReport};
+use posicast_testbench::wording::counted;
+use posicast_testbench::{Error, MissingTool};
+use posicast_testbench::{icarus, verilator};
 use serde::Serialize;
 use std::fmt;
 use std::num::NonZero;
@@ -51,7 +52,12 @@ pub(crate) fn clocks(text: &str) -> Result<u64, String> {
 }
 
 /// Whether this program is linked statically and can therefore load no library.
-const IS_STATIC: bool = cfg!(target_feature = "crt-static");
+pub(crate) const IS_STATIC: bool = cfg!(target_feature = "crt-static");
+
+/// Whether a variable names Verilator.
+fn names_verilator() -> bool {
+    std::env::var_os("VERILATOR").is_some_and(|name| !name.is_empty())
+}
 
 impl Simulator {
     /// The simulator that was asked for, else the best that is installed.
@@ -76,7 +82,7 @@ impl Simulator {
         }
         match verilator::version() {
             Ok(_) => Ok(Self::Verilator),
-            Err(error) if !error.is_missing_tool() || std::env::var_os("VERILATOR").is_some() => Err(failure(error)),
+            Err(error) if !error.is_missing_tool() || names_verilator() => Err(failure(error)),
             Err(_) => {
                 output::say(
                     "warning: Verilator is not installed: RustHDL's own simulator runs instead, on fewer clocks. It is the \
@@ -87,14 +93,18 @@ impl Simulator {
         }
     }
 
+    /// Number of clocks that the simulator does in a few seconds.
+    pub(crate) fn usual_cycles(self) -> u64 {
+        match self {
+            Self::Verilator => 1_000_000,
+            Self::Icarus | Self::Rusthdl => 20_000,
+        }
+    }
+
     /// Fewest and most clocks of a block's lock step by default: as many as the simulator does in a few seconds, and
     /// more until the stimuli have exercised what a verdict speaks of.
     fn default_cycles(self, block: &dyn Block) -> RangeInclusive<u64> {
-        let usual = match self {
-            Self::Verilator => 1_000_000,
-            Self::Icarus | Self::Rusthdl => 20_000,
-        };
-        let fewest = usual.max(block.least_clocks());
+        let fewest = self.usual_cycles().max(block.least_clocks());
         fewest..=MOST_TIMES_LONGER * fewest
     }
 
@@ -149,6 +159,50 @@ impl Bench<'_> {
     }
 }
 
+/// A simulator, and the blocks that it is to run.
+pub(crate) type Needs<'a> = (Simulator, Vec<(&'a dyn Block, &'a Sources)>);
+
+/// Refuses to begin where one of these tools is missing: each is named once.
+pub(crate) fn require_installed(tools: impl IntoIterator<Item = MissingTool>) -> Result<(), Failure> {
+    let mut missing: Vec<MissingTool> = Vec::new();
+    for tool in tools {
+        if !missing.contains(&tool) {
+            missing.push(tool);
+        }
+    }
+    match missing.is_empty() {
+        true => Ok(()),
+        false => Err(failure(Error::ToolMissing(missing))),
+    }
+}
+
+/// Refuses to begin where a tool is missing that one of these blocks needs: all of them are named, each once.
+/// `with_directed`: also those of the blocks' directed tests, which [`compare_all`] runs.
+pub(crate) fn require_tools(needs: &[Needs<'_>], with_directed: bool) -> Result<(), Failure> {
+    let mut missing = Vec::new();
+    for (simulator, blocks) in needs {
+        let mut blocks = blocks.iter();
+        match simulator {
+            Simulator::Verilator => missing.extend(missing_builders(blocks.clone().copied())),
+            Simulator::Icarus => missing.extend(icarus::missing_tools()),
+            Simulator::Rusthdl => continue,
+        }
+        if with_directed && blocks.any(|(block, _)| block.asynchronous().is_some()) {
+            missing.extend(icarus::missing_tools());
+        }
+    }
+    require_installed(missing)
+}
+
+/// What Verilator's simulations of these blocks need and is not installed. Who has them all built needs no compiler.
+fn missing_builders<'a>(mut blocks: impl Iterator<Item = (&'a dyn Block, &'a Sources)>) -> Vec<MissingTool> {
+    let missing = verilator::missing_tools();
+    if missing.is_empty() || blocks.all(|(block, sources)| matches!(sources.is_built(block), Ok(true))) {
+        return Vec::new();
+    }
+    missing
+}
+
 /// Compares every block with its model, at most [`MOST_AT_ONCE`] at a time, and reports them in their order.
 pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<LockstepReport, Failure> {
     simulator.say_sizes(benches.iter().map(|bench| bench.block));
@@ -180,8 +234,39 @@ pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64
     bar.finish_and_clear();
     let mut rows = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     rows.sort_by_key(|(row, _)| *row);
-    let reports: Result<Vec<LockstepReport>, Error> = rows.into_iter().map(|(_, result)| result).collect();
-    Ok(LockstepReport::joined(reports.map_err(failure)?))
+    let (mut reports, mut failed) = (Vec::new(), None);
+    for (_, result) in rows {
+        match result {
+            Ok(report) => reports.push(report),
+            Err(error) => failed = failed.or(Some(error)),
+        }
+    }
+    match failed {
+        Some(error) => Err(failure(error).with_help(&until_then(&reports, benches.len()))),
+        None => Ok(LockstepReport::joined(reports)),
+    }
+}
+
+/// What was compared before an error ended the command, in a sentence.
+fn until_then(reports: &[LockstepReport], all: usize) -> String {
+    let of_row = |row: &BlockReport| {
+        let found = match (row.mismatches, row.not_exercised.len()) {
+            (0, 0) => "equal".to_owned(),
+            (0, few) => format!("equal, {few} not exercised"),
+            (wrong, _) => counted(wrong, "mismatch"),
+        };
+        format!(
+            "{} {}, {}, {found}",
+            row.name,
+            row.instance,
+            counted(row.cycles, "clock")
+        )
+    };
+    let rows: Vec<String> = reports.iter().flat_map(|report| &report.blocks).map(of_row).collect();
+    match rows.is_empty() {
+        true => "nothing was compared until then".to_owned(),
+        false => format!("compared until then, {} of {all}: {}", reports.len(), rows.join("; ")),
+    }
 }
 
 fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar) -> Result<LockstepReport, Error> {
@@ -198,11 +283,7 @@ fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar
     if simulator == Simulator::Rusthdl {
         return Ok(report);
     }
-    let between_clocks = match asynchronous::check(bench.block, bench.sources) {
-        Err(error) if error.is_missing_tool() => asynchronous::not_run(bench.block, &error.to_string()),
-        other => other?,
-    };
-    Ok(match between_clocks {
+    Ok(match asynchronous::check(bench.block, bench.sources)? {
         Some(row) => LockstepReport::joined(vec![report, row]),
         None => report,
     })

@@ -28,6 +28,18 @@ impl Failure {
         Self::Input(miette::Report::from_err(error))
     }
 
+    /// An error of the system while `doing` something with a file or folder, which the error itself does not name.
+    pub(crate) fn of_file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.display().to_string();
+        move |error| {
+            let error = error.to_string();
+            match error.contains(&path) {
+                true => Self::from(miette::miette!("{error}")),
+                false => Self::from(miette::miette!("{path}: cannot {doing}: {error}")),
+            }
+        }
+    }
+
     /// The failure with its message prefixed by the file that it is about.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         match self {
@@ -50,6 +62,19 @@ impl Failure {
                 Self::Input(miette::miette!(help = help, "{}", with_causes(&report)))
             }
             other => other,
+        }
+    }
+
+    /// The failure with another line of help.
+    pub(crate) fn with_help(self, line: &str) -> Self {
+        let add = |report: miette::Report| {
+            let help = report.help().map_or_else(String::new, |help| format!("{help}\n"));
+            miette::miette!(help = help + line, "{}", with_causes(&report))
+        };
+        match self {
+            Self::Input(report) => Self::Input(add(report)),
+            Self::MissingTool(report) => Self::MissingTool(add(report)),
+            check @ Self::Check(_) => check,
         }
     }
 

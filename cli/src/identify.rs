@@ -18,7 +18,7 @@ use findings::Findings;
 use log_flags::{LogFlags, read};
 use machine_file::Written;
 use posicast_identify::recommend::Judgement;
-use posicast_system::output::{self as files, OutputFiles};
+use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use std::path::{Path, PathBuf};
 
@@ -107,7 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         write_text(path, &plot::svg(&pictures::panels(&findings))?).map_err(Failure::because)?;
     }
     if let Some((path, machine)) = &machine {
-        files::write_text(path, machine.text.as_str()).map_err(Failure::because)?;
+        output::write_text(path, machine.text.as_str())?;
     }
     if args.json {
         output::print_json(&document::Document::new(&findings))?;
@@ -137,7 +137,7 @@ pub(crate) fn new_machine(
     }
     let machine = machine_file::from_template(kind.unwrap_or(findings.kind()), file, None, &findings)?;
     findings.unit = machine.unit;
-    files::write_text(file, machine.text.as_str()).map_err(Failure::because)?;
+    output::write_text(file, machine.text.as_str())?;
     let said = text::text(log, &findings, Some((file, &machine)));
     output::print_beside(outputs, &format!("{said}{}\n", schema::hint(file)))
 }

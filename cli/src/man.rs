@@ -8,7 +8,7 @@ use crate::output;
 use clap::Arg;
 use clap_mangen::Man;
 use clap_mangen::roff::{Inline, Roff, bold, italic, roman};
-use posicast_system::output::{self as files, OutputFiles};
+use posicast_system::output::OutputFiles;
 use std::path::PathBuf;
 
 /// Write manual pages, one per command, into a folder
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
         written.push((path, text));
     }
     for (path, text) in &written {
-        files::write_text(path, text.as_str()).map_err(Failure::because)?;
+        output::write_text(path, text.as_str())?;
     }
     output::print(&format!(
         "{} pages written to {}\n",

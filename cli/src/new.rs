@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::identify;
 use crate::output::{self, shell_word};
 use crate::schema;
-use posicast_system::output::{self as files, OutputError, OutputFiles};
+use posicast_system::output::{OutputError, OutputFiles};
 use questions::Questions;
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         kind => Draft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
     };
     let (file, text) = (shell_word(&args.file), draft.text());
-    files::write_text(&args.file, text).map_err(Failure::because)?;
+    output::write_text(&args.file, text)?;
     let said = format!(
         "{} written: machine {}, {}\n\
          next: {}`posicast design {file}`, then `posicast run {file}`\n\

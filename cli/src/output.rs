@@ -14,9 +14,20 @@ use std::path::Path;
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::because(error)),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::of_file(Path::new("standard output"), "write it")(error))
+        }
         _ => Ok(()),
     }
+}
+
+/// Writes a text with a seal into a file with a name that the user gave, completely or not at all.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    let name = match path == Path::new("-") {
+        true => Path::new("standard output"),
+        false => path,
+    };
+    posicast_system::output::write_text(path, text).map_err(Failure::of_file(name, "write it"))
 }
 
 /// Prints text with coloured verdicts; the colours are left out where nobody sees them.
@@ -65,6 +76,18 @@ pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(document)
         .map(|text| text + "\n")
         .map_err(Failure::because)
+}
+
+/// Number of names of a list that a text shows; JSON has all.
+const SHOWN: usize = 8;
+
+/// The first names of a list, and how many more there are.
+pub(crate) fn few(names: &[String]) -> String {
+    let mut text = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > SHOWN {
+        text += &format!(" and {} more", names.len() - SHOWN);
+    }
+    text
 }
 
 /// Prints a message on standard error.

@@ -1,13 +1,13 @@
 //! `posicast verify --stimulus FILE`: replays a recording into the RTL and the model.
 
-use crate::bench::{self, Simulator};
+use crate::bench::{self, Needs, Simulator};
 use crate::failure::Failure;
 use crate::output;
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::report::LockstepReport;
-use posicast_testbench::replay::{Extent, Replay};
+use posicast_testbench::replay::{Exercised, Extent, Replay, is_timing};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -67,6 +67,14 @@ pub(crate) struct Replayed {
     missing_inputs: Vec<String>,
     /// Outputs that are not in the file, which were compared between RTL and model only.
     missing_outputs: Vec<String>,
+    /// Number of outputs of the block.
+    #[serde(skip)]
+    outputs: usize,
+    /// Inputs in the file, and outputs of the model, that never changed in the clocks that were compared.
+    unchanged_inputs: Vec<String>,
+    unchanged_outputs: Vec<String>,
+    /// What else the recording does not exercise of what a verdict on the block would speak of.
+    not_exercised: Vec<String>,
     /// Number of clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
     unknown_input_clocks: u64,
     unknown_output_clocks: u64,
@@ -81,6 +89,27 @@ impl Replayed {
         &self.missing_inputs
     }
 
+    /// What the recording does not exercise: taps, banks, levels of flags.
+    pub(crate) fn not_exercised(&self) -> &[String] {
+        &self.not_exercised
+    }
+
+    /// How much of the block's outputs the recording moves, for the line of the verdict.
+    pub(crate) fn summary(&self) -> String {
+        let changed = self.outputs - self.unchanged_outputs.len();
+        let mut text = format!(
+            "{changed} of {} change in the recording",
+            counted(self.outputs as u64, "output")
+        );
+        if !self.not_exercised.is_empty() {
+            text += &format!(
+                ", {} not exercised by it (see above)",
+                counted(self.not_exercised.len() as u64, "thing")
+            );
+        }
+        text
+    }
+
     /// The result in words, in lines.
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
@@ -91,7 +120,7 @@ impl Replayed {
         );
         let mut line = |names: &[String], what: &str| {
             if !names.is_empty() {
-                text += &format!("  {what}: {}\n", names.join(", "));
+                text += &format!("  {what}: {}\n", output::few(names));
             }
         };
         line(&self.notes, "time");
@@ -100,6 +129,9 @@ impl Replayed {
             &self.missing_outputs,
             "outputs not in the file, compared between RTL and model only",
         );
+        line(&self.unchanged_inputs, "inputs that never change");
+        line(&self.unchanged_outputs, "outputs that never change");
+        line(&self.not_exercised, "not exercised");
         for (clocks, what) in [
             (self.unknown_input_clocks, "with x or z in inputs, taken as 0"),
             (
@@ -118,13 +150,15 @@ impl Replayed {
     }
 }
 
-/// Replays the recording, for at most this many clocks, into the block that has most in common with it.
+/// Replays the recording, for at most this many clocks, into the block that has most in common with it, in each of these
+/// simulators, and returns a report for each.
 pub(crate) fn run(
     blocks: &[(Box<dyn Block>, Sources)],
     file: &Path,
     args: &Recording,
-    (simulator, seed, most_clocks): (Simulator, u64, u64),
-) -> Result<(LockstepReport, Replayed), Failure> {
+    simulators: &[Simulator],
+    (seed, most_clocks): (u64, u64),
+) -> Result<(Vec<LockstepReport>, Replayed), Failure> {
     let options = args.options().map_err(bench::failure)?;
     let (block, sources, replay) = choose(blocks, file, &options)?;
     has_content(block, &replay, file)?;
@@ -139,17 +173,33 @@ pub(crate) fn run(
             replay.notes().join(", ")
         )));
     }
-    simulator.say_sizes(std::iter::once(block));
-    let mut device = simulator.device(block, sources, seed).map_err(bench::failure)?;
-    let report = replay
-        .run(block, device.as_mut(), clocks, seed)
-        .map_err(bench::failure)?;
+    let needs: Vec<Needs<'_>> = simulators
+        .iter()
+        .map(|simulator| (*simulator, vec![(block, sources)]))
+        .collect();
+    bench::require_tools(&needs, false)?;
+    let mut reports = Vec::new();
+    let mut exercised = Exercised::default();
+    for simulator in simulators {
+        simulator.say_sizes(std::iter::once(block));
+        let mut device = simulator.device(block, sources, seed).map_err(bench::failure)?;
+        let report = replay
+            .run(block, device.as_mut(), &extent, seed)
+            .map_err(bench::failure)?;
+        reports.push(report.0);
+        // It is the model's, and so the same for each.
+        exercised = report.1;
+    }
     let replayed = Replayed {
         file: file.to_owned(),
         clocks,
         compared,
         missing_inputs: replay.missing_inputs(),
         missing_outputs: replay.missing_outputs(),
+        outputs: replay.outputs(),
+        unchanged_inputs: exercised.unchanged_inputs,
+        unchanged_outputs: exercised.unchanged_outputs,
+        not_exercised: exercised.missing,
         unknown_input_clocks: extent.unknown_inputs,
         unknown_output_clocks: extent.unknown_outputs,
         other_signals: replay.strangers(),
@@ -161,17 +211,14 @@ pub(crate) fn run(
             replayed.missing_inputs.join(", ")
         ));
     }
-    Ok((report, replayed))
+    Ok((reports, replayed))
 }
-
-/// Inputs that carry only timing: a recording with these alone drives nothing.
-const TIMING: [&str; 3] = ["rst", "strobe", "tick"];
 
 /// Refuses a recording without an input that carries data, or without an output, because it would compare nothing.
 fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Failure> {
     let ports = block.model(0).ports().to_vec();
     let lacks_all = |direction: Direction, missing: &[String]| {
-        let of = |port: &&Port| port.direction == direction && !TIMING.contains(&port.name.as_str());
+        let of = |port: &&Port| port.direction == direction && !is_timing(port);
         let mut of = ports.iter().filter(of).peekable();
         of.peek().is_some() && of.all(|port| missing.contains(&port.name))
     };

@@ -29,7 +29,7 @@ use crate::moves::{self, MotionArgs};
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
-use crate::{driver, generate, output, progress, sopc, verilog};
+use crate::{driver, generate, output, progress, sopc, synth, verilog};
 use closed_loop::ClosedLoop;
 use posicast_model::compare::{DEFAULT_BAND, compare};
 use posicast_model::machine_file::Machine;
@@ -180,6 +180,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         simulator,
         seed: args.seed,
     };
+    // A tool that is missing is named before anything is simulated, and not by the last step that needs it.
+    let of_stage = stage.as_ref().filter(|_| simulator == Simulator::Verilator);
+    let simulated = std::iter::once(&top as &dyn Block).chain(of_stage.map(|stage| &stage.block as &dyn Block));
+    let simulated = simulated.map(|block| Ok((block, all.reached_by(block).map_err(bench::failure)?)));
+    let simulated = simulated.collect::<Result<Vec<_>, Failure>>()?;
+    let simulated = simulated.iter().map(|(block, sources)| (*block, sources)).collect();
+    bench::require_tools(&[(simulator, simulated)], false)?;
     let lockstep = job.lockstep(args.cycles)?;
     let waves = job.waves(&mut package, &design.design, &axes)?;
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
@@ -279,6 +286,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 fn installed_yosys() -> Result<Option<Yosys>, Failure> {
     match Yosys::installed() {
         Ok(yosys) => Ok(Some(yosys)),
+        // One that a variable names was asked for.
+        Err(error @ YosysError::Missing(_))
+            if std::env::var_os("POSICAST_YOSYS").is_some_and(|name| !name.is_empty()) =>
+        {
+            Err(synth::failure(error))
+        }
         Err(YosysError::Missing(_)) => {
             output::say("warning: Yosys is not installed: no estimate of area. Install it with scripts/install-tools.");
             Ok(None)

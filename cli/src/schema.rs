@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::{self, shell_word};
 use posicast_model::machine_file;
-use posicast_system::output::{self as files, OutputFiles};
+use posicast_system::output::OutputFiles;
 use std::path::{Path, PathBuf};
 
 /// The JSON Schema of the machine file, for editors that complete and check TOML; with --report, that of report.json
@@ -50,5 +50,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     OutputFiles::new(args.force)
         .claim("--output", path)
         .map_err(Failure::because)?;
-    files::write_text(path, &text).map_err(Failure::because)
+    output::write_text(path, &text)
 }

@@ -10,6 +10,7 @@ use crate::hardware::{Built, COMPONENT_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
 use crate::{machine, progress, verilog};
 use posicast_model::machine_file::Machine;
+use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::package;
 use posicast_synth::yosys::{BlockEstimate, Estimate, Excess, Family, Resources, Yosys, YosysError};
 use posicast_system::scratch::Folder;
@@ -41,9 +42,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Some(family) => family,
         None => machine::family(&machine)?,
     };
-    let yosys = Yosys::installed().map_err(failure)?;
     let names = self::components(&files, &machine.name);
-    let clocks = Clocks::of(&args.clock, &machine.name, &names)?;
+    Clocks::check(&args.clock, &machine.name, &names)?;
+    let (yosys, router) = tools(!args.clock.is_empty())?;
+    let clocks = router.map(|tool| Clocks::new(tool, &args.clock));
     let spinner = progress::spinner("Yosys maps the design");
     let mut estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
     spinner.finish_and_clear();
@@ -169,6 +171,22 @@ pub(crate) fn text(estimate: &Estimate) -> String {
     let mut text = table.text("");
     let _ = writeln!(text, "Estimate by {}: {}", estimate.method.tool, estimate.method.note);
     text
+}
+
+/// Yosys, and what places and routes if a clock is asked for; where both are missing, both are named.
+pub(crate) fn tools(with_clock: bool) -> Result<(Yosys, Option<PlaceAndRoute>), Failure> {
+    let (yosys, router) = (
+        Yosys::installed(),
+        with_clock.then(PlaceAndRoute::installed).transpose(),
+    );
+    match (yosys, router) {
+        (Err(yosys @ YosysError::Missing(_)), Err(router @ ClockError::Missing(_))) => {
+            Err(Failure::missing_tool(format!("{yosys}\n{router}")))
+        }
+        (Err(error), _) => Err(failure(error)),
+        (_, Err(error)) => Err(clock::failure(error)),
+        (Ok(yosys), Ok(router)) => Ok((yosys, router)),
+    }
 }
 
 /// Turns an error of Yosys into the failure of a command.

@@ -1,11 +1,12 @@
 //! `posicast verify`: compares the RTL with the bit-exact model, clock by clock, block by block.
 
+mod dependence;
 mod document;
 mod folder;
 
 use self::document::Document;
 use self::folder::Folder;
-use crate::bench::{self, Bench, Simulator};
+use crate::bench::{self, Bench, Needs, Simulator};
 use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware::Built;
@@ -43,7 +44,7 @@ pub(crate) struct Args {
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
-    /// Let the simulation alone judge Verilog of the folder that was edited; without this it is no match
+    /// Let both simulators judge Verilog of the folder that was edited; without this it is no match
     #[arg(long)]
     edited: bool,
     /// Print one JSON document on standard output
@@ -73,48 +74,75 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if simulator == Simulator::Rusthdl {
         job.keep_what_is_rusthdl()?;
     }
+    let second = job.second(simulator);
     let (mut report, replayed) = match args.replay.recording() {
         Some(file) => {
-            let how = (simulator, args.seed, args.cycles.unwrap_or(u64::MAX));
-            let (report, replayed) = replay::run(&job.blocks, file, &args.replay, how)?;
-            (report, Some(replayed))
+            let how = (args.seed, args.cycles.unwrap_or(u64::MAX));
+            let simulators: Vec<Simulator> = std::iter::once(simulator).chain(second).collect();
+            let (reports, replayed) = replay::run(&job.blocks, file, &args.replay, &simulators, how)?;
+            let named = reports.into_iter().zip(&simulators);
+            let named = named.enumerate().map(|(index, (report, simulator))| match index {
+                0 => report,
+                _ => in_second(report, *simulator),
+            });
+            (LockstepReport::joined(named.collect()), Some(replayed))
         }
         None => {
+            job.require_tools(simulator, second)?;
             let report = job.lockstep(simulator, args.cycles, args.seed);
             // An edited machine file may make ports that do not fit; the edit is then reported first.
-            let report = report.inspect_err(|_| {
+            let mut report = report.inspect_err(|_| {
                 job.folder
                     .iter()
                     .for_each(|folder| output::say(folder.text().trim_end()))
-            });
-            (report?, None)
+            })?;
+            if let Some(second) = second {
+                let also = job.lockstep_of_edited(second, args.cycles, args.seed)?;
+                report = LockstepReport::joined(vec![report, in_second(also, second)]);
+            }
+            (report, None)
         }
     };
-    if job.folder.as_ref().is_some_and(Folder::fails) {
-        report.result = LockstepVerdict::Mismatch;
+    if let Some(folder) = job.folder.as_ref().filter(|folder| folder.fails()) {
+        report.result = match (report.result, folder.contradicts()) {
+            (LockstepVerdict::Mismatch, _) | (_, true) => LockstepVerdict::Mismatch,
+            _ => LockstepVerdict::NoVerdict,
+        };
     }
     if report.samples == 0 && report.blocks.iter().any(|block| block.samples.is_some()) {
         output::say("warning: no output sample was among these clocks: compare more with --cycles");
     }
-    let document = Document {
+    let mut not_exercised = report.not_exercised_names();
+    not_exercised.extend(replayed.iter().flat_map(|replayed| replayed.not_exercised()).cloned());
+    let mut document = Document {
+        reason: None,
         least_clocks: job.least_clocks(),
         cycles_given: args.cycles.is_some(),
         folder: job.folder.as_ref(),
-        not_exercised: report.not_exercised_names(),
+        not_exercised,
         simulator,
         seed: args.seed,
         replayed: replayed.as_ref(),
         report: &report,
     };
+    document.reason = document.failed();
     if args.json {
         output::print_json(&document)?
     } else {
         output::print_styled(&document.text())?
     }
-    match document.failed() {
+    match document.reason {
         None => Ok(()),
         Some(reason) => Err(Failure::Check(reason)),
     }
+}
+
+/// The report of the second simulator, whose name is added to the names of the rows.
+fn in_second(mut report: LockstepReport, simulator: Simulator) -> LockstepReport {
+    for row in &mut report.blocks {
+        row.instance += &format!(", in {simulator}");
+    }
+    report
 }
 
 /// The blocks to compare with their models.
@@ -144,7 +172,7 @@ impl Job {
         let compared = match &folder {
             Some(contents) => {
                 let modules = built.modules(&path)?;
-                Some(Folder::compare(source, contents, &modules, edits_accepted).map_err(Failure::because)?)
+                Some(Folder::compare(source, contents, &modules, edits_accepted)?)
             }
             None => None,
         };
@@ -227,13 +255,73 @@ impl Job {
     }
 
     fn lockstep(&self, simulator: Simulator, cycles: Option<u64>, seed: u64) -> Result<LockstepReport, Failure> {
-        let benches = self.blocks.iter().map(|(block, sources)| Bench {
-            block: block.as_ref(),
-            sources,
-            cycles,
-        });
-        bench::compare_all(&benches.collect::<Vec<_>>(), simulator, seed)
+        compare(self.blocks.iter(), simulator, cycles, seed)
     }
+
+    /// The simulator that must agree where Verilog was edited and the simulation decides: an edit may mean something else to
+    /// each.
+    fn second(&self, simulator: Simulator) -> Option<Simulator> {
+        self.edited_blocks().next()?;
+        match simulator {
+            Simulator::Icarus if bench::IS_STATIC => {
+                output::say(
+                    "note: this posicast cannot load what Verilator builds: Icarus alone judges the edited Verilog",
+                );
+                None
+            }
+            Simulator::Icarus => Some(Simulator::Verilator),
+            Simulator::Verilator | Simulator::Rusthdl => Some(Simulator::Icarus),
+        }
+    }
+
+    /// The blocks whose Verilog has a file that was edited.
+    fn edited_blocks(&self) -> impl Iterator<Item = &(Box<dyn Block>, Sources)> {
+        let edited = self.folder.as_ref().map_or_else(Vec::new, Folder::accepted);
+        self.blocks.iter().filter(move |(_, sources)| {
+            let names = sources.files().iter().filter_map(|file| file.file_name()?.to_str());
+            names.into_iter().any(|name| edited.contains(&name))
+        })
+    }
+
+    /// As [`Self::lockstep`], of the blocks whose Verilog was edited. The second simulator may be slow, so that it compares no
+    /// more clocks than by default.
+    fn lockstep_of_edited(
+        &self,
+        simulator: Simulator,
+        cycles: Option<u64>,
+        seed: u64,
+    ) -> Result<LockstepReport, Failure> {
+        let most = simulator.usual_cycles().max(self.least_clocks());
+        compare(
+            self.edited_blocks(),
+            simulator,
+            cycles.map(|cycles| cycles.min(most)),
+            seed,
+        )
+    }
+
+    /// Refuses to begin where a tool is missing.
+    fn require_tools(&self, simulator: Simulator, second: Option<Simulator>) -> Result<(), Failure> {
+        let all = self.blocks.iter().map(|(block, sources)| (block.as_ref(), sources));
+        let edited = self.edited_blocks().map(|(block, sources)| (block.as_ref(), sources));
+        let mut needs: Vec<Needs<'_>> = vec![(simulator, all.collect())];
+        needs.extend(second.map(|second| (second, edited.collect())));
+        bench::require_tools(&needs, true)
+    }
+}
+
+fn compare<'a>(
+    blocks: impl Iterator<Item = &'a (Box<dyn Block>, Sources)>,
+    simulator: Simulator,
+    cycles: Option<u64>,
+    seed: u64,
+) -> Result<LockstepReport, Failure> {
+    let benches = blocks.map(|(block, sources)| Bench {
+        block: block.as_ref(),
+        sources,
+        cycles,
+    });
+    bench::compare_all(&benches.collect::<Vec<_>>(), simulator, seed)
 }
 
 /// The blocks with these names; all of them without names.

@@ -27,7 +27,7 @@ pub(crate) fn add_sources(
     }
     let write = |module: &Module| {
         let path = package.stage(&path(module)).map_err(Failure::because)?;
-        std::fs::write(&path, &module.text).map_err(Failure::because)?;
+        std::fs::write(&path, &module.text).map_err(Failure::of_file(&path, "write it"))?;
         Ok(path)
     };
     modules.iter().map(write).collect()
@@ -36,13 +36,20 @@ pub(crate) fn add_sources(
 /// Writes the modules into a temporary folder, for tools that read files. The folder is removed when the guard is
 /// dropped.
 pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, scratch::Folder), Failure> {
-    let folder = scratch::Folder::new(scratch::PREFIX).map_err(Failure::because)?;
-    let files: Result<Vec<_>, _> = modules
+    let folder = scratch_folder()?;
+    let files: Result<Vec<_>, Failure> = modules
         .iter()
         .map(|module| {
             let path = folder.path().join(format!("{}.v", module.name));
-            std::fs::write(&path, &module.text).map(|()| path)
+            std::fs::write(&path, &module.text).map_err(Failure::of_file(&path, "write it"))?;
+            Ok(path)
         })
         .collect();
-    Ok((files.map_err(Failure::because)?, folder))
+    Ok((files?, folder))
+}
+
+/// A temporary folder, which is removed when it is dropped.
+pub(crate) fn scratch_folder() -> Result<scratch::Folder, Failure> {
+    let parent = std::env::temp_dir();
+    scratch::Folder::new(scratch::PREFIX).map_err(Failure::of_file(&parent, "make a folder in it"))
 }

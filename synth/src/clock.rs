@@ -107,13 +107,16 @@ impl PlaceAndRoute {
     /// # Errors
     /// [`ClockError::Missing`], or the error of its start.
     pub fn installed() -> Result<Self, ClockError> {
-        for program in tool::executables("POSICAST_NEXTPNR", &PROGRAMS) {
-            match Self::at(&program) {
+        let programs = tool::executables("POSICAST_NEXTPNR", &PROGRAMS);
+        for program in &programs {
+            match Self::at(program) {
                 Err(ClockError::Missing(_)) => {}
                 found => return found,
             }
         }
-        Err(ClockError::Missing(PROGRAMS[0].into()))
+        Err(ClockError::Missing(
+            programs.into_iter().next().unwrap_or_else(|| PROGRAMS[0].into()),
+        ))
     }
 
     /// The nextpnr at this path.

@@ -148,6 +148,8 @@ pub(crate) fn ended(group: i32) {
 pub use unix::listen;
 
 #[cfg(unix)]
+pub use unix::give_up;
+#[cfg(unix)]
 pub(crate) use unix::kill_group;
 
 #[cfg(unix)]
@@ -189,7 +191,17 @@ mod unix {
         thread::Builder::new().name("signals".to_owned()).spawn(wait).map(drop)
     }
 
-    fn end(signal: i32) {
+    /// Ends the process with this message and exit status, where a call into foreign code never returns: the programs are
+    /// ended, and files and folders removed, as after a signal.
+    pub fn give_up(message: &str, status: i32) -> ! {
+        let _list = remove_all();
+        let _ = writeln!(io::stderr(), "{message}");
+        // The exit functions of C and C++ are bypassed, because the foreign code still runs in another thread.
+        signal_hook::low_level::exit(status)
+    }
+
+    /// Ends every program and removes every leftover. The list stays locked as long as the result lives.
+    fn remove_all() -> std::sync::MutexGuard<'static, super::List> {
         let list = list();
         for group in &list.groups {
             kill_group(*group);
@@ -197,6 +209,11 @@ mod unix {
         for leftover in list.leftovers.values().rev() {
             leftover.remove();
         }
+        list
+    }
+
+    fn end(signal: i32) {
+        let _list = remove_all();
         let name = signal_hook::low_level::signal_name(signal).unwrap_or("a signal");
         // On a terminal a progress bar may occupy the line.
         let before = if io::stderr().is_terminal() { "\n" } else { "" };
@@ -229,6 +246,18 @@ mod unix {
 pub fn listen() -> io::Result<()> {
     Ok(())
 }
+
+/// Ends the process with this message and exit status.
+#[cfg(not(unix))]
+#[allow(clippy::exit)] // a call into foreign code never returns
+pub fn give_up(message: &str, status: i32) -> ! {
+    let _ = io::Write::write_fmt(&mut io::stderr(), format_args!("{message}\n"));
+    std::process::exit(status)
+}
+
+/// Does nothing: process groups are those of Unix.
+#[cfg(not(unix))]
+pub(crate) fn kill_group(_group: i32) {}
 
 #[cfg(test)]
 mod tests {

@@ -42,6 +42,13 @@ impl Running {
         self.child.as_mut()
     }
 
+    /// An action that ends the program together with all that it started, for another thread. It must not be called after this
+    /// value is gone.
+    pub fn killer(&self) -> impl FnOnce() + Send + 'static {
+        let group = self.group;
+        move || interrupt::kill_group(group)
+    }
+
     /// Reads the program's output from its pipes, waits for its end, and returns both.
     ///
     /// # Errors
@@ -84,7 +91,6 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         if let Some(mut child) = self.child.take() {
-            #[cfg(unix)]
             interrupt::kill_group(self.group);
             // The program may have ended in the meantime; both calls then do nothing.
             let _ = child.kill();

@@ -45,20 +45,3 @@ pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<LockstepRepo
     };
     Ok(Some(LockstepReport::new(cycles, vec![row])))
 }
-
-/// A row for a test that could not be run, with the reason; it does not count as a match.
-pub fn not_run(block: &dyn Block, why: &str) -> Option<LockstepReport> {
-    block.asynchronous()?;
-    let row = report::BlockReport {
-        name: block.name().to_owned(),
-        instance: format!("{}, {INSTANCE}", block.instance()),
-        cycles: 1,
-        samples: None,
-        mismatches: 0,
-        first: None,
-        not_exercised: vec![why.to_owned()],
-        unchanged: Vec::new(),
-        findings: Vec::new(),
-    };
-    Some(LockstepReport::new(1, vec![row]))
-}

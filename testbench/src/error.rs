@@ -1,6 +1,8 @@
 //! Errors of this crate, by cause.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::EmitError;
@@ -10,15 +12,18 @@ use wavecmp::WaveError;
 /// Why a comparison could not be made. A *difference* is a result, never an error.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// An external program is not installed: exit status 3.
-    #[error("{tool}: not found ({purpose}). {remedy}")]
-    ToolMissing {
+    /// External programs are not installed: exit status 3.
+    #[error("{}", named(.0))]
+    ToolMissing(Vec<MissingTool>),
+    /// An external program did not answer, and was stopped.
+    #[error("{tool} did not answer for {} s while {doing}, and was stopped; {} sets another time limit, in seconds", .limit.as_secs(), crate::tool::LIMIT_VARIABLE)]
+    TimeOut {
         /// Name of the program.
         tool: String,
-        /// Purpose of the program.
-        purpose: &'static str,
-        /// How to install it.
-        remedy: &'static str,
+        /// Its task.
+        doing: &'static str,
+        /// Its time limit.
+        limit: Duration,
     },
     /// An external program failed.
     #[error("{tool} failed while {doing} ({status}):\n{output}")]
@@ -112,6 +117,27 @@ impl Error {
 
     /// Whether the cause is a program that is not installed.
     pub fn is_missing_tool(&self) -> bool {
-        matches!(self, Self::ToolMissing { .. })
+        matches!(self, Self::ToolMissing(_))
     }
+}
+
+/// An external program that is not installed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MissingTool {
+    /// Name of the program, or the path that a variable gives.
+    pub tool: String,
+    /// Purpose of the program.
+    pub purpose: &'static str,
+    /// How to install it.
+    pub remedy: &'static str,
+}
+
+impl fmt::Display for MissingTool {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: not found ({}). {}", self.tool, self.purpose, self.remedy)
+    }
+}
+
+fn named(tools: &[MissingTool]) -> String {
+    tools.iter().map(MissingTool::to_string).collect::<Vec<_>>().join("\n")
 }

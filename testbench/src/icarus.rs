@@ -17,8 +17,10 @@ use posicast_system::process::{self, Running};
 use posicast_system::scratch;
 
 use crate::Error;
+use crate::error::MissingTool;
 use crate::lockstep::Device;
-use crate::tool::Tool;
+use crate::patience::Patience;
+use crate::tool::{self, Tool};
 use crate::verilator::VerilogSource;
 
 const ICARUS: Tool = Tool {
@@ -48,6 +50,8 @@ const PROGRAM: &str = "bench.vvp";
 pub struct Icarus {
     ports: Vec<Port>,
     outputs: Vec<Port>,
+    // It may end the process, and so it goes first.
+    patience: Patience,
     // This is ended when it is dropped; its folder is removed after that.
     process: Running,
     to: Option<ChildStdin>,
@@ -128,6 +132,7 @@ impl Icarus {
             .stdout(Stdio::piped())
             .stderr(Stdio::null());
         let mut process = process::start(&mut run).map_err(|cause| VVP.not_started("simulating", &cause))?;
+        let patience = Patience::new(tool::answer_limit(), process.killer());
         let pipes = process.child().map(|child| (child.stdin.take(), child.stdout.take()));
         let (to, from) = pipes.unwrap_or_default();
         let Some(from) = from else {
@@ -141,6 +146,7 @@ impl Icarus {
         Ok(Self {
             ports: source.ports.to_vec(),
             outputs: outputs.collect(),
+            patience,
             process,
             to,
             from: BufReader::new(from),
@@ -151,6 +157,29 @@ impl Icarus {
     }
 
     fn exchange(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        self.write_inputs(inputs);
+        let Self {
+            patience,
+            to,
+            from,
+            line,
+            ..
+        } = self;
+        let answer = patience.during(|| answer(to.as_mut(), from, line));
+        if patience.expired() {
+            return Err(StepError(format!(
+                "Icarus did not answer for {} s and was stopped: the Verilog loops without end, or {} is too short",
+                tool::answer_limit().as_secs(),
+                tool::LIMIT_VARIABLE
+            )));
+        }
+        answer?;
+        let values = self.line.strip_prefix(MARK).unwrap_or_default();
+        parse(values, &self.outputs, outputs, unknown)
+    }
+
+    /// Puts the inputs of a clock into the line.
+    fn write_inputs(&mut self, inputs: &[u64]) {
         let widths = self
             .ports
             .iter()
@@ -162,27 +191,26 @@ impl Icarus {
             let _ = write!(self.line, "{:x} ", value & u64::MAX >> (64 - width.clamp(1, 64)));
         }
         self.line.push('\n');
-        let stopped = |cause: std::io::Error| StepError(format!("Icarus stopped: {cause}"));
-        if let Some(to) = &mut self.to {
-            to.write_all(self.line.as_bytes()).map_err(stopped)?;
+    }
+}
+
+/// Sends the line of inputs, and reads the line of outputs in its place. Lines that the Verilog itself prints may come before
+/// ours, which has a mark.
+fn answer(to: Option<&mut ChildStdin>, from: &mut BufReader<ChildStdout>, line: &mut String) -> Result<(), StepError> {
+    let stopped = |cause: std::io::Error| StepError(format!("Icarus stopped: {cause}"));
+    if let Some(to) = to {
+        to.write_all(line.as_bytes()).map_err(stopped)?;
+    }
+    loop {
+        line.clear();
+        let count = from.by_ref().take(LINE_BYTES).read_line(line).map_err(stopped)?;
+        if count == 0 {
+            return Err(StepError(
+                "Icarus stopped: the Verilog called $finish, or failed".to_owned(),
+            ));
         }
-        // Lines that the Verilog itself prints may come before ours, which has a mark.
-        loop {
-            self.line.clear();
-            let count = self
-                .from
-                .by_ref()
-                .take(LINE_BYTES)
-                .read_line(&mut self.line)
-                .map_err(stopped)?;
-            if count == 0 {
-                return Err(StepError(
-                    "Icarus stopped: the Verilog called $finish, or failed".to_owned(),
-                ));
-            }
-            if let Some(values) = self.line.strip_prefix(MARK) {
-                return parse(values, &self.outputs, outputs, unknown);
-            }
+        if line.starts_with(MARK) {
+            return Ok(());
         }
     }
 }
@@ -241,6 +269,11 @@ impl ClockedBlock for Icarus {
     }
 }
 
+/// What Icarus needs and is not installed.
+pub fn missing_tools() -> Vec<MissingTool> {
+    [ICARUS, VVP].iter().filter_map(Tool::missing).collect()
+}
+
 /// Compiles a testbench with the top module `top` and these files, runs it to its end, and returns its output.
 ///
 /// # Errors
@@ -255,7 +288,8 @@ pub(crate) fn directed(bench: &str, top: &str, files: &[PathBuf]) -> Result<Stri
     compile.env("TMPDIR", folder.path());
     compile.args(["-g2005", "-s", top, "-o"]).arg(&program).arg(&file);
     ICARUS.run(compile.args(files), "compiling the Verilog")?;
-    let ran = VVP.run(VVP.command_in(folder.path()).args(["-n", PROGRAM]), "simulating")?;
+    let mut run = VVP.command_in(folder.path());
+    let ran = VVP.answer(run.args(["-n", PROGRAM]), "simulating")?;
     Ok(String::from_utf8_lossy(&ran.stdout).into_owned())
 }
 

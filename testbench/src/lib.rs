@@ -43,6 +43,7 @@ pub mod lockstep;
 pub mod mutation;
 pub mod netlist;
 pub mod page;
+mod patience;
 pub mod recording;
 pub mod register_tests;
 pub mod replay;
@@ -54,5 +55,5 @@ mod tool;
 pub mod verilator;
 pub mod wave;
 
-pub use error::{BlockError, Error};
+pub use error::{BlockError, Error, MissingTool};
 pub use wavecmp::wording;

@@ -21,7 +21,7 @@ use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 use crate::Error;
 use crate::blocks::Block;
 use crate::lockstep::report::LockstepReport;
-use crate::lockstep::{self, Device, Instance};
+use crate::lockstep::{self, Clock, Device, Instance};
 use crate::stimuli::Stimuli;
 use wavecmp::WaveError;
 use wavecmp::diff::DiffOptions;
@@ -35,6 +35,20 @@ const RECORDED: &str = "recorded";
 pub struct Replay {
     map: PortMap,
     ports: Vec<Port>,
+}
+
+/// Inputs that carry only timing, by the ends of their names: a recording in which nothing else changes drives nothing.
+pub const TIMING: [&str; 4] = ["rst", "strobe", "tick", "clear_flags"];
+
+/// What a recording exercised of the block.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Exercised {
+    /// Inputs in the file, without `rst`, that never changed after the release of its reset.
+    pub unchanged_inputs: Vec<String>,
+    /// Outputs that never changed in the model since then.
+    pub unchanged_outputs: Vec<String>,
+    /// What a verdict on the block would require beside ([`Block::exercise`]), in words: taps, banks, levels of flags.
+    pub missing: Vec<String>,
 }
 
 /// Extent of a file.
@@ -82,6 +96,11 @@ impl Replay {
         missing(&self.map, &self.ports, Direction::Output)
     }
 
+    /// Number of outputs of the block.
+    pub fn outputs(&self) -> usize {
+        places(&self.ports, Direction::Output).len()
+    }
+
     /// Number of signals of the file that are not ports of the block.
     pub fn strangers(&self) -> usize {
         self.map.strangers
@@ -115,7 +134,8 @@ impl Replay {
         Ok(extent)
     }
 
-    /// Replays this many clocks. The device and the recording are compared with the model, in rows of their own.
+    /// Replays the clocks of `extent`. The device and the recording are compared with the model, in rows of their own. A row
+    /// without data is [not exercised](crate::lockstep::report::BlockReport::not_exercised), and so there is no match.
     ///
     /// # Errors
     /// Those of [`lockstep::run`], and of [`Player::next`] for a file that has changed since its [`Replay::extent`]
@@ -124,11 +144,39 @@ impl Replay {
         &self,
         block: &dyn Block,
         device: &mut dyn Device,
-        clocks: u64,
+        extent: &Extent,
         seed: u64,
-    ) -> Result<LockstepReport, Error> {
+    ) -> Result<(LockstepReport, Exercised), Error> {
         let instances = block.instances(&self.ports);
-        let of_device = self.against(block, device, &instances, clocks, seed)?;
+        let mut activity = Activity::new(&self.ports, extent.clocks - extent.compared);
+        let mut exercise = block.exercise();
+        let mut watch = |clock: &Clock<'_>| {
+            activity.observe(clock);
+            if let Some(exercise) = &mut exercise {
+                exercise.observe(clock);
+            }
+        };
+        let of_device = self.against(block, device, &instances, (extent.clocks, seed), &mut watch)?;
+        let without_data: Vec<(String, String)> = instances
+            .iter()
+            .filter_map(|instance| Some((instance.name.clone(), activity.lacks(instance, instances.len() > 1)?)))
+            .collect();
+        // A reset is released once.
+        let is_there = |name: &String| name != "rst" && !self.missing_inputs().contains(name);
+        let exercised = Exercised {
+            unchanged_inputs: activity.unchanged(Direction::Input).filter(is_there).collect(),
+            unchanged_outputs: activity.unchanged(Direction::Output).collect(),
+            missing: exercise
+                .map_or_else(Vec::new, |exercise| exercise.missing())
+                .into_iter()
+                .map(|(instance, what)| format!("{} {instance}: {what}", block.name()))
+                .collect(),
+        };
+        let of_device = of_device.without(without_data.clone());
+        let without_data = without_data
+            .into_iter()
+            .map(|(name, what)| (format!("{name}, {RECORDED}"), what))
+            .collect();
         let outputs = missing(&self.map, &self.ports, Direction::Output);
         let recorded = instances.into_iter().map(|instance| Instance {
             name: format!("{}, {RECORDED}", instance.name),
@@ -141,7 +189,7 @@ impl Replay {
         });
         let recorded: Vec<Instance> = recorded.filter(|instance| !instance.outputs.is_empty()).collect();
         if recorded.is_empty() {
-            return Ok(of_device);
+            return Ok((of_device, exercised));
         }
         let mut shown = Shown {
             player: self.map.play()?,
@@ -149,8 +197,9 @@ impl Replay {
             row: vec![None; self.ports.len()],
             outputs: places(&self.ports, Direction::Output),
         };
-        let of_recording = self.against(block, &mut shown, &recorded, clocks, seed)?;
-        Ok(LockstepReport::joined(vec![of_device, of_recording]))
+        let of_recording = self.against(block, &mut shown, &recorded, (extent.clocks, seed), &mut |_| {})?;
+        let of_recording = of_recording.without(without_data);
+        Ok((LockstepReport::joined(vec![of_device, of_recording]), exercised))
     }
 
     fn against(
@@ -158,8 +207,8 @@ impl Replay {
         block: &dyn Block,
         device: &mut dyn Device,
         instances: &[Instance],
-        clocks: u64,
-        seed: u64,
+        (clocks, seed): (u64, u64),
+        watch: &mut dyn FnMut(&Clock<'_>),
     ) -> Result<LockstepReport, Error> {
         let mut inputs = Inputs {
             player: self.map.play()?,
@@ -175,7 +224,7 @@ impl Replay {
             &mut inputs,
             instances,
             &options,
-            &mut |_| {},
+            watch,
             &mut |_| {},
         );
         match inputs.failed {
@@ -204,6 +253,88 @@ fn missing(map: &PortMap, ports: &[Port], direction: Direction) -> Vec<String> {
 fn places(ports: &[Port], direction: Direction) -> Vec<usize> {
     let of = ports.iter().enumerate().filter(|(_, port)| port.direction == direction);
     of.map(|(at, _)| at).collect()
+}
+
+/// Whether a port carries only timing.
+pub fn is_timing(port: &Port) -> bool {
+    let ends_so = |end: &str| {
+        let before = port.name.strip_suffix(end);
+        before.is_some_and(|before| before.is_empty() || before.ends_with('_'))
+    };
+    port.width == 1 && TIMING.into_iter().any(ends_so)
+}
+
+/// Which ports have changed since the first clock that counts.
+struct Activity {
+    /// Inputs, then outputs, each in the order of the model.
+    ports: Vec<Port>,
+    inputs: usize,
+    first_clock: u64,
+    first: Vec<u64>,
+    changed: Vec<bool>,
+}
+
+impl Activity {
+    fn new(ports: &[Port], first_clock: u64) -> Self {
+        let of = |direction| ports.iter().filter(move |port| port.direction == direction).cloned();
+        let inputs: Vec<Port> = of(Direction::Input).collect();
+        let count = inputs.len();
+        let ports: Vec<Port> = inputs.into_iter().chain(of(Direction::Output)).collect();
+        Self {
+            inputs: count,
+            first_clock,
+            first: Vec::new(),
+            changed: vec![false; ports.len()],
+            ports,
+        }
+    }
+
+    fn observe(&mut self, clock: &Clock<'_>) {
+        if clock.time < self.first_clock {
+            return;
+        }
+        let values = || clock.inputs.iter().chain(clock.expected).copied();
+        if self.first.is_empty() {
+            self.first = values().collect();
+        }
+        for ((changed, first), value) in self.changed.iter_mut().zip(&self.first).zip(values()) {
+            *changed |= *first != value;
+        }
+    }
+
+    fn with_changes(&self) -> impl Iterator<Item = (&Port, bool)> {
+        self.ports.iter().zip(self.changed.iter().copied())
+    }
+
+    fn unchanged(&self, direction: Direction) -> impl Iterator<Item = String> {
+        let still = self
+            .with_changes()
+            .filter(move |(port, changed)| port.direction == direction && !changed);
+        still.map(|(port, _)| port.name.clone())
+    }
+
+    /// What an instance lacks to have been compared at all, in words. Where one top has several instances, the name of one
+    /// begins the names of its ports.
+    fn lacks(&self, instance: &Instance, is_one_of_several: bool) -> Option<String> {
+        let is_own = |port: &Port| {
+            let rest = port.name.strip_prefix(&instance.name);
+            !is_one_of_several || rest.is_some_and(|rest| rest.starts_with('_'))
+        };
+        let mut inputs = self.with_changes().take(self.inputs);
+        if !inputs.any(|(port, changed)| changed && is_own(port) && !is_timing(port)) {
+            return Some("no data: none of its data inputs ever changes in the recording".to_owned());
+        }
+        let outputs = || {
+            let all = self.with_changes().skip(self.inputs);
+            all.filter(|(port, _)| instance.outputs.contains(&port.name))
+        };
+        let has_words = outputs().any(|(port, _)| port.width > 1);
+        let mut results = outputs().filter(|(port, _)| port.width > 1 || !has_words);
+        (!results.any(|(_, changed)| changed)).then(|| {
+            let which = if has_words { "word at its outputs" } else { "output" };
+            format!("no data: no {which} ever changes")
+        })
+    }
 }
 
 /// The recorded inputs as stimuli.

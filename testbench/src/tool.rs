@@ -1,15 +1,36 @@
 //! Runs external programs. A missing and a failed program are different errors, and a failure keeps the end of the
 //! output.
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::time::Duration;
 
-use posicast_system::process;
 use posicast_system::tool::{self, Ended};
+use posicast_system::{process, scratch};
 
 use crate::Error;
+use crate::error::MissingTool;
+
+/// Environment variable with the time limit of a program, in seconds.
+pub(crate) const LIMIT_VARIABLE: &str = "POSICAST_TOOL_LIMIT_S";
+/// Time limit of a program that translates or compiles.
+const WORK_LIMIT: Duration = Duration::from_secs(3600);
+/// Time limit of an answer that takes no work: a version, or a clock of a simulation.
+const ANSWER_LIMIT: Duration = Duration::from_secs(120);
+
+/// The time limit that the user set, else this one.
+fn limit_or(limit: Duration) -> Duration {
+    let set = std::env::var(LIMIT_VARIABLE).ok().and_then(|text| text.parse().ok());
+    set.filter(|seconds: &f64| *seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .unwrap_or(limit)
+}
+
+/// Time limit of an answer of a simulator.
+pub(crate) fn answer_limit() -> Duration {
+    limit_or(ANSWER_LIMIT)
+}
 
 /// Number of last lines of a failed program's output that an error keeps, where the cause is found.
 const LAST_LINES: usize = 20;
@@ -31,6 +52,19 @@ impl Tool {
         found.unwrap_or_else(|| self.name.into())
     }
 
+    /// This tool, if it is not installed.
+    pub(crate) fn missing(&self) -> Option<MissingTool> {
+        tool::located(&self.program()).is_none().then(|| self.as_missing())
+    }
+
+    fn as_missing(&self) -> MissingTool {
+        MissingTool {
+            tool: self.program().display().to_string(),
+            purpose: self.purpose,
+            remedy: self.remedy,
+        }
+    }
+
     pub(crate) fn command(&self) -> Command {
         tool::command(self.program())
     }
@@ -43,17 +77,36 @@ impl Tool {
     /// Runs the command to its end, and returns the output of a success.
     pub(crate) fn run(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         let output = self.output(command, doing)?;
-        if output.status.success() {
-            return Ok(output);
-        }
-        Err(self.failed(doing, output.status.to_string(), &text(&output)))
+        self.success(output, doing)
     }
 
-    /// Runs the command to its end, whatever its exit status is.
+    /// Runs the command to its end, whatever its exit status is. It is stopped at its time limit.
     pub(crate) fn output(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let output = process::start(command).and_then(process::Running::output);
-        output.map_err(|cause| self.not_started(doing, &cause))
+        self.output_within(command, doing, limit_or(WORK_LIMIT))
+    }
+
+    /// Output of a success that takes seconds, such as a version.
+    pub(crate) fn answer(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
+        let output = self.output_within(command, doing, answer_limit())?;
+        self.success(output, doing)
+    }
+
+    fn success(&self, output: Output, doing: &'static str) -> Result<Output, Error> {
+        match output.status.success() {
+            true => Ok(output),
+            false => Err(self.failed(doing, output.status.to_string(), &text(&output))),
+        }
+    }
+
+    fn output_within(&self, command: &mut Command, doing: &'static str, limit: Duration) -> Result<Output, Error> {
+        match outcome(command, limit).map_err(|cause| self.not_started(doing, &cause))? {
+            Some(output) => Ok(output),
+            None => Err(Error::TimeOut {
+                tool: self.program().display().to_string(),
+                doing,
+                limit,
+            }),
+        }
     }
 
     /// Output of a success; `None` if the command did not end within `limit` and was stopped.
@@ -72,16 +125,20 @@ impl Tool {
 
     pub(crate) fn not_started(&self, doing: &'static str, cause: &std::io::Error) -> Error {
         if cause.kind() == ErrorKind::NotFound {
-            return Error::ToolMissing {
-                tool: self.program().display().to_string(),
-                purpose: self.purpose,
-                remedy: self.remedy,
-            };
+            return Error::ToolMissing(vec![self.as_missing()]);
         }
         self.failed(doing, "not started".to_owned(), &cause.to_string())
     }
 
+    /// The error of a program that failed: that another program is missing, where its output says so.
     pub(crate) fn failed(&self, doing: &'static str, status: String, output: &str) -> Error {
+        if let Some(tool) = absent_program(output) {
+            return Error::ToolMissing(vec![MissingTool {
+                tool: tool.to_owned(),
+                purpose: self.purpose,
+                remedy: "Another tool calls it: install it, or correct PATH",
+            }]);
+        }
         Error::ToolFailed {
             tool: self.program().display().to_string(),
             doing,
@@ -89,6 +146,44 @@ impl Tool {
             output: tool::last_lines(output, LAST_LINES),
         }
     }
+}
+
+/// How the command ended, and its output; `None` if it was stopped at its time limit.
+fn outcome(command: &mut Command, limit: Duration) -> std::io::Result<Option<Output>> {
+    // The output goes to files, not pipes, so that nobody has to read while the program runs.
+    let mut streams = [scratch::unnamed()?, scratch::unnamed()?];
+    command.stdout(streams[0].try_clone()?).stderr(streams[1].try_clone()?);
+    let Some(status) = process::start(command)?.wait_within(limit)? else {
+        return Ok(None);
+    };
+    let mut read = |stream: usize| {
+        let mut bytes = Vec::new();
+        streams[stream].seek(SeekFrom::Start(0))?;
+        streams[stream].read_to_end(&mut bytes)?;
+        std::io::Result::Ok(bytes)
+    };
+    Ok(Some(Output {
+        status,
+        stdout: read(0)?,
+        stderr: read(1)?,
+    }))
+}
+
+/// Name of the program that make, a shell or `env` did not find, if the output says that.
+fn absent_program(output: &str) -> Option<&str> {
+    output.lines().find_map(absent_in_line)
+}
+
+fn absent_in_line(line: &str) -> Option<&str> {
+    let line = line.trim();
+    let who = ["make: ", "/bin/sh: ", "sh: ", "/usr/bin/env: "];
+    let rest = who.iter().find_map(|who| line.strip_prefix(who))?;
+    let says = [": No such file or directory", ": command not found", ": not found"];
+    let name = says.iter().find_map(|end| rest.strip_suffix(end))?;
+    // Shells name their line first: `sh: 1: g++: not found`.
+    let name = name.rsplit(": ").next()?.trim_matches(['‘', '’', '\'', '`']);
+    let is_program = !name.is_empty() && !name.contains(char::is_whitespace) && !name.ends_with(".mk");
+    is_program.then_some(name)
 }
 
 /// Standard output and standard error in one text.
@@ -119,6 +214,27 @@ mod tests {
             .unwrap_err();
         assert!(!failing.is_missing_tool());
         assert!(failing.to_string().contains("why"), "{failing}");
+    }
+
+    #[test]
+    fn unit_a_program_that_another_one_lacks_is_missing() {
+        for said in [
+            "make: g++: No such file or directory\nmake: *** [Vdevice.mk:60: a.o] Error 127",
+            "/bin/sh: 1: g++: not found",
+            "sh: line 1: g++: command not found",
+            "/usr/bin/env: ‘g++’: No such file or directory",
+        ] {
+            assert_eq!(absent_program(said), Some("g++"), "{said}");
+            assert!(NOTHING.failed("testing", String::new(), said).is_missing_tool());
+        }
+        for said in [
+            "harness.cpp:1: fatal error: verilated.h: No such file or directory",
+            "make: *** No rule to make target 'a'. Stop.",
+            "simulation.mk:1: Vdevice.mk: No such file or directory",
+            "make: Vdevice.mk: No such file or directory",
+        ] {
+            assert_eq!(absent_program(said), None, "{said}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use posicast_testbench::blocks::Block;
 use posicast_testbench::coverage::explanation::{self, Explanation};
 use posicast_testbench::coverage::{self, CLOCKS, Share};
 use posicast_testbench::shard::MachineFileHash;
+use posicast_testbench::verilator;
 use serde_json::{Map, Value};
 
 /// Measure which lines, nets and bins of the blocks the lock step reaches
@@ -58,6 +59,10 @@ impl Units for Coverage {
 
     fn name(&self, unit: u64) -> String {
         row_name(self.block(unit))
+    }
+
+    fn require_tools(&self) -> Result<(), Failure> {
+        bench::require_installed(verilator::missing_tools())
     }
 
     /// The explanations of what is not reached are those of the ladder's seed, whatever that of the campaign is.

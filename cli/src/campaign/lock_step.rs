@@ -65,7 +65,7 @@ impl LockStep {
         let (name, rows) = (job.machine.clone(), job.blocks);
         let mut texts = Vec::new();
         for path in rows.iter().flat_map(|(_, sources)| sources.files()) {
-            texts.push(std::fs::read(path).map_err(Failure::because)?);
+            texts.push(std::fs::read(path).map_err(Failure::of_file(path, "read it"))?);
         }
         let least = rows.iter().map(|(block, _)| block.least_clocks()).max().unwrap_or(0);
         let unit_clocks = args.unit_clocks.max(least);
@@ -89,6 +89,7 @@ impl LockStep {
     }
 
     fn prepare(&self) -> Result<(), Failure> {
+        self.require_tools()?;
         let bar = progress::bar("building", self.rows.len() as u64);
         for ((block, sources), name) in self.rows.iter().zip(&self.names) {
             bar.set_message(format!("building {name}"));
@@ -125,6 +126,11 @@ impl Units for LockStep {
 
     fn name(&self, unit: u64) -> String {
         self.names[self.place(unit).0].clone()
+    }
+
+    fn require_tools(&self) -> Result<(), Failure> {
+        let rows = self.rows.iter().map(|(block, sources)| (block.as_ref(), sources));
+        bench::require_tools(&[(Simulator::Verilator, rows.collect())], false)
     }
 
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {

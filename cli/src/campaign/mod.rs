@@ -90,6 +90,10 @@ trait Units {
     fn names(&self) -> Value {
         (0..self.count()).map(|unit| self.name(unit)).collect()
     }
+    /// Refuses to begin where a tool is missing that a unit needs: all of them are named.
+    fn require_tools(&self) -> Result<(), Failure> {
+        Ok(())
+    }
     /// Does a unit from a fresh start. `seed` is that of the campaign.
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure>;
 }
@@ -234,6 +238,7 @@ fn finished(head: &CampaignHead, part: &Part) -> Result<Option<Vec<UnitResult>>,
 /// Does these units, one after the other: a core is given to each shard.
 fn done(campaign: &dyn Units, units: impl IntoIterator<Item = u64>, seed: u64) -> Result<Vec<UnitResult>, Failure> {
     let units: Vec<u64> = units.into_iter().collect();
+    campaign.require_tools()?;
     let bar = progress::bar(campaign.kind(), units.len() as u64);
     let mut results = Vec::with_capacity(units.len());
     for unit in units {

@@ -3,9 +3,10 @@
 use super::{Outcome, Part, Units, figures, only_blocks};
 use crate::bench;
 use crate::failure::Failure;
-use posicast_system::scratch::{Folder, PREFIX};
+use crate::verilog::scratch_folder;
 use posicast_testbench::mutation::{self, MutationOptions, MutationRow, Subject};
 use posicast_testbench::shard::MachineFileHash;
+use posicast_testbench::{formal, verilator};
 use serde_json::{Map, Value};
 
 /// Put mutants into the blocks, and see whether lock step or proofs notice each
@@ -73,13 +74,17 @@ impl Units for Mutants {
         format!("{}, {}", subject.block().name(), subject.size())
     }
 
+    fn require_tools(&self) -> Result<(), Failure> {
+        bench::require_installed(verilator::missing_tools().into_iter().chain(formal::missing_tools()))
+    }
+
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {
         let options = MutationOptions {
             mutants: UNIT_MUTANTS as usize,
             seed: seed.wrapping_add(unit / self.subjects.len() as u64),
             ..MutationOptions::default()
         };
-        let folder = Folder::new(PREFIX).map_err(Failure::because)?;
+        let folder = scratch_folder()?;
         let subject = self.subject(unit);
         let fates = mutation::run(subject, &options, &folder.path().join("work")).map_err(bench::failure)?;
         let row = MutationRow::new(subject, &fates);

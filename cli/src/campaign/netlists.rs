@@ -4,11 +4,12 @@ use super::{Outcome, Part, Units, figures, only_blocks, row_name};
 use crate::bench;
 use crate::failure::Failure;
 use crate::synth;
-use posicast_synth::yosys::{CELL_MODELS, Yosys};
+use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
 use posicast_testbench::blocks::{self, Block, Sources};
 use posicast_testbench::netlist::{self, EquivalenceVerdict, NetlistParts};
 use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::wording::counted;
+use posicast_testbench::{formal, verilator};
 use serde_json::{Map, Value};
 use std::time::Duration;
 
@@ -39,8 +40,12 @@ pub(super) fn of(args: &Args) -> Result<impl Units + use<>, Failure> {
     // The stage consists of the other blocks.
     blocks.retain(|block| block.name() != "stage");
     only_blocks(&mut blocks, &args.blocks, |block| block.name())?;
+    let yosys = Yosys::installed();
+    if matches!(yosys, Err(YosysError::Missing(_))) {
+        bench::require_installed(verilator::missing_tools().into_iter().chain(formal::missing_tools()))?;
+    }
     Ok(Netlists {
-        yosys: Yosys::installed().map_err(synth::failure)?,
+        yosys: yosys.map_err(synth::failure)?,
         blocks,
         clocks: args.clocks,
     })
@@ -71,6 +76,10 @@ impl Units for Netlists {
 
     fn name(&self, unit: u64) -> String {
         row_name(self.block(unit))
+    }
+
+    fn require_tools(&self) -> Result<(), Failure> {
+        bench::require_installed(verilator::missing_tools().into_iter().chain(formal::missing_tools()))
     }
 
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {

@@ -3,7 +3,7 @@
 use super::{Outcome, Part, Units, figures, only_blocks};
 use crate::bench;
 use crate::failure::Failure;
-use posicast_system::scratch::{Folder, PREFIX};
+use crate::verilog::scratch_folder;
 use posicast_testbench::blocks;
 use posicast_testbench::formal::{self, ProofVerdict, Task};
 use posicast_testbench::shard::MachineFileHash;
@@ -61,9 +61,13 @@ impl Units for Proofs {
         format!("{}, {}, {}", task.name, task.size, task.engine.name())
     }
 
+    fn require_tools(&self) -> Result<(), Failure> {
+        bench::require_installed(formal::missing_tools())
+    }
+
     /// A proof does not depend on the seed.
     fn run(&self, unit: u64, _seed: u64) -> Result<Outcome, Failure> {
-        let folder = Folder::new(PREFIX).map_err(Failure::because)?;
+        let folder = scratch_folder()?;
         let outcome = formal::run(self.task(unit), &folder.path().join("proof"), LIMIT).map_err(bench::failure)?;
         let missed: Vec<&str> = outcome
             .covers

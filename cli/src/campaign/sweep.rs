@@ -81,6 +81,10 @@ struct Sweep<'a> {
 pub(super) fn of(args: &Args) -> Result<impl Units + use<'_>, Failure> {
     let file = machine::read(&args.machine)?;
     let beside = file.beside.iter().map(|(_, text)| text.as_bytes());
+    let (yosys, router) = match args.area || args.clock {
+        true => synth::tools(args.clock).map(|(yosys, router)| (Some(yosys), router))?,
+        false => (None, None),
+    };
     let sweep = Sweep {
         path: &args.machine,
         document: file
@@ -92,15 +96,8 @@ pub(super) fn of(args: &Args) -> Result<impl Units + use<'_>, Failure> {
             sha256: hash_of(std::iter::once(file.text.as_bytes()).chain(beside)),
         },
         places: &args.places,
-        yosys: (args.area || args.clock)
-            .then(Yosys::installed)
-            .transpose()
-            .map_err(synth::failure)?,
-        router: args
-            .clock
-            .then(PlaceAndRoute::installed)
-            .transpose()
-            .map_err(of_clock)?,
+        yosys,
+        router,
     };
     // A misspelt place is found before anything long begins.
     sweep.text(0)?;

@@ -2,7 +2,7 @@
 
 use super::{Outcome, Part, Units, case_seeds, figures, hash_of};
 use crate::failure::Failure;
-use posicast_system::scratch::{Folder, PREFIX};
+use crate::verilog::scratch_folder;
 use posicast_testbench::shard::MachineFileHash;
 use serde_json::{Map, Value};
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ impl Units for Waveforms {
     }
 
     fn run(&self, unit: u64, seed: u64) -> Result<Outcome, Failure> {
-        let folder = Folder::new(PREFIX).map_err(Failure::because)?;
+        let folder = scratch_folder()?;
         let (mut read, mut wrong, mut first) = (0_u64, 0_u64, None);
         for case_seed in case_seeds(seed, unit, UNIT_CASES) {
             match damage::trial(&self.recordings, case_seed, folder.path()) {

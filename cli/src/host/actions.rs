@@ -8,7 +8,7 @@ use crate::moves::PerAxis;
 use crate::output;
 use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
 use posicast_model::machine_file::Machine;
-use posicast_system::output::{self as files, OutputFiles};
+use posicast_system::output::OutputFiles;
 use std::path::Path;
 
 /// Most counts of an amplitude, which has 8 fraction bits of 16.
@@ -171,7 +171,7 @@ fn write(args: &TraceArgs, trace: &RecordedTrace) -> Result<(), Failure> {
             String::from_utf8_lossy(&bytes).into_owned()
         }
     };
-    files::write_text(&args.output, text.as_str()).map_err(Failure::because)?;
+    output::write_text(&args.output, text.as_str())?;
     let names: Vec<&str> = trace.signals.iter().map(|signal| signal.name.as_str()).collect();
     let next = match args.shake.is_some() && !is_vcd(&args.output)? {
         true => format!("next: posicast identify {}\n", output::shell_word(&args.output)),

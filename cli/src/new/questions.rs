@@ -113,7 +113,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         self.say(&format!("{question} [{default}]: "))?;
         let mut line = Vec::new();
         let read = (&mut self.answers).take(ANSWER_BYTES).read_until(b'\n', &mut line);
-        if read.map_err(Failure::because)? == 0 {
+        if read.map_err(Failure::of_file(Path::new("standard input"), "read it"))? == 0 {
             self.say("\n")?;
             return Err(Failure::from(miette::miette!(
                 help = "answer all questions (Enter takes the value in brackets), or name the kind: --gantry, --printer, --joint or --crane",
@@ -131,7 +131,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
             .terminal
             .write_all(text.as_bytes())
             .and_then(|()| self.terminal.flush());
-        said.map_err(Failure::because)
+        said.map_err(Failure::of_file(Path::new("standard error"), "write it"))
     }
 }
 

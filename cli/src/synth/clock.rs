@@ -29,11 +29,8 @@ pub(super) struct ClockEstimates {
 }
 
 impl<'a> Clocks<'a> {
-    /// `None` if no top was asked for. Names a missing tool or a misspelt top before anything long begins.
-    pub(super) fn of(tops: &'a [String], machine: &str, components: &[String]) -> Result<Option<Self>, Failure> {
-        if tops.is_empty() {
-            return Ok(None);
-        }
+    /// Names a misspelt top before anything long begins.
+    pub(super) fn check(tops: &[String], machine: &str, components: &[String]) -> Result<(), Failure> {
         let known = || std::iter::once(machine).chain(components.iter().map(String::as_str));
         if let Some(unknown) = tops.iter().find(|top| !known().any(|known| known == *top)) {
             let list = known().collect::<Vec<_>>().join(", ");
@@ -41,8 +38,12 @@ impl<'a> Clocks<'a> {
                 "--clock {unknown}: there is no such top module; there are {list}"
             )));
         }
-        let tool = PlaceAndRoute::installed().map_err(failure)?;
-        Ok(Some(Self { tool, tops }))
+        Ok(())
+    }
+
+    /// Estimates of these tops by this tool.
+    pub(super) fn new(tool: PlaceAndRoute, tops: &'a [String]) -> Self {
+        Self { tool, tops }
     }
 
     /// Estimates the tops one after the other.
@@ -72,7 +73,7 @@ impl ClockEstimates {
     }
 }
 
-fn failure(error: ClockError) -> Failure {
+pub(super) fn failure(error: ClockError) -> Failure {
     match error {
         ClockError::Missing(_) | ClockError::Yosys(YosysError::Missing(_)) => Failure::missing_tool(error),
         other => Failure::because(other),

@@ -2,20 +2,19 @@
 
 use super::folder::Folder;
 use crate::bench::Simulator;
-use crate::output::Table;
+use crate::output::{Table, few};
 use crate::replay::Replayed;
 use crate::style;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use serde::Serialize;
-
-/// Number of names of a list that the text shows; JSON has all.
-const SHOWN: usize = 8;
 
 /// `verify --json`.
 #[derive(Serialize)]
 pub(super) struct Document<'a> {
     #[serde(flatten)]
     pub(super) report: &'a LockstepReport,
+    /// Why there is no match; `None` where there is one.
+    pub(super) reason: Option<String>,
     /// What no clock of the run exercised although a verdict would speak of it; there is then no verdict.
     pub(super) not_exercised: Vec<String>,
     /// Number of clocks that exercise all of it.
@@ -38,6 +37,8 @@ enum Files {
     Agree,
     /// Verilog was edited, and edits are not accepted.
     Edited,
+    /// Verilog was edited so that it depends on the tool that reads it.
+    DependOnTool,
     /// A table, the machine file or the list of modules differs.
     Contradict,
 }
@@ -54,7 +55,14 @@ impl Document<'_> {
             (0, Files::Contradict) => {
                 "the folder differs from what posicast generates from its machine file".to_owned()
             }
+            (0, Files::DependOnTool) => {
+                "no verdict: edited Verilog of the folder depends on the tool that reads it".to_owned()
+            }
             (0, Files::Edited) => "no verdict: Verilog of the folder was edited".to_owned(),
+            (0, Files::Agree) if self.replayed.is_some() => {
+                let rows = self.report.not_exercised_names();
+                format!("no verdict: the recording has no data; {}", few(&rows))
+            }
             (0, Files::Agree) => format!("no verdict: too little was exercised; {}", self.remedy()),
         })
     }
@@ -62,6 +70,7 @@ impl Document<'_> {
     fn of_files(&self) -> Files {
         match self.folder {
             Some(folder) if folder.contradicts() => Files::Contradict,
+            Some(folder) if folder.depends_on_tool() => Files::DependOnTool,
             Some(folder) if folder.fails() => Files::Edited,
             _ => Files::Agree,
         }
@@ -119,6 +128,14 @@ impl Document<'_> {
             (_, 0, Files::Edited) => "NO VERDICT: the simulation is equal, but Verilog was edited, and no simulation \
                                       sees every fault"
                 .to_owned(),
+            (_, 0, Files::DependOnTool) => {
+                "NO VERDICT: the simulation is equal, but edited Verilog depends on the tool that \
+                                            reads it, and no simulation sees what the other tools read"
+                    .to_owned()
+            }
+            (_, 0, Files::Agree) if self.replayed.is_some() => {
+                "NO VERDICT: nothing differs, but the recording has no data".to_owned()
+            }
             (_, 0, Files::Agree) => format!(
                 "NO VERDICT: the comparison is equal, but {} things were not exercised; {}",
                 self.not_exercised.len(),
@@ -144,6 +161,7 @@ impl Document<'_> {
                 false => "every flag of all rows exercised".to_owned(),
             });
         }
+        compared.extend(self.replayed.map(Replayed::summary));
         compared.extend(self.folder.map(Folder::summary));
         if let Some(missing) = self
             .replayed
@@ -163,13 +181,4 @@ impl Document<'_> {
             self.seed
         )
     }
-}
-
-/// The first names of a list, and how many more there are.
-fn few(names: &[String]) -> String {
-    let mut text = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
-    if names.len() > SHOWN {
-        text += &format!(" and {} more", names.len() - SHOWN);
-    }
-    text
 }

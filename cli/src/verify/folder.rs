@@ -5,9 +5,11 @@
 //! is the machine file's where few samples reach it, nor whether the machine file is the one from which the Verilog
 //! was generated. Both are compared directly: a difference in a table, or in the machine file, is no match, whatever
 //! the simulation says. Verilog that was edited otherwise is named, and is no match either: no random run sees every
-//! fault that an edit may bring. A user who edits on purpose says so with `--edited`, and the simulation then
-//! decides.
+//! fault that an edit may bring. A user who edits on purpose says so with `--edited`, and both simulators then
+//! decide. Text that [depends on the tool](super::dependence) is refused even so.
 
+use super::dependence::{self, Dependent};
+use crate::failure::Failure;
 use posicast_hdl::emit::Module;
 use posicast_synth::package::Contents;
 use serde::Serialize;
@@ -43,6 +45,8 @@ enum Kind {
     Missing,
     /// The Verilog differs in another way.
     Verilog,
+    /// The Verilog depends on the tool that reads it, and what posicast generates does not.
+    Tool,
     /// Comments or white space differ.
     Comment,
     /// The folder has a file that posicast does not generate.
@@ -76,7 +80,7 @@ impl Folder {
         contents: &Contents,
         modules: &[Module],
         edits_accepted: bool,
-    ) -> std::io::Result<Self> {
+    ) -> Result<Self, Failure> {
         let mut folder = Self {
             path: root.to_owned(),
             edits_accepted,
@@ -88,6 +92,7 @@ impl Folder {
             folder.add("machine.toml", None, Kind::Machine, what);
         }
         let mut rest: Vec<&PathBuf> = contents.rtl.iter().collect();
+        let mut edited = String::new();
         for module in modules {
             let name = format!("{}.v", module.name);
             let file = format!("rtl/{name}");
@@ -96,15 +101,24 @@ impl Folder {
                 folder.add(&file, None, Kind::Missing, what);
                 continue;
             };
-            let text = std::fs::read(rest.swap_remove(at))?;
+            let path = rest.swap_remove(at);
+            let text = std::fs::read(path).map_err(Failure::of_file(path, "read it"))?;
             let text = String::from_utf8_lossy(&text);
             if text == module.text {
                 folder.identical += 1;
             } else {
                 folder.file(&file, &module.name, &module.text, &text);
+                edited += &text;
             }
         }
         for path in rest {
+            // A file that no edited one can reach is not read by any tool.
+            let text = std::fs::read(path).map_err(Failure::of_file(path, "read it"))?;
+            let text = String::from_utf8_lossy(&text).into_owned();
+            if modules_in(&text).any(|module| names_in(&edited).any(|name| name == module)) {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                folder.depending(&format!("rtl/{name}"), &dependence::in_verilog(&text));
+            }
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let what = "is not a file that posicast generates for this machine".to_owned();
             folder.add(&format!("rtl/{name}"), None, Kind::Extra, what);
@@ -121,8 +135,17 @@ impl Folder {
         });
     }
 
+    /// Adds the places of a file that depend on the tool.
+    fn depending(&mut self, file: &str, places: &[Dependent]) {
+        for place in places {
+            let what = format!("{} means something else to another tool", place.what);
+            self.add(file, Some(place.line), Kind::Tool, what);
+        }
+    }
+
     /// Compares a file of the module `name`, whose text differs from the `wanted` one.
     fn file(&mut self, file: &str, name: &str, wanted: &str, text: &str) {
+        self.depending(file, &dependence::added(wanted, text));
         let (ours, theirs) = (words(wanted), words(text));
         for (address, (_, word)) in &ours {
             let found = theirs.get(address);
@@ -156,12 +179,24 @@ impl Folder {
 
     /// Whether the folder is no match, whatever the simulation says.
     pub(super) fn fails(&self) -> bool {
-        self.contradicts() || (self.edited() > 0 && !self.edits_accepted)
+        self.contradicts() || self.depends_on_tool() || (self.edited() > 0 && !self.edits_accepted)
     }
 
     /// Whether a table, the machine file or the list of modules differs from posicast's.
     pub(super) fn contradicts(&self) -> bool {
         self.differences.iter().any(|difference| difference.kind.contradicts())
+    }
+
+    /// Whether Verilog was edited so that it depends on the tool that reads it.
+    pub(super) fn depends_on_tool(&self) -> bool {
+        self.differences.iter().any(|difference| difference.kind == Kind::Tool)
+    }
+
+    /// Names of the edited files whose edits are accepted, so that the simulation decides.
+    pub(super) fn accepted(&self) -> Vec<&str> {
+        let edited = self.differences.iter().filter(|d| d.kind == Kind::Verilog);
+        let names = edited.filter_map(|d| Path::new(&d.file).file_name()?.to_str());
+        names.filter(|_| self.edits_accepted && !self.fails()).collect()
     }
 
     /// Number of edited lines of Verilog, without tables.
@@ -184,9 +219,14 @@ impl Folder {
             text += &format!(
                 "To write the Verilog of the machine file anew: posicast generate {path}/machine.toml -o {path}_new. "
             );
-            text += match self.contradicts() {
-                true => "To keep a table that was edited, put it into the machine file instead (kind = \"custom\").\n",
-                false => "Use --edited to let only the simulation judge the edited files.\n",
+            text += match (self.contradicts(), self.depends_on_tool()) {
+                (true, _) => {
+                    "To keep a table that was edited, put it into the machine file instead (kind = \"custom\").\n"
+                }
+                (false, true) => "Remove the text that depends on the tool; --edited does not accept it.\n",
+                (false, false) => {
+                    "Use --edited to let only the simulation, in both simulators, judge the edited files.\n"
+                }
             };
         }
         text
@@ -202,12 +242,31 @@ impl Folder {
     }
 }
 
+/// Names of the modules that a text defines.
+fn modules_in(text: &str) -> impl Iterator<Item = &str> {
+    let mut before = "";
+    names_in(text).filter(move |name| std::mem::replace(&mut before, name) == "module")
+}
+
+/// The words of a text, of which some are names of modules.
+fn names_in(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_alphanumeric() || "_$".contains(c)))
+        .filter(|name| !name.is_empty())
+}
+
 type Words = std::collections::BTreeMap<u64, (usize, String)>;
 
 /// Address and value of a statement `words[N] = VALUE;`.
 fn words_of(line: &str) -> Option<(u64, String)> {
     let (address, rest) = line.trim().strip_prefix("words[")?.split_once(']')?;
-    let (value, _) = rest.trim().strip_prefix('=')?.split_once(';')?;
+    let (value, after) = rest.trim().strip_prefix('=')?.split_once(';')?;
+    // Another statement in the line is code.
+    let is_comment = after.trim().is_empty() || after.trim().starts_with("//");
+    let is_number = value
+        .trim()
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || "'_".contains(c));
+    (is_comment && is_number).then_some(())?;
     Some((address.trim().parse().ok()?, value.trim().to_owned()))
 }
 
@@ -310,6 +369,42 @@ mod tests {
             assert!(!folder.fails() && !folder.contradicts(), "{to}");
             assert_eq!(folder.differences.len(), 1, "{to}: {folder:?}");
             assert_eq!(folder.differences[0].kind, kind, "{to}");
+        }
+    }
+
+    #[test]
+    fn unit_text_that_depends_on_the_tool_fails_even_if_edits_are_accepted() {
+        for (to, line) in [
+            ("`ifdef VERILATOR\n`endif\nendmodule", 4),
+            ("// synthesis translate_off\nendmodule", 4),
+            ("initial if ($test$plusargs(\"a\")) $stop;\nendmodule", 4),
+        ] {
+            let mut folder = compared(&ROM.replace("endmodule", to));
+            folder.edits_accepted = true;
+            assert!(
+                folder.fails() && !folder.contradicts() && folder.accepted().is_empty(),
+                "{to}"
+            );
+            assert_eq!(
+                (folder.differences[0].kind, folder.differences[0].line),
+                (Kind::Tool, Some(line)),
+                "{to}"
+            );
+        }
+    }
+
+    #[test]
+    fn unit_a_statement_behind_a_word_is_code() {
+        for to in ["25'h0982e5e; initial words[0] = 25'h0;", "25'h0982e5e + y;"] {
+            let folder = compared(&ROM.replace("25'h0982e5e;", to));
+            assert!(
+                folder
+                    .differences
+                    .iter()
+                    .any(|d| d.kind == Kind::Verilog || d.kind == Kind::Table),
+                "{to}"
+            );
+            assert!(folder.fails(), "{to}");
         }
     }
 

@@ -1,6 +1,8 @@
 //! The command line from outside: exit status, standard output, standard error, files.
 
 pub(crate) mod followed;
+#[cfg(unix)]
+mod no_answer;
 mod sopc;
 mod stage;
 pub(crate) mod support;
@@ -9,6 +11,7 @@ mod verify;
 
 mod bad_input;
 mod campaign;
+mod command;
 mod completions;
 mod contour;
 mod design;
@@ -17,6 +20,8 @@ mod doctor;
 mod error_table;
 mod examples;
 mod folder;
+#[cfg(unix)]
+mod full_disk;
 mod fuzz;
 mod hal;
 mod hardware;
@@ -26,6 +31,8 @@ mod host_udp;
 mod identify;
 mod identify_logs;
 mod kit;
+#[cfg(unix)]
+mod missing_tools;
 mod moves;
 mod new;
 mod optimal;

@@ -7,6 +7,7 @@ use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::{Block, DividerBlock};
 use posicast_testbench::lockstep::{self, Instance, LockstepOptions, TwoValued};
+use posicast_testbench::stimuli::Stimuli;
 use posicast_testbench::wave::{Recorder, Signal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -14,9 +15,35 @@ use std::process::{Command, Output};
 const CLOCKS: u64 = 2000;
 const SEED: u64 = 7;
 
+/// Stimuli that reset, and then start a division of these values every 200 clocks; nothing else changes.
+struct Constant {
+    clock: u64,
+    starts: bool,
+    steps: u64,
+}
+
+impl Stimuli for Constant {
+    /// The inputs are `rst`, `start`, `steps`, `elapsed`, `clear_flags`.
+    fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
+        let start = self.starts && self.clock % 200 == 10;
+        inputs.copy_from_slice(&[u64::from(self.clock < 3), u64::from(start), self.steps, 1000, 0]);
+        self.clock += 1;
+    }
+}
+
 /// Records the divider of the XY stage in our own lockstep run. `change` may change a row of values, clock by clock;
 /// ports for which `keep` is false are left out.
-fn record(path: &Path, keep: impl Fn(&Port) -> bool, mut change: impl FnMut(u64, &mut [u64])) -> Vec<Port> {
+fn record(path: &Path, keep: impl Fn(&Port) -> bool, change: impl FnMut(u64, &mut [u64])) -> Vec<Port> {
+    let block = DividerBlock::new(DividerConfig::new(5000).unwrap(), "");
+    record_with(path, block.stimuli(CLOCKS, SEED).as_mut(), keep, change)
+}
+
+fn record_with(
+    path: &Path,
+    stimuli: &mut dyn Stimuli,
+    keep: impl Fn(&Port) -> bool,
+    mut change: impl FnMut(u64, &mut [u64]),
+) -> Vec<Port> {
     let block = DividerBlock::new(DividerConfig::new(5000).unwrap(), "");
     let mut model = block.model(SEED);
     let ports = model.ports().to_vec();
@@ -29,7 +56,7 @@ fn record(path: &Path, keep: impl Fn(&Port) -> bool, mut change: impl FnMut(u64,
     lockstep::run(
         model.as_mut(),
         &mut TwoValued(block.model(SEED)),
-        block.stimuli(CLOCKS, SEED).as_mut(),
+        stimuli,
         &[Instance::whole("divider", "", &ports)],
         &LockstepOptions::cycles(CLOCKS),
         &mut |clock| {
@@ -79,7 +106,11 @@ fn cli_replay_of_our_own_lock_step_matches() {
     assert_eq!(document["result"], "match");
     assert_eq!(document["stimulus"]["clocks"], CLOCKS);
     assert!(document["stimulus"]["compared"].as_u64().unwrap() > CLOCKS - 10);
-    assert_eq!(document["stimulus"]["missing_inputs"], serde_json::json!([]));
+    let none = serde_json::json!([]);
+    let stimulus = &document["stimulus"];
+    for key in ["missing_inputs", "unchanged_inputs", "unchanged_outputs"] {
+        assert_eq!(stimulus[key], none, "{key}");
+    }
     let rows = document["blocks"].as_array().unwrap();
     assert_eq!(rows.len(), 2, "{rows:?}");
     assert!(
@@ -151,6 +182,64 @@ fn cli_replay_of_a_recording_without_data_or_without_outputs_fails_as_empty() {
         let said = said(&output);
         assert!(said.contains(lacks) && said.contains("--map"), "{said}");
     }
+}
+
+/// Everything is equal where nothing is computed.
+#[test]
+fn cli_replay_of_a_recording_in_which_no_data_changes_is_no_match() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("recorded.vcd");
+    for (starts, steps, why) in [
+        (false, 5, "none of its data inputs ever changes"),
+        (true, 0, "no word at its outputs ever changes"),
+    ] {
+        let mut constant = Constant {
+            clock: 0,
+            starts,
+            steps,
+        };
+        record_with(&path, &mut constant, |_| true, |_, _| {});
+        let output = replay(&path, &["--json"]);
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        let document = json(&output.stdout);
+        assert_eq!(document["result"], "no_verdict");
+        let reason = document["reason"].as_str().unwrap();
+        assert!(
+            reason.contains("the recording has no data") && reason.contains(why),
+            "{reason}"
+        );
+        let rows = document["blocks"].as_array().unwrap();
+        assert!(rows.iter().all(|row| row["mismatches"] == 0), "{rows:?}");
+        let unchanged: Vec<&str> = document["stimulus"]["unchanged_inputs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|name| name.as_str().unwrap())
+            .collect();
+        for input in ["steps", "elapsed"] {
+            assert!(unchanged.contains(&input), "{unchanged:?}");
+        }
+        assert_eq!(unchanged.contains(&"start"), !starts, "{unchanged:?}");
+        let outputs = document["stimulus"]["unchanged_outputs"].to_string();
+        assert!(outputs.contains("quotient"), "{outputs}");
+        let missing = document["not_exercised"].to_string();
+        assert!(missing.contains("`saturated` = 1"), "{missing}");
+    }
+    // With data it is a match, which names what it does not reach.
+    let mut constant = Constant {
+        clock: 0,
+        starts: true,
+        steps: 7,
+    };
+    record_with(&path, &mut constant, |_| true, |_, _| {});
+    let output = replay(&path, &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("inputs that never change: steps, elapsed"), "{text}");
+    assert!(
+        text.contains("not exercised: divider") && text.contains("not exercised by it (see above)"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -115,16 +115,84 @@ fn cli_verify_names_verilog_that_was_edited_and_the_simulation_judges_it_only_if
         said(&edited)
     );
     let document = json(&edited.stdout);
-    assert_eq!(document["result"], "mismatch");
+    assert_eq!(document["result"], "no_verdict");
+    assert!(
+        document["reason"].as_str().unwrap().contains("was edited"),
+        "{document}"
+    );
     let accepted = verify(&output, &["--edited"]);
     assert_eq!(accepted.status.code(), Some(0), "{}", said(&accepted));
     let document = json(&accepted.stdout);
-    assert_eq!(document["result"], "match");
+    assert_eq!(
+        (&document["result"], &document["reason"]),
+        (&"match".into(), &serde_json::Value::Null)
+    );
     let difference = &document["folder"]["differences"][0];
     assert_eq!(
         (&difference["file"], &difference["kind"]),
         (&"rtl/one.v".into(), &"verilog".into())
     );
+    // Both simulators were asked.
+    let rows = document["blocks"].as_array().unwrap();
+    let instances: Vec<&str> = rows.iter().map(|row| row["instance"].as_str().unwrap()).collect();
+    assert_eq!(instances, ["x", "x, in verilator"]);
+
+    // Icarus has four values and Verilator two, so that they read the same text differently.
+    let broken = text.replace("(x_refused)", "(mine)").replacen(
+        "    one_x_shaper u_x (",
+        "    wire mine;\n    reg never;\n    assign x_refused = mine & (never === 1'bx);\n    one_x_shaper u_x (",
+        1,
+    );
+    assert_ne!(broken, text);
+    std::fs::write(&top, broken).unwrap();
+    let told = verify(&output, &["--edited"]);
+    assert_eq!(told.status.code(), Some(1), "{}", said(&told));
+    let document = json(&told.stdout);
+    let rows = document["blocks"].as_array().unwrap();
+    let wrong: Vec<bool> = rows.iter().map(|row| row["mismatches"] != 0).collect();
+    assert_eq!(
+        (&document["result"], wrong),
+        (&"mismatch".into(), vec![false, true]),
+        "{document}"
+    );
+}
+
+/// Verilog that one tool reads differently from another is no match, whatever a simulator says of it.
+#[test]
+fn cli_verify_refuses_verilog_that_depends_on_the_tool() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = long_delays(folder.path());
+    let top = output.join("rtl/one.v");
+    let text = std::fs::read_to_string(&top).unwrap();
+    for (added, what) in [
+        ("`ifdef VERILATOR\n`endif\nendmodule", "`ifdef VERILATOR"),
+        (
+            "// synthesis translate_off\n// synthesis translate_on\nendmodule",
+            "the comment `// synthesis translate_off`",
+        ),
+        (
+            "initial if ($test$plusargs(\"mine\")) $finish;\nendmodule",
+            "$test$plusargs",
+        ),
+    ] {
+        std::fs::write(&top, text.replacen("endmodule", added, 1)).unwrap();
+        let told = verify(&output, &["--edited"]);
+        assert_eq!(told.status.code(), Some(1), "{what}: {}", said(&told));
+        let document = json(&told.stdout);
+        assert_eq!(document["result"], "no_verdict", "{what}: {document}");
+        assert!(
+            document["reason"].as_str().unwrap().contains("depends on the tool"),
+            "{document}"
+        );
+        let difference = &document["folder"]["differences"][0];
+        assert_eq!(
+            (&difference["file"], &difference["kind"]),
+            (&"rtl/one.v".into(), &"tool".into())
+        );
+        assert!(difference["line"].is_u64());
+        let said = difference["what"].as_str().unwrap();
+        assert!(said.starts_with(what), "{said}");
+    }
 }
 
 #[test]
@@ -135,7 +203,14 @@ fn cli_verify_that_exercised_too_little_says_what_and_is_no_match() {
     let document = json(&few.stdout);
     assert_eq!(
         (&document["result"], &document["blocks"][0]["mismatches"]),
-        (&"mismatch".into(), &0.into())
+        (&"no_verdict".into(), &0.into())
+    );
+    assert!(
+        document["reason"]
+            .as_str()
+            .unwrap()
+            .contains("too little was exercised"),
+        "{document}"
     );
     let missing = document["not_exercised"].to_string();
     assert!(missing.contains("shaper x: tap 4 of the machine's table"), "{missing}");

@@ -180,13 +180,16 @@ impl Yosys {
     /// # Errors
     /// [`YosysError::Missing`], or the error of its start.
     pub fn installed() -> Result<Self, YosysError> {
-        for program in tool::executables("POSICAST_YOSYS", &PROGRAMS) {
-            match Self::at(&program) {
+        let programs = tool::executables("POSICAST_YOSYS", &PROGRAMS);
+        for program in &programs {
+            match Self::at(program) {
                 Err(YosysError::Missing(_)) => {}
                 found => return found,
             }
         }
-        Err(YosysError::Missing(PROGRAMS[0].into()))
+        Err(YosysError::Missing(
+            programs.into_iter().next().unwrap_or_else(|| PROGRAMS[0].into()),
+        ))
     }
 
     /// The Yosys at this path.

@@ -145,6 +145,14 @@ impl Sources {
         self.with_source(block, Icarus::recording)
     }
 
+    /// Returns whether Verilator's simulation of the block is kept, so that no compiler is needed to run it.
+    ///
+    /// # Errors
+    /// As [`verilator::is_built`].
+    pub fn is_built(&self, block: &dyn Block) -> Result<bool, Error> {
+        self.with_source(block, verilator::is_built)
+    }
+
     /// Returns the warnings of Verilator's lint; the list is empty if there are none.
     ///
     /// # Errors

@@ -26,4 +26,4 @@ mod tool;
 pub use self::task::{Engine, Task};
 pub(crate) use self::task::{INDUCTION, part, refused};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
-pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, proves, run, search};
+pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, missing_tools, proves, run, search};

@@ -10,19 +10,21 @@ use wavecmp::diff::{Shown, View, value, value_and_digits};
 
 /// Verdict of a lock step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum LockstepVerdict {
-    /// Every value of every clock was equal.
+    /// Every value of every clock was equal, and all that the verdict speaks of was exercised.
     Match,
     /// At least one value differed.
     Mismatch,
+    /// No value differed, but nothing was compared, or too little was exercised.
+    NoVerdict,
 }
 
 /// Result of a whole run, which serialises to `verify --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct LockstepReport {
-    /// The verdict over all blocks. A run without clocks is a mismatch, because it shows nothing; so is one that has
-    /// not exercised all that it should ([`BlockReport::not_exercised`]).
+    /// The verdict over all blocks. There is none on a run without clocks, which shows nothing, nor on one that has not
+    /// exercised all that it should ([`BlockReport::not_exercised`]).
     pub result: LockstepVerdict,
     /// Number of clocks compared.
     pub cycles: u64,
@@ -35,13 +37,13 @@ pub struct LockstepReport {
 impl LockstepReport {
     /// Makes the report of one run from its blocks.
     pub fn new(cycles: u64, blocks: Vec<BlockReport>) -> Self {
-        let holds = |block: &BlockReport| block.mismatches == 0 && block.not_exercised.is_empty();
-        let equal = cycles > 0 && !blocks.is_empty() && blocks.iter().all(holds);
+        let shows_all = cycles > 0 && !blocks.is_empty() && blocks.iter().all(|block| block.not_exercised.is_empty());
+        let differs = blocks.iter().any(|block| block.mismatches > 0);
         Self {
-            result: if equal {
-                LockstepVerdict::Match
-            } else {
-                LockstepVerdict::Mismatch
+            result: match (differs, shows_all) {
+                (true, _) => LockstepVerdict::Mismatch,
+                (false, true) => LockstepVerdict::Match,
+                (false, false) => LockstepVerdict::NoVerdict,
             },
             cycles,
             samples: blocks.iter().filter_map(|b| b.samples).sum(),
@@ -52,10 +54,11 @@ impl LockstepReport {
     /// Joins the reports of several runs: their blocks one after the other, clocks and samples added.
     pub fn joined(reports: Vec<LockstepReport>) -> Self {
         let cycles = reports.iter().map(|r| r.cycles).fold(0, u64::saturating_add);
-        let equal = !reports.is_empty() && reports.iter().all(|r| r.result == LockstepVerdict::Match);
+        let is_match = reports.iter().all(|r| r.result == LockstepVerdict::Match);
         let mut all = Self::new(cycles, reports.into_iter().flat_map(|r| r.blocks).collect());
-        if !equal {
-            all.result = LockstepVerdict::Mismatch;
+        // One of them may have had no clock.
+        if !is_match && all.result == LockstepVerdict::Match {
+            all.result = LockstepVerdict::NoVerdict;
         }
         all
     }

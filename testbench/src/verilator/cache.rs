@@ -2,9 +2,11 @@
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use posicast_system::interrupt::{self, Leftover, Listed};
+
+use super::kept::SUM_ENDING;
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 /// A simulation that was not used for this long is removed, and built again when it is needed.
@@ -22,19 +24,6 @@ pub(super) fn folder() -> PathBuf {
         .or_else(|| variable("XDG_CACHE_HOME").map(|folder| folder.join("posicast")))
         .or_else(|| variable("HOME").map(|folder| folder.join(".cache").join("posicast")))
         .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
-}
-
-/// Returns whether the simulation is there; if so, it counts as used now.
-pub(super) fn holds(object: &Path) -> bool {
-    if !object.is_file() {
-        return false;
-    }
-    // If this fails, the file only counts as older than it is.
-    let _ = File::options()
-        .append(true)
-        .open(object)
-        .and_then(|file| file.set_modified(SystemTime::now()));
-    true
 }
 
 /// A file that keeps other processes from building the same object. It is removed when this value is dropped, and when a signal ends the
@@ -79,8 +68,10 @@ pub(super) fn tidy(folder: &Path) {
         let name = name.to_string_lossy();
         let modified = entry.metadata().and_then(|data| data.modified());
         let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
-        let is_ours =
-            name.starts_with("verilator-") && [".so", ".o", ".gch", ".lock"].iter().any(|end| name.ends_with(end));
+        let is_ours = name.starts_with("verilator-")
+            && [".so", ".o", ".gch", ".lock", SUM_ENDING]
+                .iter()
+                .any(|end| name.ends_with(end));
         if is_ours && age > KEPT {
             let _ = fs::remove_file(entry.path());
         } else if name.starts_with(BUILD_PREFIX) && age > ABANDONED {
@@ -91,7 +82,9 @@ pub(super) fn tidy(folder: &Path) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::kept;
     use super::*;
+    use std::time::SystemTime;
 
     #[test]
     fn unit_only_what_is_old_and_ours_is_removed() {
@@ -105,14 +98,26 @@ mod tests {
         let old = make("verilator-1.so", 31);
         let old_object = make("verilator-1-verilated.o", 31);
         let old_headers = make("verilator-1-harness_headers.h.gch", 31);
-        let used = make("verilator-2.so", 31);
+        let old_sum = make("verilator-1.so.sha256", 31);
+        let made = make("made", 31);
+        let [used, used_sum] = ["verilator-2.so", "verilator-2.so.sha256"].map(|name| folder.path().join(name));
+        kept::keep(&made, &used).unwrap();
+        let month = SystemTime::now() - DAY * 31;
+        for path in [&used, &used_sum] {
+            File::options()
+                .append(true)
+                .open(path)
+                .unwrap()
+                .set_modified(month)
+                .unwrap();
+        }
         let recent = make("verilator-3.so", 29);
         let foreign = make("thesis.tex", 1000);
-        assert!(holds(&used) && !holds(&folder.path().join("absent.so")));
+        assert!(kept::holds(&used));
         tidy(folder.path());
         assert_eq!(
-            [old, old_object, old_headers, used, recent, foreign].map(|path| path.exists()),
-            [false, false, false, true, true, true]
+            [old, old_object, old_headers, old_sum, used, used_sum, recent, foreign].map(|path| path.exists()),
+            [false, false, false, false, true, true, true, true]
         );
     }
 }

@@ -39,7 +39,7 @@ pub(super) struct Simulation {
 impl Simulation {
     /// Loads `object`, which was built for this many inputs and outputs, and starts it with a random state from
     /// `seed`.
-    pub(super) fn load(object: &Path, seed: u64, inputs: usize, outputs: usize) -> Result<Self, Error> {
+    pub(super) fn load(object: &Path, seed: u64, [inputs, outputs]: [usize; 2]) -> Result<Self, Error> {
         let refuse = |reason: String| Error::Load {
             path: object.to_owned(),
             reason,

@@ -8,8 +8,9 @@
 //! - **Cache.** There is one shared object per content of the sources, ports, harness, Verilator version and flags,
 //!   in `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It
 //!   is built in a folder of its own and renamed when complete, so that parallel builds never see half a file, and
-//!   under a lock, so that one builds it and the others wait. An object that was not used for 30 days is removed.
-//!   Verilator's own C++ and its headers (50 MB) are compiled once and kept there too.
+//!   under a lock, so that one builds it and the others wait. Every kept file has its checksum beside it, and is made
+//!   anew where that does not fit, or where the system cannot load it. An object that was not used for 30 days is
+//!   removed. Verilator's own C++ and its headers (50 MB) are compiled once and kept there too.
 //! - **Random start.** Registers without a reset value and memories start with random contents, by the seed: a block
 //!   that works only because a simulator clears its memory fails here.
 //! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
@@ -17,8 +18,10 @@
 //! - `$display` goes to standard error; `$finish`, `$stop` and a loop that does not settle are a [`StepError`].
 
 mod cache;
+mod compiler;
 mod dynamic;
 mod harness;
+mod kept;
 mod runtime;
 mod unity;
 
@@ -26,11 +29,13 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
-use posicast_system::scratch;
+use posicast_system::{interrupt, scratch};
 use sha2::{Digest, Sha256};
 
 use crate::Error;
-use crate::tool::{Tool, text};
+use crate::error::MissingTool;
+use crate::patience::Patience;
+use crate::tool::{self, Tool, text};
 
 const VERILATOR: Tool = Tool {
     name: "verilator",
@@ -62,6 +67,9 @@ const FLAGS: [&str; 12] = [
     "-shared -Wl,-Bsymbolic",
 ];
 
+/// Exit status of a process whose simulation does not come back: that of bad input, here of its Verilog.
+const NO_ANSWER_STATUS: i32 = 2;
+
 /// Additional flags for a simulation that counts lines and toggles. Buses with more bits than given here are not
 /// counted.
 const COVERAGE_FLAGS: [&str; 4] = ["--coverage-line", "--coverage-toggle", "--coverage-max-width", "1024"];
@@ -81,6 +89,7 @@ pub struct VerilogSource<'a> {
 #[derive(Debug)]
 pub struct Verilated {
     ports: Vec<Port>,
+    patience: Patience,
     simulation: dynamic::Simulation,
 }
 
@@ -118,11 +127,26 @@ impl Verilated {
                 port.name, port.width
             )));
         }
-        let object = compile(cache, source, counts)?;
         let count = |direction| source.ports.iter().filter(|p| p.direction == direction).count();
-        let simulation = dynamic::Simulation::load(&object, seed, count(Direction::Input), count(Direction::Output))?;
+        let numbers = [count(Direction::Input), count(Direction::Output)];
+        let build = Build::new(cache, source, counts)?;
+        let object = build.object(Kept::IfItFits)?;
+        let simulation = match dynamic::Simulation::load(&object, seed, numbers) {
+            // It fits its checksum, but not this system: another one may use the same cache.
+            Err(Error::Load { .. }) => dynamic::Simulation::load(&build.object(Kept::Never)?, seed, numbers)?,
+            other => other?,
+        };
+        let limit = tool::answer_limit();
+        let said = format!(
+            "error: the simulation of `{}` did not come back from a clock for {} s: the Verilog loops without end, or {} is too short",
+            source.top,
+            limit.as_secs(),
+            tool::LIMIT_VARIABLE
+        );
         Ok(Self {
             ports: source.ports.to_vec(),
+            // A call into the simulation cannot be ended from outside: only the whole process can.
+            patience: Patience::new(limit, move || interrupt::give_up(&said, NO_ANSWER_STATUS)),
             simulation,
         })
     }
@@ -132,7 +156,7 @@ impl Verilated {
     /// # Errors
     /// [`StepError`] where the Verilog stops the simulation, or if the lengths are not equal numbers of whole rows.
     pub fn run(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        self.simulation.run(inputs, outputs)
+        self.patience.during(|| self.simulation.run(inputs, outputs))
     }
 
     /// Writes the counts since the start into a file, in the format of `verilator_coverage`.
@@ -150,7 +174,7 @@ impl ClockedBlock for Verilated {
     }
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        self.simulation.run(inputs, outputs)
+        self.run(inputs, outputs)
     }
 }
 
@@ -178,34 +202,96 @@ pub fn version() -> Result<&'static str, Error> {
     if let Some(version) = VERSION.get() {
         return Ok(version);
     }
-    let output = VERILATOR.run(VERILATOR.command().arg("--version"), "telling its version")?;
+    let output = VERILATOR.answer(VERILATOR.command().arg("--version"), "telling its version")?;
     Ok(VERSION.get_or_init(|| text(&output).trim().to_owned()))
 }
 
-fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<PathBuf, Error> {
-    let mut contents = Vec::with_capacity(source.files.len());
-    for file in source.files {
-        let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
-        let path = std::path::absolute(file).map_err(Error::file(file, "find"))?;
-        contents.push((path, text));
-    }
-    let object = folder.join(format!(
-        "verilator-{}.so",
-        content_hash(source, &contents, version()?, counts)
-    ));
-    if cache::holds(&object) {
-        return Ok(object);
-    }
-    std::fs::create_dir_all(folder).map_err(Error::file(folder, "create the cache folder"))?;
-    cache::tidy(folder);
-    // Another process may be building the same: it is then waited for.
-    let _lock = cache::Lock::wait_for(&object);
-    if cache::holds(&object) {
-        return Ok(object);
-    }
-    let work = scratch::Folder::new_in(cache::BUILD_PREFIX, folder)
-        .map_err(Error::file(folder, "create a folder to build in"))?;
+/// Whether a simulation of this source is kept, so that nothing but Verilator, for its version, is needed to run it.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Verilator, the error of one that does not start, or that of a file that cannot be read.
+pub fn is_built(source: &VerilogSource<'_>) -> Result<bool, Error> {
+    Ok(Build::new(&cache::folder(), source, false)?.is_held())
+}
 
+/// What is needed to build a simulation and is not installed.
+pub fn missing_tools() -> Vec<MissingTool> {
+    let tools = [VERILATOR, MAKE].iter().filter_map(Tool::missing);
+    tools.chain(compiler::of_verilator().missing()).collect()
+}
+
+/// Whether a kept simulation is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kept {
+    /// If its checksum fits.
+    IfItFits,
+    /// It is built anew.
+    Never,
+}
+
+/// A source that is to be built.
+struct Build<'a> {
+    folder: &'a Path,
+    source: &'a VerilogSource<'a>,
+    counts: bool,
+    contents: Vec<(PathBuf, Vec<u8>)>,
+    object: PathBuf,
+}
+
+impl<'a> Build<'a> {
+    fn new(folder: &'a Path, source: &'a VerilogSource<'a>, counts: bool) -> Result<Self, Error> {
+        let mut contents = Vec::with_capacity(source.files.len());
+        for file in source.files {
+            let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
+            let path = std::path::absolute(file).map_err(Error::file(file, "find"))?;
+            contents.push((path, text));
+        }
+        let hash = content_hash(source, &contents, version()?, counts);
+        Ok(Self {
+            folder,
+            source,
+            counts,
+            contents,
+            object: folder.join(format!("verilator-{hash}.so")),
+        })
+    }
+
+    fn is_held(&self) -> bool {
+        kept::holds(&self.object)
+    }
+
+    /// Path of the built simulation, which is built if it is not kept, or if what is kept does not fit.
+    fn object(&self, kept: Kept) -> Result<PathBuf, Error> {
+        if kept == Kept::IfItFits && self.is_held() {
+            return Ok(self.object.clone());
+        }
+        let folder = self.folder;
+        std::fs::create_dir_all(folder).map_err(Error::file(folder, "create the cache folder"))?;
+        cache::tidy(folder);
+        // Another process may be building the same: it is then waited for.
+        let _lock = cache::Lock::wait_for(&self.object);
+        if kept == Kept::IfItFits && self.is_held() {
+            return Ok(self.object.clone());
+        }
+        let work = scratch::Folder::new_in(cache::BUILD_PREFIX, folder)
+            .map_err(Error::file(folder, "create a folder to build in"))?;
+        compile(&work, self)?;
+        kept::keep(&work.path().join("simulation.so"), &self.object)
+            .map_err(Error::file(&self.object, "put the simulation into the cache"))?;
+        Ok(self.object.clone())
+    }
+}
+
+/// Builds `simulation.so` in the folder `work`.
+fn compile(work: &scratch::Folder, build: &Build<'_>) -> Result<(), Error> {
+    let Build {
+        folder,
+        source,
+        counts,
+        contents,
+        ..
+    } = build;
+    let counts = *counts;
     let write = |name: &str, text: &str| {
         let path = work.path().join(name);
         std::fs::write(&path, text).map_err(Error::file(&path, "write"))
@@ -243,11 +329,7 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     MAKE.run(&mut make, "compiling the simulation")?;
     runtime
         .keep(work.path())
-        .map_err(Error::file(folder, "put Verilator's own objects into the cache"))?;
-
-    let built = work.path().join("simulation.so");
-    std::fs::rename(&built, &object).map_err(Error::file(&object, "put the simulation into the cache"))?;
-    Ok(object)
+        .map_err(Error::file(folder, "put Verilator's own objects into the cache"))
 }
 
 fn coverage_flags(counts: bool) -> &'static [&'static str] {
@@ -284,6 +366,8 @@ impl ContentHash {
     fn of_tools(version: &str, counts: bool) -> Self {
         let mut hash = Self(Sha256::new());
         hash.add(version.as_bytes());
+        // Machines of several kinds may share the cache.
+        hash.add(std::env::consts::ARCH.as_bytes());
         for text in [harness::PRINT, harness::HEADERS, harness::MAKEFILE] {
             hash.add(text.as_bytes());
         }

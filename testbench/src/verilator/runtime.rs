@@ -8,6 +8,7 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
 use super::harness::COMPILED_HEADERS;
+use super::kept::{self, SUM_ENDING};
 
 /// The objects and compiled headers of one version of Verilator, compiled with one set of flags.
 pub(super) struct Runtime {
@@ -31,13 +32,15 @@ impl Runtime {
             let Some(name) = name.strip_prefix(&self.prefix) else {
                 continue;
             };
+            if name.ends_with(SUM_ENDING) || !kept::holds(&path) {
+                continue;
+            }
             // If one of them fails, `make` compiles it again.
             if name == COMPILED_HEADERS {
                 let _ = path.canonicalize().and_then(|path| symlink(path, work.join(name)));
             } else {
                 let _ = fs::copy(&path, work.join(name));
             }
-            super::cache::holds(&path);
         }
     }
 
@@ -49,8 +52,9 @@ impl Runtime {
         for (name, path) in files(work) {
             let is_kept = name == COMPILED_HEADERS || (name.starts_with("verilated") && name.ends_with(".o"));
             let kept = self.folder.join(format!("{}{name}", self.prefix));
-            if is_kept && !kept.exists() {
-                fs::rename(path, kept)?;
+            // What was lent fits; a link to the headers is not theirs.
+            if is_kept && !path.is_symlink() && !kept::holds(&kept) {
+                kept::keep(&path, &kept)?;
             }
         }
         Ok(())

@@ -207,17 +207,72 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
     };
     build_another("32'd1").unwrap();
     assert_eq!(kept("so").len(), 2);
-    // Its headers are compiled once; a compiler that refuses their compiled form reads them.
-    let headers = kept("gch");
-    assert_eq!(headers.len(), 1);
-    std::fs::write(&headers[0].0, "no headers").unwrap();
+    // Its headers and Verilator's own C++ are compiled once, and reused.
+    let (headers, runtime) = (kept("gch"), kept("o"));
+    assert!(headers.len() == 1 && !runtime.is_empty());
     same_as_model(&mut build_another("32'h0").unwrap(), 100);
-    // Verilator's own C++ is not compiled again: its objects are reused.
-    let runtime = kept("o");
-    assert!(!runtime.is_empty());
-    for (object, _) in &runtime {
-        std::fs::write(object, "no object").unwrap();
+    assert_eq!((kept("gch"), kept("o")), (headers, runtime));
+}
+
+/// Half a shared object would end the process with SIGBUS.
+#[test]
+fn unit_a_kept_file_that_was_damaged_is_made_anew() {
+    let files = Files::new(COUNTER);
+    let ports = counter_ports();
+    let source = VerilogSource {
+        files: &files.files,
+        top: "counter",
+        ports: &ports,
+    };
+    let build = || Verilated::build_in(&files.cache(), &source, 1);
+    drop(build().unwrap());
+    let kept: Vec<PathBuf> = std::fs::read_dir(files.cache())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    let of = |ending: &'static str| {
+        kept.iter()
+            .filter(move |path| path.extension().is_some_and(|e| e == ending))
+    };
+    let object = of("so").next().unwrap();
+    let whole = std::fs::read(object).unwrap();
+    assert_eq!(
+        of("sha256").count(),
+        of("so").count() + of("o").count() + of("gch").count()
+    );
+
+    // What is damaged alone is built from the kept objects, and those are made anew if they are damaged too.
+    std::fs::write(object, &whole[..whole.len() / 2]).unwrap();
+    same_as_model(&mut build().unwrap(), 100);
+    let again = std::fs::read(object).unwrap();
+    assert_eq!(again.len(), whole.len());
+    for path in of("so").chain(of("o")).chain(of("gch")) {
+        let bytes = std::fs::read(path).unwrap();
+        std::fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
     }
-    let error = build_another("32'd2").unwrap_err();
-    assert!(matches!(error, Error::ToolFailed { .. }), "{error}");
+    same_as_model(&mut build().unwrap(), 100);
+    for path in of("o").chain(of("gch")) {
+        let sum = std::fs::read_to_string(format!("{}.sha256", path.display())).unwrap();
+        let found = std::process::Command::new("sha256sum")
+            .arg(path)
+            .output()
+            .unwrap()
+            .stdout;
+        assert_eq!(
+            String::from_utf8_lossy(&found).split(' ').next().unwrap(),
+            sum.trim(),
+            "{}",
+            path.display()
+        );
+    }
+    // A file that fits its checksum and is no object of this system is made anew as well.
+    std::fs::write(object, "not an object").unwrap();
+    let sum = std::process::Command::new("sha256sum")
+        .arg(object)
+        .output()
+        .unwrap()
+        .stdout;
+    let sum = String::from_utf8_lossy(&sum).split(' ').next().unwrap().to_owned();
+    std::fs::write(format!("{}.sha256", object.display()), sum).unwrap();
+    same_as_model(&mut build().unwrap(), 100);
 }
