@@ -2,6 +2,7 @@
 
 use crate::support;
 
+use posicast_model::rtl::error_table::{ErrorTable, FULL_WEIGHT, Inputs};
 use posicast_testbench::blocks::{self, Block, ErrorTableBlock, Sources};
 use posicast_testbench::lockstep::TwoValued;
 use support::{caught, icarus_agrees, million_random_clocks};
@@ -40,6 +41,43 @@ fn unit_the_scenes_reach_everything_on_any_seed() {
                 run.coverage
             );
         }
+    }
+}
+
+/// What `docs/error_table.md` says of positions that are far from the table: its ends hold up to where a place comes round.
+#[test]
+fn unit_the_ends_of_a_table_hold_until_the_position_comes_round() {
+    let config = ErrorTableBlock::of_size(9, 6).unwrap();
+    let (first, last) = (config.entries()[0], config.entries()[8]);
+    assert!(first != last && config.format().first_counts == -100);
+    let on = Inputs {
+        on_measured: true,
+        drive_enable: true,
+        homed: true,
+        error_enable: true,
+        ..Inputs::default()
+    };
+    let mut table = ErrorTable::new(&config);
+    let mut error_at = |measured: i32, passes: u16| {
+        let on = Inputs { measured, ..on };
+        for _ in 0..passes {
+            table.step(&Inputs { valid: true, ..on });
+            (0..config.latency_clocks()).for_each(|_| {
+                table.step(&on);
+            });
+        }
+        table.outputs().table_error
+    };
+    error_at(0, FULL_WEIGHT);
+    for (measured, error) in [
+        (i32::MIN, first),
+        (-(1 << 30), first),
+        (1 << 30, last),
+        (i32::MAX - 100, last),
+        (i32::MAX - 99, first),
+        (i32::MAX, first),
+    ] {
+        assert_eq!(error_at(measured, 1), error, "{measured}");
     }
 }
 

@@ -70,6 +70,10 @@ int main(void)
     result("error_refused", posicast_error_now(&stage, X));
     need("off", posicast_enable_error_table(&stage, X, 0, LONG), POSICAST_OK);
     result("error_off", posicast_error_now(&stage, X));
+    /* A position at 2^31 counts, where it comes round: no axis is homed there. */
+    IOWR_POSICAST_AXIS_PRESET(stage.base, X, 0x7fffff00u);
+    need("preset", posicast_wait_flags(&stage), POSICAST_OK);
+    need("too far", posicast_limit_travel(&stage, X, COUNTS(-90000), COUNTS(90000)), POSICAST_BAD_ARGUMENT);
     result("causes", posicast_causes(&stage, X));
     return 0;
 }
