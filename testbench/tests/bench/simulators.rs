@@ -1,7 +1,7 @@
 //! Tests the two simulators on hand-written Verilog: values, ports, errors, cache.
 
 use std::os::unix::fs::MetadataExt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::bench::common::{COUNTER, Counter, Files, MEMORY, counter_ports, memory_ports, port};
 use posicast_model::rtl::{ClockedBlock, Direction};
@@ -230,6 +230,11 @@ fn unit_a_kept_file_that_was_damaged_is_made_anew() {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .collect();
+    // A new file with the name: the one before may still be mapped into this process.
+    let replace = |path: &Path, bytes: &[u8]| {
+        std::fs::remove_file(path).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    };
     let of = |ending: &'static str| {
         kept.iter()
             .filter(move |path| path.extension().is_some_and(|e| e == ending))
@@ -242,13 +247,13 @@ fn unit_a_kept_file_that_was_damaged_is_made_anew() {
     );
 
     // What is damaged alone is built from the kept objects, and those are made anew if they are damaged too.
-    std::fs::write(object, &whole[..whole.len() / 2]).unwrap();
+    replace(object, &whole[..whole.len() / 2]);
     same_as_model(&mut build().unwrap(), 100);
     let again = std::fs::read(object).unwrap();
     assert_eq!(again.len(), whole.len());
     for path in of("so").chain(of("o")).chain(of("gch")) {
         let bytes = std::fs::read(path).unwrap();
-        std::fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
+        replace(path, &bytes[..bytes.len() / 2]);
     }
     same_as_model(&mut build().unwrap(), 100);
     for path in of("o").chain(of("gch")) {
@@ -266,7 +271,7 @@ fn unit_a_kept_file_that_was_damaged_is_made_anew() {
         );
     }
     // A file that fits its checksum and is no object of this system is made anew as well.
-    std::fs::write(object, "not an object").unwrap();
+    replace(object, b"not an object");
     let sum = std::process::Command::new("sha256sum")
         .arg(object)
         .output()
