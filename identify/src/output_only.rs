@@ -47,6 +47,7 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
         between: Between::Held,
         // The noise of the sensor is only in the first value.
         response: correlation.get(1..).unwrap_or_default().to_vec(),
+        missing: Vec::new(),
     };
     let decay = position::identify_response(&log, Quantity::Acceleration)?;
     // For a mode that an acceleration with an even spectrum drives, the square of the share relates to the power as
@@ -116,6 +117,7 @@ mod tests {
                 ("accel_x".into(), shaken(&truths, 200_000, 1e-3)),
                 ("accel_y".into(), vec![0.1; 200_000]),
             ],
+            missing: Vec::new(),
         };
         let found = identify(&log).unwrap();
         assert_eq!(

@@ -12,7 +12,7 @@
 
 use crate::found::FoundMode;
 use crate::position::{self, FoundInPosition, LEAST_SAMPLES, PositionError, Quantity};
-use crate::signal::{AccelerationLog, Between, PositionLog};
+use crate::signal::{AccelerationLog, Between, PositionLog, within};
 use thiserror::Error;
 
 /// Modes that ring after a stop.
@@ -73,7 +73,7 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInRingDown, RingDownError>
     let quiet = power(&record[record.len() - record.len().div_ceil(REST)..]).sqrt();
     let mut latest = Err(PositionError::Short(record.len()));
     for begin in beginnings(record) {
-        let Ok(fit) = decay(log.sample_s, rung(record, begin)) else {
+        let Ok(fit) = decay(log, record, begin) else {
             continue;
         };
         let is_explained = fit.noise <= AS_GOOD * quiet || fit.noise <= SMALL * power(&fit.response).sqrt();
@@ -111,12 +111,14 @@ fn power(record: &[f64]) -> f64 {
     record.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples
 }
 
-fn decay(sample_s: f64, record: &[f64]) -> Result<FoundInPosition, PositionError> {
+fn decay(log: &AccelerationLog, record: &[f64], begin: usize) -> Result<FoundInPosition, PositionError> {
+    let rung = rung(record, begin);
     let log = PositionLog {
-        sample_s,
+        sample_s: log.sample_s,
         command: Vec::new(),
         between: Between::Held,
-        response: record.to_vec(),
+        response: rung.to_vec(),
+        missing: within(&log.missing, begin..begin + rung.len()),
     };
     position::identify_response(&log, Quantity::Acceleration)
 }
@@ -203,6 +205,7 @@ mod tests {
                     ("x".into(), record),
                     ("z".into(), stop(&[], 9).iter().map(|x| 0.1 * x).collect()),
                 ],
+                missing: Vec::new(),
             };
             let found = identify(&log).unwrap();
             assert!(found.begin_s > 0.6, "{}", found.begin_s);
@@ -237,6 +240,7 @@ mod tests {
         let log = AccelerationLog {
             sample_s: SAMPLE_S,
             directions: vec![("x".into(), rung(&|part, _| 5.0 * part))],
+            missing: Vec::new(),
         };
         let accelerations = identify(&log).unwrap().modes;
         let positions = position::identify(&PositionLog {
@@ -244,6 +248,7 @@ mod tests {
             command: Vec::new(),
             between: Between::Held,
             response: rung(&|part, omega| 5.0 * part / (omega * omega)),
+            missing: Vec::new(),
         });
         for found in [accelerations, positions.unwrap().modes] {
             assert_eq!(found.len(), 2, "{found:#?}");
@@ -262,6 +267,7 @@ mod tests {
                 ("x".into(), record.clone()),
                 ("y".into(), record.iter().map(|x| 0.95 * x).collect()),
             ],
+            missing: Vec::new(),
         };
         assert_eq!(identify(&log), Err(RingDownError::Directions("x".into(), "y".into())));
     }

@@ -1,5 +1,7 @@
 //! Logs on a uniform time grid, independent of files and units.
 
+use std::ops::Range;
+
 /// Course of a command between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Between {
@@ -22,6 +24,8 @@ pub struct PositionLog {
     /// Response at each sample, before the command of that sample acts; as many values as commands, where there are
     /// commands.
     pub response: Vec<f64>,
+    /// Samples that were not measured, in order; the values there only fill the grid.
+    pub missing: Vec<Range<usize>>,
 }
 
 /// What a drive was told and where its own motor went, sampled together.
@@ -33,6 +37,8 @@ pub struct DriveLog {
     pub drive: Vec<f64>,
     /// Position of the motor at each sample, in any unit.
     pub position: Vec<f64>,
+    /// Samples that were not measured, in order; the values there only fill the grid.
+    pub missing: Vec<Range<usize>>,
 }
 
 /// What an accelerometer on an axis saw.
@@ -43,6 +49,8 @@ pub struct AccelerationLog {
     /// The directions of the sensor, each with its name and its acceleration in m/s²; all have the same number of
     /// samples.
     pub directions: Vec<(String, Vec<f64>)>,
+    /// Samples that were not measured, in order; the values there only fill the grid.
+    pub missing: Vec<Range<usize>>,
 }
 
 impl AccelerationLog {
@@ -68,4 +76,13 @@ impl AccelerationLog {
         }
         Ok(())
     }
+}
+
+/// The part of some ranges of samples that lies in `range`, counted from its start.
+pub(crate) fn within(ranges: &[Range<usize>], range: Range<usize>) -> Vec<Range<usize>> {
+    let cut = |part: &Range<usize>| {
+        let (start, end) = (part.start.max(range.start), part.end.min(range.end));
+        (start < end).then(|| start - range.start..end - range.start)
+    };
+    ranges.iter().filter_map(cut).collect()
 }

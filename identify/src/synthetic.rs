@@ -4,7 +4,7 @@
 //! the methods uses.
 
 use crate::signal::{AccelerationLog, Between, PositionLog};
-use crate::sweep::{QuarterOrder, Rise, Sweep, SweptAcceleration};
+use crate::sweep::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAcceleration};
 use nalgebra::{Matrix2, Vector2};
 use posicast_model::mode::Mode;
 use posicast_model::plant::{Plant, PlantError, SampledPlant, free_motion};
@@ -44,6 +44,9 @@ pub struct Sensor {
     pub step: f64,
     /// Whether the excitation acts only from the next sample on, as in simulations on a grid.
     pub held: bool,
+    /// Deceleration in m/s² after a test that ends in motion, as one with a square wave does: the firmware takes its
+    /// `max_accel`.
+    pub stop: f64,
 }
 
 impl Default for Sensor {
@@ -55,6 +58,7 @@ impl Default for Sensor {
             noise: 0.2,
             step: 0.037,
             held: false,
+            stop: 3.0,
         }
     }
 }
@@ -95,9 +99,22 @@ impl Moving {
     }
 }
 
-/// The log of one moving direction, with another direction at rest.
+/// The sweep of Klipper's resonance test since December 2024, with its square wave.
+pub fn present_test() -> Sweep {
+    Sweep {
+        sweeping: Sweeping::Wave(SquareWave::default()),
+        ..Sweep::default()
+    }
+}
+
+/// The log of one moving direction, with another direction at rest. There is a square wave beside the sweep where the
+/// sweep names one.
 pub fn resonance_test(truths: &[KnownMode], sweep: &Sweep, sensor: &Sensor, seed: u64) -> AccelerationLog {
-    let excitation = SweptAcceleration::new(sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
+    let mut excitation = SweptAcceleration::new(sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
+    if let Sweeping::Wave(wave) = sweep.sweeping {
+        let wave = SweptAcceleration::square_wave(&wave, excitation.duration_s());
+        excitation = excitation.beside(&wave).with_stop(sensor.stop);
+    }
     let seconds = sensor.start_s + excitation.duration_s() + sensor.rest_s;
     let samples = (seconds / sensor.sample_s) as usize;
     let mut moving: Vec<Moving> = truths
@@ -142,6 +159,7 @@ pub fn resonance_test(truths: &[KnownMode], sweep: &Sweep, sensor: &Sensor, seed
     AccelerationLog {
         sample_s: sensor.sample_s,
         directions: vec![("accel_x".into(), along), ("accel_z".into(), across)],
+        missing: Vec::new(),
     }
 }
 
@@ -190,5 +208,6 @@ pub fn position_log(
         between: Between::Held,
         response: response.collect(),
         command: command.to_vec(),
+        missing: Vec::new(),
     })
 }

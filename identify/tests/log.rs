@@ -206,17 +206,25 @@ fn unit_gaps_irregular_times_dead_and_saturated_columns_are_mended_and_said() {
         format!("{},{}", if n < 30 { n } else { n + 10 }, n % 7)
     });
     let reading = log::read(gap.as_bytes()).unwrap();
-    assert_eq!(reading.rows, 70);
-    assert!(matches!(
-        reading.remarks[..],
-        [Remark::Gap {
-            line: 31,
-            from: 32,
-            to: 101,
-            kept: 70,
-            ..
-        }]
-    ));
+    assert_eq!(reading.rows, 100);
+    assert!(
+        matches!(
+            reading.remarks[..],
+            [Remark::Gaps {
+                missing: 10,
+                samples: 110,
+                places: 1,
+                line: 31,
+                longest_line: 31,
+                ..
+            }]
+        ),
+        "{:?}",
+        reading.remarks
+    );
+    let Log::Position(log) = reading.log else { panic!() };
+    assert_eq!(log.missing, [30..40]);
+    assert_eq!((log.response[29], log.response[40], log.sample_s), (1.0, 2.0, 1.0));
 
     let irregular = rows("time,response", |n| {
         format!("{},{}", n as f64 + 0.3 * (n as f64).sin(), n)

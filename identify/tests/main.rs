@@ -10,4 +10,6 @@ mod position;
 mod position_bad;
 mod position_noise;
 mod sweep;
+mod sweep_excitation;
+mod sweep_gaps;
 mod trial;

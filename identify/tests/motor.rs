@@ -62,6 +62,7 @@ fn shaken(train: DriveTrain, ticks: usize, count: f64, speed: f64, noise: &mut N
         sample_s: TICK_S,
         drive: Vec::new(),
         position: Vec::new(),
+        missing: Vec::new(),
     };
     let mut before = -speed * TICK_S;
     for (tick, bit) in pseudo_random(ticks, 8).into_iter().enumerate() {
@@ -165,6 +166,7 @@ fn unit_a_velocity_drive_and_its_motor_tell_it_too() {
         sample_s: TICK_S,
         drive: Vec::new(),
         position: Vec::new(),
+        missing: Vec::new(),
     };
     for bit in pseudo_random(4096, 12) {
         log.position.push(quantised(plant.state().angle, 1e-4));
@@ -192,6 +194,7 @@ fn unit_a_rigid_motor_and_a_stiff_drive_and_a_drive_at_rest_are_said_as_such() {
         sample_s: 1e-3,
         drive: drive.to_vec(),
         position,
+        missing: Vec::new(),
     };
     let rigid = log(drive.iter().map(|u| moved(0.01 * u, 1.0)).collect(), &drive);
     let stiff = log(drive.iter().map(|u| moved(0.1 * u, 0.0)).collect(), &drive);

@@ -133,6 +133,7 @@ fn unit_a_free_decay_tells_frequency_and_damping() {
             between: Between::Held,
             command: Vec::new(),
             response: (0..800).map(ring).collect(),
+            missing: Vec::new(),
         };
         let found = position::identify(&log).unwrap();
         assert!(!found.is_forced);
@@ -222,6 +223,7 @@ fn unit_no_mode_is_invented() {
             between: Between::Held,
             command,
             response,
+            missing: Vec::new(),
         };
         let found = position::identify(&log).unwrap();
         assert_eq!(found.modes, [], "{is_forced}");
@@ -244,6 +246,7 @@ fn unit_a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sampl
         between: Between::Straight,
         command: every(&fine.command),
         response: every(&fine.response),
+        missing: Vec::new(),
     };
     check(&position::identify(&coarse).unwrap(), &[(truth, 1.0)], 0.002, 0.02);
 }
@@ -391,7 +394,7 @@ proptest! {
         sample_s in prop_oneof![Just(1e-9), Just(1e-3), Just(1e6)],
     ) {
         let (command, response): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
-        let log = PositionLog { sample_s, between: Between::Held, command, response };
+        let log = PositionLog { sample_s, between: Between::Held, command, response, missing: Vec::new() };
         if let Ok(found) = position::identify(&log) {
             for mode in found.modes {
                 prop_assert!(mode.mode.frequency_hz > 0.0 && mode.participation.is_finite());

@@ -17,6 +17,7 @@ fn log(command: Vec<f64>, response: Vec<f64>) -> PositionLog {
         between: Between::Held,
         command,
         response,
+        missing: Vec::new(),
     }
 }
 

@@ -25,6 +25,7 @@ fn log(command: Vec<f64>, response: Vec<f64>, sample_s: f64) -> PositionLog {
         between: Between::Held,
         command,
         response,
+        missing: Vec::new(),
     }
 }
 

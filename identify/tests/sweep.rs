@@ -118,6 +118,7 @@ fn unit_a_log_of_something_else_is_refused() {
     let log = AccelerationLog {
         sample_s: 1.0 / 3200.0,
         directions: vec![("accel_x".into(), record)],
+        missing: Vec::new(),
     };
     assert!(matches!(sweep::identify(&log, &quick()), Err(SweepError::Unrelated(_))));
     let short = AccelerationLog {

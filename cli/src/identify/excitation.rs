@@ -1,12 +1,13 @@
 //! Options that describe the excitation of an accelerometer's log.
 
-use posicast_identify::sweep::Sweep;
+use posicast_identify::sweep::{SquareWave, Sweep, Sweeping};
 
 #[derive(clap::Args, Default)]
 pub(super) struct ExcitationFlags {
-    /// Sweep of the resonance test: first and last frequency in Hz, Hz per second, mm/s² per Hz
-    #[arg(long, value_name = "START:END:RATE:ACCEL", default_value = "5:135:1:60", value_parser = sweep)]
-    pub(super) sweep: Sweep,
+    /// Sweep of the resonance test: first and last frequency in Hz, Hz per second, mm/s² per Hz; and, where the log does not tell it, the
+    /// square wave beside it, in mm/s² and s (a period of 0: none). Without this, the log tells the sweep
+    #[arg(long, value_name = "START:END:RATE:ACCEL[:SWEEPING_ACCEL:SWEEPING_PERIOD]", value_parser = sweep)]
+    pub(super) sweep: Option<Sweep>,
     /// The excitation is not known: look for modes in the spectrum alone, as if it were even
     #[arg(long, conflicts_with = "sweep")]
     pub(super) output_only: bool,
@@ -24,14 +25,28 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn sweep(text: &str) -> Result<Sweep, String> {
-    let numbers: Vec<f64> = text.split(':').map(positive).collect::<Result<_, _>>()?;
+    let fields: Vec<&str> = text.split(':').collect();
+    let numbers: Vec<f64> = fields
+        .iter()
+        .take(4)
+        .map(|field| positive(field))
+        .collect::<Result<_, _>>()?;
+    let sweeping = match fields[..] {
+        [_, _, _, _, _, "0"] => Sweeping::Off,
+        [_, _, _, _, acceleration, period] => Sweeping::Wave(SquareWave {
+            acceleration: 1e-3 * positive(acceleration)?,
+            period_s: positive(period)?,
+        }),
+        _ => Sweeping::FromLog,
+    };
     match numbers[..] {
-        [start_hz, end_hz, rate_hz_per_s, per_hz] if end_hz > start_hz => Ok(Sweep {
+        [start_hz, end_hz, rate_hz_per_s, per_hz] if end_hz > start_hz && matches!(fields.len(), 4 | 6) => Ok(Sweep {
             start_hz,
             end_hz,
             rate_hz_per_s,
             acceleration_per_hz: 1e-3 * per_hz,
+            sweeping,
         }),
-        _ => Err("four numbers as 5:135:1:60, the second above the first".into()),
+        _ => Err("four numbers as 5:135:1:60, the second above the first, or six as 5:135:1:60:400:1.2".into()),
     }
 }

@@ -119,7 +119,7 @@ fn of_accelerometer(log: &AccelerationLog, flags: &ExcitationFlags) -> Result<Fi
     if (samples as f64) * log.sample_s < SHORT_S {
         return of_ring_down(log);
     }
-    let no_sweep = match of_sweep(log, &flags.sweep) {
+    let no_sweep = match of_sweep(log, flags.sweep.as_ref()) {
         Err(failure) => failure,
         Ok(findings) => return Ok(findings),
     };
@@ -176,8 +176,12 @@ fn of_ring_down_error(error: RingDownError) -> Failure {
     Failure::from(miette::miette!(help = help, "{error}"))
 }
 
-fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
-    let found = sweep::identify(log, sweep).map_err(|error| {
+fn of_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Failure> {
+    let found = match given {
+        Some(sweep) => sweep::identify(log, sweep),
+        None => sweep::identify_any(log),
+    };
+    let found = found.map_err(|error| {
         let help = match error {
             SweepError::Unrelated(_) | SweepError::Unlike(_) | SweepError::Piece(_) => {
                 "--sweep START:END:RATE:ACCEL describes another sweep; --ring-down says that it is the log of a stop; --output-only looks for modes without knowing the excitation"
@@ -188,12 +192,31 @@ fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
         };
         Failure::from(miette::miette!(help = help, "{error}"))
     })?;
+    let sweep = found.sweep;
+    // The sensor's gain is 1 at low frequencies, so that the log tells the acceleration that was not described.
+    let per_hz = match given {
+        Some(_) => sweep.acceleration_per_hz,
+        None => sweep.acceleration_per_hz * found.static_gain,
+    };
+    let beside = match found.wave {
+        Some(wave) => format!(
+            " beside a square wave of {} mm/s² and {} s",
+            trimmed(1e3 * wave.acceleration, 2),
+            trimmed(wave.period_s, 4)
+        ),
+        None => " without a square wave beside it".into(),
+    };
     let description = format!(
-        "sweep of {} … {} Hz at {} Hz/s and {} mm/s² per Hz, begun {} s after the first sample",
+        "sweep{} of {} … {} Hz at {} Hz/s and {} mm/s² per Hz{beside}, begun {} s after the first sample",
+        if found.is_estimated {
+            ", estimated from the log,"
+        } else {
+            ""
+        },
         trimmed(sweep.start_hz, 4),
         trimmed(sweep.end_hz, 4),
         trimmed(sweep.rate_hz_per_s, 4),
-        trimmed(1e3 * sweep.acceleration_per_hz, 4),
+        trimmed(1e3 * per_hz, if given.is_some() { 4 } else { 2 }),
         trimmed(found.start_s, 5),
     );
     Ok(Findings {
@@ -211,7 +234,7 @@ fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
         recommended: Vec::new(),
         unit: AxisUnit::default(),
         judgement: Judgement::default(),
-        remarks: remarks(&found, sweep),
+        remarks: remarks(&found, &sweep),
         evidence: Evidence::Transfer {
             fitted: found
                 .transfer
@@ -349,6 +372,13 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
             "the clock of the log runs {} % {} than that of the sweep; frequencies are by the sweep's",
             trimmed(100.0 * found.clock_error.abs(), 3),
             if found.clock_error > 0.0 { "faster" } else { "slower" }
+        ));
+    }
+    for Band { low_hz, high_hz } in &found.unseen {
+        remarks.push(format!(
+            "samples are missing while the sweep passed {} to {} Hz: modes there are not seen",
+            trimmed(*low_hz, 4),
+            trimmed(*high_hz, 4)
         ));
     }
     let Band { low_hz, high_hz } = found.covered;

@@ -375,3 +375,33 @@ fn cli_a_drive_and_its_motor_become_a_machine_with_the_motor_held() {
     );
     assert!((found.damping / truth.damping - 1.0).abs() < 0.15, "{found:?}");
 }
+
+#[test]
+fn cli_the_sweep_of_the_example_is_found_in_it_and_stated() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/printer-x.csv");
+    let folder = tempfile::tempdir().unwrap();
+    let (status, said, problems) = identify(folder.path(), &[example]);
+    assert_eq!(status, Some(0), "{problems}");
+    for expected in [
+        "estimated from the log, of 30 … 85 Hz at 2 Hz/s",
+        "without a square wave",
+        "44.3",
+        "71",
+    ] {
+        assert!(said.contains(expected), "{expected}: {said}");
+    }
+}
+
+#[test]
+fn cli_a_rigid_machine_under_the_present_test_has_no_mode() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../identify/tests/data/rigid-5-40.csv");
+    let folder = tempfile::tempdir().unwrap();
+    for sweep in ["5:40:1:60", "5:40:1:60:400:1.2"] {
+        let (status, said, problems) = identify(folder.path(), &[log, "--sweep", sweep]);
+        assert_eq!(status, Some(1), "{said} {problems}");
+        assert!(said.contains("square wave of 400 mm/s² and 1.2 s"), "{said}");
+    }
+    let (status, _, problems) = identify(folder.path(), &[log, "--sweep", "5:40:1:60:400"]);
+    assert_eq!(status, Some(2));
+    assert!(problems.contains("or six as 5:135:1:60:400:1.2"), "{problems}");
+}

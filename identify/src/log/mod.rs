@@ -214,11 +214,30 @@ pub enum LogError {
 /// A defect of a log that can still be read.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Remark {
-    /// Rows are missing; the longest part without a gap was used.
+    /// Rows are missing; the others were used where they are.
     #[error(
-        "rows are missing after line {line}: {gap_s:.4} s without a sample; the {kept} rows from line {from} to {to} were used, the longest part without a gap"
+        "{missing} of {samples} samples are missing ({:.2} %), in {places} {}, the first after line {line}, most ({longest_s:.4} s) after line {longest_line}: the others were used at their times, and say less by as much",
+        100.0 * *.missing as f64 / *.samples as f64, if *.places == 1 { "place" } else { "places" }
     )]
-    Gap {
+    Gaps {
+        /// Number of samples that are missing.
+        missing: usize,
+        /// Number of samples with those that are missing.
+        samples: usize,
+        /// Number of gaps.
+        places: usize,
+        /// Line before the first gap.
+        line: u64,
+        /// Duration in seconds that the longest gap lacks.
+        longest_s: f64,
+        /// Line before it.
+        longest_line: u64,
+    },
+    /// Most rows are missing; the longest part without a gap was used.
+    #[error(
+        "most rows are missing, the first after line {line}: {gap_s:.4} s without a sample; the {kept} rows from line {from} to {to} were used, the longest part without a gap"
+    )]
+    Part {
         /// Line before the first gap.
         line: u64,
         /// Length of the gap in seconds.
@@ -345,13 +364,17 @@ pub fn read_with(text: &[u8], options: &ReadOptions) -> Result<Reading, LogError
     if let (true, Some((deviation, line))) = (has_command, grid.wavers()) {
         return Err(LogError::Irregular { deviation, line });
     }
-    for column in &mut columns {
-        column.values = grid.of(&column.values);
-    }
-    let rows = columns.first().map_or(0, |column| column.values.len());
     for column in &columns {
-        remarks.extend(saturated(column, &table.lines[grid.range()]));
+        remarks.extend(saturated(column, &table.lines, grid.range()));
     }
+    for column in &mut columns {
+        let course = match column.meaning {
+            Meaning::Command | Meaning::Drive => time::Course::Held,
+            _ => time::Course::Straight,
+        };
+        column.values = grid.of(std::mem::take(&mut column.values), course);
+    }
+    let rows = grid.range().len();
     let accelerometer = columns.iter().any(|column| column.meaning == Meaning::Acceleration);
     let log = if accelerometer {
         if let (Some(column), true) = (table.plain_time, grid.sample_s > SLOWEST_ACCELEROMETER_S) {
@@ -360,14 +383,18 @@ pub fn read_with(text: &[u8], options: &ReadOptions) -> Result<Reading, LogError
                 step: grid.sample_s,
             });
         }
-        Log::Acceleration(acceleration(columns, grid.sample_s, &mut remarks)?)
+        Log::Acceleration(acceleration(columns, &grid, &mut remarks)?)
     } else {
-        position(columns, grid.sample_s)?
+        position(columns, &grid)?
     };
     Ok(Reading { log, rows, remarks })
 }
 
-fn acceleration(columns: Vec<Column>, sample_s: f64, remarks: &mut Vec<Remark>) -> Result<AccelerationLog, LogError> {
+fn acceleration(
+    columns: Vec<Column>,
+    grid: &time::Grid,
+    remarks: &mut Vec<Remark>,
+) -> Result<AccelerationLog, LogError> {
     let mut directions = Vec::new();
     let mut last_dead = None;
     for column in columns {
@@ -387,17 +414,22 @@ fn acceleration(columns: Vec<Column>, sample_s: f64, remarks: &mut Vec<Remark>) 
     }
     match last_dead {
         Some(error) if directions.is_empty() => Err(error),
-        _ => Ok(AccelerationLog { sample_s, directions }),
+        _ => Ok(AccelerationLog {
+            sample_s: grid.sample_s,
+            directions,
+            missing: grid.missing.clone(),
+        }),
     }
 }
 
-fn position(columns: Vec<Column>, sample_s: f64) -> Result<Log, LogError> {
+fn position(columns: Vec<Column>, grid: &time::Grid) -> Result<Log, LogError> {
     let names: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     let mut log = PositionLog {
-        sample_s,
+        sample_s: grid.sample_s,
         command: Vec::new(),
         between: Between::Held,
         response: Vec::new(),
+        missing: grid.missing.clone(),
     };
     let (mut deviation, mut drive) = (None, None);
     for column in columns {
@@ -435,9 +467,10 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<Log, LogError> {
     }
     Ok(match drive {
         Some(drive) => Log::Drive(DriveLog {
-            sample_s,
+            sample_s: grid.sample_s,
             drive,
             position: log.response,
+            missing: log.missing,
         }),
         None => Log::Position(log),
     })
@@ -453,11 +486,11 @@ fn dead(values: &[f64]) -> Option<f64> {
 const ROW_AT_EXTREME: usize = 4;
 
 /// Runs of a response at its largest or smallest value, far from where it rests.
-fn saturated(column: &Column, lines: &[u64]) -> Option<Remark> {
-    if matches!(column.meaning, Meaning::Command | Meaning::Drive) || dead(&column.values).is_some() {
+fn saturated(column: &Column, lines: &[u64], range: std::ops::Range<usize>) -> Option<Remark> {
+    let (values, lines) = (&column.values[range.clone()], &lines[range]);
+    if matches!(column.meaning, Meaning::Command | Meaning::Drive) || dead(values).is_some() {
         return None;
     }
-    let values = &column.values;
     let rest = values.iter().sum::<f64>() / values.len() as f64;
     let (low, high) = values
         .iter()

@@ -49,6 +49,30 @@ impl Phase {
 
 /// Range of damping ratios of a fit.
 const DAMPING: (f64, f64) = (2e-4, 2.0);
+/// Smallest half width `ζ·f` of a pole, over the distance of the points: a narrower one is between them.
+const NARROWEST: f64 = 0.25;
+/// Ratio to a bound from which on a pole is not at it.
+const OFF_BOUND: f64 = 1.1;
+
+/// Largest ratio of the static value to that of the lowest point.
+const STILL: f64 = 5.0;
+
+/// The smallest damping ratio that points tell of a pole at a frequency.
+fn least_damping(points: &[ResponsePoint], frequency_hz: f64) -> f64 {
+    let above = points.partition_point(|point| point.frequency_hz < frequency_hz);
+    let first = above.min(points.len().saturating_sub(1)).saturating_sub(1);
+    let near = points.get(first..first + 2).unwrap_or_default();
+    let distance_hz = match near {
+        [a, b] => b.frequency_hz - a.frequency_hz,
+        _ => 0.0,
+    };
+    DAMPING.0.max(NARROWEST * distance_hz / frequency_hz)
+}
+
+/// Whether a pole is off the bounds of the fit, and no narrower than the points resolve.
+pub(crate) fn is_resolved(points: &[ResponsePoint], pole: &Pole) -> bool {
+    pole.damping > OFF_BOUND * least_damping(points, pole.frequency_hz) && pole.damping * OFF_BOUND < DAMPING.1
+}
 /// Number of terms of the complex polynomial that represents everything except the modes.
 const FREE_TERMS: i32 = 5;
 
@@ -59,6 +83,8 @@ pub(crate) struct Fit {
     pub(crate) phase: Phase,
     /// Static share of each pole, and its standard deviation.
     pub(crate) shares: Vec<(f64, f64)>,
+    /// Static value: that of the axis and of all poles; 1 where nothing is known of the phase.
+    pub(crate) still: f64,
     /// Standard deviations of each pole's frequency in Hz and damping ratio.
     pub(crate) deviations: Vec<(f64, f64)>,
     /// Standard deviation of the bend of the lateness in seconds; infinite where nothing is known of the phase.
@@ -256,7 +282,8 @@ impl Separable for Poles<'_> {
             let (by_first, by_second) = (step[2 * k], step[2 * k + 1]);
             if k < poles {
                 *first += by_first.clamp(-0.2, 0.2);
-                *second = (*second + by_second.clamp(-1.0, 1.0)).clamp(DAMPING.0.ln(), DAMPING.1.ln());
+                let least = least_damping(self.points, first.exp()).min(DAMPING.1);
+                *second = (*second + by_second.clamp(-1.0, 1.0)).clamp(least.ln(), DAMPING.1.ln());
             } else {
                 *first += by_first;
                 *second += by_second;
@@ -295,6 +322,22 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
         bend_deviation_s: match phase {
             Phase::Late(_) => solution.deviation(2 * poles.len() + 1, row),
             Phase::Free => f64::INFINITY,
+        },
+        still: match phase {
+            Phase::Late(_) => {
+                let of_poles: f64 = (0..poles.len()).map(|k| solution.coefficients[2 * k]).sum();
+                let still = of_poles + solution.coefficients[2 * poles.len()];
+                // Poles far below the points cancel each other at them, and say nothing of what is still.
+                let lowest = problem
+                    .values(&solution.fitted)
+                    .first()
+                    .map_or(1.0, |value| value.norm());
+                match (lowest / STILL..lowest * STILL).contains(&still.abs()) {
+                    true => still,
+                    false => lowest,
+                }
+            }
+            Phase::Free => 1.0,
         },
         shares: shares.collect(),
         square: solution.square,

@@ -15,7 +15,7 @@
 mod fit;
 mod select;
 
-pub(crate) use fit::{Fit, Lateness, Phase, refine, square};
+pub(crate) use fit::{Fit, Lateness, Phase, is_resolved, refine, square};
 pub use select::TOLD_RINGING;
 pub(crate) use select::{grown, pruned, select, visible_from_hz};
 

@@ -97,6 +97,7 @@ pub fn decimated(log: &PositionLog, frequency_hz: f64) -> PositionLog {
         between: log.between,
         command: means(&log.command),
         response: means(&log.response),
+        missing: Vec::new(),
     }
 }
 

@@ -15,7 +15,7 @@
 use super::Quantity;
 use super::memory::NoiseMemory;
 use crate::separable::Separable;
-use crate::signal::{Between, PositionLog};
+use crate::signal::{Between, PositionLog, within};
 use nalgebra::{Complex, DMatrix, DVector};
 use posicast_model::mode::Mode;
 use std::ops::Range;
@@ -93,9 +93,18 @@ const DAMPING: (f64, f64) = (1e-5, 0.98);
 const STEP: f64 = 1e-6;
 
 impl<'a> HeldModes<'a> {
-    /// The samples of a log in `range`, in rows of `decimation` samples. The command is left out where it does not
-    /// change in the range.
+    /// The samples of a log in `range`, in rows of `decimation` samples; rows with a sample that is missing do not count. The command is
+    /// left out where it does not change in the range.
     pub(super) fn new(log: &'a PositionLog, range: Range<usize>, decimation: usize) -> Self {
+        let mut missing = vec![false; range.len()];
+        for gap in within(&log.missing, range.clone()) {
+            missing[gap].fill(true);
+        }
+        Self::with_filled(log, range, decimation).without(&missing)
+    }
+
+    /// The same, in which what is missing counts with the value that fills it.
+    pub(super) fn with_filled(log: &'a PositionLog, range: Range<usize>, decimation: usize) -> Self {
         let response = &log.response[range.clone()];
         let command = log.command.get(range).filter(|command| moves(command));
         let rows = response.len() / decimation;
@@ -118,7 +127,12 @@ impl<'a> HeldModes<'a> {
     pub(super) fn without(mut self, clipped: &[bool]) -> Self {
         if clipped.contains(&true) {
             let rows = clipped.chunks_exact(self.decimation).map(|row| row.contains(&true));
-            self.clipped = rows.take(self.len()).collect();
+            let before = self.clipped.iter().copied().chain(std::iter::repeat(false));
+            self.clipped = rows
+                .take(self.len())
+                .zip(before)
+                .map(|(now, before)| now || before)
+                .collect();
             let mut measured = self.measured.as_slice().to_vec();
             self.zero_clipped(&mut measured);
             self.measured = DVector::from_vec(measured);

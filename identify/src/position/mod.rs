@@ -250,6 +250,7 @@ pub(crate) fn identify_response(log: &PositionLog, quantity: Quantity) -> Result
         &PositionLog {
             command: in_units(&log.command, command_unit),
             response: in_units(&log.response, response_unit),
+            missing: log.missing.clone(),
             ..*log
         },
         quantity,
@@ -287,6 +288,7 @@ fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition,
             &PositionLog {
                 command: Vec::new(),
                 response: log.response[begin..].to_vec(),
+                missing: crate::signal::within(&log.missing, begin..log.response.len()),
                 ..*log
             },
             quantity,
@@ -328,7 +330,7 @@ fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition,
     let last = problem(0..samples, decimation);
     let (fitted_rows, found) = beside_noise(last, &modes).ok_or(PositionError::Short(samples))?;
     let modes = told(&fitted_rows, &found);
-    let last = HeldModes::new(log, 0..samples, decimation);
+    let last = HeldModes::with_filled(log, 0..samples, decimation);
     let solution = &found.solution;
     let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
     let mut residual = last.measured() - &fitted;
@@ -336,7 +338,7 @@ fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition,
     let noise = (residual.norm_squared() / solution.freedoms / fitted_rows.counted()).sqrt();
     let late = match modes[..] {
         [] => None,
-        _ if fitted_rows.counted() < 1.0 => None,
+        _ if clipped.contains(&true) => None,
         _ => rigid_delay(log, decimation, &found, &residual),
     };
     let (modes, remarks) = match late {

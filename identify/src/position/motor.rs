@@ -57,6 +57,7 @@ pub fn identify(log: &DriveLog) -> Result<FoundAtMotor, PositionError> {
         command: log.drive.iter().map(|u| u / unit).collect(),
         between: Between::Held,
         response: way.iter().map(|x| x / length).collect(),
+        missing: log.missing.clone(),
     };
     check(&log)?;
     let mut found = of_size_one(&log)?;
@@ -75,6 +76,7 @@ fn later(log: &PositionLog, delay: isize) -> PositionLog {
     };
     PositionLog {
         command: log.command[command].to_vec(),
+        missing: crate::signal::within(&log.missing, response.clone()),
         response: log.response[response].to_vec(),
         ..*log
     }
@@ -128,7 +130,7 @@ fn of_size_one(log: &PositionLog) -> Result<FoundAtMotor, PositionError> {
     let decimation = self::decimation(&log, samples, coarse, &modes);
     let problem = HeldModes::new(&log, 0..samples, decimation).with_body(body(rate));
     let (problem, found) = beside_noise(problem, &modes).ok_or(PositionError::Short(samples))?;
-    let plain = HeldModes::new(&log, 0..samples, decimation).with_body(body(rate));
+    let plain = HeldModes::with_filled(&log, 0..samples, decimation).with_body(body(rate));
     let fitted = plain.basis(&found.solution.unknowns) * &found.solution.coefficients;
     let noise = ((plain.measured() - &fitted).norm_squared() / found.solution.freedoms).sqrt();
     let model = Model::new(&problem, &found, rate / seconds);

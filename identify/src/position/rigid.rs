@@ -4,7 +4,7 @@
 use super::held::HeldModes;
 use super::search::{Found, LEAST_GAIN};
 use crate::separable::{Effort, refine};
-use crate::signal::PositionLog;
+use crate::signal::{PositionLog, within};
 use nalgebra::DVector;
 use posicast_model::mode::Mode;
 
@@ -35,6 +35,7 @@ pub(super) fn rigid_delay(
             between: log.between,
             command: log.command[..log.command.len() - delay].to_vec(),
             response: log.response[delay..].to_vec(),
+            missing: within(&log.missing, delay..log.response.len()),
         };
         let problem = HeldModes::new(&late, 0..late.response.len(), decimation);
         if !problem.is_forced() {

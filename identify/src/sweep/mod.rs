@@ -4,20 +4,26 @@
 //! open, the time at which it began and the order of its quarter periods, is found by trying.
 
 mod excitation;
+mod find;
+mod measure;
+mod record;
 mod transfer;
+mod wave;
 
 pub use crate::modal::TOLD_RINGING;
-pub use excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
+pub use excitation::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAcceleration};
 pub use transfer::{Band, Transfer};
 
 use crate::found::{FoundMode, that_ring};
 use crate::modal::{self, Fit, Lateness, Phase, ResponsePoint};
 use crate::separable::Effort;
 use crate::signal::AccelerationLog;
+use measure::{Placed, explained, measure};
 use nalgebra::Complex;
 use posicast_model::mode::Mode;
+use record::{Grid, Record};
 use thiserror::Error;
-use transfer::{Analyser, Lines};
+use transfer::Lines;
 
 /// Result for an accelerometer log of a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +32,16 @@ pub struct FoundInSweep {
     pub modes: Vec<FoundMode>,
     /// Name of the sensor direction that was used.
     pub direction: String,
+    /// The sweep that was taken.
+    pub sweep: Sweep,
+    /// Whether it was estimated from the log.
+    pub is_estimated: bool,
+    /// Gain of the sensor's acceleration over that of the sweep at the lowest frequencies: 1 where `acceleration_per_hz` is right.
+    pub static_gain: f64,
+    /// The square wave beside the sweep, where there is one.
+    pub wave: Option<SquareWave>,
+    /// Bands that the axis was shaken at while samples are missing: modes there are not seen.
+    pub unseen: Vec<Band>,
     /// Time from the first sample to the start of the sweep, in seconds; negative where the log begins later.
     pub start_s: f64,
     /// Relative amount by which the log's clock runs faster than that of the sweep: 1e-4 is 10 ms in 100 s. 0 where
@@ -119,6 +135,60 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
     }
 }
 
+/// Finds the modes and the sweep that excited them: the usual one, or what the log itself tells of another.
+///
+/// # Errors
+/// [`SweepError`] where neither gives modes that can be determined.
+pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
+    /// How far what is told of a sweep may be off the usual one to be that: of its rate, and in Hz.
+    const RATE: f64 = 0.02;
+    const HZ: f64 = 1.0;
+    /// What the first description must explain for others not to be tried.
+    const EXPLAINED: f64 = 0.97;
+    /// The same for the usual one, of which only the start is in doubt.
+    const NEARLY_EXPLAINED: f64 = 0.85;
+    let usual = Sweep::default();
+    let told = find::find(log);
+    let rises_as_usual = |sweep: &Sweep| {
+        (sweep.rate_hz_per_s / usual.rate_hz_per_s - 1.0).abs() < RATE && (sweep.end_hz - usual.end_hz).abs() < HZ
+    };
+    let by_default = || identify(log, &usual);
+    let mut tried = told.clone();
+    if told.first().is_none_or(rises_as_usual) {
+        let found = by_default();
+        // The slowest pulses are the weakest, so that a start is the least certain.
+        let is_near = told
+            .first()
+            .is_none_or(|sweep| (sweep.start_hz - usual.start_hz).abs() < HZ);
+        let is_it = |found: &FoundInSweep| is_near || found.transfer.explained > NEARLY_EXPLAINED;
+        if found.as_ref().is_ok_and(is_it) || told.is_empty() {
+            return found;
+        }
+        tried.insert(0, usual);
+    }
+    let mut likeliest: Option<FoundInSweep> = None;
+    for sweep in &tried {
+        let Ok(found) = identify(log, sweep) else { continue };
+        let explained = found.transfer.explained;
+        if likeliest
+            .as_ref()
+            .is_none_or(|best| explained > best.transfer.explained)
+        {
+            likeliest = Some(found);
+        }
+        if explained > EXPLAINED {
+            break;
+        }
+    }
+    match likeliest {
+        Some(found) => Ok(FoundInSweep {
+            is_estimated: found.sweep != usual,
+            ..found
+        }),
+        None => by_default(),
+    }
+}
+
 /// Largest number of times that a log is followed with a corrected clock, and the bend in seconds above which that is
 /// done: the fit compensates a smaller one.
 const PASSES: usize = 4;
@@ -160,21 +230,69 @@ fn followed(
     // A clock that is fast by ε sees f later by ε·f/rate, and takes it for f/(1 + ε), which was due earlier by as
     // much: together this is the group delay, which is twice the bend.
     let error = |bend_s: f64| bend_s * sweep.rate_hz_per_s / band.high_hz;
-    let mut analyser = Analyser::new(samples, sample_s, band);
-    let (direction, response) = strongest(log, &mut analyser).ok_or(SweepError::Empty)?;
-    let begun = begin(&mut analyser, &response, sweep).ok_or(SweepError::Empty)?;
-    let smooth = placed(&mut analyser, &begun, begun.start_s, seconds);
+    let mut grid = Grid::new(samples, sample_s, band);
+    let strongest = strongest(log, &mut grid).ok_or(SweepError::Empty)?;
+    let Strongest {
+        direction,
+        mut record,
+        response,
+        all,
+    } = strongest;
+    let begun = begin(&mut grid, &response, sweep).ok_or(SweepError::Empty)?;
+    let ends_s = begun.start_s + begun.excitation.duration_s() - grid.before_s();
+    if begun.start_s < grid.before_s() - CUT_S || ends_s > seconds + CUT_S {
+        grid.cut_to_log();
+    }
+    let smooth = placed(&mut grid, &begun, begun.start_s);
     if look == Look::Everywhere {
         let bend_s = transfer::bend(&response, &smooth, band.high_hz);
         if bend_s.abs() > BEND_S {
             return Ok(Pass::Drifts(error(bend_s)));
         }
     }
-    let rough = transfer::transfer(&response, &smooth, None);
-    if rough.explained < LEAST_EXPLAINED {
-        return Err(SweepError::Unrelated(rough.explained));
+    let pulses = grid.sampled(&begun.excitation, begun.start_s);
+    let covered = covered(sweep, &band, &begun, begun.start_s - grid.before_s(), seconds);
+    let harmonic = begun.order.first_harmonic();
+    let wave = match sweep.sweeping {
+        Sweeping::Off => None,
+        Sweeping::Wave(wave) => Some(wave),
+        Sweeping::FromLog => wave::find(
+            &grid,
+            &all,
+            &pulses,
+            harmonic * sweep.start_hz,
+            begun.start_s,
+            begun.excitation.duration_s(),
+        ),
+    };
+    let moved = wave.map(|wave| SweptAcceleration::square_wave(&wave, begun.excitation.duration_s()));
+    if wave.is_some() {
+        // The axis then stops in a way that is not known.
+        let end = (begun.start_s + begun.excitation.duration_s() - STOP_S) / sample_s;
+        record.forget_from(end.max(0.0) as usize);
     }
-    let covered = covered(sweep, &band, &begun, seconds)?;
+    // A frequency is shaken for about the time in which the sweep passes its own bandwidth.
+    let passes_s = 0.5 / sweep.rate_hz_per_s.sqrt();
+    let unfilled = record.clone();
+    let seen = |start_s: f64| {
+        let unfilled = &unfilled;
+        let ends_s = (start_s, start_s + begun.excitation.duration_s());
+        move |frequency_hz: f64| {
+            let at_s = start_s + (frequency_hz / harmonic - sweep.start_hz) / sweep.rate_hz_per_s;
+            let within = |time_s: f64| time_s.clamp(ends_s.0, ends_s.1) / sample_s;
+            unfilled.seen(within(at_s - passes_s), within(at_s + passes_s))
+        }
+    };
+    let first = moved.as_ref().map(|wave| (wave, 1.0));
+    let rough = Placed::new(&mut grid, smooth, &begun.excitation, first, begun.start_s);
+    let rough = measure(&mut grid, &mut record, &rough, band, seen(begun.start_s));
+    let (explained_alone, rough) = (rough.explained, rough.transfer);
+    // The wave's amplitude is known as the sensor shows it, that of the sweep as it was described.
+    let mut gain = 1.0;
+    if explained_alone < LEAST_EXPLAINED {
+        return Err(SweepError::Unrelated(explained_alone));
+    }
+    let covered = covered?;
     let rough = rough.within(&covered);
     let timed = timed(&rough).ok_or(SweepError::Empty)?;
     let late = timed.phase.lateness();
@@ -182,34 +300,73 @@ fn followed(
     if bends && look != Look::Nowhere {
         return Ok(Pass::Drifts(error(late.bend_s)));
     }
-    // The aliased part is known only once the start is known to less than a sample.
-    let start_s = begun.start_s + late.delay_s;
-    let smooth = placed(&mut analyser, &begun, start_s, seconds);
-    let sampled = analyser.sampled(&begun.excitation, start_s);
-    // A real axis is excited at the time of the sweep; a simulated one often only from the next sample on, by all
-    // that the samples alias.
-    let between = transfer::transfer(&response, &smooth, Some(&sampled.beside(&smooth)));
-    let on_samples = transfer::transfer(&response, &sampled, None);
-    let transfer = match on_samples.explained > between.explained {
-        true => on_samples,
-        false => between,
+    // The aliased part is known only once the start is known to a small part of a sample.
+    let mut start_s = begun.start_s + late.delay_s;
+    if sample_s * SLOW_HZ > 1.0 {
+        // The phase is not enough where most of the edges are between few samples: those tell the start.
+        let mut best = (f64::MIN, start_s);
+        for (steps, step) in SOUGHT_STEPS {
+            let middle_s = best.1;
+            for n in -steps..=steps {
+                let tried_s = middle_s + f64::from(n) * step * sample_s;
+                let smooth = self::placed(&mut grid, &begun, tried_s);
+                let again = moved.as_ref().map(|wave| (wave, gain));
+                let tried = Placed::new(&mut grid, smooth, &begun.excitation, again, tried_s);
+                let share = explained(&mut grid, &record, &tried, band);
+                if share > best.0 {
+                    best = (share, tried_s);
+                }
+            }
+        }
+        start_s = best.1;
     }
-    .within(&covered);
-    let points = &transfer.points;
-    let rest = Phase::Late(Lateness::default());
-    let start = modal::refine(points, &timed.poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
-    let grown = modal::pruned(points, modal::grown(points, start));
-    let fit = modal::refine(points, &grown.poles, grown.phase, Effort::Full).ok_or(SweepError::Empty)?;
+    let mut poles = timed.poles;
+    let mut turn = 0;
+    let (measured, transfer, fit) = loop {
+        let smooth = self::placed(&mut grid, &begun, start_s);
+        let again = moved.as_ref().map(|wave| (wave, gain));
+        let exact = Placed::new(&mut grid, smooth, &begun.excitation, again, start_s);
+        let mut measured = measure(&mut grid, &mut record, &exact, band, seen(start_s));
+        let transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
+        let points = &transfer.points;
+        let rest = Phase::Late(Lateness::default());
+        let start = modal::refine(points, &poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
+        let delay_s = start.phase.lateness().delay_s;
+        let told = 1.0 / start.still.abs().clamp(0.1, 10.0);
+        let is_louder = sweep.sweeping == Sweeping::FromLog && wave.is_some() && (gain / told).ln().abs() > SAME_GAIN;
+        let is_late = delay_s.abs()
+            > sample_s
+                * if sample_s * SLOW_HZ > 1.0 {
+                    START_SAMPLES
+                } else {
+                    START_FAST
+                };
+        if (is_late || is_louder) && turn < START_TURNS {
+            start_s += delay_s;
+            gain = if is_louder { told } else { gain };
+            poles = start.poles;
+            turn += 1;
+            continue;
+        }
+        let grown = modal::pruned(points, modal::grown(points, start));
+        let fit = modal::refine(points, &grown.poles, grown.phase, Effort::Full).ok_or(SweepError::Empty)?;
+        break (measured, transfer, fit);
+    };
     let told = told(&transfer, &fit);
     if told < LEAST_TOLD {
         return Err(SweepError::Unlike(told));
     }
-    let modes = modes(&fit, &covered);
+    let modes = modes(&fit, &transfer.points, &covered, &measured.unseen);
     Ok(Pass::Ended(Box::new(FoundInSweep {
-        visible_from_hz: modal::visible_from_hz(points, &fit, &modes),
+        visible_from_hz: modal::visible_from_hz(&transfer.points, &fit, &modes),
         modes,
         direction,
-        start_s: start_s + fit.phase.lateness().delay_s,
+        sweep: *sweep,
+        is_estimated: false,
+        static_gain: fit.still.abs(),
+        wave,
+        unseen: measured.unseen,
+        start_s: start_s - grid.before_s() + fit.phase.lateness().delay_s,
         clock_error: 0.0,
         order: begun.order,
         rise: begun.rise,
@@ -240,30 +397,60 @@ fn check(sweep: &Sweep, sample_s: f64) -> Result<(), SweepError> {
     }
 }
 
+/// Rate of the samples in Hz below which the start is sought on the samples, and the steps of the search in samples.
+const SLOW_HZ: f64 = 600.0;
+const SOUGHT_STEPS: [(i32, f64); 3] = [(6, 0.1), (4, 0.025), (4, 0.006)];
+/// Ratio, as a logarithm, up to which the gain of sweep and square wave is the same.
+const SAME_GAIN: f64 = 0.03;
+/// Part of a sample to which the start must be known, where samples are few and where they are many, and the number of times that it is
+/// mended.
+const START_SAMPLES: f64 = 0.01;
+const START_FAST: f64 = 0.05;
+const START_TURNS: usize = 3;
+/// Time in seconds of a sweep that a log may lack to count as whole.
+const CUT_S: f64 = 0.3;
+/// Time in seconds before the end of a sweep with a square wave from which on the motion is not known: the firmware brakes.
+const STOP_S: f64 = 0.05;
+
 /// The direction with the most power in the band.
-fn strongest(log: &AccelerationLog, analyser: &mut Analyser) -> Option<(String, Lines)> {
-    log.directions
-        .iter()
-        .map(|(name, record)| (name.clone(), analyser.lines(record)))
-        .max_by(|a, b| a.1.power().total_cmp(&b.1.power()))
+struct Strongest {
+    direction: String,
+    record: Record,
+    response: Lines,
+    all: Vec<Complex<f64>>,
+}
+
+fn strongest(log: &AccelerationLog, grid: &mut Grid) -> Option<Strongest> {
+    let directions = log.directions.iter().map(|(name, values)| {
+        let record = grid.record(values, &log.missing);
+        let (response, all) = grid.lines(&record);
+        Strongest {
+            direction: name.clone(),
+            record,
+            response,
+            all,
+        }
+    });
+    directions.max_by(|a, b| a.response.power().total_cmp(&b.response.power()))
 }
 
 /// A sweep whose start is known to a few milliseconds.
 struct Begun {
     excitation: SweptAcceleration,
-    /// Lines of the excitation when it begins at the first sample.
+    /// Lines of the excitation when it begins at the start of the grid.
     lines: Lines,
     order: QuarterOrder,
     rise: Rise,
+    /// Time from the start of the grid.
     start_s: f64,
 }
 
-fn begin(analyser: &mut Analyser, response: &Lines, sweep: &Sweep) -> Option<Begun> {
+fn begin(grid: &mut Grid, response: &Lines, sweep: &Sweep) -> Option<Begun> {
     let mut best: Option<(f64, Begun)> = None;
     for order in QuarterOrder::ALL {
         for rise in Rise::ALL {
             let excitation = SweptAcceleration::new(sweep, order, rise);
-            let lines = analyser.excitation(&excitation, 0.0);
+            let lines = grid.excitation(&excitation, 0.0);
             let (start_s, sharpness) = transfer::delay(response, &lines);
             let begun = Begun {
                 excitation,
@@ -287,9 +474,9 @@ fn begin(analyser: &mut Analyser, response: &Lines, sweep: &Sweep) -> Option<Beg
 ///
 /// # Errors
 /// [`SweepError::Piece`]: the division of the transforms needs a log from rest to rest, and one that has neither end rests on nothing.
-fn covered(sweep: &Sweep, band: &Band, begun: &Begun, seconds: f64) -> Result<Band, SweepError> {
+fn covered(sweep: &Sweep, band: &Band, begun: &Begun, start_s: f64, seconds: f64) -> Result<Band, SweepError> {
     let after = |time_s: f64| sweep.start_hz + sweep.rate_hz_per_s * time_s.max(0.0);
-    let (low_hz, high_hz) = (after(-begun.start_s), after(seconds - begun.start_s));
+    let (low_hz, high_hz) = (after(-start_s), after(seconds - start_s));
     if low_hz > band.low_hz && high_hz < band.high_hz {
         return Err(SweepError::Piece(Band { low_hz, high_hz }));
     }
@@ -300,12 +487,12 @@ fn covered(sweep: &Sweep, band: &Band, begun: &Begun, seconds: f64) -> Result<Ba
     })
 }
 
-/// Lines of the sweep that begins at `start_s`, in a log of this many seconds.
-fn placed(analyser: &mut Analyser, begun: &Begun, start_s: f64, seconds: f64) -> Lines {
-    if start_s >= 0.0 && start_s + begun.excitation.duration_s() <= seconds {
-        analyser.later(&begun.lines, start_s)
+/// Lines of the sweep that begins at `start_s`.
+fn placed(grid: &mut Grid, begun: &Begun, start_s: f64) -> Lines {
+    if !grid.is_cut() && start_s >= 0.0 && start_s + begun.excitation.duration_s() <= grid.seconds() {
+        grid.later(&begun.lines, start_s)
     } else {
-        analyser.excitation(&begun.excitation, start_s)
+        grid.excitation(&begun.excitation, start_s)
     }
 }
 
@@ -345,15 +532,25 @@ fn told(transfer: &Transfer, fit: &Fit) -> f64 {
 
 /// Damping ratio from which on a pole does not count as a vibration, but as a slope of the transfer function.
 const NO_VIBRATION: f64 = 0.5;
+/// Share of the axis's own displacement below which errors of the excitation's description look like a mode.
+const LEAST_OF_AXIS: f64 = 0.003;
 /// Number of standard deviations by which a share must exceed zero.
 const SIGNIFICANT: f64 = 6.0;
 
-fn modes(fit: &Fit, band: &Band) -> Vec<FoundMode> {
+fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[Band]) -> Vec<FoundMode> {
     let told = |k: &usize| {
         let pole = &fit.poles[*k];
         let (share, deviation) = fit.shares[*k];
         let inside = pole.frequency_hz > band.low_hz && pole.frequency_hz < band.high_hz;
-        inside && pole.damping < NO_VIBRATION && share > SIGNIFICANT * deviation
+        let width_hz = pole.frequency_hz * pole.damping;
+        let is_seen =
+            |band: &Band| pole.frequency_hz + width_hz < band.low_hz || pole.frequency_hz - width_hz > band.high_hz;
+        inside
+            && unseen.iter().all(is_seen)
+            && pole.damping < NO_VIBRATION
+            && modal::is_resolved(points, pole)
+            && share > SIGNIFICANT * deviation
+            && share > LEAST_OF_AXIS * fit.still.abs()
     };
     let modes = (0..fit.poles.len()).filter(told).map(|k| FoundMode {
         mode: Mode {

@@ -7,34 +7,38 @@
 //! A sensor that samples without a filter aliases the edges of the excitation into the band. That part is known too,
 //! and is subtracted: it is the difference between the samples of the excitation and its means.
 
-use super::excitation::SweptAcceleration;
 use crate::modal::{Lateness, ResponsePoint};
+use crate::separable::Gram;
 use crate::spectrum::{Transform, fast_length};
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Lines of a record within a band.
+#[derive(Clone)]
 pub(super) struct Lines {
-    first: usize,
-    resolution_hz: f64,
-    values: Vec<Complex<f64>>,
+    pub(super) first: usize,
+    pub(super) resolution_hz: f64,
+    /// Number of lines for each independent one.
+    pub(super) dense: usize,
+    pub(super) values: Vec<Complex<f64>>,
 }
 
 impl Lines {
-    /// Difference of these lines and others of the same band.
-    pub(super) fn beside(&self, other: &Self) -> Self {
-        let values = self.values.iter().zip(&other.values).map(|(line, other)| line - other);
-        Self {
-            values: values.collect(),
-            ..*self
-        }
-    }
-
     /// Sum of the squares of all lines.
     pub(super) fn power(&self) -> f64 {
         self.values.iter().map(Complex::norm_sqr).sum()
     }
 
-    fn frequency_hz(&self, line: usize) -> f64 {
+    /// Sum of these lines and a multiple of others of the same band.
+    pub(super) fn plus(&self, factor: f64, other: &Self) -> Self {
+        let values = self.values.iter().zip(&other.values);
+        Self {
+            values: values.map(|(line, other)| line + other * factor).collect(),
+            ..*self
+        }
+    }
+
+    /// Frequency of one of these lines in Hz.
+    pub(super) fn frequency_hz(&self, line: usize) -> f64 {
         (self.first + line) as f64 * self.resolution_hz
     }
 }
@@ -46,76 +50,6 @@ pub struct Band {
     pub low_hz: f64,
     /// Upper end.
     pub high_hz: f64,
-}
-
-/// Converts records to lines of one band.
-pub(super) struct Analyser {
-    transform: Transform,
-    sample_s: f64,
-    samples: usize,
-    length: usize,
-    band: Band,
-}
-
-impl Analyser {
-    pub(super) fn new(samples: usize, sample_s: f64, band: Band) -> Self {
-        let length = fast_length(samples);
-        Self {
-            transform: Transform::new(length),
-            sample_s,
-            samples,
-            length,
-            band,
-        }
-    }
-
-    /// Lines of a record, whose mean is subtracted first.
-    pub(super) fn lines(&mut self, record: &[f64]) -> Lines {
-        let mean = record.iter().sum::<f64>() / record.len().max(1) as f64;
-        let centred: Vec<f64> = record.iter().map(|x| x - mean).collect();
-        let all = self.transform.forward(&centred);
-        let resolution_hz = 1.0 / (self.length as f64 * self.sample_s);
-        let first = (self.band.low_hz / resolution_hz).ceil() as usize;
-        let last = ((self.band.high_hz / resolution_hz).floor() as usize).min(all.len() - 1);
-        Lines {
-            first,
-            resolution_hz,
-            values: all.get(first..=last).unwrap_or_default().to_vec(),
-        }
-    }
-
-    /// Lines of an excitation that begins `start_s` after the first sample, without what its samples alias into the
-    /// band.
-    pub(super) fn excitation(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
-        let means = excitation.means(-start_s, self.sample_s, self.samples);
-        let mut lines = self.lines(&means);
-        for line in 0..lines.values.len() {
-            // The mean over a sample attenuates a line by sinc(f·T).
-            let angle = std::f64::consts::PI * lines.frequency_hz(line) * self.sample_s;
-            if angle > 0.0 {
-                lines.values[line] *= angle / angle.sin();
-            }
-        }
-        lines
-    }
-
-    /// Lines of the samples of an excitation, with everything that they alias into the band.
-    pub(super) fn sampled(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
-        let samples = excitation.samples(-start_s, self.sample_s, self.samples);
-        self.lines(&samples)
-    }
-
-    /// Lines of an excitation, from those of one that began `delay_s` earlier. This is exact if the log contains both
-    /// completely.
-    pub(super) fn later(&self, lines: &Lines, delay_s: f64) -> Lines {
-        let late = Lateness { delay_s, bend_s: 0.0 };
-        let turned = lines.values.iter().enumerate();
-        let turned = turned.map(|(n, line)| line * late.turn(lines.frequency_hz(n), self.band.high_hz));
-        Lines {
-            values: turned.collect(),
-            ..*lines
-        }
-    }
 }
 
 /// Lines whose excitation is below this fraction of the mean are not used.
@@ -209,6 +143,15 @@ pub struct Transfer {
 }
 
 impl Transfer {
+    /// One without points.
+    pub(super) fn empty() -> Self {
+        Self {
+            points: Vec::new(),
+            explained: 0.0,
+            folded: 0.0,
+        }
+    }
+
     /// The points of a band.
     pub(super) fn within(mut self, band: &Band) -> Self {
         self.points
@@ -224,80 +167,243 @@ const LEAST_LINES: usize = 5;
 /// Number of neighbours on either side whose noise is averaged.
 const NOISE_NEIGHBOURS: usize = 10;
 
-/// The transfer function of lines of one band.
-///
-/// `folded` is what the samples of the excitation alias into the band, where that is known.
-pub(super) fn transfer(response: &Lines, excitation: &Lines, folded: Option<&Lines>) -> Transfer {
-    let groups = groups(response);
-    let (mut clean, mut share) = (response.values.clone(), 0.0);
-    if let Some(folded) = folded {
-        share = shown(&groups, response, excitation, folded);
-        for (line, folded) in clean.iter_mut().zip(&folded.values) {
-            *line -= folded * share;
+/// Fraction of the samples at which a frequency shakes the axis, over that of the whole log, below which nothing is said of it.
+const LEAST_SEEN: f64 = 0.6;
+
+/// What is divided.
+#[derive(Clone, Copy)]
+pub(super) struct Division<'a> {
+    pub(super) response: &'a Lines,
+    pub(super) excitation: &'a Lines,
+    /// What the samples of the excitation, and of its integrals, alias into the band; empty where that is not known.
+    pub(super) folded: &'a [Lines],
+    /// Lines that count.
+    pub(super) trusted: &'a [bool],
+}
+
+/// A transfer function line by line, as straight pieces.
+pub(super) struct Estimate {
+    pieces: Vec<Piece>,
+    /// Fraction of the response's power in the band that the excitation explains, 0 to 1.
+    pub(super) explained: f64,
+    /// Fraction of each aliased part that the sensor shows.
+    pub(super) folded: Vec<f64>,
+    least_seen: f64,
+}
+
+struct Piece {
+    lines: std::ops::Range<usize>,
+    fitted: Straight,
+    /// Sum of squares that it leaves, and degrees of freedom.
+    rest: f64,
+    freedoms: f64,
+    /// Number of lines for each independent one.
+    dense: f64,
+    /// Fraction of the samples at which the axis is shaken at these frequencies that were measured.
+    seen: f64,
+}
+
+impl Estimate {
+    fn seen(&self) -> impl Iterator<Item = &Piece> {
+        self.pieces.iter().filter(|piece| piece.seen >= self.least_seen)
+    }
+
+    /// The transfer function of each line of the band. What was not seen lies between its neighbours.
+    pub(super) fn lines(&self, excitation: &Lines) -> Vec<Complex<f64>> {
+        let seen: Vec<&Piece> = self.seen().collect();
+        let mut next = 0;
+        let value = |line: usize| {
+            while seen.get(next).is_some_and(|piece| piece.lines.end <= line) {
+                next += 1;
+            }
+            let at_hz = excitation.frequency_hz(line);
+            let before = next.checked_sub(1).map(|n| &seen[n].fitted);
+            match (before, seen.get(next)) {
+                (_, Some(here)) if here.lines.contains(&line) => here.fitted.at(at_hz),
+                (Some(a), Some(b)) => {
+                    let part = (at_hz - a.centre_hz) / (b.fitted.centre_hz - a.centre_hz);
+                    a.value + (b.fitted.value - a.value) * part
+                }
+                (Some(one), None) => one.value,
+                (None, Some(one)) => one.fitted.value,
+                (None, None) => Complex::new(1.0, 0.0),
+            }
+        };
+        (0..excitation.values.len()).map(value).collect()
+    }
+
+    /// Gain of the lowest or the highest frequencies.
+    pub(super) fn gain(&self, at_top: bool) -> f64 {
+        const PIECES: usize = 20;
+        let seen: Vec<&Piece> = self.seen().collect();
+        let few = match at_top {
+            true => &seen[seen.len().saturating_sub(PIECES)..],
+            false => &seen[..seen.len().min(PIECES)],
+        };
+        let (sum, weight) = few.iter().fold((0.0, 0.0), |(sum, weight), piece| {
+            let fitted = &piece.fitted;
+            (sum + fitted.weight * fitted.value.re, weight + fitted.weight)
+        });
+        if weight > 0.0 { sum / weight } else { 1.0 }
+    }
+
+    /// The points of the pieces that were seen.
+    pub(super) fn transfer(&self) -> Transfer {
+        let variance = |piece: &Piece| piece.rest / piece.freedoms / piece.seen;
+        let seen: Vec<&Piece> = self.seen().collect();
+        let points = (0..seen.len()).map(|n| {
+            let near = &seen[n.saturating_sub(NOISE_NEIGHBOURS)..(n + NOISE_NEIGHBOURS + 1).min(seen.len())];
+            // The median is used, because a line of a fan or of the mains affects few points.
+            let mut variances: Vec<f64> = near.iter().map(|piece| variance(piece)).collect();
+            let middle = variances.len() / 2;
+            let (_, median, _) = variances.select_nth_unstable_by(middle, f64::total_cmp);
+            let fitted = &seen[n].fitted;
+            ResponsePoint {
+                frequency_hz: fitted.centre_hz,
+                spread_hz: fitted.spread_hz,
+                value: fitted.value,
+                deviation: (median.max(0.1 * variance(seen[n])) * seen[n].dense / (fitted.weight * seen[n].seen))
+                    .sqrt(),
+            }
+        });
+        let points = points
+            .filter(|p| p.deviation.is_finite() && p.deviation > 0.0)
+            .collect();
+        Transfer {
+            points,
+            explained: self.explained,
+            folded: self.folded.first().copied().unwrap_or(0.0),
         }
     }
-    let (mut fits, mut explained, mut power) = (Vec::new(), 0.0, 0.0);
+
+    /// The bands of which too little was measured.
+    pub(super) fn unseen(&self, excitation: &Lines) -> Vec<Band> {
+        let mut bands: Vec<Band> = Vec::new();
+        let mut joins = false;
+        for piece in &self.pieces {
+            let is_unseen = piece.seen < self.least_seen;
+            if is_unseen {
+                let high_hz = excitation.frequency_hz(piece.lines.end);
+                match bands.last_mut().filter(|_| joins) {
+                    Some(last) => last.high_hz = high_hz,
+                    None => bands.push(Band {
+                        low_hz: excitation.frequency_hz(piece.lines.start),
+                        high_hz,
+                    }),
+                }
+            }
+            joins = is_unseen;
+        }
+        bands
+    }
+}
+
+/// Divides the lines of a band; `seen` tells of a frequency how much of what it shook was measured.
+pub(super) fn estimate(division: &Division<'_>, seen: impl Fn(f64) -> f64) -> Estimate {
+    let Division {
+        response,
+        excitation,
+        folded,
+        trusted,
+    } = *division;
+    let groups = groups(response, trusted);
+    let mut clean = response.values.clone();
+    let shares = shown(&groups, division);
+    for (share, folded) in shares.iter().zip(folded) {
+        for (line, folded) in clean.iter_mut().zip(&folded.values) {
+            *line -= folded * *share;
+        }
+    }
+    let (mut pieces, mut explained, mut power) = (Vec::with_capacity(groups.len()), 0.0, 0.0);
     for group in groups {
         let fitted = straight(group.clone(), &clean, excitation);
         let rest: f64 = group
             .clone()
             .map(|line| (clean[line] - excitation.values[line] * fitted.at(excitation.frequency_hz(line))).norm_sqr())
             .sum();
-        let (lines, freedoms) = (group.len() as f64, 2.0 * (group.len() as f64 - 2.0));
-        let total: f64 = group.map(|line| clean[line].norm_sqr()).sum();
+        let lines = group.len() as f64 / response.dense as f64;
+        let total: f64 = group.clone().map(|line| clean[line].norm_sqr()).sum();
         power += total;
         explained += (total - rest * lines / (lines - 2.0)).max(0.0);
-        fits.push((fitted, rest, freedoms));
+        pieces.push(Piece {
+            seen: seen(fitted.centre_hz),
+            lines: group,
+            fitted,
+            rest,
+            freedoms: 2.0 * response.dense as f64 * (lines - 2.0),
+            dense: response.dense as f64,
+        });
     }
-    let points = (0..fits.len()).map(|n| {
-        let near = &fits[n.saturating_sub(NOISE_NEIGHBOURS)..(n + NOISE_NEIGHBOURS + 1).min(fits.len())];
-        // The median is used, because a line of a fan or of the mains affects few points.
-        let mut variances: Vec<f64> = near.iter().map(|(_, rest, freedoms)| rest / freedoms).collect();
-        variances.sort_by(f64::total_cmp);
-        let variance = variances[variances.len() / 2].max(fits[n].1 / fits[n].2 * 0.1);
-        ResponsePoint {
-            frequency_hz: fits[n].0.centre_hz,
-            spread_hz: fits[n].0.spread_hz,
-            value: fits[n].0.value,
-            deviation: (variance / fits[n].0.weight).sqrt(),
-        }
-    });
-    let points = points
-        .filter(|p| p.deviation.is_finite() && p.deviation > 0.0)
-        .collect();
-    Transfer {
-        points,
+    let usual = pieces.iter().map(|piece| piece.seen).sum::<f64>() / pieces.len().max(1) as f64;
+    Estimate {
+        least_seen: LEAST_SEEN * usual,
+        pieces,
         explained: if power > 0.0 { explained / power } else { 0.0 },
-        folded: share,
+        folded: shares,
     }
 }
 
-/// The fraction of the aliased part that a response contains.
-fn shown(groups: &[std::ops::Range<usize>], response: &Lines, excitation: &Lines, folded: &Lines) -> f64 {
-    let (mut shared, mut square) = (Complex::new(0.0, 0.0), 0.0);
+/// The fractions of the aliased parts that a response contains, by least squares on what a transfer function leaves.
+fn shown(groups: &[std::ops::Range<usize>], division: &Division<'_>) -> Vec<f64> {
+    let Division {
+        response,
+        excitation,
+        folded,
+        ..
+    } = *division;
+    let parts = folded.len();
+    let mut products = DMatrix::zeros(parts, parts);
+    let mut shared = DVector::zeros(parts);
+    if parts == 0 {
+        return Vec::new();
+    }
     for group in groups {
-        let fitted = straight(group.clone(), &response.values, excitation);
-        for line in group.clone() {
-            let rest = response.values[line] - excitation.values[line] * fitted.at(excitation.frequency_hz(line));
-            shared += rest * folded.values[line].conj();
-            square += folded.values[line].norm_sqr();
+        // What a smooth transfer function would take of each part is taken from it.
+        let rest = |values: &[Complex<f64>]| {
+            let fitted = straight(group.clone(), values, excitation);
+            let rest = group
+                .clone()
+                .map(|line| values[line] - excitation.values[line] * fitted.at(excitation.frequency_hz(line)));
+            rest.collect::<Vec<_>>()
+        };
+        let left = rest(&response.values);
+        let columns: Vec<Vec<Complex<f64>>> = folded.iter().map(|part| rest(&part.values)).collect();
+        // Each group counts by what it leaves, so that a resonance does not outweigh the rest.
+        let weight = 1.0 / left.iter().map(Complex::norm_sqr).sum::<f64>().max(f64::MIN_POSITIVE);
+        let product = |a: &[Complex<f64>], b: &[Complex<f64>]| {
+            weight * a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum::<f64>()
+        };
+        for (n, column) in columns.iter().enumerate() {
+            shared[n] += product(column, &left);
+            for (m, other) in columns.iter().enumerate() {
+                products[(n, m)] += product(column, other);
+            }
         }
     }
-    if square > 0.0 { shared.re / square } else { 0.0 }
+    match Gram::new(&products) {
+        Some(gram) => gram.solve_one(&shared).iter().copied().collect(),
+        None => vec![0.0; parts],
+    }
 }
 
-/// Ranges of lines, each for a point.
-fn groups(lines: &Lines) -> Vec<std::ops::Range<usize>> {
+/// Ranges of lines that count, each for a point.
+fn groups(lines: &Lines, trusted: &[bool]) -> Vec<std::ops::Range<usize>> {
     let mut groups = Vec::new();
     let mut begin = 0;
     while begin < lines.values.len() {
         let width = (RELATIVE_WIDTH * lines.frequency_hz(begin) / lines.resolution_hz) as usize;
-        let end = begin + width.max(LEAST_LINES);
+        let end = begin + width.max(LEAST_LINES * lines.dense);
         if end > lines.values.len() {
             break;
         }
-        groups.push(begin..end);
-        begin = end;
+        match trusted[begin..end].iter().rposition(|trusted| !trusted) {
+            // A straight line over lines that are left out would be drawn from one side of them.
+            Some(last) => begin += last + 1,
+            None => {
+                groups.push(begin..end);
+                begin = end;
+            }
+        }
     }
     groups
 }

@@ -1,0 +1,281 @@
+//! The samples of a log on the grid of a transform, in which those that were not measured are filled by what the machine would have shown.
+//!
+//! The grid begins before the log and ends after it, because the machine rings beyond the log. What is beyond it, and what is missing in
+//! it, is found together with the transfer function: by turns, this follows from the filled record, and the filling from this
+//! (expectation and maximisation: Dempster, Laird and Rubin 1977).
+
+use super::excitation::SweptAcceleration;
+use super::transfer::{Band, Lines};
+use crate::modal::Lateness;
+use crate::spectrum::{Transform, fast_length};
+use nalgebra::Complex;
+use std::ops::Range;
+
+/// Time in seconds by which the grid is longer than the log, at either end.
+const BEYOND_S: f64 = 1.0;
+
+/// Grid of a log and the band of its lines.
+pub(super) struct Grid {
+    transform: Transform,
+    sample_s: f64,
+    /// Samples of the grid before the first of the log.
+    before: usize,
+    samples: usize,
+    length: usize,
+    /// Number of lines for each independent one.
+    dense: usize,
+    band: Band,
+    /// Whether the log ends within the sweep: nothing is then known of what is beyond it, and the excitation ends with it.
+    is_cut: bool,
+}
+
+/// Rate of the samples in Hz below which the lines are twice as dense as they are independent. What the samples alias into low
+/// frequencies comes up to a whole log later than what belongs there; on lines as far apart as they are independent it looks constant.
+const SLOW_HZ: f64 = 1500.0;
+
+/// One direction of a log.
+#[derive(Clone)]
+pub(super) struct Record {
+    values: Vec<f64>,
+    /// Samples of the grid that were not measured, in order: those before the log, its gaps, and those after it.
+    unknown: Vec<Range<usize>>,
+}
+
+impl Grid {
+    pub(super) fn new(samples: usize, sample_s: f64, band: Band) -> Self {
+        let before = (BEYOND_S / sample_s).ceil() as usize;
+        let dense = if sample_s * SLOW_HZ > 1.0 { 2 } else { 1 };
+        let length = fast_length(dense * (samples + 2 * before));
+        Self {
+            transform: Transform::new(length),
+            sample_s,
+            before,
+            samples,
+            length,
+            dense,
+            band,
+            is_cut: false,
+        }
+    }
+
+    /// Duration of the grid in seconds.
+    pub(super) fn seconds(&self) -> f64 {
+        self.length as f64 * self.sample_s
+    }
+
+    /// Ends the excitation with the log.
+    pub(super) fn cut_to_log(&mut self) {
+        self.is_cut = true;
+    }
+
+    /// Whether the excitation ends with the log.
+    pub(super) fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// An excitation, without what is beyond a log that ends within it.
+    fn within_log(&self, mut excitation: Vec<f64>) -> Vec<f64> {
+        if self.is_cut {
+            excitation[..self.before].fill(0.0);
+            excitation[self.before + self.samples..].fill(0.0);
+        }
+        excitation
+    }
+
+    /// Time between samples in seconds.
+    pub(super) fn sample_s(&self) -> f64 {
+        self.sample_s
+    }
+
+    /// Time in seconds from the start of the grid to the first sample of the log.
+    pub(super) fn before_s(&self) -> f64 {
+        self.before as f64 * self.sample_s
+    }
+
+    /// The record of a direction without its mean; `missing` are samples of the log.
+    pub(super) fn record(&self, log: &[f64], missing: &[Range<usize>]) -> Record {
+        let gaps = missing.iter().map(|gap| gap.start + self.before..gap.end + self.before);
+        let unknown = std::iter::once(0..self.before).chain(gaps);
+        let unknown = unknown
+            .chain(std::iter::once(self.before + self.samples..self.length))
+            .collect();
+        let mut values = vec![0.0; self.length];
+        values[self.before..self.before + self.samples].copy_from_slice(&log[..self.samples]);
+        let mut record = Record { values, unknown };
+        let mean = record.mean(|value, _| value);
+        for value in &mut record.values[self.before..self.before + self.samples] {
+            *value -= mean;
+        }
+        record
+    }
+
+    /// Lines of a record in the band, and all of them.
+    pub(super) fn lines(&mut self, record: &Record) -> (Lines, Vec<Complex<f64>>) {
+        let all = self.transform.forward(&record.values);
+        (self.cut(&all, self.band), all)
+    }
+
+    /// Those of all lines that lie in a band.
+    pub(super) fn cut(&self, all: &[Complex<f64>], band: Band) -> Lines {
+        let resolution_hz = 1.0 / self.seconds();
+        let first = (band.low_hz / resolution_hz).ceil() as usize;
+        let last = ((band.high_hz / resolution_hz).floor() as usize).min(all.len() - 1);
+        Lines {
+            first,
+            resolution_hz,
+            dense: self.dense,
+            values: all.get(first..=last).unwrap_or_default().to_vec(),
+        }
+    }
+
+    /// Lines of an excitation that begins `start_s` after the start of the grid, without what its samples alias into the band.
+    pub(super) fn excitation(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
+        let means = excitation.means(-start_s, self.sample_s, self.length);
+        let all = self.transform.forward(&self.within_log(means));
+        let mut lines = self.cut(&all, self.band);
+        for line in 0..lines.values.len() {
+            // The mean over a sample attenuates a line by sinc(f·T).
+            let angle = std::f64::consts::PI * lines.frequency_hz(line) * self.sample_s;
+            if angle > 0.0 {
+                lines.values[line] *= angle / angle.sin();
+            }
+        }
+        lines
+    }
+
+    /// All lines of the samples of an excitation, with everything that they alias.
+    pub(super) fn sampled(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Vec<Complex<f64>> {
+        let samples = excitation.samples(-start_s, self.sample_s, self.length);
+        self.transform.forward(&self.within_log(samples))
+    }
+
+    /// What the samples of the first and the second integral of an excitation alias into the band, given its lines without that.
+    pub(super) fn folded_integrals(
+        &mut self,
+        excitation: &SweptAcceleration,
+        lines: &Lines,
+        start_s: f64,
+    ) -> [Lines; 2] {
+        let integrals = excitation.integrals(-start_s, self.sample_s, self.length);
+        let mut power = 0;
+        integrals.map(|integral| {
+            power += 1;
+            let ends = integral.last().copied().unwrap_or(0.0);
+            // The integral of the integral need not end where it began: what it is at the end, it becomes in a straight line.
+            let step = ends / self.length as f64;
+            let closed: Vec<f64> = integral.iter().enumerate().map(|(n, x)| x - step * n as f64).collect();
+            let all = self.transform.forward(&closed);
+            let mut folded = self.cut(&all, self.band);
+            for (n, line) in folded.values.iter_mut().enumerate() {
+                let by = Complex::new(0.0, std::f64::consts::TAU * lines.frequency_hz(n)).powi(power);
+                *line -= lines.values[n] / by;
+            }
+            folded
+        })
+    }
+
+    /// The samples of all lines.
+    pub(super) fn samples(&mut self, all: &[Complex<f64>]) -> Vec<f64> {
+        let mut samples = self.transform.inverse(all);
+        for sample in &mut samples {
+            *sample /= self.length as f64;
+        }
+        samples
+    }
+
+    /// Lines of an excitation, from those of one that began `delay_s` earlier. This is exact if the grid contains both
+    /// completely.
+    pub(super) fn later(&self, lines: &Lines, delay_s: f64) -> Lines {
+        let late = Lateness { delay_s, bend_s: 0.0 };
+        let turned = lines.values.iter().enumerate();
+        let turned = turned.map(|(n, line)| line * late.turn(lines.frequency_hz(n), self.band.high_hz));
+        Lines {
+            values: turned.collect(),
+            ..*lines
+        }
+    }
+}
+
+impl Record {
+    /// Takes the samples from `begin` on as not measured.
+    pub(super) fn forget_from(&mut self, begin: usize) {
+        self.unknown.retain(|gap| gap.start < begin);
+        let begin = match self.unknown.last_mut() {
+            Some(last) if last.end >= begin => self.unknown.pop().map_or(begin, |last| last.start),
+            _ => begin,
+        };
+        self.unknown.push(begin..self.values.len());
+        for gap in self.unknown.iter().rev().take(1) {
+            self.values[gap.clone()].fill(0.0);
+        }
+    }
+
+    /// Mean of a quantity over the samples that were measured.
+    fn mean(&self, of: impl Fn(f64, usize) -> f64) -> f64 {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for known in self.known() {
+            sum += known.clone().map(|n| of(self.values[n], n)).sum::<f64>();
+            count += known.len();
+        }
+        sum / count.max(1) as f64
+    }
+
+    /// Ranges of samples that were measured.
+    fn known(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.unknown.windows(2).map(|pair| pair[0].end..pair[1].start)
+    }
+
+    /// Fraction of the samples from one time to another, in samples, that were measured.
+    pub(super) fn seen(&self, from: f64, to: f64) -> f64 {
+        let first = self.unknown.partition_point(|gap| (gap.end as f64) < from);
+        let lost = self.unknown[first..].iter().take_while(|gap| (gap.start as f64) < to);
+        let lost: f64 = lost
+            .map(|gap| ((gap.end as f64).min(to) - (gap.start as f64).max(from)).max(0.0))
+            .sum();
+        1.0 - lost / (to - from).max(1.0)
+    }
+
+    /// Time in seconds, from the start of the grid, at which a motion stops that goes on until about `expected_s`: the last one at which
+    /// the record is a part of what it was in the second before.
+    pub(super) fn stops_s(&self, expected_s: f64, sample_s: f64) -> f64 {
+        /// Part of the acceleration of before, duration of what is compared, and time around the expected one that is searched.
+        const PART: f64 = 0.35;
+        const COMPARED_S: f64 = 0.006;
+        const AROUND_S: (f64, f64) = (1.0, 15.0);
+        let sample = |time_s: f64| ((time_s / sample_s).max(0.0) as usize).min(self.values.len());
+        let width = ((COMPARED_S / sample_s) as usize).max(2);
+        let level = |range: Range<usize>| {
+            let slow = self.values[range.clone()].iter().sum::<f64>() / range.len().max(1) as f64;
+            let square: f64 = self.values[range.clone()].iter().map(|x| (x - slow).powi(2)).sum();
+            (square / range.len().max(1) as f64).sqrt()
+        };
+        let before = level(sample(expected_s - 2.0 * AROUND_S.0)..sample(expected_s - AROUND_S.0));
+        let searched = &self.values[sample(expected_s - AROUND_S.0)..sample(expected_s + AROUND_S.1)];
+        let moving = searched
+            .windows(width)
+            .rposition(|few| few.iter().any(|x| x.abs() > 2.0 * PART * before));
+        let last = moving.map_or(0, |window| window + width - 1);
+        (sample(expected_s - AROUND_S.0) + last) as f64 * sample_s
+    }
+
+    /// Fills the samples that were not measured; the root mean square of the change, over that of the record.
+    /// What is beyond the log is left at zero where `is_cut`.
+    pub(super) fn fill(&mut self, predicted: &[f64], is_cut: bool) -> f64 {
+        let offset = self.mean(|value, n| value - predicted[n]);
+        let (mut change, mut square) = (0.0, 0.0);
+        let ends = if is_cut { 1 } else { 0 };
+        for gap in &self.unknown[ends..self.unknown.len() - ends] {
+            for n in gap.clone() {
+                change += (self.values[n] - predicted[n]).powi(2);
+                self.values[n] = predicted[n];
+            }
+        }
+        for known in self.unknown.windows(2).map(|pair| pair[0].end..pair[1].start) {
+            for value in &mut self.values[known] {
+                *value -= offset;
+                square += *value * *value;
+            }
+        }
+        (change / square.max(f64::MIN_POSITIVE)).sqrt()
+    }
+}

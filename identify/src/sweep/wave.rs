@@ -1,0 +1,115 @@
+//! Finds the square wave that firmware adds to a sweep, in the part of a log's spectrum below the sweep.
+
+use super::excitation::{SquareWave, SweptAcceleration};
+use super::record::Grid;
+use super::transfer::{Band, Lines};
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+
+/// Fraction of the sweep's lowest frequency up to which it is looked for.
+const BELOW: f64 = 0.9;
+/// Energy of the wave over the median of a line below the sweep: noise has a few times as much by chance.
+const LEAST_ENERGY: f64 = 200.0;
+/// Ratio of what the wave explains with its phase, to what it would explain with any.
+const IN_PHASE: f64 = 0.8;
+/// Fraction of the energy of the best period that the usual one must have to be taken.
+const USUAL: f64 = 0.8;
+
+/// The square wave in a log whose lines are all given, with those of the sweep's pulses, which begin `start_s` after the start of the grid
+/// and end `end_s` later; `None` where there is none.
+pub(super) fn find(
+    grid: &Grid,
+    all: &[Complex<f64>],
+    pulses: &[Complex<f64>],
+    lowest_hz: f64,
+    start_s: f64,
+    end_s: f64,
+) -> Option<SquareWave> {
+    let band = Band {
+        low_hz: 2.0 / grid.seconds(),
+        high_hz: BELOW * lowest_hz,
+    };
+    let lines = grid.cut(all, band).plus(-1.0, &grid.cut(pulses, band));
+    let mut powers: Vec<f64> = lines.values.iter().map(Complex::norm_sqr).collect();
+    if powers.len() < 8 {
+        return None;
+    }
+    let strongest = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;
+    let peak_hz = lines.frequency_hz(strongest);
+    let middle = powers.len() / 2;
+    let (_, median, _) = powers.select_nth_unstable_by(middle, f64::total_cmp);
+    let least = LEAST_ENERGY * *median;
+    let tried = |period_s: f64| Tried::new(&lines, grid, period_s, start_s, end_s);
+    let usual = tried(SquareWave::default().period_s);
+    // The strongest line is the wave's first, and its frequency is known to a line.
+    let off = |part: f64| 1.0 / (peak_hz + part * lines.resolution_hz);
+    let coarse = (-10..=10).map(|n| tried(off(0.1 * f64::from(n))));
+    let best = coarse.max_by(|a, b| a.energy.total_cmp(&b.energy))?;
+    let close = (-20..=20).map(|n| tried(1.0 / (1.0 / best.period_s + 0.005 * f64::from(n) * lines.resolution_hz)));
+    let best = close.max_by(|a, b| a.energy.total_cmp(&b.energy))?;
+    let chosen = if usual.energy > USUAL * best.energy {
+        usual
+    } else {
+        best
+    };
+    let is_one = chosen.energy > least && chosen.in_phase > IN_PHASE && chosen.period_s * lowest_hz * BELOW > 1.0;
+    is_one.then_some(SquareWave {
+        acceleration: chosen.acceleration,
+        period_s: chosen.period_s,
+    })
+}
+
+/// How much a square wave of some period explains.
+struct Tried {
+    period_s: f64,
+    acceleration: f64,
+    energy: f64,
+    in_phase: f64,
+}
+
+impl Tried {
+    fn new(lines: &Lines, grid: &Grid, period_s: f64, start_s: f64, end_s: f64) -> Self {
+        let unit = SquareWave {
+            acceleration: 1.0,
+            period_s,
+        };
+        let wave = SweptAcceleration::square_wave(&unit, end_s);
+        let of_wave = spectrum(&wave, lines, grid.sample_s(), start_s);
+        let (mut cross, mut square) = (Complex::new(0.0, 0.0), f64::MIN_POSITIVE);
+        for (line, wave) in lines.values.iter().zip(&of_wave) {
+            cross += line * wave.conj();
+            square += wave.norm_sqr();
+        }
+        Self {
+            period_s,
+            acceleration: cross.re.abs() / square,
+            energy: cross.norm_sqr() / square,
+            in_phase: cross.re.abs() / cross.norm().max(f64::MIN_POSITIVE),
+        }
+    }
+}
+
+/// Lines of an acceleration, from its edges: `Σ Δa·e^{−j2πft}/(j2πf)` over the time between samples.
+pub(super) fn spectrum(
+    excitation: &SweptAcceleration,
+    lines: &Lines,
+    sample_s: f64,
+    start_s: f64,
+) -> Vec<Complex<f64>> {
+    let mut sum = vec![Complex::new(0.0, 0.0); lines.values.len()];
+    let mut before = 0.0;
+    for (begin_s, acceleration) in excitation.pieces() {
+        let late_s = start_s + begin_s;
+        let mut turn = Complex::from_polar(acceleration - before, -TAU * lines.frequency_hz(0) * late_s);
+        let step = Complex::from_polar(1.0, -TAU * lines.resolution_hz * late_s);
+        for line in &mut sum {
+            *line += turn;
+            turn *= step;
+        }
+        before = acceleration;
+    }
+    for (n, line) in sum.iter_mut().enumerate() {
+        *line /= Complex::new(0.0, TAU * lines.frequency_hz(n) * sample_s);
+    }
+    sum
+}

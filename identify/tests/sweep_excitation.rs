@@ -1,0 +1,182 @@
+//! The excitation of a printer's log: with and without the square wave of Klipper's present test, and sweeps that the log itself tells.
+
+use posicast_identify::log::{self, Log};
+use posicast_identify::sweep::{self, FoundInSweep, SquareWave, Sweep, SweepError, Sweeping};
+use posicast_identify::synthetic::{KnownMode, Sensor, known, present_test, resonance_test};
+use posicast_identify::{AccelerationLog, FoundMode};
+
+/// A rigid machine, and one with its mode above the band; and two with one weak mode or two strong ones.
+fn machines() -> [Vec<KnownMode>; 4] {
+    [
+        vec![],
+        vec![known(170.0, 0.03, 1.0)],
+        vec![known(60.0, 0.04, 0.05)],
+        vec![known(28.0, 0.03, 0.5), known(60.0, 0.05, 0.5)],
+    ]
+}
+
+/// Klipper's test before December 2024.
+fn old_test() -> Sweep {
+    Sweep {
+        acceleration_per_hz: 0.075,
+        ..Sweep::default()
+    }
+}
+
+fn check(truths: &[KnownMode], found: &[FoundMode]) {
+    assert_eq!(truths.len(), found.len(), "{truths:#?} {found:#?}");
+    for (truth, found) in truths.iter().zip(found) {
+        let frequency = found.mode.frequency_hz / truth.mode.frequency_hz - 1.0;
+        let damping = found.mode.damping / truth.mode.damping - 1.0;
+        assert!(frequency.abs() < 0.01 && damping.abs() < 0.1, "{truth:#?} {found:#?}");
+    }
+}
+
+/// Identifies logs of both tests of each machine at these rates of the sensor.
+fn both_tests_tell_the_modes(rates_hz: &[f64]) {
+    for (truths, rate_hz) in machines()
+        .iter()
+        .flat_map(|truths| rates_hz.iter().map(move |rate| (truths, rate)))
+    {
+        for driven in [old_test(), present_test()] {
+            let sensor = Sensor {
+                sample_s: 1.0 / rate_hz,
+                ..Sensor::default()
+            };
+            let log = resonance_test(truths, &driven, &sensor, 1);
+            let found = sweep::identify(&log, &Sweep::default()).unwrap();
+            let seen: Vec<KnownMode> = truths.iter().filter(|t| t.mode.frequency_hz < 130.0).copied().collect();
+            check(&seen, &found.modes);
+            match (driven.sweeping, found.wave) {
+                (Sweeping::Wave(truth), Some(wave)) => {
+                    assert!((wave.acceleration / truth.acceleration - 1.0).abs() < 0.1, "{wave:?}");
+                    assert!((wave.period_s / truth.period_s - 1.0).abs() < 1e-3, "{wave:?}");
+                }
+                (Sweeping::Wave(_), None) | (_, Some(_)) => panic!("{driven:?} {:?}", found.wave),
+                (_, None) => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn unit_both_tests_of_the_firmware_tell_the_modes_at_400_and_800_hz() {
+    both_tests_tell_the_modes(&[400.0, 800.0]);
+}
+
+#[test]
+fn long_both_tests_of_the_firmware_tell_the_modes_at_1600_and_3200_hz() {
+    both_tests_tell_the_modes(&[1600.0, 3200.0]);
+}
+
+fn case() -> AccelerationLog {
+    match log::read(include_bytes!("data/rigid-5-40.csv")).unwrap().log {
+        Log::Acceleration(log) => log,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A rigid machine under Klipper's present test from 5 to 40 Hz, by a generator that is not ours.
+#[test]
+fn unit_the_square_wave_of_a_rigid_machines_log_is_no_mode() {
+    let sweep = Sweep {
+        end_hz: 40.0,
+        ..Sweep::default()
+    };
+    let is_right = |found: &FoundInSweep| {
+        assert_eq!(found.modes, [], "{:?}", found.modes);
+        let wave = found.wave.unwrap();
+        assert!(
+            (wave.acceleration - 0.4).abs() < 0.02 && (wave.period_s - 1.2).abs() < 2e-3,
+            "{wave:?}"
+        );
+        assert!((found.static_gain - 1.0).abs() < 0.03, "{}", found.static_gain);
+    };
+    is_right(&sweep::identify(&case(), &sweep).unwrap());
+    // Without a description, the log tells the sweep.
+    let found = sweep::identify_any(&case()).unwrap();
+    is_right(&found);
+    assert!(found.is_estimated);
+    assert_eq!(
+        (found.sweep.start_hz, found.sweep.end_hz, found.sweep.rate_hz_per_s),
+        (5.0, 40.0, 1.0)
+    );
+}
+
+#[test]
+fn unit_a_wave_of_another_size_is_told_by_the_log() {
+    let wave = SquareWave {
+        acceleration: 0.25,
+        period_s: 1.57,
+    };
+    let driven = Sweep {
+        end_hz: 80.0,
+        sweeping: Sweeping::Wave(wave),
+        ..Sweep::default()
+    };
+    let sensor = Sensor {
+        sample_s: 1.0 / 800.0,
+        ..Sensor::default()
+    };
+    let truths = [known(31.0, 0.04, 1.0)];
+    let log = resonance_test(&truths, &driven, &sensor, 2);
+    for sweeping in [Sweeping::FromLog, driven.sweeping] {
+        let found = sweep::identify(&log, &Sweep { sweeping, ..driven }).unwrap();
+        check(&truths, &found.modes);
+        let found = found.wave.unwrap();
+        assert!((found.acceleration / wave.acceleration - 1.0).abs() < 0.05, "{found:?}");
+        assert!((found.period_s / wave.period_s - 1.0).abs() < 1e-3, "{found:?}");
+    }
+}
+
+#[test]
+fn unit_another_sweep_is_found_in_the_log() {
+    let truths = [known(44.0, 0.04, 0.6), known(71.0, 0.05, 0.4)];
+    for (start_hz, end_hz, rate_hz_per_s, acceleration_per_hz, start_s) in [
+        (30.0, 85.0, 2.0, 0.060, 0.437),
+        (5.0, 1e4 / 75.0, 1.0, 0.075, 0.001),
+        (20.0, 110.0, 1.5, 0.100, 0.3),
+    ] {
+        let driven = Sweep {
+            start_hz,
+            end_hz,
+            rate_hz_per_s,
+            acceleration_per_hz,
+            sweeping: Sweeping::Off,
+        };
+        let sensor = Sensor {
+            sample_s: 1.0 / 800.0,
+            start_s,
+            rest_s: 0.1,
+            ..Sensor::default()
+        };
+        let log = resonance_test(&truths, &driven, &sensor, 3);
+        let found = sweep::identify_any(&log).unwrap();
+        check(&truths, &found.modes);
+        let sweep = found.sweep;
+        assert!(found.is_estimated, "{sweep:?}");
+        let close = |a: f64, b: f64, by: f64| (a - b).abs() < by;
+        assert!(
+            close(sweep.start_hz, start_hz, 0.11)
+                && close(sweep.end_hz, end_hz, 0.3)
+                && close(sweep.rate_hz_per_s, rate_hz_per_s, 2e-3),
+            "{sweep:?} {driven:?}"
+        );
+        let told = sweep.acceleration_per_hz * found.static_gain;
+        assert!(
+            close(told / acceleration_per_hz, 1.0, 0.03),
+            "{told} {acceleration_per_hz}"
+        );
+    }
+}
+
+#[test]
+fn unit_no_sweep_is_found_where_there_is_none() {
+    let mut noise = posicast_identify::synthetic::Noise::new(7);
+    let log = AccelerationLog {
+        sample_s: 1.0 / 800.0,
+        directions: vec![("accel_x".into(), (0..20_000).map(|_| noise.draw()).collect())],
+        missing: Vec::new(),
+    };
+    assert!(matches!(sweep::identify_any(&log), Err(SweepError::Unrelated(_))));
+}
