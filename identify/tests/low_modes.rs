@@ -61,7 +61,10 @@ fn slow_modes_are_found_or_said_not_to_be_visible(slow: &[(f64, f64)], noises: &
                         (low.mode.frequency_hz / frequency_hz - 1.0).abs() < 0.02,
                         "{low:?} of {frequency_hz} Hz"
                     );
-                    assert!((low.participation / share - 1.0).abs() < 0.35, "{low:?} of {share}");
+                    assert!(
+                        (low.participation / share - 1.0).abs() < 0.35,
+                        "{low:?} of {share}, noise {noise}, seed {seed}: {found:#?}"
+                    );
                 }
                 [_] => assert!(
                     found.visible_from_hz.unwrap() > frequency_hz,

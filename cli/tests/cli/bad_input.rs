@@ -296,9 +296,9 @@ fn cli_a_command_beyond_the_limits_is_warned_of() {
     let outside = "line 4: axis `x` goes to 0.021 m, beyond its travel of -0.02 m to 0.02 m";
     let too_fast = "line 3: axis `x` moves faster than limits.velocity, 0.1 m/s";
     for (text, words) in [
-        ("time_s,position\n0,0\n1,0.01\n3,0.021\n", outside),
-        ("time_s,position\n0,0\n0.01,0.01\n3,0.02\n", too_fast),
-        ("time_s,position\n0,0\n1,0.01\n3,0.02\n", ""),
+        ("time_s,position\n0,0\n1,0.01\n3,0.021\n4,0.021\n", outside),
+        ("time_s,position\n0,0\n0.01,0.01\n3,0.02\n4,0.02\n", too_fast),
+        ("time_s,position\n0,0\n1,0.01\n3,0.02\n4,0.02\n", ""),
     ] {
         std::fs::write(&command, text).unwrap();
         let output = posicast()

@@ -41,7 +41,11 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let (folder, _) = scratch(&machine("50.0"));
-        std::fs::write(folder.path().join("step.csv"), "time_s,position\n0,0\n0.001,0.001\n").unwrap();
+        std::fs::write(
+            folder.path().join("step.csv"),
+            "time_s,position\n0,0\n0.001,0.001\n0.002,0.001\n",
+        )
+        .unwrap();
         Self { folder }
     }
 

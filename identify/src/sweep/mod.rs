@@ -14,7 +14,7 @@ pub use crate::modal::TOLD_RINGING;
 pub use excitation::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAcceleration};
 pub use transfer::{Band, Transfer};
 
-use crate::found::{FoundMode, that_ring};
+use crate::found::{FoundMode, LEAST_PARTICIPATION, that_ring};
 use crate::modal::{self, Fit, Lateness, Phase, ResponsePoint};
 use crate::separable::Effort;
 use crate::signal::AccelerationLog;
@@ -537,14 +537,19 @@ const LEAST_OF_AXIS: f64 = 0.003;
 /// Number of standard deviations by which a share must exceed zero.
 const SIGNIFICANT: f64 = 6.0;
 
+/// Distance, as a fraction of the frequency, up to which what is cut off by a gap can look like a faint mode beside the band that the gap hides.
+const EDGE: f64 = 0.1;
+
 fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[Band]) -> Vec<FoundMode> {
+    let whole: f64 = fit.shares.iter().map(|(share, _)| share.max(0.0)).sum();
     let told = |k: &usize| {
         let pole = &fit.poles[*k];
         let (share, deviation) = fit.shares[*k];
         let inside = pole.frequency_hz > band.low_hz && pole.frequency_hz < band.high_hz;
-        let width_hz = pole.frequency_hz * pole.damping;
+        let is_faint = share < LEAST_PARTICIPATION * whole;
+        let margin_hz = pole.frequency_hz * if is_faint { pole.damping.max(EDGE) } else { pole.damping };
         let is_seen =
-            |band: &Band| pole.frequency_hz + width_hz < band.low_hz || pole.frequency_hz - width_hz > band.high_hz;
+            |band: &Band| pole.frequency_hz + margin_hz < band.low_hz || pole.frequency_hz - margin_hz > band.high_hz;
         inside
             && unseen.iter().all(is_seen)
             && pole.damping < NO_VIBRATION

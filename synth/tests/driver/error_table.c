@@ -72,7 +72,7 @@ int main(void)
     result("error_off", posicast_error_now(&stage, X));
     /* A position at 2^31 counts, where it comes round: no axis is homed there. */
     IOWR_POSICAST_AXIS_PRESET(stage.base, X, 0x7fffff00u);
-    need("preset", posicast_wait_flags(&stage), POSICAST_OK);
+    need("preset", posicast_wait_ticks(&stage, TICKS), POSICAST_OK);
     need("too far", posicast_limit_travel(&stage, X, COUNTS(-90000), COUNTS(90000)), POSICAST_BAD_ARGUMENT);
     result("causes", posicast_causes(&stage, X));
     return 0;

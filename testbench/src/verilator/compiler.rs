@@ -34,7 +34,7 @@ pub(super) fn of_verilator() -> Compiler {
 fn in_makefile(text: &str) -> Option<&str> {
     let value = text.lines().find_map(|line| {
         let (name, value) = line.split_once('=')?;
-        (name.trim().trim_end_matches([':', '?']) == "CXX").then(|| value.trim())
+        (name.trim_end_matches([':', '?', ' ']).trim() == "CXX").then(|| value.trim())
     })?;
     value.split_whitespace().next()
 }
