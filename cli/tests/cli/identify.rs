@@ -1,11 +1,10 @@
 //! `posicast identify`: from a log to modes, a machine file and a run; and the inputs that it refuses.
 
-use crate::cli::support::posicast;
+use crate::cli::support::{identify, posicast};
 use posicast_identify::sweep::Sweep;
 use posicast_identify::synthetic::{KnownMode, Sensor, known, resonance_test};
 use posicast_model::plant::drive_train::{Amplifier, DriveTrain, DriveTrainPlant, quantised};
 use std::path::Path;
-use std::process::Output;
 
 /// A resonance test of 13 s.
 const SWEEP: &str = "5:135:10:60";
@@ -19,17 +18,6 @@ fn write_log(file: &Path, modes: &[KnownMode]) {
     let mut text = Vec::new();
     log.write_csv(&mut text).unwrap();
     std::fs::write(file, text).unwrap();
-}
-
-fn identify(folder: &Path, words: &[&str]) -> (Option<i32>, String, String) {
-    let Output { status, stdout, stderr } = posicast()
-        .current_dir(folder)
-        .arg("identify")
-        .args(words)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code(), text(stdout), text(stderr))
 }
 
 #[test]

@@ -1,25 +1,13 @@
 //! `posicast identify` on logs as firmware and tools write them, and its commands for the two axes of a printer.
 
-use crate::cli::support::posicast;
+use crate::cli::support::{identify, posicast};
 use posicast_identify::sweep::Sweep;
 use posicast_identify::synthetic::{Sensor, known, resonance_test};
 use std::path::Path;
-use std::process::Output;
 
 const XYZ_G: &str = include_str!("../cases/identify/xyz_g.csv");
 const RRF: &str = include_str!("../cases/identify/rrf.csv");
 const PSD: &str = include_str!("../cases/identify/psd.csv");
-
-fn identify(folder: &Path, words: &[&str]) -> (Option<i32>, String, String) {
-    let Output { status, stdout, stderr } = posicast()
-        .current_dir(folder)
-        .arg("identify")
-        .args(words)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code(), text(stdout), text(stderr))
-}
 
 /// Text with its lines joined, as boxes of errors break them.
 fn joined(text: &str) -> String {

@@ -5,10 +5,23 @@
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
 use std::path::{Path, PathBuf};
+use std::process::Output;
 
 /// Returns the program, in a folder of its own.
 pub(crate) fn posicast() -> Command {
     Command::new(env!("CARGO_BIN_EXE_posicast"))
+}
+
+/// Runs `identify` with these words in a folder; returns its exit status, what it prints, and its problems.
+pub(crate) fn identify(folder: &Path, words: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } = posicast()
+        .current_dir(folder)
+        .arg("identify")
+        .args(words)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
 }
 
 /// Returns the path of a machine file of the examples.

@@ -43,6 +43,17 @@ fn of_klipper(version: &'static str) -> impl Fn(&str, &str, f64) -> f64 {
 const EXACT: [&str; 3] = ["zv", "zvd", "mzv"];
 const EI: [&str; 3] = ["ei", "two-hump-ei", "three-hump-ei"];
 
+/// What an output says that the firmware leaves at the mode of an axis, in percent.
+fn said_to_leave(text: &str, axis: usize) -> f64 {
+    let line = text
+        .lines()
+        .filter(|line| line.contains("it leaves "))
+        .nth(axis)
+        .unwrap();
+    let (_, said) = line.split_once("it leaves ").unwrap();
+    said.split(' ').next().unwrap().parse().unwrap()
+}
+
 #[test]
 fn cli_klipper_leaves_what_the_design_leaves() {
     compare(&["--to", "klipper"], &EXACT, 1e-9, of_klipper("new"));
@@ -105,20 +116,7 @@ fn cli_older_klipper_and_kalicos_main_say_what_their_ei_kinds_leave() {
                 let text = export(&machine, &words);
                 for (axis, damping) in ["x", "y"].into_iter().zip(dampings) {
                     let found = 100.0 * of_klipper(version)(&text, axis, damping);
-                    let said = text
-                        .lines()
-                        .filter(|line| line.contains("it leaves "))
-                        .nth(usize::from(axis == "y"))
-                        .unwrap();
-                    let said: f64 = said
-                        .split("it leaves ")
-                        .nth(1)
-                        .unwrap()
-                        .split(' ')
-                        .next()
-                        .unwrap()
-                        .parse()
-                        .unwrap();
+                    let said = said_to_leave(&text, usize::from(axis == "y"));
                     assert!(
                         (found - said).abs() < 6e-4,
                         "{words:?} {kind} {damping}: {found} %\n{text}"
@@ -192,20 +190,7 @@ fn cli_fixed_time_motion_says_what_its_samples_leave() {
                 let text = export(&machine, &["--to", "marlin-ft", "--firmware-version", version]);
                 for (index, (axis, damping)) in ['X', 'Y'].into_iter().zip(dampings).enumerate() {
                     let found = 100.0 * residual(&readers::m493(&text, axis, number), HZ, damping);
-                    let said = text
-                        .lines()
-                        .filter(|line| line.contains("it leaves "))
-                        .nth(index)
-                        .unwrap();
-                    let said: f64 = said
-                        .split("it leaves ")
-                        .nth(1)
-                        .unwrap()
-                        .split(' ')
-                        .next()
-                        .unwrap()
-                        .parse()
-                        .unwrap();
+                    let said = said_to_leave(&text, index);
                     assert!((found - said).abs() < 6e-4, "{kind} {damping}: {found} %\n{text}");
                 }
             }
