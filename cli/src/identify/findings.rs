@@ -146,25 +146,46 @@ fn of_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
     if found.modes.is_empty() {
         remarks.push("what follows the last push does not decay as a mode would: log a sudden stop, until the machine is at rest".into());
     }
+    let method = format!(
+        "modes that decay freely after a stop, fitted from {} s after the first sample on; they explain {:.2} % of it",
+        trimmed(found.begin_s, 4),
+        100.0 * found.explained
+    );
+    let evidence = Evidence::response("acceleration", &found.decay);
+    in_direction(
+        log,
+        &found.direction,
+        ("ring-down", method),
+        found.modes,
+        remarks,
+        evidence,
+    )
+}
+
+/// What was found in a direction of an accelerometer, by a method with this name and description.
+fn in_direction(
+    log: &AccelerationLog,
+    direction: &str,
+    (method_name, method): (&'static str, String),
+    modes: Vec<FoundMode>,
+    remarks: Vec<String>,
+    evidence: Evidence,
+) -> Findings {
     Findings {
         rows: 0,
         sample_s: log.sample_s,
-        source: format!("accelerometer, direction {}", found.direction),
-        method: format!(
-            "modes that decay freely after a stop, fitted from {} s after the first sample on; they explain {:.2} % of it",
-            trimmed(found.begin_s, 4),
-            100.0 * found.explained
-        ),
-        method_name: "ring-down",
+        source: format!("accelerometer, direction {direction}"),
+        method,
+        method_name,
         is_motor_held: false,
-        axis: axis_of(&found.direction),
-        evidence: Evidence::response("acceleration", &found.decay),
-        modes: found.modes,
+        axis: axis_of(direction),
+        modes,
         recommended: Vec::new(),
         unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks,
-        spectrum: spectrum(log, &found.direction),
+        evidence,
+        spectrum: spectrum(log, direction),
     }
 }
 
@@ -219,34 +240,26 @@ fn of_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Fa
         trimmed(1e3 * per_hz, if given.is_some() { 4 } else { 2 }),
         trimmed(found.start_s, 5),
     );
-    Ok(Findings {
-        rows: 0,
-        sample_s: log.sample_s,
-        source: format!("accelerometer, direction {}", found.direction),
-        method: format!(
-            "transfer function of a {description}; it explains {:.2} % of the log in its band",
-            100.0 * found.transfer.explained
-        ),
-        method_name: "sweep",
-        is_motor_held: false,
-        axis: axis_of(&found.direction),
-        modes: found.modes.clone(),
-        recommended: Vec::new(),
-        unit: AxisUnit::default(),
-        judgement: Judgement::default(),
-        remarks: remarks(&found, &sweep),
-        evidence: Evidence::Transfer {
-            fitted: found
-                .transfer
-                .points
-                .iter()
-                .zip(&found.fitted)
-                .map(|(point, value)| (point.frequency_hz, value.norm()))
-                .collect(),
-            points: found.transfer.points,
-        },
-        spectrum: spectrum(log, &found.direction),
-    })
+    let method = format!(
+        "transfer function of a {description}; it explains {:.2} % of the log in its band",
+        100.0 * found.transfer.explained
+    );
+    let remarks = remarks(&found, &sweep);
+    let fitted = found.transfer.points.iter().zip(&found.fitted);
+    let evidence = Evidence::Transfer {
+        fitted: fitted
+            .map(|(point, value)| (point.frequency_hz, value.norm()))
+            .collect(),
+        points: found.transfer.points,
+    };
+    Ok(in_direction(
+        log,
+        &found.direction,
+        ("sweep", method),
+        found.modes,
+        remarks,
+        evidence,
+    ))
 }
 
 fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
@@ -259,22 +272,16 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
     if found.modes.is_empty() {
         remarks.push("no vibration in the log decays as a mode would".into());
     }
-    Ok(Findings {
-        rows: 0,
-        sample_s: log.sample_s,
-        source: format!("accelerometer, direction {}", found.direction),
-        method: "decay of the correlation of the response with itself, the excitation not known".into(),
-        method_name: "output-only",
-        is_motor_held: false,
-        axis: axis_of(&found.direction),
-        evidence: Evidence::response("correlation of the acceleration with itself", &found.decay),
-        modes: found.modes,
-        recommended: Vec::new(),
-        unit: AxisUnit::default(),
-        judgement: Judgement::default(),
+    let method = "decay of the correlation of the response with itself, the excitation not known".into();
+    let evidence = Evidence::response("correlation of the acceleration with itself", &found.decay);
+    Ok(in_direction(
+        log,
+        &found.direction,
+        ("output-only", method),
+        found.modes,
         remarks,
-        spectrum: spectrum(log, &found.direction),
-    })
+        evidence,
+    ))
 }
 
 /// The spectrum of a direction, with a resolution of about half a hertz.
