@@ -1,24 +1,21 @@
 //! `posicast simulate --contour`: a path of two axes, and how far shapers make them leave it.
 
+mod file;
+mod report;
+
 use crate::failure::Failure;
-use crate::output::{self, Table, UnitDocument};
-use crate::plot::{self, Curve, Panel, label, time_axis};
+use crate::output;
+use crate::plot;
 use crate::progress::Late;
-use posicast_model::contour::{
-    self, Contour, ContourError, ContourLimits, ContourRow, CornerRules, FREQUENCY_FACTORS, FollowedContour, Stroke,
-    Survey, gcode, shapes,
-};
+use file::PathFile;
+use posicast_model::contour::{self, Contour, ContourError, ContourLimits, CornerRules, Stroke, Survey, gcode, shapes};
 use posicast_model::machine_file::Machine;
 use posicast_model::motion::SAMPLES_MAX;
-use posicast_model::unit::{AxisUnit, show_seconds};
+use posicast_model::unit::AxisUnit;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
-use posicast_testbench::wording::counted;
-use serde::Serialize;
+use report::Report;
 use std::cell::Cell;
-use std::fmt::Write;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -27,10 +24,6 @@ const PART_OF_VELOCITY: f64 = 0.4;
 /// Default size of a circle or square, as a fraction of the smaller travel, and in m where there is no travel.
 const PART_OF_TRAVEL: f64 = 0.25;
 const SIZE_M: f64 = 0.02;
-/// Largest size in bytes of points or G-code that come through a pipe, which is read once and kept.
-const PIPED_BYTES: u64 = 64 << 20;
-/// Bytes that are read from a file at a time.
-const BUFFER_BYTES: usize = 1 << 18;
 /// Number of strokes after which the progress of reading is looked at.
 const STROKES_LOOK: u32 = 1024;
 /// File name extensions of G-code.
@@ -331,73 +324,6 @@ impl DrivenPath<'_> {
     }
 }
 
-/// A file that is read from its beginning as often as it is needed.
-struct PathFile<'a> {
-    path: &'a Path,
-    bytes: u64,
-    /// What came through a pipe.
-    kept: Option<Vec<u8>>,
-}
-
-impl<'a> PathFile<'a> {
-    fn open(path: &'a Path) -> Result<Self, Failure> {
-        let file = File::open(path).map_err(|error| unreadable(path, &error.to_string()))?;
-        let kind = file.metadata().map_err(|error| unreadable(path, &error.to_string()))?;
-        if kind.is_dir() {
-            return Err(unreadable(path, "it is a folder"));
-        }
-        if kind.is_file() {
-            return Ok(Self {
-                path,
-                bytes: kind.len(),
-                kept: None,
-            });
-        }
-        let mut kept = Vec::new();
-        let read = file.take(PIPED_BYTES + 1).read_to_end(&mut kept);
-        let bytes = read.map_err(|error| unreadable(path, &error.to_string()))? as u64;
-        match bytes > PIPED_BYTES {
-            true => Err(unreadable(
-                path,
-                &format!("through a pipe it has more than {PIPED_BYTES} bytes; write it into a file"),
-            )),
-            false => Ok(Self {
-                path,
-                bytes,
-                kept: Some(kept),
-            }),
-        }
-    }
-
-    fn reader(&self, bytes: &Rc<Cell<u64>>) -> Result<Box<dyn BufRead + '_>, Failure> {
-        match &self.kept {
-            Some(kept) => Ok(Box::new(kept.as_slice())),
-            None => {
-                let file = File::open(self.path).map_err(|error| unreadable(self.path, &error.to_string()))?;
-                let counted = Counted {
-                    file,
-                    bytes: Rc::clone(bytes),
-                };
-                Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, counted)))
-            }
-        }
-    }
-}
-
-/// A file of which it is known how far it was read.
-struct Counted {
-    file: File,
-    bytes: Rc<Cell<u64>>,
-}
-
-impl Read for Counted {
-    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
-        let read = self.file.read(into)?;
-        self.bytes.set(self.bytes.get() + read as u64);
-        Ok(read)
-    }
-}
-
 /// The speed along the path, in m/s.
 fn speed_of(machine: &Machine, limits: &ContourLimits, asked: Option<f64>) -> Result<f64, Failure> {
     let unit = machine.axes[0].unit;
@@ -441,14 +367,6 @@ fn centred(machine: &Machine, strokes: Vec<Stroke>, limits: &ContourLimits) -> V
     });
     let middles: Vec<f64> = middles.collect();
     shapes::moved(&strokes, [middles[0], middles[1]])
-}
-
-fn unreadable(path: &Path, found: &str) -> Failure {
-    Failure::from(miette::miette!(
-        help = "name `circle`, `square`, a CSV file with rows x,y, or a G-code file (.gcode, .nc, .ngc)",
-        "--contour: cannot read `{}`: {found}",
-        path.display()
-    ))
 }
 
 fn in_file(path: &Path, error: &ContourError) -> Failure {
@@ -498,194 +416,4 @@ pub(crate) fn run(
         true => output::print_json(&report.json()),
         false => output::print_beside(outputs, &report.text()),
     }
-}
-
-struct Report<'a> {
-    machine: &'a Machine,
-    name: &'a str,
-    survey: &'a Survey,
-    rules: &'a CornerRules,
-    rows: &'a [ContourRow],
-}
-
-/// `simulate --contour --json`. Lengths are in m.
-#[derive(Serialize)]
-struct Document {
-    name: String,
-    #[serde(flatten)]
-    unit: UnitDocument,
-    contour: String,
-    length: f64,
-    /// Part of it that is rapids, or travels of a print.
-    rapid_length: f64,
-    duration_s: f64,
-    stops: usize,
-    corner_tolerance: f64,
-    stop_angle_deg: f64,
-    frequency_factors: [f64; 5],
-    shapers: Vec<RowDocument>,
-}
-
-#[derive(Serialize)]
-struct RowDocument {
-    kind: String,
-    in_file: bool,
-    equal_delays: bool,
-    /// Largest distance from the path for each of `frequency_factors`, on the feeds.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error_peak: Option<[f64; 5]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error_rms: Option<[f64; 5]>,
-    /// Largest distance on the rapids for each of `frequency_factors`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error_rapid: Option<[f64; 5]>,
-    /// Largest distance while a feed is driven at full speed, with the modes as in the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error_steady: Option<f64>,
-    /// Why there are no figures.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-}
-
-impl Report<'_> {
-    fn unit(&self) -> AxisUnit {
-        self.machine.axes[0].unit
-    }
-
-    fn json(&self) -> Document {
-        let rows = self.rows.iter().map(|row| {
-            let figures = |of: fn(&FollowedContour) -> Option<f64>| figures(row, of);
-            RowDocument {
-                kind: row.kind.clone(),
-                in_file: row.in_file,
-                equal_delays: row.matched,
-                error_peak: figures(|followed| Some(followed.error?.peak)),
-                error_rms: figures(|followed| Some(followed.error?.rms)),
-                error_rapid: figures(|followed| Some(followed.rapid?.peak)),
-                error_steady: row.nominal().and_then(|nominal| Some(nominal.steady?.peak)),
-                reason: row.followed.as_ref().err().cloned(),
-            }
-        });
-        Document {
-            name: self.machine.name.clone(),
-            unit: UnitDocument::new(self.unit()),
-            contour: self.name.to_owned(),
-            length: self.survey.length,
-            rapid_length: self.survey.rapid_length,
-            duration_s: self.survey.duration_s,
-            stops: self.survey.stops,
-            corner_tolerance: self.rules.tolerance,
-            stop_angle_deg: self.rules.stop_angle.to_degrees(),
-            frequency_factors: FREQUENCY_FACTORS,
-            shapers: rows.collect(),
-        }
-    }
-
-    fn text(&self) -> String {
-        let axes: Vec<&str> = self
-            .machine
-            .axes
-            .iter()
-            .take(2)
-            .map(|axis| axis.name.as_str())
-            .collect();
-        let rapids = match self.survey.rapid_length > 0.0 {
-            true => format!(
-                " ({} of it rapids)",
-                self.unit().show_round(self.survey.rapid_length, "")
-            ),
-            false => String::new(),
-        };
-        let mut text = format!(
-            "{}: {} of axes {}, {}{rapids} in {}, {}\nlargest distance of the load from the path{}, its modes at\n",
-            self.machine.name,
-            self.name,
-            axes.join(" and "),
-            self.unit().show_round(self.survey.length, ""),
-            show_seconds(self.survey.duration_s, 3),
-            counted(self.survey.stops as u64, "stop"),
-            if rapids.is_empty() { "" } else { " while feeding" },
-        );
-        let factors = FREQUENCY_FACTORS.map(|factor| format!(">{:.0} %", 100.0 * factor));
-        let mut headings = vec!["shaper", "delays"];
-        headings.extend(factors.iter().map(String::as_str));
-        headings.push(">at speed");
-        if !rapids.is_empty() {
-            headings.push(">in rapids");
-        }
-        let mut table = Table::new(&headings);
-        let mut reasons = Vec::new();
-        for row in self.rows {
-            let kind = if row.in_file {
-                format!("{}, of the file", row.kind)
-            } else {
-                row.kind.clone()
-            };
-            let delays = if row.matched { "equal" } else { "own" };
-            // A smaller distance is rounding, and what is left of the settling.
-            let show = |error: Option<f64>| match error {
-                None => "–".to_owned(),
-                Some(error) if error < 1e-10 => "0".to_owned(),
-                Some(error) => self.unit().show(error, 3),
-            };
-            let mut cells = vec![kind.clone(), delays.to_owned()];
-            let errors = figures(row, |followed| Some(followed.error?.peak));
-            cells.extend((0..FREQUENCY_FACTORS.len()).map(|factor| show(errors.map(|errors| errors[factor]))));
-            if let Err(reason) = &row.followed {
-                reasons.push(format!("  {kind}, {delays} delays: {reason}"));
-            }
-            cells.push(show(row.nominal().and_then(|nominal| Some(nominal.steady?.peak))));
-            if !rapids.is_empty() {
-                cells.push(show(row.nominal().and_then(|nominal| Some(nominal.rapid?.peak))));
-            }
-            table.row(cells);
-        }
-        text += &table.text("  ");
-        for reason in reasons {
-            let _ = writeln!(text, "{reason}");
-        }
-        text
-    }
-
-    /// The distance over time, without a shaper and with the machine's own.
-    fn panel(&self) -> Panel {
-        let drawn = |row: &&ContourRow| row.in_file || row.kind == "none" && !row.matched;
-        let sample_s = self.machine.clock.sample_period_s();
-        let rows = || {
-            let drawn = self.rows.iter().filter(drawn);
-            drawn.filter_map(|row| Some((row, row.nominal()?.distance.as_ref()?)))
-        };
-        let samples = rows().map(|(_, distance)| distance.samples()).max().unwrap_or(0);
-        let time = time_axis(samples as f64 * sample_s);
-        let peaks = rows().flat_map(|(_, distance)| distance.points().map(|(_, distance)| distance));
-        let length = self.unit().for_largest(peaks);
-        let curves = rows().map(|(row, distance)| {
-            let points = distance.points();
-            let points = points.map(|(sample, distance)| (time.of(sample as f64 * sample_s), length.of(distance)));
-            let delays = if row.matched { "equal delays" } else { "own delays" };
-            let name = if row.kind == "none" && !row.in_file {
-                "unshaped".to_owned()
-            } else {
-                format!("{}, {delays}", row.kind)
-            };
-            Curve::new(name, points.collect())
-        });
-        Panel {
-            title: format!(
-                "{}: {}, distance of the load from the path",
-                self.machine.name, self.name
-            ),
-            x_label: label("time", time),
-            y_label: label("to the left of the path", length),
-            curves: curves.collect(),
-            ..Panel::default()
-        }
-    }
-}
-
-/// A figure of a row at each frequency; `None` where one of them has none.
-fn figures(row: &ContourRow, of: impl Fn(&FollowedContour) -> Option<f64>) -> Option<[f64; 5]> {
-    let followed = row.followed.as_ref().ok()?;
-    let found: Vec<f64> = followed.iter().filter_map(of).collect();
-    found.try_into().ok()
 }
