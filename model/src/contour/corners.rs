@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! v² ≤ a · δ · c/(1 − c)               c = cos(θ/2), δ: the tolerance of corners            a corner of angle θ
-//! v² ≤ a/√2 · r,   v³ ≤ j/√8 · r²      r = l/(2 tan(θ/2)), l: the shorter of its two sides  facets of a curve
+//! v² ≤ a/√2 · r,   v³ ≤ j/√8 · r²      r = l/(2 tan(θ/2)), l: the mean of its two sides     facets of a curve
 //! ```
 //!
-//! `r` is the radius of the circle whose facets they are, and the limits there are those of an arc of this radius, so
+//! `r` is the radius of the circle whose facets they are (where the sides differ much, `l` is 1.5 times the shorter one,
+//! because then they are not), and the limits there are those of an arc of this radius, so
 //! that facets take the time of the arc; they hold down to the speed of a right angle. A bend sharper than the stop
 //! angle is a stop.
 //!
@@ -25,6 +26,8 @@ const STRAIGHT: f64 = 1e-4;
 const STOP_ROUNDING: f64 = 1e-6;
 /// Share of the tolerance by which points may deviate from a chord.
 const CHORD_SHARE: f64 = 0.25;
+/// Largest mean of the sides of a bend, as a multiple of the shorter one.
+const LONGEST_MEAN: f64 = 1.5;
 /// Largest number of strokes of a chord.
 const CHORD_STROKES: usize = 2000;
 
@@ -221,7 +224,9 @@ impl<I: Iterator<Item = Result<Stroke, ContourError>>> Corners<I> {
         };
         let ([ax, ay], [bx, by]) = (before.ends, after.begins);
         let bend = (ax * by - ay * bx).atan2(ax * bx + ay * by).abs();
-        self.limits.corner(&self.rules, bend, before.length.min(after.length))
+        let mean = f64::midpoint(before.length, after.length);
+        let side = mean.min(LONGEST_MEAN * before.length.min(after.length));
+        self.limits.corner(&self.rules, bend, side)
     }
 }
 
@@ -272,8 +277,8 @@ impl ContourLimits {
             .min((self.part_of_jerk() * radius * radius).cbrt())
     }
 
-    /// How a path passes a bend between two sides, of which the shorter has this length.
-    fn corner(&self, rules: &CornerRules, bend: f64, shorter: f64) -> Corner {
+    /// How a path passes a bend between two sides of this length.
+    fn corner(&self, rules: &CornerRules, bend: f64, side: f64) -> Corner {
         if bend <= STRAIGHT {
             return Corner::Speed(f64::INFINITY);
         }
@@ -282,7 +287,7 @@ impl ContourLimits {
             let cut = 2.0 * (bend / 4.0).sin().powi(2);
             (self.acceleration * rules.tolerance * (1.0 - cut).max(0.0) / cut).sqrt()
         };
-        let radius = shorter / (2.0 * (bend / 2.0).tan());
+        let radius = side / (2.0 * (bend / 2.0).tan());
         let facets = self.on_curve(radius).max(deviated(std::f64::consts::FRAC_PI_2));
         let speed = deviated(bend).min(facets);
         match bend > rules.stop_angle * (1.0 + STOP_ROUNDING) || speed <= 0.0 {

@@ -31,7 +31,7 @@ const BLOCK: usize = 8192;
 const LOOKS_PER_PERIOD: f64 = 50.0;
 const LOOKS_HZ: f64 = 2000.0;
 /// Largest number of samples that are simulated.
-const SIMULATED_MAX: u64 = 10_000_000_000;
+const SIMULATED_MAX: u64 = 2_000_000_000;
 
 /// Result of a machine following a contour.
 #[derive(Debug, Clone, PartialEq)]

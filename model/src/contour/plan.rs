@@ -27,7 +27,7 @@ use crate::machine_file::{AxisSection, Machine};
 use crate::motion::{SAMPLES_MAX, motion_limits};
 
 /// Largest number of strokes that are planned together.
-const LOOK_AHEAD: usize = 4096;
+const LOOK_AHEAD: usize = 1 << 15;
 /// Relative difference below which two limits are equal: inches and millimetres round differently.
 const SAME: f64 = 1e-9;
 
