@@ -94,7 +94,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         margin: args.margin / 100.0,
         ..Judgement::default()
     };
-    let mut findings = Findings::of(reading, &args.excitation, &judgement).map_err(|error| error.in_file(&args.log))?;
+    let mut findings =
+        Findings::of(&reading, &args.excitation, &judgement).map_err(|error| error.in_file(&args.log))?;
     let machine = match &args.output {
         Some(path) if !findings.modes.is_empty() => Some((path, machine_text(args, path, &findings)?)),
         _ => None,
@@ -104,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => args.kind.kind().unwrap_or(findings.kind()).unit(),
     };
     if let Some(path) = &args.plot {
-        write_text(path, &plot::svg(&pictures::panels(&findings))?).map_err(Failure::because)?;
+        write_text(path, &plot::svg(&pictures::panels(&findings, &reading.log))?).map_err(Failure::because)?;
     }
     if let Some((path, machine)) = &machine {
         output::write_text(path, machine.text.as_str())?;
@@ -131,7 +132,7 @@ pub(crate) fn new_machine(
     const OPTIONS: &str = "`posicast identify LOG -o FILE` has the options --columns, --rate and --direction";
     let flags = ExcitationFlags::default();
     let reading = read(log, &LogFlags::default()).map_err(|failure| failure.or_help(OPTIONS))?;
-    let mut findings = Findings::of(reading, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
+    let mut findings = Findings::of(&reading, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
     if findings.modes.is_empty() {
         return Err(none_found(log, true));
     }

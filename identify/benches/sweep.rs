@@ -1,9 +1,9 @@
-//! Time to read a printer's log of 420,000 rows, and to find one mode and four modes in it.
+//! Time that a printer's log of 419,000 rows takes, of either test of the firmware: to read the file, and to find its sweep and modes.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use posicast_identify::log;
 use posicast_identify::sweep::{self, Sweep};
-use posicast_identify::synthetic::{Sensor, known, resonance_test};
+use posicast_identify::synthetic::{Sensor, known, present_test, resonance_test};
 use std::hint::black_box;
 
 fn benches(criterion: &mut Criterion) {
@@ -16,17 +16,25 @@ fn benches(criterion: &mut Criterion) {
         known(68.0, 0.06, 0.2),
         known(101.0, 0.02, 0.1),
     ];
-    let sensor = Sensor {
-        rest_s: 0.8,
-        ..Sensor::default()
+    let old = Sweep {
+        acceleration_per_hz: 0.075,
+        ..Sweep::default()
     };
-    for (name, modes) in [("one mode", one), ("four modes", four)] {
-        let log = resonance_test(&modes, &Sweep::default(), &sensor, 1);
-        group.bench_function(name, |bencher| {
-            bencher.iter(|| black_box(sweep::identify(&log, &Sweep::default())));
-        });
+    for (name, modes, driven, rate_hz) in [
+        ("old test, one mode", &one, old, 3200.0),
+        ("present test, one mode", &one, present_test(), 3200.0),
+        ("present test, four modes", &four, present_test(), 3200.0),
+        ("present test, four modes, 400 Hz", &four, present_test(), 400.0),
+    ] {
+        let sensor = Sensor {
+            sample_s: 1.0 / rate_hz,
+            rest_s: 0.8,
+            ..Sensor::default()
+        };
+        let log = resonance_test(modes, &driven, &sensor, 1);
+        group.bench_function(name, |bencher| bencher.iter(|| black_box(sweep::identify_any(&log))));
         let mut text = Vec::new();
-        if log.write_csv(&mut text).is_ok() && name == "one mode" {
+        if name.starts_with("old") && log.write_csv(&mut text).is_ok() {
             group.bench_function("reading the file", |bencher| {
                 bencher.iter(|| black_box(log::read(&text)))
             });

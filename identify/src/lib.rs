@@ -13,6 +13,7 @@ pub mod found;
 pub mod log;
 pub mod modal;
 pub mod output_only;
+mod parallel;
 pub mod position;
 pub mod recommend;
 pub mod ring_down;

@@ -70,12 +70,12 @@ fn correlation(record: &[f64], lags: usize) -> Vec<f64> {
     let centred: Vec<f64> = record.iter().map(|x| x - mean).collect();
     // Zeros after the record keep its end from meeting its beginning.
     let length = fast_length(record.len() + lags + 1);
-    let mut transform = Transform::new(length);
-    let mut lines = transform.forward(&centred);
+    let transform = Transform::new(length);
+    let mut lines = transform.forward(centred);
     for line in &mut lines {
         *line = (*line * line.conj()) / length as f64;
     }
-    let products = transform.inverse(&lines);
+    let products = transform.inverse(lines);
     (0..=lags)
         .map(|lag| products[lag] / (record.len() - lag) as f64)
         .collect()

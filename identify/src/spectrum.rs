@@ -1,8 +1,9 @@
 //! Fourier transforms of real signals.
 
 use nalgebra::Complex;
-use realfft::RealFftPlanner;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// An even number of samples not below `samples` whose transform is fast: a product of 2, 3 and 5.
 pub fn fast_length(samples: usize) -> usize {
@@ -21,42 +22,42 @@ pub fn fast_length(samples: usize) -> usize {
     length
 }
 
-/// Transforms of one length, with a reusable plan.
+/// Transforms of one length.
+#[derive(Clone)]
 pub struct Transform {
-    planner: RealFftPlanner<f64>,
+    forward: Arc<dyn RealToComplex<f64>>,
+    inverse: Arc<dyn ComplexToReal<f64>>,
     length: usize,
 }
 
 impl Transform {
     /// Transforms of `length` samples.
     pub fn new(length: usize) -> Self {
+        let mut planner = RealFftPlanner::new();
         Self {
-            planner: RealFftPlanner::new(),
+            forward: planner.plan_fft_forward(length),
+            inverse: planner.plan_fft_inverse(length),
             length,
         }
     }
 
     /// The lines 0 to `length/2` of a signal that is padded with zeros: `X_k = Σ x_n e^{−j2πkn/length}`.
-    pub fn forward(&mut self, signal: &[f64]) -> Vec<Complex<f64>> {
-        let plan = self.planner.plan_fft_forward(self.length);
-        let mut padded = signal.to_vec();
-        padded.resize(self.length, 0.0);
-        let mut lines = plan.make_output_vec();
+    pub fn forward(&self, mut signal: Vec<f64>) -> Vec<Complex<f64>> {
+        signal.resize(self.length, 0.0);
+        let mut lines = self.forward.make_output_vec();
         // Both lengths are those of the plan, so this cannot fail.
-        let _ = plan.process(&mut padded, &mut lines);
+        let _ = self.forward.process(&mut signal, &mut lines);
         lines
     }
 
     /// The signal with these lines, not divided by the length.
-    pub fn inverse(&mut self, lines: &[Complex<f64>]) -> Vec<f64> {
-        let plan = self.planner.plan_fft_inverse(self.length);
-        let mut padded = lines.to_vec();
-        padded.resize(self.length / 2 + 1, Complex::new(0.0, 0.0));
+    pub fn inverse(&self, mut lines: Vec<Complex<f64>>) -> Vec<f64> {
+        lines.resize(self.length / 2 + 1, Complex::new(0.0, 0.0));
         // The first and the last line of a real signal are real.
-        padded[0].im = 0.0;
-        padded[self.length / 2].im = 0.0;
-        let mut signal = plan.make_output_vec();
-        let _ = plan.process(&mut padded, &mut signal);
+        lines[0].im = 0.0;
+        lines[self.length / 2].im = 0.0;
+        let mut signal = self.inverse.make_output_vec();
+        let _ = self.inverse.process(&mut lines, &mut signal);
         signal
     }
 }
@@ -87,7 +88,7 @@ pub fn welch(signal: &[f64], sample_s: f64, segment: usize) -> PowerSpectrum {
         .map(|n| 0.5 - 0.5 * (TAU * n as f64 / segment as f64).cos())
         .collect();
     let power: f64 = window.iter().map(|w| w * w).sum();
-    let mut transform = Transform::new(segment);
+    let transform = Transform::new(segment);
     let mut density = vec![0.0; segment / 2 + 1];
     let mut segments = 0;
     let mut begin = 0;
@@ -95,7 +96,7 @@ pub fn welch(signal: &[f64], sample_s: f64, segment: usize) -> PowerSpectrum {
         let part = &signal[begin..begin + segment];
         let mean = part.iter().sum::<f64>() / segment as f64;
         let windowed: Vec<f64> = part.iter().zip(&window).map(|(x, w)| (x - mean) * w).collect();
-        for (sum, line) in density.iter_mut().zip(transform.forward(&windowed)) {
+        for (sum, line) in density.iter_mut().zip(transform.forward(windowed)) {
             *sum += line.norm_sqr();
         }
         segments += 1;
@@ -138,9 +139,9 @@ mod tests {
     #[test]
     fn unit_there_and_back_is_the_signal() {
         let signal: Vec<f64> = (0..30).map(|n| f64::from(n * n % 7)).collect();
-        let mut transform = Transform::new(30);
-        let lines = transform.forward(&signal);
-        for (back, there) in transform.inverse(&lines).iter().zip(&signal) {
+        let transform = Transform::new(30);
+        let lines = transform.forward(signal.clone());
+        for (back, there) in transform.inverse(lines).iter().zip(&signal) {
             assert!((back / 30.0 - there).abs() < 1e-12);
         }
     }

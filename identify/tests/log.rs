@@ -186,6 +186,20 @@ fn unit_what_is_wrong_is_said_with_its_line_and_column() {
         ),
         (with(30, "0.28,0"), "line 30 has 2 fields, the header 3"),
         (with(30, "0.28,0,nan"), "line 30, column `response`: `nan`"),
+        // Lines are counted as an editor does, whatever ends them, and empty ones too.
+        (
+            with(30, "0.28,0,nan").replace('\n', "\r\n"),
+            "line 30, column `response`: `nan`",
+        ),
+        (
+            with(30, "0.28,0,nan").replacen('\n', "\n\n\n", 1),
+            "line 32, column `response`: `nan`",
+        ),
+        (with(30, "\n\n0.28,0,nan"), "line 32, column `response`: `nan`"),
+        (
+            with(30, "0.28,0,nan").replace("\n0.1,", "\n# a remark\n0.1,"),
+            "line 31",
+        ),
         (with(30, "0.28,,5"), "line 30, column `command`: ``"),
         (with(30, "0.27,0,5"), "line 30: the time 0.27 s is not after 0.27 s"),
         (

@@ -10,7 +10,6 @@ use posicast_identify::output_only;
 use posicast_identify::position::{self, FoundInPosition, PositionError, motor};
 use posicast_identify::recommend::{Judgement, Recommendation, recommend};
 use posicast_identify::ring_down::{self, FoundInRingDown, RingDownError};
-use posicast_identify::spectrum::{PowerSpectrum, welch};
 use posicast_identify::sweep::{self, Band, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
 use posicast_model::unit::{AxisUnit, trimmed};
@@ -65,13 +64,13 @@ pub(super) struct Findings {
     /// Problems of the log, and what it does not contain.
     pub(super) remarks: Vec<String>,
     pub(super) evidence: Evidence,
-    /// Power spectrum of an accelerometer's log.
-    pub(super) spectrum: Option<PowerSpectrum>,
+    /// Name of the direction of an accelerometer that was used.
+    pub(super) direction: Option<String>,
 }
 
 impl Findings {
     /// Finds the modes of a log.
-    pub(super) fn of(reading: Reading, flags: &ExcitationFlags, judgement: &Judgement) -> Result<Self, Failure> {
+    pub(super) fn of(reading: &Reading, flags: &ExcitationFlags, judgement: &Judgement) -> Result<Self, Failure> {
         let mut remarks: Vec<String> = reading.remarks.iter().map(ToString::to_string).collect();
         let sample_s = match &reading.log {
             Log::Acceleration(log) => log.sample_s,
@@ -185,7 +184,7 @@ fn in_direction(
         judgement: Judgement::default(),
         remarks,
         evidence,
-        spectrum: spectrum(log, direction),
+        direction: Some(direction.to_owned()),
     }
 }
 
@@ -284,13 +283,6 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
     ))
 }
 
-/// The spectrum of a direction, with a resolution of about half a hertz.
-fn spectrum(log: &AccelerationLog, direction: &str) -> Option<PowerSpectrum> {
-    const SEGMENT_S: f64 = 2.0;
-    let (_, record) = log.directions.iter().find(|(name, _)| name == direction)?;
-    Some(welch(record, log.sample_s, (SEGMENT_S / log.sample_s) as usize))
-}
-
 fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
     let found = position::identify(log).map_err(of_position_error)?;
     let (source, method_name) = match found.is_forced {
@@ -323,7 +315,7 @@ fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
         unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks,
-        spectrum: None,
+        direction: None,
     })
 }
 
@@ -350,7 +342,7 @@ fn of_motor(log: &DriveLog) -> Result<Findings, Failure> {
         unit: AxisUnit::default(),
         judgement: Judgement::default(),
         remarks,
-        spectrum: None,
+        direction: None,
     })
 }
 

@@ -2,9 +2,10 @@
 
 use super::findings::{Evidence, Findings};
 use crate::plot::{Curve, Mark, Panel, Range, label, time_axis};
+use posicast_identify::log::Log;
 use posicast_identify::modal::ResponsePoint;
 use posicast_identify::recommend::{Recommendation, deflection};
-use posicast_identify::spectrum::PowerSpectrum;
+use posicast_identify::spectrum::{PowerSpectrum, welch};
 use posicast_model::analysis::sensitivity_curve;
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::unit::trimmed;
@@ -15,18 +16,26 @@ const SHAPERS: usize = 4;
 const RATIOS: (f64, f64) = (0.5, 1.5);
 const POINTS: usize = 601;
 
-pub(super) fn panels(findings: &Findings) -> Vec<Panel> {
-    let mut panels: Vec<Panel> = findings
-        .spectrum
-        .iter()
-        .map(|power| spectrum(findings, power))
-        .collect();
+pub(super) fn panels(findings: &Findings, log: &Log) -> Vec<Panel> {
+    let power = powers(findings, log);
+    let mut panels: Vec<Panel> = power.iter().map(|power| spectrum(findings, power)).collect();
     panels.push(evidence(findings));
     if let Some(best) = findings.recommended.first() {
         panels.extend((0..findings.modes.len()).map(|mode| shapers(findings, mode)));
         panels.push(ringing(findings, best));
     }
     panels
+}
+
+/// The spectrum of the direction that was used, with a resolution of about half a hertz.
+fn powers(findings: &Findings, log: &Log) -> Option<PowerSpectrum> {
+    const SEGMENT_S: f64 = 2.0;
+    let Log::Acceleration(log) = log else { return None };
+    let (_, record) = log
+        .directions
+        .iter()
+        .find(|(name, _)| Some(name) == findings.direction.as_ref())?;
+    Some(welch(record, log.sample_s, (SEGMENT_S / log.sample_s) as usize))
 }
 
 /// Spectrum of the log, up to one and a half times the highest mode or the end of the sweep.

@@ -1,10 +1,12 @@
 //! The table of a log: finds its header, decides what its columns are, and reads its rows.
 
 use super::names::{self, Meaning, Name};
+use super::records::Records;
+use super::rows::{self, Layout, PlainRows};
 use super::text::{DAY_S, Said, in_utf8, is_remark, number, separator, time_of_day};
-use super::uses::{self, Target, Uses};
+use super::uses::{self, Target, Use, Uses};
 use super::{LogError, ReadOptions, Remark};
-use csv::{ByteRecord, ReaderBuilder, Trim};
+use csv::ByteRecord;
 
 /// A column that is used.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +22,7 @@ pub(super) struct Column {
 pub(super) struct Table {
     pub(super) times_s: Vec<f64>,
     /// Line of each row in the file.
-    pub(super) lines: Vec<u64>,
+    pub(super) lines: Lines,
     pub(super) columns: Vec<Column>,
     /// What is to be said of columns that are not used.
     pub(super) remarks: Vec<Remark>,
@@ -28,29 +30,40 @@ pub(super) struct Table {
     pub(super) plain_time: Option<String>,
 }
 
+/// Lines of rows in a file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Lines {
+    /// Line of the first of the plain rows, which follow each other line by line, and their number.
+    first: u64,
+    plain: usize,
+    later: Vec<u64>,
+}
+
+impl Lines {
+    /// Number of rows.
+    pub(super) fn len(&self) -> usize {
+        self.plain + self.later.len()
+    }
+
+    /// Line of a row.
+    pub(super) fn of(&self, row: usize) -> u64 {
+        match row.checked_sub(self.plain) {
+            None => self.first + row as u64,
+            Some(later) => self.later.get(later).copied().unwrap_or_default(),
+        }
+    }
+}
+
 /// Lines before the header that are none of it, at most.
 const PREAMBLE: usize = 64;
-
-type Reader<'a> = csv::Reader<&'a [u8]>;
-
-/// The next record; the reader accepts any number of fields and any bytes, so it cannot fail on a text in memory.
-fn next(reader: &mut Reader<'_>, record: &mut ByteRecord) -> bool {
-    reader.read_byte_record(record).unwrap_or(false)
-}
 
 /// Reads header and rows.
 pub(super) fn read(text: &[u8], options: &ReadOptions) -> Result<Table, LogError> {
     let text = &*in_utf8(text)?;
     let (separator, text) = separator(text);
-    let mut reader = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(separator)
-        .trim(Trim::All)
-        .from_reader(&*text);
-    let mut record = ByteRecord::new();
+    let mut records = Records::new(&text, separator);
     let mut said = Said::default();
-    let (header, mut has_row) = header(&mut reader, &mut record, &mut said, options)?;
+    let (header, mut has_row) = header(&mut records, &mut said, options)?;
     let Uses {
         fields,
         mut columns,
@@ -58,17 +71,34 @@ pub(super) fn read(text: &[u8], options: &ReadOptions) -> Result<Table, LogError
         is_numbered,
         question,
     } = uses::uses(&header, options)?;
-    let (mut times, mut lines) = (Vec::new(), Vec::new());
+    let mut times = Vec::new();
+    let mut lines = Lines::default();
+    if has_row {
+        let layout = Layout {
+            separator,
+            width: header.len(),
+            used: &fields,
+        };
+        let (text, line) = records.rest();
+        let plain = rows::plain(text, layout);
+        if plain.rows > 0 {
+            (lines.first, lines.plain) = (line, plain.rows);
+            records.skip_lines(plain.bytes, plain.rows);
+            has_row = false;
+        }
+        take(plain, &fields, &mut times, &mut columns, &mut said);
+    }
     let mut clock = Clock::default();
-    while std::mem::replace(&mut has_row, false) || next(&mut reader, &mut record) {
-        let line = line(&record);
+    while std::mem::replace(&mut has_row, false) || records.next() {
+        let line = records.line();
+        let record = records.record();
         let first = record.get(0).unwrap_or_default();
         if is_remark(first) && separator != first[0] {
-            said.hear(&joined(&record));
+            said.hear(&joined(record));
             continue;
         }
         if is_numbered && number(first).is_none() && first.first().is_some_and(u8::is_ascii_alphabetic) {
-            let text = joined(&record);
+            let text = joined(record);
             if !text.to_lowercase().starts_with("rate") {
                 return Err(LogError::Recorder { line, text });
             }
@@ -108,12 +138,12 @@ pub(super) fn read(text: &[u8], options: &ReadOptions) -> Result<Table, LogError
                 Target::Column(column) => columns[column].values.push(value),
             }
         }
-        lines.push(line);
+        lines.later.push(line);
     }
     if let Some(count) = said.overflows.filter(|count| *count > 0) {
         remarks.push(Remark::Overflows(count));
     }
-    if lines.is_empty() {
+    if lines.len() == 0 {
         return Err(LogError::Rows {
             rows: 0,
             least: super::LEAST_ROWS,
@@ -143,6 +173,18 @@ pub(super) fn read(text: &[u8], options: &ReadOptions) -> Result<Table, LogError
     })
 }
 
+/// Takes over what plain rows have.
+fn take(plain: PlainRows, fields: &[Use], times: &mut Vec<f64>, columns: &mut [Column], said: &mut Said) {
+    for (used, values) in fields.iter().zip(plain.values) {
+        match used.target {
+            Target::Time | Target::Index => *times = values,
+            Target::Rate => said.rate_hz = values.iter().rev().copied().find(|value| *value > 0.0).or(said.rate_hz),
+            Target::Overflows => said.overflows = values.last().map(|value| *value as u64).or(said.overflows),
+            Target::Column(column) => columns[column].values = values,
+        }
+    }
+}
+
 /// Times of day, which begin anew at midnight.
 #[derive(Default)]
 struct Clock {
@@ -163,19 +205,14 @@ impl Clock {
     }
 }
 
-/// The header, and whether `record` then has the first row. Lines of remarks before the header are passed by, and what instruments
+/// The header, and whether the present record is then the first row. Lines of remarks before the header are passed by, and what instruments
 /// write there of themselves.
-fn header(
-    reader: &mut Reader<'_>,
-    record: &mut ByteRecord,
-    said: &mut Said,
-    options: &ReadOptions,
-) -> Result<(Vec<Name>, bool), LogError> {
+fn header(records: &mut Records<'_>, said: &mut Said, options: &ReadOptions) -> Result<(Vec<Name>, bool), LogError> {
     let mut passed: Vec<(bool, Vec<Name>)> = Vec::new();
     let mut found = None;
     let mut first_line = 0;
     while found.is_none() {
-        if !next(reader, record) {
+        if !records.next() {
             return match (&options.columns, passed.into_iter().find(|(is_remark, _)| !is_remark)) {
                 (None, Some((_, names))) => Ok((names, false)),
                 (Some(_), Some(_)) => Err(LogError::Rows {
@@ -186,8 +223,9 @@ fn header(
             };
         }
         if first_line == 0 {
-            first_line = line(record);
+            first_line = records.line();
         }
+        let record = records.record();
         let first = record.get(0).unwrap_or_default();
         if number(first).is_some() || time_of_day(first).is_some() {
             break;
@@ -206,19 +244,19 @@ fn header(
             passed.push((commented, names));
         }
     }
-    let has_row = found.is_none() || next(reader, record);
+    let has_row = found.is_none() || records.next();
     if let Some(given) = &options.columns {
         // What stands below the header may still be a line of units.
-        let has_row = has_row && (numbers(record) > 0 || next(reader, record));
-        let fields = if has_row { record.len() } else { given.len() };
+        let has_row = has_row && (numbers(records.record()) > 0 || records.next());
+        let fields = if has_row { records.record().len() } else { given.len() };
         return Ok((given_names(given, fields)?, has_row));
     }
     let mut header = match found {
         Some(names) => names,
-        None => above(passed, record).ok_or(LogError::NoHeader { line: first_line })?,
+        None => above(passed, records.record()).ok_or(LogError::NoHeader { line: first_line })?,
     };
-    if has_row && numbers(record) == 0 && with_units(&mut header, record) {
-        let has_row = next(reader, record);
+    if has_row && numbers(records.record()) == 0 && with_units(&mut header, records.record()) {
+        let has_row = records.next();
         return Ok((header, has_row));
     }
     Ok((header, has_row))
@@ -286,10 +324,6 @@ fn numbers(record: &ByteRecord) -> usize {
         .iter()
         .filter(|field| number(field).is_some() || time_of_day(field).is_some())
         .count()
-}
-
-fn line(record: &ByteRecord) -> u64 {
-    record.position().map_or(0, csv::Position::line)
 }
 
 fn joined(record: &ByteRecord) -> String {

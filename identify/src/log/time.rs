@@ -92,7 +92,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     for row in 1..times.len() {
         if times[row] <= times[row - 1] {
             return Err(LogError::Unsorted {
-                line: table.lines[row],
+                line: table.lines.of(row),
                 time_s: times[row],
                 before_s: times[row - 1],
             });
@@ -136,7 +136,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     }
     let wavers = (
         (square / (used.len() - 1).max(1) as f64).sqrt(),
-        table.lines[range.start + largest.1],
+        table.lines.of(range.start + largest.1),
     );
     if !missing.is_empty() {
         remarks.push(gaps(table, &range, &indices, sample_s, last + 1));
@@ -144,7 +144,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     let is_regular = worst <= REGULAR;
     if !is_regular {
         remarks.push(Remark::Irregular {
-            line: table.lines[range.start + worst_row],
+            line: table.lines.of(range.start + worst_row),
             worst,
             rate_hz: 1.0 / sample_s,
         });
@@ -240,10 +240,10 @@ impl Steps {
             begin = end;
         }
         remarks.push(Remark::Part {
-            line: table.lines[ends[0] - 1],
+            line: table.lines.of(ends[0] - 1),
             gap_s: times[ends[0].min(times.len() - 1)] - times[ends[0] - 1],
-            from: table.lines[longest.start],
-            to: table.lines[longest.end - 1],
+            from: table.lines.of(longest.start),
+            to: table.lines.of(longest.end - 1),
             kept: longest.len(),
         });
         longest
@@ -253,7 +253,7 @@ impl Steps {
 /// The remark on the samples that are missing.
 fn gaps(table: &Table, range: &Range<usize>, indices: &[usize], sample_s: f64, samples: usize) -> Remark {
     let steps = || indices.windows(2).map(|pair| pair[1] - pair[0] - 1);
-    let line = |row: usize| table.lines[range.start + row];
+    let line = |row: usize| table.lines.of(range.start + row);
     let first = steps().position(|lost| lost > 0).unwrap_or(0);
     let longest = steps().enumerate().max_by_key(|(row, lost)| (*lost, usize::MAX - row));
     let (longest_row, longest) = longest.unwrap_or((0, 0));

@@ -278,7 +278,11 @@ fn unit_by_gravity(columns: &[Column]) -> Option<(&'static str, f64, f64)> {
     /// Largest relative error of a sensor that is not calibrated.
     const TOLERANCE: f64 = 0.12;
     const UNITS: [(&str, f64); 3] = [("g", GRAVITY), ("m/s²", 1.0), ("mm/s²", 1e-3)];
-    if columns.len() != 3 || columns.iter().any(|column| super::dead(&column.values).is_some()) {
+    if columns.len() != 3
+        || columns
+            .iter()
+            .any(|column| super::saturated::dead(&column.values).is_some())
+    {
         return None;
     }
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;

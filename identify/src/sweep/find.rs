@@ -6,14 +6,13 @@
 
 use super::excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 use super::record::Grid;
+use super::reduce::{KEPT_HZ, Reduced};
 use super::transfer::{Band, Lines};
 use super::wave::spectrum;
-use crate::signal::AccelerationLog;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Highest frequency in Hz of a sweep that is looked for, and the highest over the rate of the samples.
-const HIGHEST_HZ: f64 = 320.0;
+/// Highest frequency of a sweep that is looked for, over the rate of the samples; that in Hz is what is kept of every log.
 const HIGHEST_PART: f64 = 0.47;
 /// Bandwidth in Hz, and number of lines, over which a group delay is averaged.
 const AVERAGED_HZ: f64 = 0.3;
@@ -55,32 +54,37 @@ impl Line {
     }
 }
 
-/// Sweeps that a log may be of, the likeliest first; empty where it shows no line.
-pub(super) fn find(log: &AccelerationLog) -> Vec<Sweep> {
-    let samples = log.directions.iter().map(|(_, values)| values.len()).min().unwrap_or(0);
+/// What a log tells of its sweep without trying any.
+pub(super) struct Course {
+    lines: Lines,
+    line: Line,
+    rate_hz_per_s: f64,
+    /// Lowest frequency on the line.
+    lowest_hz: f64,
+    /// Time from the start of the grid at which the motion stops.
+    end_s: f64,
+    highest_hz: f64,
+}
+
+/// The course of the sweep in the direction with the most power; `None` where it shows no line.
+pub(super) fn course(log: &Reduced<'_>) -> Option<Course> {
     let band = Band {
         low_hz: 0.5,
-        high_hz: HIGHEST_HZ.min(HIGHEST_PART / log.sample_s),
+        high_hz: KEPT_HZ.min(HIGHEST_PART / log.sample_s()),
     };
-    let mut grid = Grid::new(samples, log.sample_s, band);
+    let grid = Grid::new(log, 1.0, band);
     let records = log.directions.iter().map(|(_, values)| {
-        let record = grid.record(values, &log.missing);
+        let record = grid.record(values, log.missing);
         (grid.lines(&record).0, record)
     });
-    let Some((lines, record)) = records.max_by(|a, b| a.0.power().total_cmp(&b.0.power())) else {
-        return Vec::new();
-    };
+    let (lines, record) = records.max_by(|a, b| a.0.power().total_cmp(&b.0.power()))?;
     let delays = delays(&lines, &grid);
-    let Some((line, inliers)) = line(&delays, &grid, samples as f64 * log.sample_s) else {
-        return Vec::new();
-    };
-    let (Some(first), Some(last)) = (inliers.first(), inliers.last()) else {
-        return Vec::new();
-    };
+    let (line, inliers) = line(&delays, &grid, log.seconds())?;
+    let (first, last) = (inliers.first()?, inliers.last()?);
     let rate_hz_per_s = snapped(
         1.0 / line.slope,
         &[1.0, 0.5, 0.1, 0.05],
-        (3e-3 + 0.2 / (samples as f64 * log.sample_s)) / line.slope,
+        (3e-3 + 0.2 / log.seconds()) / line.slope,
     );
     let line = Line {
         slope: 1.0 / rate_hz_per_s,
@@ -91,26 +95,49 @@ pub(super) fn find(log: &AccelerationLog) -> Vec<Sweep> {
                 .collect(),
         ),
     };
-    let end_s = record.stops_s(line.time_s(last.frequency_hz), log.sample_s);
-    let mut starts = starts(&lines, &line, rate_hz_per_s, first.frequency_hz, end_s);
-    starts.truncate(4);
-    let end_hz = |start_hz: f64| {
-        // The sweep ends half a period after it reached its last frequency.
-        let raw = (end_s - line.start_s) / line.slope;
-        let raw = raw - 0.5 * rate_hz_per_s / raw.max(start_hz);
-        let tolerance_hz = 0.12_f64.max(0.06 * rate_hz_per_s);
+    Some(Course {
+        end_s: record.stops_s(line.time_s(last.frequency_hz), log.sample_s()),
+        lowest_hz: first.frequency_hz,
+        highest_hz: 0.499 / log.fine_s,
+        lines,
+        line,
+        rate_hz_per_s,
+    })
+}
+
+impl Course {
+    /// Whether a sweep rises like this one, to the same frequency.
+    pub(super) fn is_of(&self, sweep: &Sweep) -> bool {
+        /// How far rate and end may be off.
+        const RATE: f64 = 0.02;
+        const HZ: f64 = 1.0;
+        (self.rate_hz_per_s / sweep.rate_hz_per_s - 1.0).abs() < RATE
+            && (self.end_hz(sweep.start_hz) - sweep.end_hz).abs() < HZ
+    }
+
+    /// Sweeps that the log may be of, the likeliest first.
+    pub(super) fn sweeps(&self) -> Vec<Sweep> {
+        let mut starts = starts(&self.lines, &self.line, self.rate_hz_per_s, self.lowest_hz, self.end_s);
+        starts.truncate(4);
+        let sweeps = starts.iter().map(|&start_hz| Sweep {
+            start_hz,
+            end_hz: self.end_hz(start_hz).min(self.highest_hz),
+            rate_hz_per_s: self.rate_hz_per_s,
+            ..Sweep::default()
+        });
+        sweeps.filter(|sweep| sweep.end_hz > sweep.start_hz).collect()
+    }
+
+    /// The last frequency of a sweep with this first one, which ends half a period after it reached that.
+    fn end_hz(&self, start_hz: f64) -> f64 {
+        let raw = (self.end_s - self.line.start_s) / self.line.slope;
+        let raw = raw - 0.5 * self.rate_hz_per_s / raw.max(start_hz);
+        let tolerance_hz = 0.12_f64.max(0.06 * self.rate_hz_per_s);
         match (raw - KLIPPERS_OLD_END_HZ).abs() < 1.5 * tolerance_hz {
             true => KLIPPERS_OLD_END_HZ,
             false => snapped(raw, &[5.0, 1.0, 0.5], tolerance_hz),
         }
-    };
-    let sweeps = starts.iter().map(|&start_hz| Sweep {
-        start_hz,
-        end_hz: end_hz(start_hz).min(0.499 / log.sample_s),
-        rate_hz_per_s,
-        ..Sweep::default()
-    });
-    sweeps.filter(|sweep| sweep.end_hz > sweep.start_hz).collect()
+    }
 }
 
 /// A number, or the multiple of one of these steps that is within a tolerance of it, the first where several are.
@@ -161,29 +188,25 @@ fn line(delays: &[Delay], grid: &Grid, seconds: f64) -> Option<(Line, Vec<Delay>
     let tolerance_s = 0.3_f64.max(0.004 * seconds);
     let rates = ((RATES.1 / RATES.0).ln() / NEXT_RATE.ln()) as i32;
     let mut best: Option<(f64, Line)> = None;
-    let mut intercepts: Vec<(f64, usize)> = Vec::with_capacity(delays.len());
     let interval_s = seconds / INTERVALS as f64;
+    let interval = |delay: &Delay| (((delay.time_s - grid.before_s()) / interval_s).max(0.0) as usize).min(INTERVALS);
+    let mut intercepts: Vec<(f64, Delay, usize)> = delays.iter().map(|delay| (0.0, *delay, interval(delay))).collect();
     for n in 0..rates {
         let slope = 1.0 / (RATES.0 * NEXT_RATE.powi(n));
-        intercepts.clear();
-        intercepts.extend(
-            delays
-                .iter()
-                .enumerate()
-                .map(|(n, d)| (d.time_s - d.frequency_hz * slope, n)),
-        );
-        intercepts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for (intercept, delay, _) in &mut intercepts {
+            *intercept = delay.time_s - delay.frequency_hz * slope;
+        }
+        // From one rate to the next the order hardly changes.
+        insertion_sort(&mut intercepts);
         // The intervals that the delays within the tolerance cover, as a window moves over the intercepts.
         let mut counts = [0u32; INTERVALS + 1];
         let (mut covered, mut begin) = (0usize, 0);
-        let interval =
-            |n: usize| (((delays[n].time_s - grid.before_s()) / interval_s).max(0.0) as usize).min(INTERVALS);
-        for end in 0..intercepts.len() {
-            let slot = &mut counts[interval(intercepts[end].1)];
+        for (end, (intercept, _, interval)) in intercepts.iter().enumerate() {
+            let slot = &mut counts[*interval];
             *slot += 1;
             covered += usize::from(*slot == 1);
-            while intercepts[end].0 - intercepts[begin].0 > 2.0 * tolerance_s {
-                let slot = &mut counts[interval(intercepts[begin].1)];
+            while intercept - intercepts[begin].0 > 2.0 * tolerance_s {
+                let slot = &mut counts[intercepts[begin].2];
                 *slot -= 1;
                 covered -= usize::from(*slot == 0);
                 begin += 1;
@@ -191,7 +214,7 @@ fn line(delays: &[Delay], grid: &Grid, seconds: f64) -> Option<(Line, Vec<Delay>
             // Of lines that cover as much, that with more delays is better.
             let score = covered as f64 + 1e-3 * (end - begin) as f64;
             if best.as_ref().is_none_or(|(most, _)| score > *most) {
-                let start_s = 0.5 * (intercepts[begin].0 + intercepts[end].0);
+                let start_s = 0.5 * (intercepts[begin].0 + intercept);
                 best = Some((score, Line { start_s, slope }));
             }
         }
@@ -206,6 +229,17 @@ fn line(delays: &[Delay], grid: &Grid, seconds: f64) -> Option<(Line, Vec<Delay>
         line = straight(&inliers)?;
     }
     Some((line, inliers))
+}
+
+/// Sorts what is almost sorted by its first value.
+fn insertion_sort<T>(values: &mut [(f64, Delay, T)]) {
+    for end in 1..values.len() {
+        let mut at = end;
+        while at > 0 && values[at - 1].0 > values[at].0 {
+            values.swap(at - 1, at);
+            at -= 1;
+        }
+    }
 }
 
 /// The longest run of delays that are on a line, with small interruptions.

@@ -39,7 +39,7 @@ pub(super) struct Measured {
 impl Placed {
     /// The pulses, of which the lines are known, and the square wave beside them with a factor; both begin `start_s` after the start of the grid.
     pub(super) fn new(
-        grid: &mut Grid,
+        grid: &Grid,
         lines: Lines,
         pulses: &SweptAcceleration,
         wave: Option<(&SweptAcceleration, f64)>,
@@ -55,7 +55,7 @@ impl Placed {
             }
         });
         Self {
-            integrals: match 1.0 / grid.sample_s() < FAST_HZ && !grid.is_cut() {
+            integrals: match 1.0 / grid.fine_s() < FAST_HZ && !grid.is_cut() {
                 true => grid.folded_integrals(pulses, &lines, start_s).into(),
                 false => Vec::new(),
             },
@@ -84,7 +84,7 @@ impl Placed {
 
     /// Lines at which the pulses outweigh the square wave. At its harmonics the wave is so strong that the least error of its period or
     /// of a clock would look like a mode.
-    fn trusted(&self) -> Vec<bool> {
+    pub(super) fn trusted(&self) -> Vec<bool> {
         /// Power of the wave over that of the pulses up to which a line counts.
         const WEAK: f64 = 0.1;
         match &self.wave {
@@ -109,27 +109,13 @@ fn outweighs(wave: &Lines, pulses: &Lines) -> Vec<f64> {
 
 /// What an excitation on the samples may leave, over what one between them leaves, to be that which acted.
 const HELD: f64 = 0.8;
-/// Fraction of a response that an excitation explains, on the lines alone.
-pub(super) fn explained(grid: &mut Grid, record: &Record, placed: &Placed, band: Band) -> f64 {
-    let (response, _) = grid.lines(record);
-    let trusted = placed.trusted();
-    let samples = grid.cut(&placed.sampled(), band);
-    let division = Division {
-        response: &response,
-        excitation: &samples,
-        folded: &[],
-        trusted: &trusted,
-    };
-    estimate(&division, |_| 1.0).explained
-}
-
 /// Most turns, and change of what was not measured, over the record, below which a turn is the last.
 const TURNS: usize = 30;
 const SETTLED: f64 = 1e-3;
 
 /// The transfer function; `seen` tells of a frequency how much of what it shook was measured.
 pub(super) fn measure(
-    grid: &mut Grid,
+    grid: &Grid,
     record: &mut Record,
     placed: &Placed,
     band: Band,
@@ -195,7 +181,7 @@ pub(super) fn measure(
                 }
             };
         }
-        change = record.fill(&grid.samples(&predicted), grid.is_cut());
+        change = record.fill(&grid.samples(predicted), grid.is_cut());
         turn += 1;
     }
 }

@@ -5,6 +5,7 @@
 //! (expectation and maximisation: Dempster, Laird and Rubin 1977).
 
 use super::excitation::SweptAcceleration;
+use super::reduce::{Filter, Reduced};
 use super::transfer::{Band, Lines};
 use crate::modal::Lateness;
 use crate::spectrum::{Transform, fast_length};
@@ -17,6 +18,9 @@ const BEYOND_S: f64 = 1.0;
 /// Grid of a log and the band of its lines.
 pub(super) struct Grid {
     transform: Transform,
+    filter: Filter,
+    /// Time between the samples of the sensor, and between those of the grid.
+    fine_s: f64,
     sample_s: f64,
     /// Samples of the grid before the first of the log.
     before: usize,
@@ -29,7 +33,7 @@ pub(super) struct Grid {
     is_cut: bool,
 }
 
-/// Rate of the samples in Hz below which the lines are twice as dense as they are independent. What the samples alias into low
+/// Rate of the sensor in Hz below which the lines are twice as dense as they are independent. What the samples alias into low
 /// frequencies comes up to a whole log later than what belongs there; on lines as far apart as they are independent it looks constant.
 const SLOW_HZ: f64 = 1500.0;
 
@@ -42,15 +46,19 @@ pub(super) struct Record {
 }
 
 impl Grid {
-    pub(super) fn new(samples: usize, sample_s: f64, band: Band) -> Self {
+    /// The grid of a log whose clock runs faster than that of the sweep by the factor `clock`.
+    pub(super) fn new(log: &Reduced<'_>, clock: f64, band: Band) -> Self {
+        let (fine_s, sample_s) = (log.fine_s / clock, log.sample_s() / clock);
         let before = (BEYOND_S / sample_s).ceil() as usize;
-        let dense = if sample_s * SLOW_HZ > 1.0 { 2 } else { 1 };
-        let length = fast_length(dense * (samples + 2 * before));
+        let dense = if fine_s * SLOW_HZ > 1.0 { 2 } else { 1 };
+        let length = fast_length(dense * (log.samples + 2 * before));
         Self {
             transform: Transform::new(length),
+            filter: log.filter.clone(),
+            fine_s,
             sample_s,
             before,
-            samples,
+            samples: log.samples,
             length,
             dense,
             band,
@@ -73,6 +81,11 @@ impl Grid {
         self.is_cut
     }
 
+    /// Those of all lines that lie in the band of the grid.
+    pub(super) fn band_of(&self, all: &[Complex<f64>]) -> Lines {
+        self.cut(all, self.band)
+    }
+
     /// An excitation, without what is beyond a log that ends within it.
     fn within_log(&self, mut excitation: Vec<f64>) -> Vec<f64> {
         if self.is_cut {
@@ -87,9 +100,19 @@ impl Grid {
         self.sample_s
     }
 
-    /// Time in seconds from the start of the grid to the first sample of the log.
+    /// Time between the samples of the sensor in seconds.
+    pub(super) fn fine_s(&self) -> f64 {
+        self.fine_s
+    }
+
+    /// Time in seconds from the start of the grid to the first sample of the grid that the log has.
     pub(super) fn before_s(&self) -> f64 {
         self.before as f64 * self.sample_s
+    }
+
+    /// Time in seconds from the start of the grid to the first sample of the log.
+    pub(super) fn log_begins_s(&self) -> f64 {
+        self.before_s() - self.filter.half() as f64 * self.fine_s
     }
 
     /// The record of a direction without its mean; `missing` are samples of the log.
@@ -110,8 +133,8 @@ impl Grid {
     }
 
     /// Lines of a record in the band, and all of them.
-    pub(super) fn lines(&mut self, record: &Record) -> (Lines, Vec<Complex<f64>>) {
-        let all = self.transform.forward(&record.values);
+    pub(super) fn lines(&self, record: &Record) -> (Lines, Vec<Complex<f64>>) {
+        let all = self.transform.forward(record.values.clone());
         (self.cut(&all, self.band), all)
     }
 
@@ -128,14 +151,20 @@ impl Grid {
         }
     }
 
+    /// What the grid's filter makes of an excitation that begins `start_s` after the start of the grid.
+    fn driven(&self, excitation: &SweptAcceleration, start_s: f64, averages: bool) -> Vec<Complex<f64>> {
+        let times = (-start_s, self.fine_s);
+        let samples = self.filter.of_excitation(excitation, times, self.length, averages);
+        self.transform.forward(self.within_log(samples))
+    }
+
     /// Lines of an excitation that begins `start_s` after the start of the grid, without what its samples alias into the band.
-    pub(super) fn excitation(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
-        let means = excitation.means(-start_s, self.sample_s, self.length);
-        let all = self.transform.forward(&self.within_log(means));
+    pub(super) fn excitation(&self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
+        let all = self.driven(excitation, start_s, true);
         let mut lines = self.cut(&all, self.band);
         for line in 0..lines.values.len() {
             // The mean over a sample attenuates a line by sinc(f·T).
-            let angle = std::f64::consts::PI * lines.frequency_hz(line) * self.sample_s;
+            let angle = std::f64::consts::PI * lines.frequency_hz(line) * self.fine_s;
             if angle > 0.0 {
                 lines.values[line] *= angle / angle.sin();
             }
@@ -144,18 +173,12 @@ impl Grid {
     }
 
     /// All lines of the samples of an excitation, with everything that they alias.
-    pub(super) fn sampled(&mut self, excitation: &SweptAcceleration, start_s: f64) -> Vec<Complex<f64>> {
-        let samples = excitation.samples(-start_s, self.sample_s, self.length);
-        self.transform.forward(&self.within_log(samples))
+    pub(super) fn sampled(&self, excitation: &SweptAcceleration, start_s: f64) -> Vec<Complex<f64>> {
+        self.driven(excitation, start_s, false)
     }
 
     /// What the samples of the first and the second integral of an excitation alias into the band, given its lines without that.
-    pub(super) fn folded_integrals(
-        &mut self,
-        excitation: &SweptAcceleration,
-        lines: &Lines,
-        start_s: f64,
-    ) -> [Lines; 2] {
+    pub(super) fn folded_integrals(&self, excitation: &SweptAcceleration, lines: &Lines, start_s: f64) -> [Lines; 2] {
         let integrals = excitation.integrals(-start_s, self.sample_s, self.length);
         let mut power = 0;
         integrals.map(|integral| {
@@ -164,7 +187,7 @@ impl Grid {
             // The integral of the integral need not end where it began: what it is at the end, it becomes in a straight line.
             let step = ends / self.length as f64;
             let closed: Vec<f64> = integral.iter().enumerate().map(|(n, x)| x - step * n as f64).collect();
-            let all = self.transform.forward(&closed);
+            let all = self.transform.forward(closed);
             let mut folded = self.cut(&all, self.band);
             for (n, line) in folded.values.iter_mut().enumerate() {
                 let by = Complex::new(0.0, std::f64::consts::TAU * lines.frequency_hz(n)).powi(power);
@@ -175,7 +198,7 @@ impl Grid {
     }
 
     /// The samples of all lines.
-    pub(super) fn samples(&mut self, all: &[Complex<f64>]) -> Vec<f64> {
+    pub(super) fn samples(&self, all: Vec<Complex<f64>>) -> Vec<f64> {
         let mut samples = self.transform.inverse(all);
         for sample in &mut samples {
             *sample /= self.length as f64;

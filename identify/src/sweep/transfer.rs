@@ -71,7 +71,7 @@ pub(super) fn delay(response: &Lines, excitation: &Lines) -> (f64, f64) {
     let mut lines = vec![Complex::new(0.0, 0.0); response.first];
     lines.extend(phases);
     let length = fast_length(8 * lines.len());
-    let impulse = Transform::new(length).inverse(&lines);
+    let impulse = Transform::new(length).inverse(lines);
     let square = impulse.iter().map(|x| x * x).sum::<f64>() / length as f64;
     let mut largest = (0, 0.0);
     for (n, x) in impulse.iter().enumerate() {
@@ -108,8 +108,8 @@ pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
         })
         .collect();
     let length = fast_length(4 * phases.len());
-    let mut transform = Transform::new(length);
-    let mut sharpness = |bend_s: f64| {
+    let transform = Transform::new(length);
+    let sharpness = |bend_s: f64| {
         let bent = Lateness {
             delay_s: -bend_s,
             bend_s,
@@ -117,7 +117,7 @@ pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
         let straight = phases
             .iter()
             .map(|(frequency_hz, phase)| phase * bent.turn(*frequency_hz, high_hz).conj());
-        let impulse = transform.inverse(&straight.collect::<Vec<_>>());
+        let impulse = transform.inverse(straight.collect());
         impulse.iter().map(|x| x.abs()).fold(0.0, f64::max)
     };
     let straight = sharpness(0.0);
