@@ -2,7 +2,7 @@
 
 use posicast_identify::recommend::{Judgement, recommend};
 use posicast_identify::sweep::{self, Sweep};
-use posicast_identify::synthetic::{Sensor, known, resonance_test};
+use posicast_identify::synthetic::{Sensor, known, present_test, resonance_test};
 
 /// A sensor of 400 samples per second with the noise of an ADXL345.
 fn sensor(noise: f64) -> Sensor {
@@ -67,9 +67,9 @@ fn slow_modes_are_found_or_said_not_to_be_visible(slow: &[(f64, f64)], noises: &
                     );
                 }
                 [_] => assert!(
-                    found.visible_from_hz.unwrap() > frequency_hz,
+                    found.visible.unwrap().from_hz > frequency_hz,
                     "{frequency_hz} Hz, {share}, noise {noise}: {:?}",
-                    found.visible_from_hz
+                    found.visible
                 ),
                 other => panic!("{frequency_hz} Hz, {share}, noise {noise}: {other:#?}"),
             }
@@ -80,7 +80,66 @@ fn slow_modes_are_found_or_said_not_to_be_visible(slow: &[(f64, f64)], noises: &
 
 #[test]
 fn unit_slow_modes_are_found_where_the_log_shows_them() {
-    slow_modes_are_found_or_said_not_to_be_visible(&[(6.5, 0.04), (9.0, 0.02), (20.0, 0.1)], &[0.04]);
+    slow_modes_are_found_or_said_not_to_be_visible(&[(6.5, 0.04), (9.0, 0.02), (20.0, 0.1)], &[0.04, 0.4]);
+}
+
+/// A mode turns the phase by half a turn, which looks like a clock that is wrong by 54 ppm over this sweep.
+#[test]
+fn unit_the_phase_of_a_mode_is_no_error_of_the_clock() {
+    let truths = [known(20.0, 0.03, 0.1), known(90.0, 0.04, 0.9)];
+    for seed in 0..3 {
+        let log = resonance_test(&truths, &Sweep::default(), &sensor(0.4), seed);
+        let found = sweep::identify(&log, &Sweep::default()).unwrap();
+        assert!(found.clock_error.abs() < 1e-5, "{}", found.clock_error);
+        assert!(
+            (found.start_s - Sensor::default().start_s).abs() < 1e-3,
+            "{}",
+            found.start_s
+        );
+        assert_eq!(found.modes.len(), 2, "{:#?}", found.modes);
+        for (found, truth) in found.modes.iter().zip(&truths) {
+            assert!((found.participation - truth.share).abs() < 0.015, "{found:?}");
+        }
+    }
+}
+
+/// At 100 Hz, a quarter of the rate, the sensor shows the third harmonic as the sweep itself.
+#[test]
+fn unit_what_a_slow_sensor_aliases_onto_the_sweep_is_no_mode() {
+    let truths = [known(70.0, 0.05, 0.9)];
+    let log = resonance_test(&truths, &Sweep::default(), &sensor(0.1), 1);
+    let found = sweep::identify(&log, &Sweep::default()).unwrap();
+    assert_eq!(found.modes.len(), 1, "{:#?}", found.modes);
+    assert!(found.reduced_square < 1.2, "{}", found.reduced_square);
+    assert!(
+        found.modes[0].frequency_interval_hz().holds(70.0),
+        "{:?}",
+        found.modes[0]
+    );
+}
+
+/// 5.83 Hz is the seventh harmonic of the square wave beside the sweep. It rings with `0.05/5.833²`, the other mode with `0.9/70²`: 8.0 times
+/// as much.
+#[test]
+fn unit_a_mode_at_a_harmonic_of_the_square_wave_is_found_or_said_not_to_be_visible() {
+    let truths = [known(5.833, 0.05, 0.05), known(70.0, 0.05, 0.9)];
+    for (sample_hz, is_found) in [(400.0, false), (800.0, true)] {
+        let sensor = Sensor {
+            sample_s: 1.0 / sample_hz,
+            ..sensor(0.1)
+        };
+        let log = resonance_test(&truths, &present_test(), &sensor, 1);
+        let found = sweep::identify(&log, &Sweep::default()).unwrap();
+        let visible = found.visible.unwrap();
+        match found.modes[..] {
+            [low, _] => assert!((low.mode.frequency_hz - 5.833).abs() < 0.1, "{low:?}"),
+            [_] => assert!(
+                !is_found && visible.from_hz > 5.833 && visible.least_ringing > 8.0,
+                "{visible:?}"
+            ),
+            _ => panic!("{:#?}", found.modes),
+        }
+    }
 }
 
 #[test]

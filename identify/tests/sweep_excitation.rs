@@ -180,3 +180,50 @@ fn unit_no_sweep_is_found_where_there_is_none() {
     };
     assert!(matches!(sweep::identify_any(&log), Err(SweepError::Unrelated(_))));
 }
+
+/// An antiresonance or a mode's phase takes the slowest pulses off the line in time and frequency, but the motion begins with them.
+#[test]
+fn unit_the_first_frequency_is_that_at_which_the_motion_begins() {
+    let machines = [
+        ([known(36.3, 0.057, 0.48), known(57.0, 0.065, 0.52)], (11.0, 140.0, 1.5)),
+        ([known(20.0, 0.038, 0.19), known(31.5, 0.016, 0.81)], (8.0, 85.0, 1.0)),
+        ([known(22.5, 0.038, 0.63), known(34.5, 0.073, 0.37)], (8.0, 129.0, 3.0)),
+    ];
+    for (n, (truths, (start_hz, end_hz, rate_hz_per_s))) in machines.into_iter().enumerate() {
+        let driven = Sweep {
+            start_hz,
+            end_hz,
+            rate_hz_per_s,
+            sweeping: Sweeping::Off,
+            ..Sweep::default()
+        };
+        let sensor = Sensor {
+            sample_s: 1.0 / 800.0,
+            start_s: 0.69,
+            ..Sensor::default()
+        };
+        let log = resonance_test(&truths, &driven, &sensor, n as u64);
+        let found = sweep::identify_any(&log).unwrap();
+        assert_eq!(
+            (found.sweep.start_hz, found.sweep.rate_hz_per_s),
+            (start_hz, rate_hz_per_s)
+        );
+        check(&truths, &found.modes);
+    }
+}
+
+#[test]
+fn unit_a_log_that_is_shorter_than_a_test_with_a_square_wave_is_no_reason_to_stop() {
+    let driven = Sweep {
+        start_hz: 11.0,
+        end_hz: 90.0,
+        ..present_test()
+    };
+    let sensor = Sensor {
+        sample_s: 1.0 / 800.0,
+        ..Sensor::default()
+    };
+    let log = resonance_test(&[known(10.0, 0.06, 1.0)], &driven, &sensor, 7);
+    // What is found is another question: the mode is below the sweep.
+    let _ = (sweep::identify_any(&log), sweep::identify(&log, &present_test()));
+}

@@ -400,12 +400,14 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
     } else {
         // A slow mode rings much for its share of the response, and is shaken less.
         let part = trimmed(100.0 * sweep::TOLD_RINGING, 3);
-        let visible = found.visible_from_hz.unwrap_or(low_hz);
-        let slower = match visible > PART * low_hz {
-            true => {
-                format!("; of slower ones it shows those that ring more, and none below {low} Hz or above {high} Hz")
-            }
-            false => format!("; none below that or above {high} Hz"),
+        let visible = found.visible.map_or(low_hz, |visible| visible.from_hz);
+        let slower = match found.visible.filter(|visible| visible.from_hz > PART * low_hz) {
+            Some(visible) => format!(
+                "; of slower ones those that ring more, at {} Hz with {} times as much as all of these, and none below {low} Hz or above {high} Hz",
+                trimmed(visible.least_at_hz, 2),
+                trimmed(visible.least_ringing, 2)
+            ),
+            None => format!("; none below that or above {high} Hz"),
         };
         format!(
             "from {} Hz on the log shows every mode that rings with {part} % of all{slower}",

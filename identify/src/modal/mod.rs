@@ -16,8 +16,8 @@ mod fit;
 mod select;
 
 pub(crate) use fit::{Fit, Lateness, Phase, is_resolved, refine, square};
-pub use select::TOLD_RINGING;
-pub(crate) use select::{grown, pruned, select, visible_from_hz};
+pub use select::{TOLD_RINGING, Visible};
+pub(crate) use select::{grown, pruned, select, visible};
 
 use nalgebra::Complex;
 

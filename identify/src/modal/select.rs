@@ -91,11 +91,23 @@ fn added(poles: &[Pole], pole: Pole) -> Vec<Pole> {
     poles
 }
 
-/// Share of all ringing for which [`visible_from_hz`] is told.
+/// Share of all ringing for which [`Visible::from_hz`] is told.
 pub const TOLD_RINGING: f64 = 0.05;
 
-/// The frequency in Hz from which on a further mode would have been found that rings with [`TOLD_RINGING`] of what these modes ring with. The slower a mode is, the smaller the share of the response that rings as much, and the weaker its excitation.
-pub(crate) fn visible_from_hz(points: &[ResponsePoint], fit: &Fit, modes: &[FoundMode]) -> Option<f64> {
+/// What a log would have shown of further modes below the lowest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Visible {
+    /// Frequency in Hz from which on a mode would have been found that rings with [`TOLD_RINGING`] of what all ring with that were.
+    pub from_hz: f64,
+    /// Frequency in Hz below that at which a mode must ring most to be found.
+    pub least_at_hz: f64,
+    /// What it must ring with there, over what all ring with that were found.
+    pub least_ringing: f64,
+}
+
+/// What points would have shown beside these modes, of a further one; `None` without modes. The slower a mode is, the smaller the share of the
+/// response that rings as much, and the weaker its excitation.
+pub(crate) fn visible(points: &[ResponsePoint], fit: &Fit, modes: &[FoundMode]) -> Option<Visible> {
     /// Damping ratio of the mode that would have been found.
     const DAMPING: f64 = 0.04;
     /// Distance of the frequencies that are looked at.
@@ -104,22 +116,26 @@ pub(crate) fn visible_from_hz(points: &[ResponsePoint], fit: &Fit, modes: &[Foun
     modes.first()?;
     let (low, high) = (points.first()?.frequency_hz, points.last()?.frequency_hz);
     let gains = Gains::new(points, fit, STRIDE);
-    let is_visible = |frequency_hz: f64| {
-        let share = TOLD_RINGING * whole * (std::f64::consts::TAU * frequency_hz).powi(2);
+    let least_ringing = |frequency_hz: f64| {
         let mode = Pole {
             frequency_hz,
             damping: DAMPING,
         };
-        share.powi(2) * gains.of_unit_share(&mode) * STRIDE as f64 > LEAST_GAIN * fit.reduced_square().max(1.0)
+        let gain = gains.of_unit_share(&mode) * STRIDE as f64;
+        let share = (LEAST_GAIN * fit.reduced_square().max(1.0) / gain.max(f64::MIN_POSITIVE)).sqrt();
+        share / (std::f64::consts::TAU * frequency_hz).powi(2) / whole
     };
     let steps = ((high / low).ln() / STEP.ln()).max(0.0) as i32;
-    let tried = (0..=steps).map(|step| high / STEP.powi(step));
-    Some(
-        tried
-            .take_while(|frequency_hz| is_visible(*frequency_hz))
-            .last()
-            .unwrap_or(high),
-    )
+    let tried = || (0..=steps).map(|step| (high / STEP.powi(step), least_ringing(high / STEP.powi(step))));
+    let seen = tried().take_while(|(_, ringing)| *ringing < TOLD_RINGING);
+    let from_hz = seen.last().map_or(high, |(frequency_hz, _)| frequency_hz);
+    let below = tried().filter(|(frequency_hz, _)| *frequency_hz <= from_hz);
+    let (least_at_hz, least_ringing) = below.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Visible {
+        from_hz,
+        least_at_hz,
+        least_ringing,
+    })
 }
 
 /// The pole that explains most of a fit's residual.

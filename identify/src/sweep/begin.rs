@@ -2,7 +2,7 @@
 
 use super::excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 use super::record::Grid;
-use super::transfer::{self, Division, Lines, Transfer, estimate};
+use super::transfer::{self, Division, Lines, estimate};
 use crate::modal::{self, Fit, Lateness, Phase, ResponsePoint};
 use crate::parallel::both;
 use crate::separable::Effort;
@@ -57,11 +57,11 @@ pub(super) fn placed(grid: &Grid, begun: &Begun, start_s: f64) -> Lines {
 }
 
 /// Fits poles without knowledge of the phase, then finds the lateness that matches them.
-pub(super) fn timed(transfer: &Transfer) -> Option<Fit> {
+pub(super) fn timed(points: &[ResponsePoint]) -> Option<Fit> {
     const TRIED_S: f64 = 0.25e-3;
     const TRIED: i32 = 60;
     // For start values a third of the points is as good, and takes a third of the time.
-    let points = &modal::thinned(&transfer.points, 3);
+    let points = &modal::thinned(points, 3);
     let free = modal::select(points, Phase::Free)?;
     let delays = (-TRIED..=TRIED).map(|n| Lateness {
         delay_s: f64::from(n) * TRIED_S,

@@ -59,8 +59,9 @@ pub(super) struct Course {
     lines: Lines,
     line: Line,
     rate_hz_per_s: f64,
-    /// Lowest frequency on the line.
+    /// Lowest frequency on the line, and that at which the line is when the motion begins, where the log shows that.
     lowest_hz: f64,
+    begins_hz: Option<f64>,
     /// Time from the start of the grid at which the motion stops.
     end_s: f64,
     highest_hz: f64,
@@ -81,11 +82,7 @@ pub(super) fn course(log: &Reduced<'_>) -> Option<Course> {
     let delays = delays(&lines, &grid);
     let (line, inliers) = line(&delays, &grid, log.seconds())?;
     let (first, last) = (inliers.first()?, inliers.last()?);
-    let rate_hz_per_s = snapped(
-        1.0 / line.slope,
-        &[1.0, 0.5, 0.1, 0.05],
-        (3e-3 + 0.2 / log.seconds()) / line.slope,
-    );
+    let rate_hz_per_s = round_rate(1.0 / line.slope, log.seconds());
     let line = Line {
         slope: 1.0 / rate_hz_per_s,
         start_s: middle(
@@ -95,7 +92,13 @@ pub(super) fn course(log: &Reduced<'_>) -> Option<Course> {
                 .collect(),
         ),
     };
+    // A mode's lateness may take the first delays off the line.
+    let known = inliers.get(inliers.len() / 4).unwrap_or(first);
+    let begins_hz = record
+        .begins_s(line.time_s(known.frequency_hz), log.sample_s())
+        .map(|begins_s| (begins_s - line.start_s) / line.slope);
     Some(Course {
+        begins_hz,
         end_s: record.stops_s(line.time_s(last.frequency_hz), log.sample_s()),
         lowest_hz: first.frequency_hz,
         highest_hz: 0.499 / log.fine_s,
@@ -115,17 +118,19 @@ impl Course {
             && (self.end_hz(sweep.start_hz) - sweep.end_hz).abs() < HZ
     }
 
-    /// Sweeps that the log may be of, the likeliest first.
-    pub(super) fn sweeps(&self) -> Vec<Sweep> {
-        let mut starts = starts(&self.lines, &self.line, self.rate_hz_per_s, self.lowest_hz, self.end_s);
-        starts.truncate(4);
-        let sweeps = starts.iter().map(|&start_hz| Sweep {
+    /// Sweeps that the log may be of, the likeliest first: those that begin with the motion, then those that begin where the line does.
+    pub(super) fn sweeps(&self) -> impl Iterator<Item = Sweep> + '_ {
+        let by_motion = self.begins_hz.filter(|hz| *hz > 0.5).map(Range::Around);
+        let by_line = Range::LowerThan(self.lowest_hz);
+        let starts = [by_motion, Some(by_line)].into_iter().flatten();
+        let starts = starts.flat_map(|range| starts_in(self, &range).into_iter().take(4));
+        let sweeps = starts.map(|start_hz| Sweep {
             start_hz,
             end_hz: self.end_hz(start_hz).min(self.highest_hz),
             rate_hz_per_s: self.rate_hz_per_s,
             ..Sweep::default()
         });
-        sweeps.filter(|sweep| sweep.end_hz > sweep.start_hz).collect()
+        sweeps.filter(|sweep| sweep.end_hz > sweep.start_hz)
     }
 
     /// The last frequency of a sweep with this first one, which ends half a period after it reached that.
@@ -137,6 +142,17 @@ impl Course {
             true => KLIPPERS_OLD_END_HZ,
             false => snapped(raw, &[5.0, 1.0, 0.5], tolerance_hz),
         }
+    }
+}
+
+/// A rate, or the round one that it is likely to be.
+fn round_rate(raw: f64, seconds: f64) -> f64 {
+    /// By how much it may be off a multiple of 0.5 Hz/s: a mode bends the line.
+    const OFF: f64 = 0.012;
+    let half = (raw / 0.5).round() * 0.5;
+    match half > 0.0 && (half / raw - 1.0).abs() < OFF {
+        true => half,
+        false => snapped(raw, &[0.1, 0.05], (3e-3 + 0.2 / seconds) * raw),
     }
 }
 
@@ -304,27 +320,50 @@ fn clipped(lines: &[Complex<f64>]) -> Vec<Complex<f64>> {
     lines.iter().map(clip).collect()
 }
 
+/// Where a first frequency is looked for.
+#[derive(Clone, Copy)]
+enum Range {
+    /// Around that at which the motion begins: an antiresonance or a slow mode's phase hides the beginning of the line, but not that
+    /// something moves.
+    Around(f64),
+    /// From below the lowest frequency on the line, as the slowest pulses are the weakest.
+    LowerThan(f64),
+}
+
 /// First frequencies of a sweep along a line, the likeliest first: those whose first pulses, beginning on the line, are like the log's
 /// lines around it. The axis follows them, so that the ratio of the two is real.
-fn starts(lines: &Lines, line: &Line, rate: f64, about_hz: f64, end_s: f64) -> Vec<f64> {
-    /// Half the range in Hz in which they are looked for, how much lower they may be, as the slowest pulses are the weakest, and half the range
-    /// of the lines that are compared.
+fn starts_in(course: &Course, range: &Range) -> Vec<f64> {
+    /// Half the range around the lowest frequency, how much lower it may be, and half the range of the lines that are compared, in Hz.
     const RANGE_HZ: f64 = 2.0;
     const LOWER_HZ: f64 = 5.0;
     const COMPARED_HZ: f64 = 3.0;
+    /// Half the range around the beginning of the motion, in Hz and in seconds.
+    const AROUND_HZ: f64 = 0.12;
+    const AROUND_S: f64 = 0.15;
     /// Delay in seconds that is tried on either side, and its step.
     const TRIED_S: f64 = 0.08;
     const STEP_S: f64 = 2e-3;
-    /// Likeness over the best's from which on a round number is as good.
+    /// Likeness over the best's from which on a round number is as good, in the wide range and in the small one.
     const AS_LIKE: f64 = 0.97;
+    const AS_LIKE_AROUND: f64 = 0.85;
     /// The same for the usual one.
     const NEARLY: f64 = 0.8;
-    let reach_hz = COMPARED_HZ.max(1.5 * rate.sqrt());
-    let range_hz = RANGE_HZ.max(1.5 * rate.sqrt());
-    let band = (
-        (about_hz - reach_hz - LOWER_HZ).max(0.3 * about_hz).max(0.6),
-        about_hz + reach_hz,
-    );
+    let Course { lines, line, .. } = course;
+    let (rate, end_s) = (course.rate_hz_per_s, course.end_s);
+    let wider_hz = |least: f64| least.max(1.5 * rate.sqrt());
+    let reach_hz = wider_hz(COMPARED_HZ);
+    let (about_hz, lowest_hz, highest_hz, as_like) = match *range {
+        Range::Around(hz) => {
+            let around_hz = AROUND_HZ + AROUND_S * rate;
+            (hz, hz - around_hz, hz + around_hz, AS_LIKE_AROUND)
+        }
+        Range::LowerThan(hz) => {
+            let range_hz = wider_hz(RANGE_HZ);
+            let lowest_hz = (hz - range_hz - LOWER_HZ).max(0.4 * hz);
+            (hz, lowest_hz, hz + range_hz, AS_LIKE)
+        }
+    };
+    let band = ((lowest_hz - reach_hz).max(0.3 * about_hz).max(0.6), about_hz + reach_hz);
     let first = ((band.0 / lines.resolution_hz) as usize).saturating_sub(lines.first);
     let last = ((band.1 / lines.resolution_hz) as usize)
         .saturating_sub(lines.first)
@@ -371,10 +410,9 @@ fn starts(lines: &Lines, line: &Line, rate: f64, about_hz: f64, end_s: f64) -> V
         (-steps..=steps).map(at).fold(0.0, f64::max)
     };
     let mut tried: Vec<(f64, f64)> = Vec::new();
-    let lowest = (about_hz - range_hz - LOWER_HZ).max(0.4 * about_hz).max(0.5);
     for step in [1.0, 0.5, 0.1] {
-        let from = (lowest / step).ceil() as i64;
-        let to = ((about_hz + range_hz) / step).floor() as i64;
+        let from = (lowest_hz.max(0.5) / step).ceil() as i64;
+        let to = (highest_hz / step).floor() as i64;
         tried.extend(
             (from..=to)
                 .map(|n| n as f64 * step)
@@ -389,7 +427,7 @@ fn starts(lines: &Lines, line: &Line, rate: f64, about_hz: f64, end_s: f64) -> V
         .any(|(start_hz, like)| *start_hz == usual && *like > NEARLY * best);
     let mut found: Vec<f64> = if is_usual { vec![usual] } else { Vec::new() };
     for (start_hz, like) in &tried {
-        if *like >= AS_LIKE * best && !found.iter().any(|other| (other - start_hz).abs() < 1e-6) {
+        if *like >= as_like * best && !found.iter().any(|other| (other - start_hz).abs() < 1e-6) {
             found.push(*start_hz);
         }
     }

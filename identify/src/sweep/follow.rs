@@ -1,6 +1,7 @@
 //! Follows a log with one description of its sweep and one clock.
 
 use super::begin::{Begun, begin, placed, sought, timed};
+use super::crossing::{crossing, outside, weighed};
 use super::excitation::{Sweep, Sweeping, SweptAcceleration};
 use super::measure::{Placed, measure};
 use super::modes::{modes, told};
@@ -8,7 +9,7 @@ use super::record::{Grid, Record};
 use super::reduce::Reduced;
 use super::transfer::{self, Band, Lines, Transfer};
 use super::{FoundInSweep, SweepError, wave};
-use crate::modal::{self, Lateness, Phase};
+use crate::modal::{self, Lateness, Phase, ResponsePoint};
 use crate::separable::Effort;
 use nalgebra::Complex;
 
@@ -20,6 +21,10 @@ const LEAST_EXPLAINED: f64 = 0.2;
 const LEAST_TOLD: f64 = 0.8;
 /// Bend in seconds above which a log is followed again with a corrected clock: the fit compensates a smaller one.
 const BEND_S: f64 = 3e-3;
+
+/// Bend, over the period of the highest frequency, above which it is none that modes cause: a mode turns the phase by half a turn, which
+/// looks like a bend of one period, and two do it twice.
+const HALF_TURNS: f64 = 1.6;
 
 /// Number of standard deviations by which a bend must exceed zero.
 const CERTAIN: f64 = 6.0;
@@ -71,7 +76,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     let smooth = placed(&grid, &begun, begun.start_s);
     if look == Look::Everywhere {
         let bend_s = transfer::bend(&response, &smooth, band.high_hz);
-        if bend_s.abs() > BEND_S {
+        if bend_s.abs() > HALF_TURNS / band.high_hz {
             return Ok(Pass::Drifts(error(bend_s)));
         }
     }
@@ -119,7 +124,8 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     }
     let covered = covered?;
     let rough = rough.within(&covered);
-    let timed = timed(&rough).ok_or(SweepError::Empty)?;
+    let crossing = crossing(fine_s);
+    let timed = timed(&outside(&rough.points, &crossing)).ok_or(SweepError::Empty)?;
     let late = timed.phase.lateness();
     let bends = late.bend_s.abs() > BEND_S && late.bend_s.abs() > CERTAIN * timed.bend_deviation_s;
     if bends && look != Look::Nowhere {
@@ -145,8 +151,8 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
         let again = moved.as_ref().map(|wave| (wave, gain));
         let exact = Placed::new(&grid, smooth, &begun.excitation, again, start_s);
         let mut measured = measure(&grid, &mut record, &exact, band, seen(start_s));
-        let transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
-        let points = &transfer.points;
+        let mut transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
+        let points = &outside(&transfer.points, &crossing);
         let rest = Phase::Late(Lateness::default());
         let start = modal::refine(points, &poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
         let delay_s = start.phase.lateness().delay_s;
@@ -166,7 +172,12 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
             continue;
         }
         let grown = modal::pruned(points, modal::grown(points, start));
-        let fit = modal::refine(points, &grown.poles, grown.phase, Effort::Full).ok_or(SweepError::Empty)?;
+        let all = |points: &[ResponsePoint], effort| modal::refine(points, &grown.poles, grown.phase, effort);
+        if points.len() < transfer.points.len() {
+            let fit = all(&transfer.points, Effort::Rough).ok_or(SweepError::Empty)?;
+            weighed(&mut transfer.points, &crossing, &fit);
+        }
+        let fit = all(&transfer.points, Effort::Full).ok_or(SweepError::Empty)?;
         break (measured, transfer, fit);
     };
     let told = told(&transfer, &fit);
@@ -175,7 +186,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     }
     let modes = modes(&fit, &transfer.points, &covered, &measured.unseen);
     Ok(Pass::Ended(Box::new(FoundInSweep {
-        visible_from_hz: modal::visible_from_hz(&transfer.points, &fit, &modes),
+        visible: modal::visible(&transfer.points, &fit, &modes),
         modes,
         direction,
         sweep: *sweep,

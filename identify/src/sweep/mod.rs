@@ -4,6 +4,7 @@
 //! open, the time at which it began and the order of its quarter periods, is found by trying.
 
 mod begin;
+mod crossing;
 mod excitation;
 mod find;
 mod follow;
@@ -14,7 +15,7 @@ mod reduce;
 mod transfer;
 mod wave;
 
-pub use crate::modal::TOLD_RINGING;
+pub use crate::modal::{TOLD_RINGING, Visible};
 pub use excitation::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAcceleration};
 pub use transfer::{Band, Transfer};
 
@@ -53,9 +54,8 @@ pub struct FoundInSweep {
     pub rise: Rise,
     /// The frequencies at which the log has the axis shaken; modes outside are not reported.
     pub covered: Band,
-    /// Frequency in Hz from which on a further mode below the lowest would have been found, if it rang with [`TOLD_RINGING`] of what
-    /// all ring with; `None` without modes.
-    pub visible_from_hz: Option<f64>,
+    /// What the log would have shown of further modes below the lowest; `None` without modes.
+    pub visible: Option<Visible>,
     /// The measured transfer function.
     pub transfer: Transfer,
     /// The fitted transfer function, at the same points.
@@ -163,7 +163,7 @@ pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
     let Some(course) = find::course(&reduced) else {
         return by_default();
     };
-    let mut tried;
+    let mut first = None;
     if course.is_of(&usual) {
         let found = by_default();
         if found
@@ -172,20 +172,15 @@ pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
         {
             return found;
         }
-        tried = course.sweeps();
-        let is_near = tried
-            .first()
-            .is_none_or(|sweep| (sweep.start_hz - usual.start_hz).abs() < HZ);
-        if found.is_ok() && is_near {
+        let is_near = |sweep: Sweep| (sweep.start_hz - usual.start_hz).abs() < HZ;
+        if found.is_ok() && course.sweeps().next().is_none_or(is_near) {
             return found;
         }
-        tried.insert(0, usual);
-    } else {
-        tried = course.sweeps();
+        first = Some(usual);
     }
     let mut likeliest: Option<FoundInSweep> = None;
-    for sweep in &tried {
-        let Ok(found) = described(sweep) else { continue };
+    for sweep in first.into_iter().chain(course.sweeps()) {
+        let Ok(found) = described(&sweep) else { continue };
         let explained = found.transfer.explained;
         if likeliest
             .as_ref()

@@ -222,6 +222,7 @@ impl Grid {
 impl Record {
     /// Takes the samples from `begin` on as not measured.
     pub(super) fn forget_from(&mut self, begin: usize) {
+        let begin = begin.min(self.values.len());
         self.unknown.retain(|gap| gap.start < begin);
         let begin = match self.unknown.last_mut() {
             Some(last) if last.end >= begin => self.unknown.pop().map_or(begin, |last| last.start),
@@ -256,6 +257,47 @@ impl Record {
             .map(|gap| ((gap.end as f64).min(to) - (gap.start as f64).max(from)).max(0.0))
             .sum();
         1.0 - lost / (to - from).max(1.0)
+    }
+
+    /// Time in seconds, from the start of the grid, at which a motion begins that is there at `known_s`: the first tenth of a second with more than the
+    /// quietest before has, and no pause since; `None` where the log has no quiet before.
+    pub(super) fn begins_s(&self, known_s: f64, sample_s: f64) -> Option<f64> {
+        /// Duration of what is compared, and of the longest pause, at which the sensor may stand still.
+        const COMPARED_S: f64 = 0.1;
+        const PAUSE_S: f64 = 0.8;
+        /// Power over that of the quietest from which on it is motion.
+        const MOVES: f64 = 4.0;
+        /// Number of parts after the beginning whose power is compared with that before.
+        const AFTER: usize = 5;
+        let first = self.unknown.first().map_or(0, |gap| gap.end);
+        let width = ((COMPARED_S / sample_s) as usize).max(8);
+        let last = ((known_s / sample_s).max(0.0) as usize).min(self.values.len());
+        let parts = self.values.get(first..last)?.chunks_exact(width);
+        let powers: Vec<f64> = parts
+            .map(|part| {
+                let mean = part.iter().sum::<f64>() / width as f64;
+                part.iter().map(|x| (x - mean).powi(2)).sum::<f64>()
+            })
+            .collect();
+        let quietest = powers.iter().copied().fold(f64::INFINITY, f64::min);
+        let pause = (PAUSE_S / COMPARED_S) as usize;
+        let (mut begins, mut still) = (powers.len(), 0);
+        for (n, power) in powers.iter().enumerate().rev() {
+            if *power > MOVES * quietest {
+                (begins, still) = (n, 0);
+            } else {
+                still += 1;
+            }
+            if still > pause {
+                break;
+            }
+        }
+        let mean = |powers: &[f64]| powers.iter().sum::<f64>() / powers.len().max(1) as f64;
+        let (before, after) = powers.split_at(begins);
+        let after = &after[..after.len().min(AFTER)];
+        // A sweep that is there from the first sample on grows, and does not begin.
+        let has_begun = !before.is_empty() && !after.is_empty() && mean(after) > MOVES * mean(before);
+        has_begun.then(|| (first + begins * width) as f64 * sample_s)
     }
 
     /// Time in seconds, from the start of the grid, at which a motion stops that goes on until about `expected_s`: the last one at which
