@@ -163,28 +163,29 @@ pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
     let Some(course) = find::course(&reduced) else {
         return by_default();
     };
-    let mut first = None;
+    let mut likeliest = None;
     if course.is_of(&usual) {
         let found = by_default();
-        if found
-            .as_ref()
-            .is_ok_and(|found| found.transfer.explained > NEARLY_EXPLAINED)
-        {
-            return found;
-        }
         let is_near = |sweep: Sweep| (sweep.start_hz - usual.start_hz).abs() < HZ;
-        if found.is_ok() && course.sweeps().next().is_none_or(is_near) {
+        let is_it = |found: &FoundInSweep| {
+            found.transfer.explained > NEARLY_EXPLAINED || course.sweeps().next().is_none_or(is_near)
+        };
+        if found.as_ref().is_ok_and(is_it) {
             return found;
         }
-        first = Some(usual);
+        likeliest = found.ok();
     }
-    let mut likeliest: Option<FoundInSweep> = None;
-    for sweep in first.into_iter().chain(course.sweeps()) {
-        let Ok(found) = described(&sweep) else { continue };
+    for sweep in course.sweeps() {
+        let found = match described(&sweep) {
+            Ok(found) => found,
+            // The others rise in the same way, and would explain as little.
+            Err(SweepError::Unrelated(_)) => break,
+            Err(_) => continue,
+        };
         let explained = found.transfer.explained;
         if likeliest
             .as_ref()
-            .is_none_or(|best| explained > best.transfer.explained)
+            .is_none_or(|best: &FoundInSweep| explained > best.transfer.explained)
         {
             likeliest = Some(found);
         }
