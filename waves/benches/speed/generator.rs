@@ -4,8 +4,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Number of signals other than the clock.
+/// Number of signals other than the clock, and in a large design.
 const SIGNALS: usize = 100;
+const MANY_SIGNALS: usize = 50_000;
 const CHANGES_PER_CLOCK: usize = 13;
 
 /// Kind of the signals that change.
@@ -15,6 +16,10 @@ pub(crate) enum Shape {
     Words,
     /// Flags, some words of 8 bits: 5 bytes per change.
     Flags,
+    /// Words as above, in half of the values of which some digits are `x`.
+    Unknown,
+    /// 50,000 signals: flags, and a tenth words of 32 bits.
+    Many,
 }
 
 /// How the second file differs from the first.
@@ -26,24 +31,43 @@ pub(crate) enum Second {
     SameBytes,
     /// It is equal, and both are FST.
     Fst,
+    /// The same, in blocks of another size, so that no packed bytes are equal.
+    FstOtherBlocks,
 }
 
 impl Shape {
+    fn signals(self) -> usize {
+        match self {
+            Self::Many => MANY_SIGNALS,
+            _ => SIGNALS,
+        }
+    }
+
     fn width(self, at: usize) -> u32 {
         match (self, at) {
-            (Self::Words, 0..30) => 32,
-            (Self::Words, 30..50) => 48,
-            (Self::Words, 50..70) => 16,
+            (Self::Words | Self::Unknown, 0..30) => 32,
+            (Self::Words | Self::Unknown, 30..50) => 48,
+            (Self::Words | Self::Unknown, 50..70) => 16,
             (Self::Flags, 0..15) => 8,
+            (Self::Many, at) if at % 10 == 0 => 32,
             _ => 1,
         }
     }
 }
 
+/// A new value: bits, and a mask of those that are `x`.
+#[derive(Debug, Clone, Copy)]
+struct Next {
+    signal: usize,
+    value: u64,
+    unknown: u64,
+}
+
 /// Makes the values, clock by clock.
 struct Process {
+    shape: Shape,
     widths: Vec<u32>,
-    values: [u64; SIGNALS],
+    values: Vec<u64>,
     random: u64,
     clocks: usize,
 }
@@ -51,19 +75,20 @@ struct Process {
 impl Process {
     fn new(shape: Shape) -> Self {
         Self {
-            widths: (0..SIGNALS).map(|at| shape.width(at)).collect(),
-            values: [0; SIGNALS],
+            shape,
+            widths: (0..shape.signals()).map(|at| shape.width(at)).collect(),
+            values: vec![0; shape.signals()],
             random: 0x9e37_79b9_7f4a_7c15,
             clocks: 0,
         }
     }
 
     /// Returns the signals that change in the next clock, and their values.
-    fn clock(&mut self) -> [(usize, u64); CHANGES_PER_CLOCK] {
+    fn clock(&mut self) -> [Next; CHANGES_PER_CLOCK] {
         let start = self.clocks * 7;
         self.clocks += 1;
         std::array::from_fn(|at| {
-            let signal = (start + at * 9) % SIGNALS;
+            let signal = (start + at * 9) % self.widths.len();
             self.random ^= self.random << 13;
             self.random ^= self.random >> 7;
             self.random ^= self.random << 17;
@@ -71,7 +96,18 @@ impl Process {
             let before = self.values[signal];
             let next = before.wrapping_add(self.random >> 44 | 1) & mask;
             self.values[signal] = if mask == 1 { before ^ 1 } else { next };
-            (signal, self.values[signal])
+            let unknown = match self.shape {
+                // The upper digits, or some in the middle.
+                Shape::Unknown if mask > 1 && self.random & 1 == 1 => {
+                    (self.random >> 20 & self.random >> 40) & mask & !1
+                }
+                _ => 0,
+            };
+            Next {
+                signal,
+                value: self.values[signal],
+                unknown,
+            }
         })
     }
 }
@@ -84,6 +120,8 @@ pub(crate) struct Recording {
     pub(crate) reversed: bool,
     /// Whether one bit near the end is inverted.
     pub(crate) flip: bool,
+    /// Bytes of changes in a block of an FST.
+    pub(crate) fst_block: usize,
 }
 
 impl Recording {
@@ -94,7 +132,7 @@ impl Recording {
             bytes: 0,
         };
         let mut process = Process::new(self.shape);
-        let mut ids: Vec<String> = (0..=SIGNALS as u64)
+        let mut ids: Vec<String> = (0..=process.widths.len() as u64)
             .map(|number| vcd::IdCode::from(number).to_string())
             .collect();
         if self.reversed {
@@ -121,15 +159,16 @@ impl Recording {
             lines.clear();
             lines.push(format!("1{}\n", ids[0]).into_bytes());
             let clock = process.clocks;
-            for (signal, value) in process.clock() {
+            for next in process.clock() {
                 let flip = !flipped && out.bytes > bytes - bytes / 50;
                 flipped |= flip;
                 let mut line = Vec::new();
                 put(
                     &mut line,
-                    value ^ u64::from(flip),
-                    process.widths[signal],
-                    &ids[signal + 1],
+                    next,
+                    flip,
+                    process.widths[next.signal],
+                    &ids[next.signal + 1],
                 );
                 lines.push(line);
             }
@@ -143,10 +182,10 @@ impl Recording {
             out.write_all(&text)?;
         }
         out.inner.flush()?;
-        Ok(summary(out.bytes, process.clocks))
+        Ok(summary(out.bytes, &process))
     }
 
-    /// Writes `clocks` clocks of the same as an FST, in blocks of the size that `vcd2fst` writes.
+    /// Writes `clocks` clocks of the same as an FST.
     pub(crate) fn write_fst(self, path: &Path, clocks: usize) -> io::Result<String> {
         use fst_writer::{FstFileType, FstInfo, FstScopeType, FstSignalType, FstVarDirection, FstVarType, open_fst};
 
@@ -176,43 +215,48 @@ impl Recording {
         body.time_change(0).map_err(failed)?;
         body.signal_change(clk, b"0").map_err(failed)?;
         for clock in 0..clocks {
-            if body.size() >= FST_BLOCK {
+            if body.size() >= self.fst_block {
                 body.flush().map_err(failed)?;
             }
             body.time_change(clock as u64 * 10_000 + 5_000).map_err(failed)?;
             body.signal_change(clk, b"1").map_err(failed)?;
-            for (at, (signal, value)) in process.clock().into_iter().enumerate() {
+            for (at, next) in process.clock().into_iter().enumerate() {
                 let flip = self.flip && at == 0 && clock == clocks - clocks / 50;
-                let width = process.widths[signal] as usize;
-                let digits = format!("{:0width$b}", value ^ u64::from(flip));
-                body.signal_change(ids[signal], digits.as_bytes()).map_err(failed)?;
+                let mut digits = Vec::new();
+                put_digits(&mut digits, next, flip, process.widths[next.signal]);
+                body.signal_change(ids[next.signal], &digits).map_err(failed)?;
             }
             body.time_change(clock as u64 * 10_000 + 10_000).map_err(failed)?;
             body.signal_change(clk, b"0").map_err(failed)?;
         }
         body.finish().map_err(failed)?;
-        Ok(summary(path.metadata()?.len(), clocks))
+        Ok(summary(path.metadata()?.len(), &process))
     }
 }
 
-/// Bytes of changes in a block of an FST.
-const FST_BLOCK: usize = 32 << 20;
-
-fn summary(bytes: u64, clocks: usize) -> String {
+fn summary(bytes: u64, process: &Process) -> String {
     format!(
         "{:.0} MB, {} signals, {:.1} M changes at {:.1} M times",
         bytes as f64 / 1e6,
-        SIGNALS + 1,
-        (clocks * (CHANGES_PER_CLOCK + 2)) as f64 / 1e6,
-        2.0 * clocks as f64 / 1e6
+        process.widths.len() + 1,
+        (process.clocks * (CHANGES_PER_CLOCK + 2)) as f64 / 1e6,
+        2.0 * process.clocks as f64 / 1e6
     )
 }
 
-fn put(line: &mut Vec<u8>, value: u64, width: u32, id: &str) {
+fn put_digits(line: &mut Vec<u8>, next: Next, flip: bool, width: u32) {
+    let value = next.value ^ u64::from(flip);
+    line.extend((0..width).rev().map(|bit| match next.unknown >> bit & 1 {
+        1 => b'x',
+        _ => b'0' + (value >> bit & 1) as u8,
+    }));
+}
+
+fn put(line: &mut Vec<u8>, next: Next, flip: bool, width: u32, id: &str) {
     if width > 1 {
         line.push(b'b');
     }
-    line.extend((0..width).rev().map(|bit| b'0' + (value >> bit & 1) as u8));
+    put_digits(line, next, flip, width);
     if width > 1 {
         line.push(b' ');
     }

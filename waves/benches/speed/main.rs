@@ -26,12 +26,17 @@ use wavecmp::diff::{self, DiffOptions, DiffVerdict};
 use self::generator::{Recording, Second, Shape};
 
 const RUNS: usize = 3;
-const PAIRS: [(&str, Shape, Second); 5] = [
+const PAIRS: [(&str, Shape, Second); 10] = [
     ("words, other names", Shape::Words, Second::OtherNames),
     ("words, same bytes", Shape::Words, Second::SameBytes),
     ("flags, other names", Shape::Flags, Second::OtherNames),
     ("flags, same bytes", Shape::Flags, Second::SameBytes),
+    ("words with x, other names", Shape::Unknown, Second::OtherNames),
     ("words, FST", Shape::Words, Second::Fst),
+    ("flags, FST", Shape::Flags, Second::Fst),
+    ("flags, FST, other blocks", Shape::Flags, Second::FstOtherBlocks),
+    ("50,000 signals, other names", Shape::Many, Second::OtherNames),
+    ("50,000 signals, FST", Shape::Many, Second::Fst),
 ];
 
 fn main() {
@@ -68,17 +73,29 @@ fn all(megabytes: u64) {
 
 fn generate(folder: &Path, pair: usize, megabytes: u64) -> [PathBuf; 2] {
     let (_, shape, second) = PAIRS[pair];
-    let extension = if second == Second::Fst { "fst" } else { "vcd" };
+    let extension = match second {
+        Second::Fst | Second::FstOtherBlocks => "fst",
+        Second::OtherNames | Second::SameBytes => "vcd",
+    };
     let paths = ["a", "b"].map(|name| folder.join(format!("{pair}{name}.{extension}")));
     for (path, is_second) in paths.iter().zip([false, true]) {
         let recording = Recording {
             shape,
             reversed: is_second && second == Second::OtherNames,
             flip: is_second,
+            // The size that `vcd2fst` writes.
+            fst_block: if is_second && second == Second::FstOtherBlocks {
+                20 << 20
+            } else {
+                32 << 20
+            },
         };
         let summary = match second {
-            // As many clocks as a VCD of that length has.
-            Second::Fst => recording.write_fst(path, megabytes as usize * 1_000_000 / 370),
+            // About as many clocks as a VCD of that length has.
+            Second::Fst | Second::FstOtherBlocks => {
+                let per_clock = if shape == Shape::Words { 370 } else { 120 };
+                recording.write_fst(path, megabytes as usize * 1_000_000 / per_clock)
+            }
             _ => recording.write(path, megabytes * 1_000_000),
         };
         let summary = summary.unwrap();

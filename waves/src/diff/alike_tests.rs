@@ -155,6 +155,94 @@ fn unit_stretches_that_are_the_same_are_found() {
     }
 }
 
+/// Writes the same as an FST whose blocks have this many rows; the times of odd rows have no change of the clock.
+fn write_fst(path: &Path, rows: &[Row], block: usize) {
+    use fst_writer::{FstFileType, FstInfo, FstScopeType, FstSignalType, FstVarDirection, FstVarType, open_fst};
+
+    let info = FstInfo {
+        start_time: 0,
+        timescale_exponent: -9,
+        version: String::new(),
+        date: String::new(),
+        file_type: FstFileType::Verilog,
+    };
+    let mut head = open_fst(path, &info).unwrap();
+    head.scope("t", "", FstScopeType::Module).unwrap();
+    let mut var = |name: &str, width: usize| {
+        let kind = FstSignalType::bit_vec(width as u32);
+        head.var(name, kind, FstVarType::Wire, FstVarDirection::Implicit, None)
+            .unwrap()
+    };
+    let clk = var("clk", 1);
+    let ids: Vec<_> = WIDTHS
+        .iter()
+        .enumerate()
+        .map(|(at, width)| var(&format!("w{at}"), *width))
+        .collect();
+    head.up_scope().unwrap();
+    let mut body = head.finish().unwrap();
+    body.time_change(0).unwrap();
+    body.signal_change(clk, b"0").unwrap();
+    for (clock, row) in rows.iter().enumerate() {
+        if clock > 0 && clock % block == 0 {
+            body.flush().unwrap();
+        }
+        let mut time = 10 * clock as u64 + 5;
+        body.time_change(time).unwrap();
+        if clock % 2 == 0 {
+            body.signal_change(clk, b"1").unwrap();
+        }
+        for (signal, value) in row {
+            if value % 11 == 5 {
+                time += 1;
+                body.time_change(time).unwrap();
+            }
+            let width = WIDTHS[*signal];
+            let value = value & (u128::MAX >> (128 - width));
+            let mut digits = format!("{value:0width$b}");
+            if value % 7 == 3 {
+                digits.replace_range(..1, "x");
+            }
+            body.signal_change(ids[*signal], digits.as_bytes()).unwrap();
+        }
+        body.time_change(10 * clock as u64 + 14).unwrap();
+        body.signal_change(clk, b"0").unwrap();
+    }
+    body.finish().unwrap();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn prop_chains_that_are_the_same_say_what_reading_every_change_says(
+        rows in rows(),
+        edits in edits(),
+        blocks in [1usize..60, 1usize..60],
+        other_blocks: bool,
+        raw: bool,
+        first: bool,
+        later: bool,
+    ) {
+        let mut other = rows.clone();
+        for edit in &edits {
+            let at = edit.row.index(rows.len());
+            other[at].push((edit.signal, edit.value));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.fst", "b.fst"].map(|name| folder.path().join(name));
+        write_fst(&a, &rows, blocks[0]);
+        write_fst(&b, &other, blocks[usize::from(other_blocks)]);
+        let mut options = DiffOptions { raw, first, ..DiffOptions::default() };
+        if later {
+            let latency = if raw { "w2=7ns" } else { "w2=1" };
+            options.add_latency(latency).unwrap();
+        }
+        prop_assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
+        prop_assert_eq!(said([&b, &a], &options, false), said([&b, &a], &options, true));
+    }
+}
+
 /// Signals of one bit, with id codes of one to three characters.
 const BITS: usize = 12;
 

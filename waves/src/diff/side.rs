@@ -229,7 +229,7 @@ impl Side {
             if self.settle.is_some() {
                 self.hold_back(time_fs)?;
             } else {
-                if !step.distinct {
+                if step.again {
                     self.hidden.begin(true);
                     self.count_hidden(touched);
                 }

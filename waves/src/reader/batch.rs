@@ -26,8 +26,9 @@ pub(crate) struct Step {
     pub(super) words_end: u32,
     /// Whether the watched clock has its edge here.
     pub(crate) edge: bool,
-    /// Whether each slot changes once at most: they rise from change to change.
-    pub(crate) distinct: bool,
+    /// Whether a signal other than the clock changes again here: it has changed since the last edge, or twice at this time.
+    /// Without a clock, only the latter counts.
+    pub(crate) again: bool,
     /// Whether nothing is recorded from here on (`$dumpoff`), until a later step.
     pub(crate) off: bool,
 }
@@ -61,6 +62,18 @@ impl Change {
     #[inline]
     pub(super) fn words(slot: u32) -> Self {
         Self(slot << SLOT_SHIFT | IN_WORDS)
+    }
+
+    /// Returns the digit, if it is a change to one.
+    #[inline]
+    pub(super) fn as_digit(self) -> u8 {
+        self.0 as u8 & 3
+    }
+
+    /// Whether all words of the slot's kind belong to it.
+    #[inline]
+    pub(super) fn is_words(self) -> bool {
+        self.0 & (IN_WORDS | KNOWN) == IN_WORDS
     }
 
     #[inline]

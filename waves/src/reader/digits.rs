@@ -125,6 +125,59 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
     (word, end)
 }
 
+/// Each byte of eight that are digits `0`, `1`, `x` or `z`: its bit, whether it is unknown, and what is left of a byte that
+/// is none of these.
+#[inline]
+fn eight_mixed(eight: u64) -> [u64; 3] {
+    const EACH: u64 = u64::from_le_bytes([1; 8]);
+    let unknown = eight >> 6 & EACH;
+    let all = unknown * 0xff;
+    // `0` and `1` become 0 and 1, `x` and `z` of either case 0 and 2.
+    let digits = (eight | all & (0x20 * EACH)) ^ (0x30 * EACH) ^ all & (0x48 * EACH);
+    let other = digits & !(EACH ^ all & (3 * EACH));
+    [(digits | digits >> 1) & EACH, unknown, other]
+}
+
+/// Returns the bits and the unknown bits that the digits `0`, `1`, `x` and `z` at `at` make after `known` ones, or the last 64,
+/// and the position after them. Eight bytes must follow the last digit, or the run ends too early.
+#[inline]
+pub(super) fn mixed_run(known: u64, data: &[u8], at: usize) -> ([u64; 2], usize) {
+    const HIGH: u64 = u64::from_le_bytes([0x80; 8]);
+    const LOW: u64 = u64::from_le_bytes([0x7f; 8]);
+    let (mut words, mut end) = ([known, 0], at);
+    while let Some(eight) = data.get(end..end + 8) {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(eight);
+        let [bits, unknown, other] = eight_mixed(u64::from_le_bytes(bytes));
+        let count = match other {
+            0 => 8,
+            _ => ((((other & LOW) + LOW) | other) & HIGH).trailing_zeros() / 8,
+        };
+        for (word, lanes) in words.iter_mut().zip([bits, unknown]) {
+            // The digits before the other byte come after zeros.
+            let lanes = lanes.unbounded_shl(64 - 8 * count);
+            *word = *word << count | lanes.wrapping_mul(0x8040_2010_0804_0201) >> 56;
+        }
+        end += count as usize;
+        if count < 8 {
+            break;
+        }
+    }
+    (words, end)
+}
+
+/// Extends `count` digits to a vector of `width` bits, at most 64, as in VCD: with zeros, or with the first digit if that is
+/// unknown.
+#[inline]
+pub(super) fn extended([bits, unknown]: [u64; 2], count: u32, width: u32) -> [u64; 2] {
+    let first = 1u64.unbounded_shl(count.wrapping_sub(1));
+    if unknown & first == 0 {
+        return [bits, unknown];
+    }
+    let missing = u64::MAX.unbounded_shl(count) & u64::MAX.unbounded_shr(64 - width);
+    [if bits & first == 0 { bits } else { bits | missing }, unknown | missing]
+}
+
 /// Returns the decimal number at `at` and the position after it; `None` without a digit, or beyond 64 bits.
 #[inline]
 pub(super) fn decimal(data: &[u8], at: usize) -> Option<(u64, usize)> {
@@ -210,7 +263,17 @@ fn trim(width: u32, words: &mut [u64]) {
 /// Returns bits and unknown bits, and whether VHDL's additional states are among the digits.
 fn mixed_word(digits: &[u8]) -> Result<((u64, u64), bool), u8> {
     let (mut bits, mut unknown, mut flags) = (0, 0, 0);
-    for byte in digits {
+    let mut rest = digits;
+    while let Some((eight, behind)) = rest.split_first_chunk() {
+        let [of_eight, unknown_of_eight, other] = eight_mixed(u64::from_le_bytes(*eight));
+        if other != 0 {
+            break;
+        }
+        bits = bits << 8 | of_eight.wrapping_mul(0x8040_2010_0804_0201) >> 56;
+        unknown = unknown << 8 | unknown_of_eight.wrapping_mul(0x8040_2010_0804_0201) >> 56;
+        rest = behind;
+    }
+    for byte in rest {
         let digit = DIGITS[*byte as usize];
         if digit == NO_DIGIT {
             return Err(*byte);
@@ -260,6 +323,23 @@ mod tests {
             let data = [digits.as_bytes(), &[next], &rest].concat();
             let expected = u64::from_str_radix(&digits, 2).unwrap_or(0);
             prop_assert_eq!(known_run(&data, 0), (expected, digits.len()));
+        }
+
+        #[test]
+        fn prop_a_run_of_digits_ends_where_it_ends(
+            digits in "[01xzXZ]{1,64}", next in 0u8..=255, rest in any::<[u8; 7]>(), more in 0u32..64,
+        ) {
+            prop_assume!(!b"01xzXZ".contains(&next));
+            let data = [digits.as_bytes(), &[next], &rest].concat();
+            let (words, end) = mixed_run(0, &data, 0);
+            prop_assert_eq!(end, digits.len());
+            let (known, behind) = known_run(&data, 0);
+            prop_assert_eq!(mixed_run(known, &data, behind), (words, end));
+            let count = digits.len() as u32;
+            let width = (count + more).min(64);
+            let (mut bits, mut unknown) = ([0], [0]);
+            pack(digits.as_bytes(), width, &mut bits, &mut unknown).unwrap();
+            prop_assert_eq!(extended(words, count, width), [bits[0], unknown[0]]);
         }
 
         #[test]

@@ -208,27 +208,16 @@ impl Feed {
         self.batch.changes(self.first, end, &self.lengths)
     }
 
-    /// Whether no signal but the clock can change twice from the current step on until the next edge, as far as that is
-    /// known: at one time only do others change, and each once.
-    pub(crate) fn is_simple_until_edge(&self, clock: u32) -> bool {
-        let mut from = self.first.0;
-        let mut busy = false;
-        for (at, step) in self.batch.steps[self.step.min(self.batch.steps.len())..]
-            .iter()
-            .enumerate()
-        {
+    /// Whether no signal but the clock changes twice from the current step on until the next edge, as far as that is known.
+    pub(crate) fn is_simple_until_edge(&self) -> bool {
+        let steps = self.batch.steps.get(self.step..).unwrap_or_default();
+        for (at, step) in steps.iter().enumerate() {
             if at > 0 && step.edge {
                 return true;
             }
-            let changes = &self.batch.changes.as_slice()[from..step.end as usize];
-            from = step.end as usize;
-            if changes.is_empty() || matches!(changes, [only] if only.slot() == clock) {
-                continue;
-            }
-            if busy || !step.distinct {
+            if step.again {
                 return false;
             }
-            busy = true;
         }
         false
     }

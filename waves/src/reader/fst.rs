@@ -6,6 +6,7 @@
 //! How a signal's values are written is in a block of its own, and tells its kind: bits, a real number or text. Where that
 //! block is missing, because the writer was stopped, the kind follows from the hierarchy.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -192,7 +193,43 @@ impl Declaring {
     }
 }
 
+/// Leaves out of both files the pairs of slots whose changes are the same in them, if the pairs without which nothing is
+/// gained are among them: a comparison would find them equal. With `every_time`, the first file's steps stay those at which
+/// anything changes.
+pub(super) fn leave_out_same([a, b]: [&mut FstValues; 2], pairs: &[[u32; 2]], needed: &[[u32; 2]], every_time: bool) {
+    if a.is_cut || b.is_cut {
+        return;
+    }
+    let [handles_a, handles_b] = [&*a, &*b].map(FstValues::handles);
+    let handle = |[slot_a, slot_b]: &[u32; 2]| Some([*handles_a.get(slot_a)?, *handles_b.get(slot_b)?]);
+    let found: Option<Vec<[usize; 2]>> = needed.iter().chain(pairs).map(handle).collect();
+    let Some(found) = found else { return };
+    let needed: Vec<usize> = (0..needed.len()).collect();
+    let Some(same) = fst_blocks::same([&mut a.blocks, &mut b.blocks], &found, &needed, every_time) else {
+        return;
+    };
+    for (pair, same) in found.iter().zip(same.pairs).skip(needed.len()) {
+        if same {
+            (a.slots[pair[0]], b.slots[pair[1]]) = (None, None);
+        }
+    }
+    a.blocks.stop_at(same.times);
+}
+
 impl FstValues {
+    /// Returns the handle of each slot.
+    fn handles(&self) -> HashMap<u32, usize> {
+        let handles = self.slots.iter().enumerate();
+        handles.filter_map(|(handle, slot)| Some(((*slot)?, handle))).collect()
+    }
+
+    /// Leaves out the slots that are not wanted.
+    pub(super) fn leave_out(&mut self, is_wanted: impl Fn(u32) -> bool) {
+        for slot in &mut self.slots {
+            *slot = slot.filter(|slot| is_wanted(*slot));
+        }
+    }
+
     /// Reads to the end. `hand_over` takes full batches, and returns whether to continue.
     pub(super) fn read(
         mut self,

@@ -1,5 +1,7 @@
 //! Collects the changes of a file into batches, and marks the edges of the clock.
 
+use std::sync::Arc;
+
 use super::batch::{Batch, Change, NOWHERE, Step};
 use super::digits::UNKNOWN;
 use super::header::Kind;
@@ -33,10 +35,68 @@ impl Watch {
     }
 }
 
+/// Tells whether signals change more than once from edge to edge.
+///
+/// Most designs change signals at one time between two edges, in the order in which they are declared or the other way
+/// round; only where they do not, each change is marked.
+#[derive(Default)]
+struct SinceEdge {
+    /// Number of the stretch from edge to edge, and the last one in which each slot changed.
+    stretch: u32,
+    marks: Vec<u32>,
+    /// Where the changes begin that are not marked yet; they are all different.
+    unmarked: Option<usize>,
+    is_busy: bool,
+    /// Whether unmarked changes were handed over.
+    is_lost: bool,
+}
+
+impl SinceEdge {
+    /// Begins the next stretch.
+    #[inline]
+    fn begin(&mut self) {
+        self.stretch = self.stretch.wrapping_add(1);
+        (self.unmarked, self.is_busy, self.is_lost) = (None, false, false);
+    }
+
+    /// Forgets where changes are in the batch.
+    fn forget_batch(&mut self) {
+        self.is_lost |= self.unmarked.take().is_some();
+    }
+
+    /// Adds the changes of a step, from `from` on. Returns whether a slot other than the clock changes again in the stretch.
+    #[inline]
+    fn add(&mut self, changes: &[Change], from: usize, clock: u32, slots: usize) -> bool {
+        let step = &changes[from..];
+        if step.is_empty() || matches!(step, [only] if only.slot() == clock) {
+            return false;
+        }
+        if !std::mem::replace(&mut self.is_busy, true) {
+            let rise = |pair: &[Change]| pair[0].slot() < pair[1].slot();
+            let fall = |pair: &[Change]| pair[0].slot() > pair[1].slot();
+            if step.windows(2).all(rise) || step.windows(2).all(fall) {
+                self.unmarked = Some(from);
+                return false;
+            }
+        }
+        if self.marks.is_empty() {
+            self.marks.resize(slots, self.stretch.wrapping_sub(1));
+        }
+        let mut again = self.is_lost;
+        for change in &changes[self.unmarked.take().unwrap_or(from)..] {
+            let slot = change.slot();
+            if slot != clock {
+                again |= std::mem::replace(&mut self.marks[slot as usize], self.stretch) == self.stretch;
+            }
+        }
+        again
+    }
+}
+
 /// Collects changes into steps, and steps into a batch.
 pub(super) struct Gatherer {
     pub(super) batch: Batch,
-    kinds: Vec<Kind>,
+    kinds: Arc<[Kind]>,
     watch: Option<Watch>,
     /// The slot of the watched clock, or one that no signal has.
     watched: u32,
@@ -46,6 +106,10 @@ pub(super) struct Gatherer {
     place: u64,
     off: bool,
     was_off: bool,
+    /// Whether the current step counts although nothing changes in it.
+    is_kept: bool,
+    /// What changed since the last edge.
+    since_edge: SinceEdge,
     /// Start of the step in the changes and in the words.
     from: (usize, usize),
     /// With more changes or words than this, the step is compacted.
@@ -59,10 +123,10 @@ pub(super) struct Gatherer {
 }
 
 impl Gatherer {
-    pub(super) fn new(kinds: Vec<Kind>, watch: Option<Watch>) -> Self {
+    pub(super) fn new(kinds: impl Into<Arc<[Kind]>>, watch: Option<Watch>) -> Self {
         Self {
             batch: Batch::default(),
-            kinds,
+            kinds: kinds.into(),
             watch,
             watched: watch.map_or(u32::MAX, |watch| watch.slot),
             clock: [UNKNOWN; 2],
@@ -70,6 +134,8 @@ impl Gatherer {
             place: NOWHERE,
             off: false,
             was_off: false,
+            is_kept: false,
+            since_edge: SinceEdge::default(),
             from: (0, 0),
             press_at: (2 * CHANGES, 2 * WORDS),
             in_dump: false,
@@ -79,7 +145,7 @@ impl Gatherer {
     }
 
     /// Continues in the middle of a file, after a time, with the clock as it is just before its edge.
-    pub(super) fn resumed(kinds: Vec<Kind>, watch: Option<Watch>, time: u64) -> Self {
+    pub(super) fn resumed(kinds: impl Into<Arc<[Kind]>>, watch: Option<Watch>, time: u64) -> Self {
         let mut gatherer = Self::new(kinds, watch);
         gatherer.time = time;
         if let Some(watch) = watch {
@@ -125,6 +191,27 @@ impl Gatherer {
         self.press_if_long();
     }
 
+    /// Adds changes to digits and to known words; the word of a digit does not count.
+    #[inline]
+    pub(super) fn put_changes(&mut self, changes: impl ExactSizeIterator<Item = (Change, u64)>) {
+        let count = changes.len();
+        let Batch {
+            changes: pile, words, ..
+        } = &mut self.batch;
+        for (place, (change, word)) in pile.room(count).iter_mut().zip(changes) {
+            *place = change;
+            let has_word = change.count_words(|| 0) > 0;
+            if has_word {
+                words.push(word);
+            }
+            if change.slot() == self.watched {
+                self.clock[1] = if has_word { word as u8 & 1 } else { change.as_digit() };
+            }
+        }
+        pile.grow(count);
+        self.press_if_long();
+    }
+
     /// Adds the changes of lines of the common forms from `at` on, and returns the position after them.
     #[inline]
     pub(super) fn put_lines(&mut self, lines: &Lines, data: &[u8], mut at: usize) -> usize {
@@ -142,8 +229,13 @@ impl Gatherer {
                     *place = Change::digit(line.slot, line.digit);
                     at = line.next;
                 } else if let Some(line) = lines.word(data, at) {
-                    *place = Change::known(line.slot);
                     words.push(line.word);
+                    *place = if line.unknown == 0 {
+                        Change::known(line.slot)
+                    } else {
+                        words.push(line.unknown);
+                        Change::words(line.slot)
+                    };
                     at = line.next;
                 } else {
                     break;
@@ -164,6 +256,10 @@ impl Gatherer {
 
     pub(super) fn kinds(&self) -> &[Kind] {
         &self.kinds
+    }
+
+    pub(super) fn kinds_shared(&self) -> Arc<[Kind]> {
+        Arc::clone(&self.kinds)
     }
 
     /// Returns the slot of the clock, if its edges are marked.
@@ -235,6 +331,11 @@ impl Gatherer {
         }
     }
 
+    /// Makes the current step count although nothing may change in it.
+    pub(super) fn keep_step(&mut self) {
+        self.is_kept = true;
+    }
+
     pub(super) fn off(&mut self, off: bool) {
         self.off = off;
     }
@@ -262,24 +363,31 @@ impl Gatherer {
     /// Ends the current step, if anything happened in it.
     pub(super) fn end_step(&mut self) {
         let end = self.batch.changes.len();
-        if end == self.from.0 && self.off == self.was_off {
+        if end == self.from.0 && self.off == self.was_off && !std::mem::take(&mut self.is_kept) {
             return;
         }
-        let changes = &self.batch.changes.as_slice()[self.from.0..end];
-        let distinct = changes.windows(2).all(|pair| pair[0].slot() < pair[1].slot());
+        let edge = self
+            .watch
+            .is_some_and(|watch| watch.is_edge(self.clock[0], self.clock[1]));
+        if edge || self.watch.is_none() {
+            self.since_edge.begin();
+        }
+        let changes = &self.batch.changes.as_slice()[..end];
+        let again = self
+            .since_edge
+            .add(changes, self.from.0, self.watched, self.kinds.len());
         self.batch.steps.push(Step {
-            distinct,
+            again,
             time: self.time,
             place: self.place,
             end: end as u32,
             words_end: self.batch.words.len() as u32,
-            edge: self
-                .watch
-                .is_some_and(|watch| watch.is_edge(self.clock[0], self.clock[1])),
+            edge,
             off: self.off,
         });
         self.clock[0] = self.clock[1];
         self.was_off = self.off;
+        self.is_kept = false;
         self.from = (end, self.batch.words.len());
     }
 
@@ -294,6 +402,7 @@ impl Gatherer {
     /// Takes the complete steps out, leaving `empty` in their place. The current step must have ended.
     pub(super) fn take(&mut self, mut empty: Batch) -> Batch {
         empty.clear();
+        self.since_edge.forget_batch();
         self.from = (0, 0);
         self.press_at = (2 * CHANGES, 2 * WORDS);
         std::mem::replace(&mut self.batch, empty)

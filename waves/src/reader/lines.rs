@@ -1,9 +1,9 @@
-//! Lines of a VCD of the two commonest forms: one bit, `1!` or `x"a`, and a known vector of at most 64 bits, `b1010 $`.
+//! Lines of a VCD of the two commonest forms: one bit, `1!` or `x"a`, and a vector of at most 64 bits, `b10x0 $`.
 //!
 //! The time of a comparison goes by the change, so these are recognised from few loads and one table for the id code.
 //! Whatever else a line is, is left to [`super::section`].
 
-use super::digits::{DIGITS, known_run};
+use super::digits::{DIGITS, extended, known_run, mixed_run};
 use super::header::Kind;
 use super::ids::Ids;
 
@@ -46,11 +46,13 @@ pub(super) struct BitLine {
     pub(super) next: usize,
 }
 
-/// A line that changes a vector to a known value.
+/// A line that changes a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct WordLine {
     pub(super) slot: u32,
     pub(super) word: u64,
+    /// The unknown bits.
+    pub(super) unknown: u64,
     /// The byte after the id code, and the position after that byte.
     pub(super) end: u8,
     pub(super) next: usize,
@@ -122,27 +124,38 @@ impl Lines {
         })
     }
 
-    /// Returns the line of a known vector at `at`, if it is one, and enough bytes are there.
+    /// Returns the line of a vector at `at`, if it is one, and enough bytes are there.
     #[inline(always)]
     pub(super) fn word(&self, data: &[u8], at: usize) -> Option<WordLine> {
         if *data.get(at)? != b'b' {
             return None;
         }
-        let (word, space) = known_run(data, at + 1);
-        if *data.get(space)? != b' ' {
-            return None;
+        let (mut word, mut space) = known_run(data, at + 1);
+        let mut unknown = 0;
+        let is_known = *data.get(space)? == b' ';
+        if !is_known {
+            ([word, unknown], space) = mixed_run(word, data, space);
+            if *data.get(space)? != b' ' {
+                return None;
+            }
         }
         let id = eight(data, space + 1)?;
         let (entry, length) = self.entry(id)?;
         let (slot, digits) = (entry >> SHIFT, space - at - 1);
-        (entry & FORM == WORD && digits > 0 && digits <= *self.widths.get(slot as usize)? as usize).then_some(
-            WordLine {
-                slot,
-                word,
-                end: (id >> (8 * length)) as u8,
-                next: space + 2 + length,
-            },
-        )
+        let width = *self.widths.get(slot as usize)?;
+        if entry & FORM != WORD || digits == 0 || digits > width as usize {
+            return None;
+        }
+        if !is_known {
+            [word, unknown] = extended([word, unknown], digits as u32, width);
+        }
+        Some(WordLine {
+            slot,
+            word,
+            unknown,
+            end: (id >> (8 * length)) as u8,
+            next: space + 2 + length,
+        })
     }
 }
 
@@ -197,12 +210,19 @@ mod tests {
             let vector = [b"b", digits.as_bytes(), id.as_bytes(), b"\n#12345678"].concat();
             let id_at = 1 + digits.len();
             let (slot, end) = ids.slot_at(&vector, id_at);
-            let word = digits.strip_suffix(' ').and_then(|digits| u64::from_str_radix(digits, 2).ok());
+            let word = digits.strip_suffix(' ').map(|digits| {
+                let bits = |one: char| digits.chars().fold(0, |word, digit| word << 1 | u64::from(digit == one));
+                [bits('1'), bits('x')]
+            });
             let fits = |slot: u32| (2..=64).contains(&widths[slot as usize]) && digits.len() - 1 <= widths[slot as usize] as usize;
             let expected = slot.zip(word).filter(|(slot, _)| fits(*slot) && end <= id_at + 3);
-            let expected = expected.map(|(slot, word)| WordLine {
+            let expected = expected.map(|(slot, [word, unknown])| WordLine {
                 slot,
                 word,
+                unknown: match digits.starts_with('x') {
+                    true => unknown | u64::MAX << (digits.len() - 1) & u64::MAX >> (64 - widths[slot as usize]),
+                    false => unknown,
+                },
                 end: vector[end],
                 next: end + 1,
             });

@@ -140,6 +140,20 @@ impl Wave {
         matches!(self.rest, Rest::Fst(_))
     }
 
+    /// Leaves out of an FST the slots that are not wanted.
+    pub(crate) fn leave_out(&mut self, is_wanted: impl Fn(u32) -> bool) {
+        if let Rest::Fst(values) = &mut self.rest {
+            values.leave_out(is_wanted);
+        }
+    }
+
+    /// Leaves out of two FST the pairs of slots whose changes are the same in both ([`fst::leave_out_same`]).
+    pub(crate) fn leave_out_same([a, b]: [&mut Self; 2], pairs: &[[u32; 2]], needed: &[[u32; 2]], every_time: bool) {
+        if let (Rest::Fst(a), Rest::Fst(b)) = (&mut a.rest, &mut b.rest) {
+            fst::leave_out_same([a, b], pairs, needed, every_time);
+        }
+    }
+
     /// Returns the length of the file; `None` for a pipe.
     pub(crate) fn bytes(&self) -> Option<u64> {
         self.bytes

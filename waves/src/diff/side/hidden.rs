@@ -1,7 +1,7 @@
 //! Counts changes that no sample sees: values that others replace before the next edge of the clock, or at the same time.
 //!
-//! Most designs change each signal once from edge to edge; that is seen from the numbers of the slots
-//! ([`Feed::is_simple_until_edge`]), and only other stretches are looked at change by change.
+//! Most designs change each signal once from edge to edge; the reader tells ([`Feed::is_simple_until_edge`]), and only other
+//! stretches are looked at change by change.
 //!
 //! [`Feed::is_simple_until_edge`]: crate::reader::Feed::is_simple_until_edge
 
@@ -62,8 +62,7 @@ impl Hidden {
 impl Side {
     /// Begins the stretch that follows an edge.
     pub(super) fn begin_interval(&mut self) {
-        let Some(clock) = self.hidden.clock else { return };
-        let is_counting = self.reset.is_none() && !self.feed.is_simple_until_edge(clock);
+        let is_counting = self.reset.is_none() && !self.feed.is_simple_until_edge();
         self.hidden.begin(is_counting);
     }
 

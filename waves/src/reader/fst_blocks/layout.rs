@@ -78,7 +78,24 @@ impl Layout {
             tail.length,
             tail.count,
         )?;
-        Ok((times, self.table(file, times_at)?))
+        Ok((times, self.table(file, times_at)?.0))
+    }
+
+    /// Reads where the chains are, and the times as they are packed.
+    pub(super) fn parts(&self, file: &mut Bytes) -> Result<Parts, Stop> {
+        let (tail, times_at) = self.tail(file)?;
+        let (table, chains) = self.table(file, times_at)?;
+        Ok(Parts {
+            table,
+            chains,
+            packed_times: bytes_at(file, self.block, times_at, tail.packed)?,
+            times: (tail.length, tail.count),
+        })
+    }
+
+    /// Reads this many bytes of chains.
+    pub(super) fn chains(&self, file: &mut Bytes, length: u64) -> io::Result<Vec<u8>> {
+        bytes_at(file, self.block, self.chains_from, length)
     }
 
     /// Returns the lengths of the times, and their place.
@@ -90,8 +107,8 @@ impl Layout {
         Ok((Tail { length, packed, count }, times_at))
     }
 
-    /// Returns where the chains are; its own length is before the times.
-    fn table(&self, file: &mut Bytes, times_at: u64) -> Result<Table, Stop> {
+    /// Returns where the chains are, and the number of their bytes; its own length is before the times.
+    fn table(&self, file: &mut Bytes, times_at: u64) -> Result<(Table, u64), Stop> {
         let end = times_at.checked_sub(8).ok_or_else(short)?;
         let length = word(&bytes_at(file, self.block, end, 8)?, 0).ok_or_else(short)?;
         let at = end.checked_sub(length).ok_or_else(short)?;
@@ -102,7 +119,26 @@ impl Layout {
             CHANGES_ALIAS_2 => table_2(&bytes, handles, chains),
             _ => table_1(&bytes, handles, chains),
         };
-        table.ok_or_else(|| damaged("where the changes begin is not told"))
+        let table = table.ok_or_else(|| damaged("where the changes begin is not told"))?;
+        Ok((table, chains as u64))
+    }
+}
+
+/// Parts of a block by which it is compared with another.
+pub(super) struct Parts {
+    pub(super) table: Table,
+    /// Number of bytes of all chains.
+    pub(super) chains: u64,
+    pub(super) packed_times: Vec<u8>,
+    /// Bytes of the times, unpacked, and their number.
+    pub(super) times: (u64, u64),
+}
+
+impl Parts {
+    /// Returns the number of times, if they can be read.
+    pub(super) fn count_times(&self) -> Option<usize> {
+        let times = times(&self.packed_times, self.times.0, self.times.1).ok()?;
+        Some(times.len())
     }
 }
 

@@ -9,21 +9,25 @@
 //! ```
 //!
 //! A chain has the changes of one signal in the block; each begins with the number of times since the previous change.
-//! All chains are unpacked, and each waits in the list of the time of its next change.
+//! All chains are unpacked, and their changes are put in the order of time, window by window ([`chains`]).
 
 mod chains;
 mod fastlz;
 pub(super) mod hierarchy;
 mod layout;
 mod packing;
+mod same;
+mod written;
 
 use std::collections::VecDeque;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::sync::Arc;
 
-use self::chains::Chains;
+use self::chains::{Chains, Due};
 use self::layout::Layout;
 pub(super) use self::layout::{blackouts, forms};
-use self::packing::varint;
+pub(super) use self::same::same;
+use self::written::{Written, change, digit_byte};
 use super::batch::NOWHERE;
 use super::digits::{is_state, pack, state};
 use super::fst_file::Bytes;
@@ -44,8 +48,6 @@ pub(super) const SKIPPED: u8 = 255;
 const EULER: f64 = std::f64::consts::E;
 /// Its position in the header.
 const EULER_AT: u64 = 25;
-/// Digits of a signal of one bit other than 0 and 1: `xzhuwl-?`.
-const DIGITS: &[u8; 8] = b"xzhuwl-?";
 
 /// A block.
 #[derive(Debug, Clone, Copy)]
@@ -71,15 +73,28 @@ pub(super) enum Form {
     Text,
 }
 
+impl Form {
+    /// Returns the number of bytes of a value before the first change.
+    fn bytes_before(self) -> usize {
+        match self {
+            Self::Bits(width) => width as usize,
+            Self::Real => 8,
+            Self::Text => 0,
+        }
+    }
+}
+
 /// The blocks of a file that this module can read.
 pub(super) struct Blocks {
     file: Bytes,
     blocks: Vec<Block>,
     /// Indexed by handle.
-    forms: Vec<Form>,
+    forms: Arc<[Form]>,
     /// Times at which recording is switched, and whether it is off then.
     blackouts: VecDeque<(u64, bool)>,
     little_endian: bool,
+    /// For each block, a bit for each time at which something changes that is not read here ([`same`]); or empty.
+    more_times: Vec<Vec<u64>>,
 }
 
 /// Why the blocks could not be read.
@@ -125,9 +140,10 @@ impl Blocks {
         let mut found = Self {
             file,
             blocks: changes,
-            forms,
+            forms: forms.into(),
             blackouts: blackouts.into(),
             little_endian: true,
+            more_times: Vec::new(),
         };
         let mut euler = [0; 8];
         found.file.seek(SeekFrom::Start(EULER_AT))?;
@@ -141,6 +157,11 @@ impl Blocks {
         Ok(found)
     }
 
+    /// Makes a step also of each time of which a bit is set, block by block.
+    pub(super) fn stop_at(&mut self, more_times: Vec<Vec<u64>>) {
+        self.more_times = more_times;
+    }
+
     /// Reads all blocks. `hand_over` takes full batches, and returns whether to continue.
     pub(super) fn read(
         &mut self,
@@ -150,7 +171,7 @@ impl Blocks {
     ) -> Result<(), Stop> {
         for (number, block) in self.blocks.clone().into_iter().enumerate() {
             gatherer.batch.bytes = block.at + block.length;
-            let read = self.block(block, number == 0, slots, gatherer, hand_over);
+            let read = self.block(block, number, slots, gatherer, hand_over);
             read.map_err(|stop| stop.in_block(block))?;
         }
         self.switch_up_to(u64::MAX, gatherer, hand_over)
@@ -159,7 +180,7 @@ impl Blocks {
     fn block(
         &mut self,
         block: Block,
-        is_first: bool,
+        number: usize,
         slots: &[Option<u32>],
         gatherer: &mut Gatherer,
         hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
@@ -170,7 +191,7 @@ impl Blocks {
         }
         let (times, table) = layout.times_and_table(&mut self.file)?;
         let is_before = |first: &u64| *first >= layout.start;
-        if is_first && times.first().is_none_or(is_before) {
+        if number == 0 && times.first().is_none_or(is_before) {
             let values = layout.values(&mut self.file)?;
             self.switch_up_to(layout.start, gatherer, hand_over)?;
             advance(gatherer, layout.start, hand_over)?;
@@ -180,22 +201,69 @@ impl Blocks {
             self.values_before(&values, layout.values_of, all, slots, gatherer)?;
         }
         let wanted = |handle: usize| slots.get(handle).copied().flatten().is_some();
-        let mut chains = Chains::unpack(&mut self.file, &layout, &table, &self.forms, times.len(), wanted)?;
+        let mut chains = Chains::unpack(
+            &mut self.file,
+            &layout,
+            &table,
+            Arc::clone(&self.forms),
+            times.len(),
+            wanted,
+        )?;
         drop(table);
-        for (time_at, time) in times.iter().enumerate() {
-            if !chains.has_change(time_at) {
-                continue;
-            }
-            self.switch_up_to(*time, gatherer, hand_over)?;
-            advance(gatherer, *time, hand_over)?;
-            while let Some(handle) = chains.next(time_at) {
-                let slot = slots[handle].ok_or_else(|| damaged("a signal was never declared"))?;
-                let form = self.forms[handle];
-                let length = self.change(chains.rest(handle), form, slot, gatherer)?;
-                chains.advance(handle, length, form, time_at)?;
+        let kinds = gatherer.kinds_shared();
+        let slot = |handle: usize| {
+            let slot = slots.get(handle).copied().flatten()?;
+            Some((slot, kinds[slot as usize]))
+        };
+        loop {
+            let window = chains.next_window(slot, |time_at, bytes, due| {
+                self.switch_up_to(times[time_at], gatherer, hand_over)?;
+                advance(gatherer, times[time_at], hand_over)?;
+                self.put_due(due, bytes, slots, gatherer)
+            })?;
+            let Some(window) = window else { return Ok(()) };
+            for (at, time_at) in window.enumerate() {
+                let due = chains.due(at);
+                let more = self.more_times.get(number).and_then(|bits| bits.get(time_at / 64));
+                let is_more = more.is_some_and(|bits| bits >> (time_at % 64) & 1 == 1);
+                if due.is_empty() && !is_more {
+                    continue;
+                }
+                let time = times[time_at];
+                self.switch_up_to(time, gatherer, hand_over)?;
+                advance(gatherer, time, hand_over)?;
+                if is_more {
+                    gatherer.keep_step();
+                }
+                self.put_due(due, chains.bytes(), slots, gatherer)?;
             }
         }
-        Ok(())
+    }
+
+    /// Takes the changes of a time.
+    #[inline]
+    fn put_due(
+        &self,
+        mut due: &[Due],
+        bytes: &[u8],
+        slots: &[Option<u32>],
+        gatherer: &mut Gatherer,
+    ) -> Result<(), Stop> {
+        loop {
+            let simple = due.iter().position(Due::is_other).unwrap_or(due.len());
+            gatherer.put_changes(due[..simple].iter().map(|due| (due.change, due.word)));
+            let Some((other, rest)) = due[simple..].split_first() else {
+                return Ok(());
+            };
+            due = rest;
+            let (handle, place) = other.place();
+            let slot = slots.get(handle).copied().flatten();
+            let slot = slot.ok_or_else(|| damaged("a signal was never declared"))?;
+            let form = self.forms[handle];
+            let found = bytes.get(place..).and_then(|chain| change(chain, form));
+            let found = found.ok_or_else(|| damaged("the changes of a signal end too early"))?;
+            self.put(found.value, form, slot, gatherer)?;
+        }
     }
 
     /// Switches recording on and off as it was up to a time.
@@ -227,11 +295,7 @@ impl Blocks {
         let mut at = 0;
         let count = usize::try_from(count).unwrap_or(usize::MAX);
         for (handle, form) in self.forms.iter().enumerate().take(count) {
-            let length = match form {
-                Form::Bits(width) => *width as usize,
-                Form::Real => 8,
-                Form::Text => 0,
-            };
+            let length = form.bytes_before();
             let value = values
                 .get(at..at + length)
                 .ok_or_else(|| damaged("the first values end too early"))?;
@@ -251,66 +315,39 @@ impl Blocks {
         Ok(())
     }
 
-    /// Takes the change at the beginning of a chain; returns its bytes.
-    #[inline]
-    fn change(&self, chain: &[u8], form: Form, slot: u32, gatherer: &mut Gatherer) -> Result<usize, Stop> {
-        let short = || damaged("the changes of a signal end too early");
-        let mut at = 0;
-        let head = varint(chain, &mut at).ok_or_else(short)?;
-        match form {
-            Form::Bits(1) => {
-                let digit = match head & 1 {
-                    0 => b'0' + (head >> 1 & 1) as u8,
-                    _ => DIGITS[(head >> 1 & 7) as usize],
-                };
-                if gatherer.kind(slot) == Kind::Bits(1) {
-                    let value = super::digits::digit(digit).ok_or_else(|| damaged("a bit is not a digit"))?;
+    /// Takes a change.
+    fn put(&self, value: Written<'_>, form: Form, slot: u32, gatherer: &mut Gatherer) -> Result<(), Stop> {
+        let kind = gatherer.kind(slot);
+        match (value, form) {
+            (Written::Digit(digit), _) => {
+                let byte = digit_byte(digit);
+                if kind == Kind::Bits(1) {
+                    let value = super::digits::digit(byte).ok_or_else(|| damaged("a bit is not a digit"))?;
                     gatherer.put_digit(slot, value);
-                    if head & 1 != 0 && is_state(digit) {
-                        gatherer.note_state(state(&[digit]));
+                    if is_state(byte) {
+                        gatherer.note_state(state(&[byte]));
                     }
-                } else if digit == b'1' && gatherer.kind(slot) == Kind::Event {
+                } else if byte == b'1' && kind == Kind::Event {
                     gatherer.put_event(slot);
                 }
             }
-            Form::Bits(width) if head & 1 == 0 => {
-                let length = width.div_ceil(8) as usize;
-                let value = chain.get(at..at + length).ok_or_else(short)?;
-                at += length;
-                if gatherer.kind(slot) == Kind::Event {
-                    // It has no value.
-                } else if width <= 64 && gatherer.kind(slot) == Kind::Bits(width) {
-                    let word = value.iter().fold(0u64, |word, byte| word << 8 | u64::from(*byte));
-                    gatherer.put_word(slot, word >> (8 * length as u32 - width), 0);
-                } else {
-                    let bit = |at: usize| b'0' + (value[at / 8] >> (7 - at % 8) & 1);
-                    let digits: Vec<u8> = (0..width as usize).map(bit).collect();
-                    put_digits(gatherer, slot, width, &digits)?;
+            // An event has no value.
+            (Written::Known(_), _) if kind == Kind::Event => {}
+            (Written::Known(bytes), Form::Bits(width)) => {
+                let bit = |at: usize| b'0' + (bytes[at / 8] >> (7 - at % 8) & 1);
+                let digits: Vec<u8> = (0..width as usize).map(bit).collect();
+                put_digits(gatherer, slot, width, &digits)?;
+            }
+            (Written::Digits(digits), Form::Bits(width)) => put_digits(gatherer, slot, width, digits)?,
+            (Written::Real(bytes), _) => self.put_real(gatherer, slot, bytes),
+            (Written::Text(text), _) => {
+                if kind == Kind::Text {
+                    pack_text(text, gatherer.put_words(slot));
                 }
             }
-            Form::Bits(width) => {
-                let value = chain.get(at..at + width as usize).ok_or_else(short)?;
-                at += width as usize;
-                put_digits(gatherer, slot, width, value)?;
-            }
-            Form::Real => {
-                let value = chain.get(at..at + 8).ok_or_else(short)?;
-                if head & 1 == 0 {
-                    return Err(damaged("a real number is written as bits"));
-                }
-                at += 8;
-                self.put_real(gatherer, slot, value);
-            }
-            Form::Text => {
-                let length = varint(chain, &mut at).ok_or_else(short)? as usize;
-                let value = chain.get(at..).and_then(|rest| rest.get(..length)).ok_or_else(short)?;
-                at += length;
-                if gatherer.kind(slot) == Kind::Text {
-                    pack_text(value, gatherer.put_words(slot));
-                }
-            }
+            (Written::Known(_) | Written::Digits(_), Form::Real | Form::Text) => {}
         }
-        Ok(at)
+        Ok(())
     }
 
     fn real(&self, value: &[u8]) -> f64 {

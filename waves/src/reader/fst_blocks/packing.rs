@@ -75,10 +75,22 @@ pub(super) fn word(bytes: &[u8], at: usize) -> Option<u64> {
 }
 
 /// A number in seven bits a byte, the lowest first.
-#[inline]
+#[inline(always)] // most have one byte or two
 pub(super) fn varint(bytes: &[u8], at: &mut usize) -> Option<u64> {
     let first = *bytes.get(*at)?;
     *at += 1;
+    if first & 0x80 == 0 {
+        return Some(u64::from(first));
+    }
+    let second = *bytes.get(*at)?;
+    if second & 0x80 == 0 {
+        *at += 1;
+        return Some(u64::from(first & 0x7f) | u64::from(second) << 7);
+    }
+    long_varint(first, bytes, at)
+}
+
+fn long_varint(first: u8, bytes: &[u8], at: &mut usize) -> Option<u64> {
     let mut number = u64::from(first & 0x7f);
     let (mut byte, mut shift) = (first, 7);
     while byte & 0x80 != 0 {

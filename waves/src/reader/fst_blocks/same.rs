@@ -1,0 +1,213 @@
+//! Finds the signals whose changes are written with the same bytes in two files.
+//!
+//! Two runs of a simulator write blocks of the same times, in which most chains are equal byte for byte. Such chains are
+//! looked through once, so that damage does not stay hidden, and then neither file's are read again.
+//!
+//! ```text
+//!  block of a   times │ chain │ chain │ …      the same times, and for each pair of signals the same chain: in all blocks
+//!  block of b   times │ chain │ chain │ …
+//! ```
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::layout::{Layout, Parts};
+use super::packing::unpack_chain;
+use super::written::{Change, Written, change};
+use super::{Block, Blocks, Form};
+use crate::reader::digits::digit;
+
+const THREADS: usize = 4;
+/// Largest number of packed bytes of a block that are held for each file.
+const MOST_BYTES: u64 = 1 << 26;
+/// Signals that a thread takes at once.
+const GRAIN: usize = 64;
+
+/// What is the same in two files.
+pub(in crate::reader) struct Same {
+    /// Whether each pair has the same changes in both files.
+    pub(in crate::reader) pairs: Vec<bool>,
+    /// For each block, a bit for each time at which one of these pairs changes; empty if they were not wanted.
+    pub(in crate::reader) times: Vec<Vec<u64>>,
+}
+
+/// A block of both files, if they have the same times.
+struct Both {
+    parts: [Parts; 2],
+    chains: [Vec<u8>; 2],
+    /// Number of times.
+    times: usize,
+    packing: u8,
+}
+
+/// Compares the chains of pairs of handles. `needed` are those without which nothing is gained. Returns `None` if one of
+/// those, or most others, have other changes, or if anything is unusual: the files are then read as they are.
+pub(in crate::reader) fn same(
+    [a, b]: [&mut Blocks; 2],
+    pairs: &[[usize; 2]],
+    needed: &[usize],
+    with_times: bool,
+) -> Option<Same> {
+    let alike = a.blackouts == b.blackouts && a.little_endian == b.little_endian && a.blocks.len() == b.blocks.len();
+    let forms = |[of_a, of_b]: &[usize; 2]| a.forms.get(*of_a).is_some() && a.forms.get(*of_a) == b.forms.get(*of_b);
+    if !alike || !pairs.iter().all(forms) {
+        return None;
+    }
+    let is_same: Vec<AtomicBool> = pairs.iter().map(|_| AtomicBool::new(true)).collect();
+    let mut times = Vec::new();
+    for number in 0..a.blocks.len() {
+        let blocks = [a.blocks[number], b.blocks[number]];
+        if number == 0 {
+            compare_first_values([&mut *a, &mut *b], blocks, pairs, &is_same)?;
+        }
+        let both = Both::read([&mut *a, &mut *b], blocks)?;
+        let changed = both.compare(&a.forms, pairs, &is_same, with_times);
+        times.extend(with_times.then_some(changed));
+        let left = is_same.iter().filter(|same| same.load(Ordering::Relaxed)).count();
+        let is_needed = |pair: &usize| is_same[*pair].load(Ordering::Relaxed);
+        if left < pairs.len() / 4 || !needed.iter().all(is_needed) {
+            return None;
+        }
+    }
+    let pairs = is_same.into_iter().map(AtomicBool::into_inner).collect();
+    Some(Same { pairs, times })
+}
+
+/// Compares the values before the first change.
+fn compare_first_values(
+    files: [&mut Blocks; 2],
+    blocks: [Block; 2],
+    pairs: &[[usize; 2]],
+    is_same: &[AtomicBool],
+) -> Option<()> {
+    let mut values = Vec::new();
+    let mut places = Vec::new();
+    for (of, block) in files.into_iter().zip(blocks) {
+        let layout = Layout::read(&mut of.file, block).ok()??;
+        values.push(layout.values(&mut of.file).ok()?);
+        let count = usize::try_from(layout.values_of).ok()?;
+        let mut at = 0;
+        let place = |form: &Form| {
+            let from = at;
+            at += form.bytes_before();
+            from..at
+        };
+        places.push(of.forms.iter().take(count).map(place).collect::<Vec<_>>());
+    }
+    for (pair, same) in pairs.iter().zip(is_same) {
+        let value = |at: usize| {
+            let place = places[at].get(pair[at]);
+            place.map(|place| values[at].get(place.clone()))
+        };
+        if value(0) != value(1) {
+            same.store(false, Ordering::Relaxed);
+        }
+    }
+    Some(())
+}
+
+impl Both {
+    fn read(files: [&mut Blocks; 2], blocks: [Block; 2]) -> Option<Self> {
+        let mut layouts = Vec::new();
+        let mut parts = Vec::new();
+        let mut chains = Vec::new();
+        for (of, block) in files.into_iter().zip(blocks) {
+            let layout = Layout::read(&mut of.file, block).ok()??;
+            if layout.handles > of.forms.len() as u64 {
+                return None;
+            }
+            let found = layout.parts(&mut of.file).ok()?;
+            if found.chains > MOST_BYTES {
+                return None;
+            }
+            chains.push(layout.chains(&mut of.file, found.chains).ok()?);
+            parts.push(found);
+            layouts.push(layout);
+        }
+        let same = layouts[0].start == layouts[1].start
+            && layouts[0].packing == layouts[1].packing
+            && parts[0].packed_times == parts[1].packed_times
+            && parts[0].times == parts[1].times;
+        if !same {
+            return None;
+        }
+        Some(Self {
+            packing: layouts[0].packing,
+            times: parts[0].count_times()?,
+            parts: parts.try_into().ok()?,
+            chains: chains.try_into().ok()?,
+        })
+    }
+
+    /// Compares the chains of the pairs that were the same so far. Returns a bit for each time at which one of them changes.
+    fn compare(&self, forms: &[Form], pairs: &[[usize; 2]], is_same: &[AtomicBool], with_times: bool) -> Vec<u64> {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from).min(THREADS);
+        let next = AtomicUsize::new(0);
+        let words = if with_times { self.times.div_ceil(64) } else { 0 };
+        let all = Mutex::new(vec![0; words]);
+        let work = || {
+            let mut changed = vec![0; words];
+            let mut unpacked = Vec::new();
+            loop {
+                let from = next.fetch_add(GRAIN, Ordering::Relaxed);
+                let Some(some) = pairs.get(from..) else { break };
+                for (pair, same) in some.iter().zip(&is_same[from..]).take(GRAIN) {
+                    if same.load(Ordering::Relaxed) && self.chain(forms, *pair, &mut unpacked, &mut changed).is_none() {
+                        same.store(false, Ordering::Relaxed);
+                    }
+                }
+            }
+            let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+            for (all, changed) in all.iter_mut().zip(&changed) {
+                *all |= changed;
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+        all.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Compares the chains of a pair; `None` if they are not the same, or cannot be read.
+    fn chain(&self, forms: &[Form], pair: [usize; 2], unpacked: &mut Vec<u8>, changed: &mut [u64]) -> Option<()> {
+        let [a, b] = [0, 1].map(|at| {
+            let place = self.parts[at].table.get(pair[at]).copied().flatten();
+            place.map(|(from, to)| self.chains[at].get(from..to))
+        });
+        if a != b {
+            return None;
+        }
+        let Some(chain) = a else { return Some(()) };
+        unpacked.clear();
+        unpack_chain(chain?, self.packing, unpacked).ok()?;
+        look_through(unpacked, *forms.get(pair[0])?, self.times, changed)
+    }
+}
+
+/// Looks through a chain, and sets the bit of each time at which it has a change; `None` if it cannot be read.
+fn look_through(chain: &[u8], form: Form, times: usize, changed: &mut [u64]) -> Option<()> {
+    let mut rest = chain;
+    let mut time = 0u64;
+    loop {
+        let Change { step, value, length } = change(rest, form)?;
+        time = time.checked_add(step)?;
+        if time >= times as u64 {
+            return None;
+        }
+        if let Some(word) = changed.get_mut(time as usize / 64) {
+            *word |= 1 << (time % 64);
+        }
+        if let Written::Digits(digits) = value
+            && !digits.iter().all(|byte| digit(*byte).is_some())
+        {
+            return None;
+        }
+        rest = &rest[length..];
+        if rest.is_empty() {
+            return Some(());
+        }
+    }
+}
