@@ -206,23 +206,55 @@ fn unit_attributes_of_any_kind_and_length_and_open_scopes_change_nothing() {
 }
 
 #[test]
-fn unit_the_states_of_a_port_are_compared_as_what_they_are() {
-    let port = |state: &[u8]| File {
-        hierarchy: [SCOPE, &variable(16, "a", 1, 0), &variable(18, "p", 5, 0), &[UP]].concat(),
-        widths: vec![1, 5],
+fn golden_the_states_of_a_port_are_those_of_an_extended_vcd() {
+    let port = |bits: u64, value: &str| File {
+        hierarchy: [
+            SCOPE,
+            &variable(16, "a", 1, 0),
+            &variable(18, "p", 3 * bits + 2, 0),
+            &[UP],
+        ]
+        .concat(),
+        widths: vec![1, 3 * bits + 2],
         start: 0,
-        values: [b"0", state].concat(),
+        values: [b"0", value.as_bytes()].concat(),
         chain: vec![0b10],
     };
-    let folder = tempfile::tempdir().unwrap();
-    let [a, b] = ["a.fst", "b.fst"].map(|name| folder.path().join(name));
-    port(b"D 6 0").write(&a);
-    port(b"D 6 0").write(&b);
-    assert_eq!(equal(&a, &b).signals, 2);
-    port(b"D 5 0").write(&b);
-    let result = raw(&a, &b).unwrap();
-    assert_eq!(result.differences.len(), 1, "{result}");
-    assert_eq!(result.differences[0].signal, "t.p");
+    let vcd = |range: &str, value: &str| {
+        let declared = format!("$var wire 1 a a $end\n$var port {range} <0 p $end");
+        VCD.replace("$var wire 1 a a $end", &declared)
+            .replace("#0\n0a", &format!("#0\n0a\np{value} <0"))
+    };
+    for (bits, range, value, other, is_equal, exact) in [
+        (1, "1", "D 6 0", "D 6 0", true, true),
+        (1, "1", "D 6 0", "D 5 0", true, false),
+        (1, "1", "D 6 0", "L 6 0", true, false),
+        (1, "1", "D 6 0", "U 6 0", false, false),
+        (3, "[2:0]", "DUZ 666 606", "DUZ 666 606", true, true),
+        (3, "[2:0]", "DUZ 666 606", "LHT 666 606", true, false),
+        (3, "[2:0]", "DUZ 666 606", "DUN 666 606", false, false),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b, text] = ["a.fst", "b.fst", "b.vcd"].map(|name| folder.path().join(name));
+        port(bits, value).write(&a);
+        port(bits, other).write(&b);
+        std::fs::write(&text, vcd(range, other)).unwrap();
+        for [a, b] in [[&a, &b], [&b, &a], [&a, &text], [&text, &a]] {
+            let result = raw(a, b).unwrap();
+            let verdict = if is_equal {
+                DiffVerdict::Equal
+            } else {
+                DiffVerdict::Different
+            };
+            assert_eq!(
+                (result.result, result.signals),
+                (verdict, 2),
+                "{value} {other}: {result}"
+            );
+            assert!(!is_equal || result.exact == exact, "{value} {other}: {result}");
+            assert!(is_equal || result.differences[0].signal == "t.p", "{result}");
+        }
+    }
 }
 
 #[test]
@@ -286,10 +318,16 @@ fn unit_damage_and_what_is_not_known_are_told_apart() {
             with(&variable(16, "b", 1, 0)),
             "more signals than the file: the file is damaged",
         ),
-        (with(&[UP, UP]), "$upscope without $scope"),
     ] {
         assert!(message.contains(what), "{message}");
     }
+    // As `vcd2fst` writes it of a VCD with scopes without names.
+    let ended_twice = File::one_bit(&[UP, UP]).compared(VCD).unwrap();
+    assert_eq!(ended_twice.result, DiffVerdict::Equal);
+    assert!(
+        ended_twice.to_string().contains("never began is ignored"),
+        "{ended_twice}"
+    );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.fst");
     File::one_bit(&[]).write(&path);
@@ -313,4 +351,27 @@ fn unit_damage_and_what_is_not_known_are_told_apart() {
         .unwrap();
     let many = changed(geometry + 17, &(1u64 << 40).to_be_bytes());
     assert!(many.contains("more than 4194304 signals"), "{many}");
+}
+
+#[test]
+fn unit_damage_that_both_files_have_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.fst", "b.fst"].map(|name| folder.path().join(name));
+    for (chain, problem) in [
+        // Two times later than the only one, a change that is cut off, and a digit that is none.
+        (vec![0b1010], "later than the last time"),
+        (vec![0x80], "end too early"),
+        (vec![0b1, b'0', b'1', b'y', b'0'], "not a digit"),
+    ] {
+        let mut file = File::one_bit(&[UP]);
+        if chain.len() > 1 {
+            file.hierarchy = [SCOPE, &variable(16, "a", 4, 0), &[UP]].concat();
+            (file.widths, file.values) = (vec![4], b"0000".to_vec());
+        }
+        file.chain = chain;
+        file.write(&a);
+        file.write(&b);
+        let error = raw(&a, &b).unwrap_err().to_string();
+        assert!(error.contains(problem), "{error}");
+    }
 }

@@ -35,7 +35,7 @@ fn unit_a_file_cut_in_the_middle_of_a_line_is_never_equal_to_the_whole() {
         std::fs::write(&part, cut).unwrap();
         let result = diff::compare(&whole, &part, &DiffOptions::default(), &mut |_| {});
         let in_header = !cut.contains("$enddefinitions $end");
-        let in_dump = cut.contains("$dumpvars") && !cut.contains("1.5 r\n$end");
+        let in_dump = cut.contains("$dumpvars") && !cut.contains("1.5 r\n");
         match result {
             Err(error) => assert!(!error.to_string().is_empty()),
             Ok(_) if in_header || in_dump => panic!("{end}: no error"),

@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod complaints;
+mod dialects;
 mod diff;
 mod files;
 mod fst;
@@ -11,5 +12,6 @@ mod options;
 mod producers;
 mod program;
 mod recordings;
+mod second_reading;
 mod support;
 mod text;

@@ -393,6 +393,23 @@ fn golden_events_are_compared_by_the_times_at_which_they_happen() {
     let without_first = both.replacen("1#\n$end", "$end", 1);
     let result = compare_texts(&both, &without_first);
     assert_eq!((result.result, result.signals), (DiffVerdict::Equal, 2), "{result}");
+    // The first time may have nothing but events.
+    let alone = |changes: &str| {
+        vcd(
+            "$var event 1 # e $end\n$var wire 1 ! a $end",
+            &format!("#0\n1#\n{changes}#9\n1!"),
+        )
+    };
+    assert_eq!(
+        compare_texts(&alone("#5\n1#\n"), &alone("#5\n1#\n")).differences.len(),
+        0
+    );
+    let found = compare_texts(&alone("#5\n1#\n"), &alone(""));
+    assert_eq!(
+        (found.differences.len(), found.differences[0].time),
+        (1, 5e-9),
+        "{found}"
+    );
     let once = both.replacen("#12\n1!\n1#", "#12\n1!", 1);
     let result = compare_texts(&both, &once);
     assert_eq!(result.result, DiffVerdict::Different, "{result}");
@@ -462,5 +479,40 @@ fn golden_what_producers_write_is_read() {
             .replace("4 # v", &format!("4 {id} v"))
             .replace(" #\n", &format!(" {id}\n"));
         assert_eq!(compare_texts(&plain, &other).result, DiffVerdict::Equal, "{id}");
+    }
+}
+
+#[test]
+fn unit_a_file_of_first_values_alone_needs_no_end_of_dumpvars() {
+    let file = |values: &str| {
+        vcd(
+            "$var wire 1 ! a $end\n$var wire 4 # b $end",
+            &format!("#0\n$dumpvars\n{values}"),
+        )
+    };
+    let closed = file("1!\nb101 #\n$end");
+    let result = compare_texts(&file("1!\nb101 #"), &closed);
+    assert_eq!((result.result, result.signals), (DiffVerdict::Equal, 2), "{result}");
+    assert_eq!(compare_texts(&file("1!\nb100 #"), &closed).differences.len(), 1);
+    // Where a signal has no value, the file may have been cut off.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vcd");
+    std::fs::write(&path, file("1!")).unwrap();
+    let error = diff::compare(&path, &path, &DiffOptions::default(), &mut |_| {}).unwrap_err();
+    assert!(error.to_string().contains("inside a $dump block"), "{error}");
+}
+
+#[test]
+fn unit_a_file_without_signals_or_changes_is_said_to_have_none() {
+    for (text, reason) in [
+        (
+            "$timescale 1ns $end\n$enddefinitions $end\n#0\n".to_owned(),
+            "declares no signal",
+        ),
+        (vcd("$var wire 1 ! a $end", "#0"), "has no change"),
+    ] {
+        let result = compare_texts(&text, &text);
+        assert_eq!(result.result, DiffVerdict::Incomparable, "{result}");
+        assert!(result.notes.join("\n").contains(reason), "{result}");
     }
 }

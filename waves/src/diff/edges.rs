@@ -12,8 +12,7 @@ use crate::WaveError;
 impl Engine<'_> {
     /// Compares at the edges of the clock.
     pub(super) fn at_edges(&mut self, clock: Slots, progress: &mut dyn FnMut(Progress)) -> Result<(), WaveError> {
-        self.a.start()?;
-        self.b.start()?;
+        self.start()?;
         let mut last: Option<[u128; 2]> = None;
         let mut period_fs = 0;
         loop {

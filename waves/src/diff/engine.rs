@@ -83,6 +83,8 @@ pub(super) struct Engine<'a> {
     /// Number of differences that did not last longer than the time tolerance.
     pub(super) forgiven: u64,
     pub(super) alike: Alike,
+    /// Whether each file has no change.
+    pub(super) is_empty: [bool; 2],
     /// Pairs that are equal only as 0, 1, `x` and `z`, while the files have further states.
     pub(super) collapsed: BTreeSet<u32>,
     /// Pairs of real numbers that are equal only to the digits that a VCD has.
@@ -145,6 +147,7 @@ impl<'a> Engine<'a> {
             unrecorded: 0,
             forgiven: 0,
             alike: Alike::default(),
+            is_empty: [false; 2],
             collapsed: BTreeSet::new(),
             rounded: BTreeSet::new(),
             behind: BTreeMap::new(),
@@ -160,10 +163,18 @@ impl<'a> Engine<'a> {
         }
     }
 
+    /// Reads the first step of both files.
+    pub(super) fn start(&mut self) -> Result<(), WaveError> {
+        for (side, empty) in [&mut self.a, &mut self.b].into_iter().zip(&mut self.is_empty) {
+            side.start()?;
+            *empty = side.has_ended();
+        }
+        Ok(())
+    }
+
     /// Compares at every time at which something changes.
     pub(super) fn at_changes(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), WaveError> {
-        self.a.start()?;
-        self.b.start()?;
+        self.start()?;
         let glitch_fs = self.options.glitch_fs;
         loop {
             self.follow_alike(false, progress)?;

@@ -129,6 +129,14 @@ impl Engine<'_> {
                 .push("stopped at the first difference: what comes after it was not compared".to_owned());
             comparison.state = self.state;
         }
+        for file in self
+            .is_empty
+            .iter()
+            .zip(["first", "second"])
+            .filter(|(empty, _)| **empty && self.samples == 0)
+        {
+            comparison.notes.push(format!("the {} file has no change", file.1));
+        }
         comparison.context = self.context.map(|gathering| gathering.context);
         comparison.conclude(self.samples, differences);
     }

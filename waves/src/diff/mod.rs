@@ -143,7 +143,8 @@ fn compare_once(
     plainly: bool,
     odd: &[BTreeSet<u32>; 2],
 ) -> Result<(Comparison, [BTreeSet<u32>; 2]), WaveError> {
-    let mut waves = [Wave::open(a)?, Wave::open(b)?];
+    let select = |side: usize| names::selection(options.roots[side].as_deref(), &options.only, &options.ignore);
+    let mut waves = [Wave::open_selected(a, select(0)?)?, Wave::open_selected(b, select(1)?)?];
     for (wave, odd) in waves.iter_mut().zip(odd) {
         wave.hold_any(odd);
     }
@@ -202,13 +203,18 @@ fn compare_once(
     let common = plan.matched.pairs.iter().filter(|p| p.a.is_some() && p.b.is_some());
     if common.filter(|pair| !is_clock(pair)).count() == 0 {
         let is_filtered = !options.only.is_empty() || !options.ignore.is_empty();
+        let is_empty = waves.iter().position(|wave| wave.declarations.names.is_empty());
+        if let (Some(side), false) = (is_empty, is_filtered) {
+            comparison.incomparable(&format!("the {} file declares no signal", ["first", "second"][side]));
+            return Ok((comparison, Default::default()));
+        }
         comparison.incomparable(match is_filtered && plan.names.iter().any(|names| names.left_out > 0) {
             true => "of the signals that --only and --ignore leave, none but the clock is in both files",
             false => "the files have no signal in common; say with --map A=B which belong together",
         });
         return Ok((comparison, Default::default()));
     }
-    comparison.readings = readings(&plan.matched, &slots, odd);
+    comparison.readings = readings(&plan.matched, &slots, odd, &waves);
     let plan_not_compared: Vec<String> = plan.matched.not_compared.clone();
     if !plainly {
         plan.leave_out(&mut waves, options);
@@ -423,8 +429,13 @@ impl Plan {
 }
 
 /// Returns how each file is read again. `slots` are the numbers of slots of the files.
-fn readings(matched: &Matched, slots: &[usize; 2], odd: &[BTreeSet<u32>; 2]) -> [Reading; 2] {
+fn readings(matched: &Matched, slots: &[usize; 2], odd: &[BTreeSet<u32>; 2], waves: &[Wave; 2]) -> [Reading; 2] {
     [0, 1].map(|side| {
+        let derived = matched.derived[side].iter();
+        let sources = derived.flat_map(|derived| derived.runs.iter().map(|run| run.source));
+        let needed: HashSet<u32> = sources.chain(odd[side].iter().copied()).collect();
+        let declared = waves[side].declarations.names.iter();
+        let declared = declared.filter(|named| needed.contains(&named.slot));
         let names = matched.pairs.iter().filter_map(|pair| {
             let (name, slot) = match side {
                 0 => (Some(&pair.name), pair.a?),
@@ -436,6 +447,8 @@ fn readings(matched: &Matched, slots: &[usize; 2], odd: &[BTreeSet<u32>; 2]) -> 
             any: odd[side].clone(),
             names: names.collect(),
             derived: matched.derived[side].clone(),
+            slots: slots[side] as u32,
+            declared: declared.map(|named| (named.path.clone(), named.slot)).collect(),
         }
     })
 }

@@ -10,11 +10,12 @@
 //! | `Count`, `count` | Verilog, GHDL | `count` |
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::parts::Shape;
 use super::pattern::Pattern;
 use crate::WaveError;
-use crate::reader::{Declarations, Kind, Range};
+use crate::reader::{Declarations, Kind, Range, Selection};
 
 /// A signal that may find a partner.
 #[derive(Debug, Clone)]
@@ -74,8 +75,37 @@ impl Filter {
         (self.only.is_empty() || self.only.iter().any(|pattern| takes(pattern, path))) && self.keeps(path)
     }
 
+    /// Whether it takes a signal, which may be a part of a vector.
+    fn takes_part(&self, path: &str, whole: Option<&str>) -> bool {
+        self.takes(path) && whole.is_none_or(|whole| self.keeps(whole))
+            || whole.is_some_and(|whole| self.takes(whole) && self.keeps(path))
+    }
+
     fn keeps(&self, path: &str) -> bool {
         !self.ignore.iter().any(|pattern| takes(pattern, path))
+    }
+}
+
+/// Returns the names of a file that the filter may take; the others need not be kept. A pattern that may mean how equal names
+/// are distinguished is left to [`Names::new`].
+pub(super) fn selection(root: Option<&str>, only: &[String], ignore: &[String]) -> Result<Selection, WaveError> {
+    let by_number = only.iter().chain(ignore).any(|pattern| pattern.contains(['#', ':']));
+    if by_number || root.is_none() && only.is_empty() && ignore.is_empty() {
+        return Ok(Selection::default());
+    }
+    let filter = Filter::new(only, ignore)?;
+    let root = root.map(str::to_owned);
+    Ok(Selection(Some(Arc::new(move |path, whole| {
+        let below = |path| below(root.as_deref(), path);
+        Some(filter.takes_part(below(path)?, whole.and_then(below)))
+    }))))
+}
+
+/// Returns the path below the root.
+fn below<'a>(root: Option<&str>, path: &'a str) -> Option<&'a str> {
+    match root {
+        None => Some(path),
+        Some(root) => path.strip_prefix(root)?.strip_prefix('.'),
     }
 }
 
@@ -87,11 +117,8 @@ impl Names {
         filter: &Filter,
         file: &str,
     ) -> Result<Self, WaveError> {
-        let below = |path: &str| match root {
-            None => Some(path.to_owned()),
-            Some(root) => Some(path.strip_prefix(root)?.strip_prefix('.')?.to_owned()),
-        };
-        let mut known = false;
+        let below = |path: &str| below(root, path).map(str::to_owned);
+        let mut known = declarations.root_is_known;
         let mut taken: Vec<(usize, String)> = Vec::new();
         let mut vectors: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         for (at, named) in declarations.names.iter().enumerate() {
@@ -99,9 +126,7 @@ impl Names {
             known = true;
             // A part also goes by the name of the whole vector.
             let whole = named.part.as_ref().and_then(|(vector, _)| below(vector));
-            if filter.takes(&path) && whole.as_ref().is_none_or(|whole| filter.keeps(whole))
-                || whole.is_some_and(|whole| filter.takes(&whole) && filter.keeps(&path))
-            {
+            if filter.takes_part(&path, whole.as_deref()) {
                 taken.push((at, path));
                 if let Some((vector, _)) = &named.part {
                     vectors.entry(vector.clone()).or_default().push(at);
@@ -118,7 +143,7 @@ impl Names {
             .filter_map(|(vector, members)| Some((vector, parts(declarations, &members)?)))
             .collect();
         let mut names = Self {
-            left_out: declarations.names.len() - taken.len(),
+            left_out: declarations.left_out + declarations.names.len() - taken.len(),
             ..Self::default()
         };
         for (at, mut path) in taken {

@@ -1,6 +1,6 @@
 //! Reads a file again, as a comparison has read it: with the vectors that were put together, and up to the same end.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use super::parts::{Derived, PartOf, parts_by_slot};
@@ -15,6 +15,10 @@ pub(crate) struct Reading {
     /// Slots that are made of bits of others, and their names.
     pub(super) derived: Vec<Derived>,
     pub(super) names: Vec<(String, u32)>,
+    /// Number of slots of the file, and the names of those that are used above: a comparison of some signals gives other
+    /// numbers to their slots.
+    pub(super) slots: u32,
+    pub(super) declared: Vec<(String, u32)>,
 }
 
 /// A file that is read again.
@@ -31,16 +35,26 @@ impl Reading {
     /// Opens the file. `up_to_last_time` tells that it is cut off, and was compared up to its last complete time.
     pub(crate) fn open(&self, path: &Path, up_to_last_time: bool) -> Result<Reread, WaveError> {
         let mut wave = Wave::open(path)?;
-        wave.hold_any(&self.any);
-        let derived = self.derived.iter();
-        wave.declarations
-            .kinds
-            .extend(derived.map(|derived| Kind::Bits(derived.width)));
-        let names = self.names.iter().map(|(name, slot)| Named {
-            path: name.clone(),
-            slot: *slot,
-            part: None,
-        });
+        let slot_now = self.slots_now(&wave.declarations);
+        wave.hold_any(&self.any.iter().map(|slot| slot_now(*slot)).collect());
+        let mut derived = self.derived.clone();
+        for derived in &mut derived {
+            derived.slot = slot_now(derived.slot);
+            for run in &mut derived.runs {
+                run.source = slot_now(run.source);
+            }
+        }
+        let names: Vec<Named> = self
+            .names
+            .iter()
+            .map(|(name, slot)| Named {
+                path: name.clone(),
+                slot: slot_now(*slot),
+                part: None,
+            })
+            .collect();
+        let kinds = &mut wave.declarations.kinds;
+        kinds.extend(derived.iter().map(|derived| Kind::Bits(derived.width)));
         wave.declarations.names.extend(names);
         let file_end = match up_to_last_time {
             true => FileEnd::UpToLastTime,
@@ -49,11 +63,30 @@ impl Reading {
         let (declarations, feed) = wave.play(None, file_end)?;
         Ok(Reread {
             values: Values::new(&declarations.kinds),
-            parts: parts_by_slot(self.derived.iter(), declarations.kinds.len()),
+            parts: parts_by_slot(derived.iter(), declarations.kinds.len()),
             declarations,
             feed,
             changed: Vec::new(),
         })
+    }
+}
+
+impl Reading {
+    /// Returns the number that a slot of the comparison has now.
+    fn slots_now(&self, declarations: &Declarations) -> impl Fn(u32) -> u32 + use<> {
+        let of_file = self.slots;
+        let count = declarations.kinds.len() as u32;
+        let names = declarations.names.iter().filter(|_| !self.declared.is_empty());
+        let now: HashMap<&str, u32> = names.map(|named| (named.path.as_str(), named.slot)).collect();
+        let slots: HashMap<u32, u32> = self
+            .declared
+            .iter()
+            .filter_map(|(name, slot)| Some((*slot, *now.get(name.as_str())?)))
+            .collect();
+        move |slot| match slot.checked_sub(of_file) {
+            Some(derived) => count + derived,
+            None => slots.get(&slot).copied().unwrap_or(slot),
+        }
     }
 }
 

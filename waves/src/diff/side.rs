@@ -281,10 +281,7 @@ impl Side {
                 following.follow(slot, values, lines, listed);
             }
         });
-        // What the first step says of events is how they begin.
-        if !std::mem::replace(began, true) {
-            events.truncate(from);
-        }
+        *began = true;
         for slot in &events[from..] {
             let count = values.words(*slot)[0] + 1;
             values.set(*slot, &[count, 0]);

@@ -14,7 +14,7 @@
 
 use std::io::{self, BufRead};
 
-use super::header::{Declarations, Kind};
+use super::header::{Declarations, Kind, Selection};
 use super::ids::Ids;
 use super::put::shown;
 
@@ -162,17 +162,21 @@ impl<R: BufRead> Words<'_, R> {
 }
 
 /// Reads a VCD up to the value changes. `line` counts the lines, so that it is that of a problem.
-pub(super) fn read<R: BufRead>(input: &mut R, line: &mut u64) -> Result<(Declarations, Ids), Stop> {
+pub(super) fn read<R: BufRead>(
+    input: &mut R,
+    line: &mut u64,
+    selection: Selection,
+) -> Result<(Declarations, Ids), Stop> {
     let mut words = Words { inner: input, line };
-    let mut declarations = Declarations::new(1_000_000);
+    let mut declarations = Declarations::new(1_000_000, selection);
     declarations.unit_is_assumed = true;
     let mut ids = Ids::default();
     loop {
         let first = words.peek()?.ok_or(Stop::Cut("before $enddefinitions"))?;
         if first != b'$' {
-            if declarations.names.is_empty() || first != b'#' {
+            if declarations.is_empty() || first != b'#' {
                 let word = words.next()?.unwrap_or_default();
-                let place = if declarations.names.is_empty() {
+                let place = if declarations.is_empty() {
                     "where a VCD has declarations, such as $var"
                 } else {
                     "before $enddefinitions"
@@ -200,7 +204,7 @@ pub(super) fn read<R: BufRead>(input: &mut R, line: &mut u64) -> Result<(Declara
                 }
                 break;
             }
-            "$dumpvars" | "$dumpall" | "$dumpports" | "$dumpon" | "$dumpoff" if !declarations.names.is_empty() => {
+            "$dumpvars" | "$dumpall" | "$dumpports" | "$dumpon" | "$dumpoff" if !declarations.is_empty() => {
                 let note = format!("line {}: {command} comes without $enddefinitions", words.line);
                 declarations.notes.push(note);
                 break;
@@ -302,8 +306,14 @@ fn declare(declarations: &mut Declarations, ids: &mut Ids, var: &[String], line:
         "event" => Kind::Event,
         _ => Kind::Bits(width),
     };
+    if !declarations.is_wanted(&name, kind)? {
+        if ids.find(id.as_bytes()).is_none() {
+            ids.insert(id.as_bytes(), declarations.unwanted_slot()?);
+        }
+        return Ok(());
+    }
     let slot = match ids.find(id.as_bytes()) {
-        Some(slot) => {
+        Some(slot) if !declarations.is_unwanted(slot) => {
             let known = declarations.kinds[slot as usize];
             if known != kind {
                 declarations.merge_kinds(slot, kind)?;
@@ -312,7 +322,7 @@ fn declare(declarations: &mut Declarations, ids: &mut Ids, var: &[String], line:
             }
             slot
         }
-        None => {
+        _ => {
             let slot = declarations.add_slot(kind)?;
             ids.insert(id.as_bytes(), slot);
             slot
@@ -331,7 +341,7 @@ mod tests {
     fn read_slowly(text: &str) -> (Declarations, String) {
         // It reads one byte at a time, so that every word is cut everywhere.
         let mut inner = io::BufReader::with_capacity(1, text.as_bytes());
-        let read = read(&mut inner, &mut 1).unwrap_or_else(|_| panic!("{text}"));
+        let read = read(&mut inner, &mut 1, Selection::default()).unwrap_or_else(|_| panic!("{text}"));
         let mut rest = String::new();
         inner.read_to_string(&mut rest).unwrap();
         (read.0, rest)
@@ -387,6 +397,35 @@ mod tests {
                 notes.contains(note) && notes.is_empty() == note.is_empty(),
                 "{text}: {notes}"
             );
+        }
+    }
+
+    #[test]
+    fn unit_names_that_are_not_wanted_take_no_memory() {
+        let mut text = "$scope module t $end ".to_owned();
+        for at in 0..1000 {
+            // The last has the id code of the first.
+            text += &format!("$var wire 64 i{} v{at} [63:0] $end ", at % 999);
+        }
+        text += "$upscope $end $enddefinitions $end ";
+        for (wanted, slots) in [("t.v7", 2), ("t.v999", 2), ("t.v1000", 1)] {
+            let selection = Selection(Some(std::sync::Arc::new(move |path, whole| {
+                assert_eq!(whole, Some(path));
+                Some(path == wanted)
+            })));
+            let mut input = io::BufReader::new(text.as_bytes());
+            let (declarations, ids) = read(&mut input, &mut 1, selection).unwrap_or_else(|_| panic!("{wanted}"));
+            let names: Vec<&str> = declarations.names.iter().map(|named| named.path.as_str()).collect();
+            assert_eq!(names, if slots == 2 { vec![wanted] } else { Vec::new() });
+            assert_eq!(
+                (declarations.kinds.len(), declarations.left_out),
+                (slots, 1000 - names.len())
+            );
+            assert_eq!(declarations.kinds[0], Kind::Bits(0), "all the others");
+            let id = if wanted == "t.v7" { "i7" } else { "i0" };
+            let slot = ids.find(id.as_bytes()).unwrap();
+            assert_eq!(declarations.is_unwanted(slot), slots == 1, "{wanted}");
+            assert!(ids.find(b"i8").is_some_and(|slot| declarations.is_unwanted(slot)));
         }
     }
 

@@ -13,10 +13,10 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use super::fst_blocks::hierarchy::{self, Entry, Signal};
-use super::fst_blocks::{self, BLACKOUT, Blocks, Form, GEOMETRY, HEADER, SKIPPED, Stop};
+use super::fst_blocks::{self, BLACKOUT, Blocks, Form, GEOMETRY, HEADER, SKIPPED, Stop, port_bits};
 use super::fst_file::{self, Bytes, PACKED};
 use super::gatherer::Gatherer;
-use super::header::{Declarations, Kind};
+use super::header::{Declarations, Kind, Selection};
 use super::section::Ended;
 use crate::WaveError;
 
@@ -30,7 +30,7 @@ const TIMESCALE_AT: u64 = 73;
 /// Types of variables.
 const EVENT: u8 = 0;
 const REALS: [u8; 4] = [3, 4, 20, 29];
-/// A port with its strengths: three characters a bit, and two.
+/// A port of an extended VCD, with its strengths.
 const PORT: u8 = 18;
 const STRING: u8 = 21;
 
@@ -61,12 +61,12 @@ fn hierarchy_beside(path: &Path) -> Option<File> {
 }
 
 /// Opens a file and reads its declarations.
-pub(super) fn open(path: &Path) -> Result<(Declarations, FstValues), WaveError> {
+pub(super) fn open(path: &Path, selection: Selection) -> Result<(Declarations, FstValues), WaveError> {
     let file = Bytes::open(path)?;
-    read(path, file).map_err(|stop| refused(path, stop))
+    read(path, file, selection).map_err(|stop| refused(path, stop))
 }
 
-fn read(path: &Path, mut file: Bytes) -> Result<(Declarations, FstValues), Stop> {
+fn read(path: &Path, mut file: Bytes, selection: Selection) -> Result<(Declarations, FstValues), Stop> {
     let (blocks, cut) = fst_file::blocks(&mut file)?;
     if !blocks
         .first()
@@ -113,7 +113,7 @@ fn read(path: &Path, mut file: Bytes) -> Result<(Declarations, FstValues), Stop>
     let mut exponent = [0];
     file.read_exact(&mut exponent)?;
     let mut declaring = Declaring {
-        declarations: Declarations::new(unit_fs(i8::from_be_bytes(exponent))?),
+        declarations: Declarations::new(unit_fs(i8::from_be_bytes(exponent))?, selection),
         slots: Vec::new(),
         forms_are_known: forms.is_some(),
         forms: forms.unwrap_or_default(),
@@ -151,8 +151,13 @@ impl Declaring {
         let declarations = &mut self.declarations;
         let declared = match entry {
             Entry::Scope { name } => declarations.enter(&String::from_utf8_lossy(name)),
-            Entry::End if declarations.leave() => Ok(()),
-            Entry::End => Err("$upscope without $scope: the file is damaged".to_owned()),
+            Entry::End => {
+                if !declarations.leave() {
+                    let note = "the end of a scope that never began is ignored".to_owned();
+                    declarations.note_once("never began", note);
+                }
+                Ok(())
+            }
             Entry::Signal(signal) => return self.signal(&signal),
         };
         declared.map_err(Stop::Unknown)
@@ -173,23 +178,32 @@ impl Declaring {
         if handle >= self.slots.len() {
             self.slots.resize(handle + 1, None);
         }
-        let name = String::from_utf8_lossy(signal.name);
-        let slot = match self.slots[handle] {
-            Some(slot) => slot,
-            None => {
-                let kind = match (signal.kind, form) {
-                    (EVENT, _) => Kind::Event,
-                    (PORT, _) => Kind::Text,
-                    (_, Form::Bits(bits)) => Kind::Bits(*bits),
-                    (_, Form::Real) => Kind::Real,
-                    (_, Form::Text) => Kind::Text,
-                };
-                self.declarations.add_slot(kind).map_err(Stop::Unknown)?
-            }
+        let name = String::from_utf8_lossy(signal.name).replace(" [", "[");
+        let kind = match (signal.kind, form) {
+            (EVENT, _) => Kind::Event,
+            (PORT, Form::Bits(length)) => port_bits(*length).map_or(Kind::Bits(*length), Kind::Bits),
+            (_, Form::Bits(bits)) => Kind::Bits(*bits),
+            // A signal of no bits has the form of a real number.
+            (kind, Form::Real) if signal.bits == 0 && !REALS.contains(&kind) => Kind::Bits(0),
+            (_, Form::Real) => Kind::Real,
+            (_, Form::Text) => Kind::Text,
         };
-        self.slots[handle] = Some(slot);
-        let added = self.declarations.add_name(&name.replace(" [", "["), slot);
-        added.map_err(Stop::Unknown)
+        let declarations = &mut self.declarations;
+        let known = self.slots[handle];
+        let mut add = || {
+            let known_kind = known.map(|slot| declarations.kinds[slot as usize]);
+            if !declarations.is_wanted(&name, known_kind.unwrap_or(kind))? {
+                return Ok(known);
+            }
+            let slot = match known {
+                Some(slot) => slot,
+                None => declarations.add_slot(kind)?,
+            };
+            declarations.add_name(&name, slot)?;
+            Ok(Some(slot))
+        };
+        self.slots[handle] = add().map_err(Stop::Unknown)?;
+        Ok(())
     }
 }
 
@@ -213,7 +227,11 @@ pub(super) fn leave_out_same([a, b]: [&mut FstValues; 2], pairs: &[[u32; 2]], ne
             (a.slots[pair[0]], b.slots[pair[1]]) = (None, None);
         }
     }
-    a.blocks.stop_at(same.times);
+    let left_out = found
+        .iter()
+        .map(|pair| pair[0])
+        .filter(|handle| a.slots[*handle].is_none());
+    a.blocks.stop_at(same.times, left_out.collect());
 }
 
 impl FstValues {

@@ -103,6 +103,8 @@ pub(super) struct Gatherer {
     /// The digits of the clock before this step, and now.
     clock: [u8; 2],
     time: u64,
+    /// The first time of the file.
+    first_time: Option<u64>,
     place: u64,
     off: bool,
     was_off: bool,
@@ -131,6 +133,7 @@ impl Gatherer {
             watched: watch.map_or(u32::MAX, |watch| watch.slot),
             clock: [UNKNOWN; 2],
             time: 0,
+            first_time: None,
             place: NOWHERE,
             off: false,
             was_off: false,
@@ -148,6 +151,7 @@ impl Gatherer {
     pub(super) fn resumed(kinds: impl Into<Arc<[Kind]>>, watch: Option<Watch>, time: u64) -> Self {
         let mut gatherer = Self::new(kinds, watch);
         gatherer.time = time;
+        gatherer.first_time = Some(time);
         if let Some(watch) = watch {
             gatherer.clock = [watch.before_edge(); 2];
         }
@@ -254,6 +258,20 @@ impl Gatherer {
         at
     }
 
+    /// Whether all signals have got their values at the first time, and nothing has happened since.
+    pub(super) fn has_all_values(&self) -> bool {
+        let mut has_value = vec![false; self.kinds.len()];
+        for change in self.batch.changes.as_slice() {
+            has_value[change.slot() as usize] = true;
+        }
+        let is_odd = |slot: usize| self.odd.get(slot).copied().unwrap_or(false);
+        let needs_none = |kind: &Kind| matches!(kind, Kind::Event | Kind::Bits(0));
+        let mut slots = self.kinds.iter().zip(has_value).enumerate();
+        self.batch.steps.is_empty()
+            && self.first_time == Some(self.time)
+            && slots.all(|(slot, (kind, has_value))| has_value || is_odd(slot) || needs_none(kind))
+    }
+
     pub(super) fn kinds(&self) -> &[Kind] {
         &self.kinds
     }
@@ -303,9 +321,10 @@ impl Gatherer {
     }
 
     /// Notes that an event happens. Where the file repeats all values, as after a period without recording, it does not tell
-    /// so.
+    /// so; what it says of events at its first time is how they begin.
     pub(super) fn put_event(&mut self, slot: u32) {
-        if self.in_dump || self.off || self.was_off {
+        let begins = self.first_time.is_none_or(|first| first == self.time);
+        if begins || self.in_dump || self.off || self.was_off {
             return;
         }
         self.batch.changes.push(Change::known(slot));
@@ -344,6 +363,7 @@ impl Gatherer {
     /// is full and must be handed over.
     #[inline]
     pub(super) fn advance(&mut self, time: u64, place: u64) -> bool {
+        self.first_time.get_or_insert(time);
         if time == self.time {
             if self.place == NOWHERE && self.batch.changes.len() == self.from.0 {
                 self.place = place;

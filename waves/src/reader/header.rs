@@ -1,6 +1,7 @@
 //! Declarations of a waveform file: signals, their widths and names, the unit of time.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::wording::counted;
 
@@ -73,6 +74,19 @@ pub(crate) struct Named {
     pub(crate) part: Option<(String, Range)>,
 }
 
+/// Whether a name is wanted, by its path and that of the vector of which it is a part; `None` for one outside of the root.
+pub(crate) type Wanted = Arc<dyn Fn(&str, Option<&str>) -> Option<bool> + Send + Sync>;
+
+/// The names that are wanted of a file; the others take no memory.
+#[derive(Clone, Default)]
+pub(crate) struct Selection(pub(crate) Option<Wanted>);
+
+impl std::fmt::Debug for Selection {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if self.0.is_some() { "some" } else { "all" })
+    }
+}
+
 /// The declarations of a file.
 #[derive(Debug, Default)]
 pub(crate) struct Declarations {
@@ -91,15 +105,22 @@ pub(crate) struct Declarations {
     bits: u64,
     /// What is unusual in the file and was read nevertheless, with its line.
     pub(crate) notes: Vec<String>,
+    selection: Selection,
+    /// Number of names that were not wanted, and whether any name was inside of the root.
+    pub(crate) left_out: usize,
+    pub(crate) root_is_known: bool,
+    /// The slot of all signals without a wanted name; it has no bits, so that no change of it is kept.
+    unwanted: Option<u32>,
     /// Number of times that a path was declared, and its first slot.
     seen: HashMap<String, (u32, u32)>,
 }
 
 impl Declarations {
     /// Creates empty declarations with this many femtoseconds per unit of time.
-    pub(super) fn new(unit_fs: u64) -> Self {
+    pub(super) fn new(unit_fs: u64, selection: Selection) -> Self {
         Self {
             unit_fs,
+            selection,
             ..Self::default()
         }
     }
@@ -166,6 +187,65 @@ impl Declarations {
         }
     }
 
+    /// Whether nothing has been declared.
+    pub(super) fn is_empty(&self) -> bool {
+        self.names.is_empty() && self.left_out == 0
+    }
+
+    /// Returns whether a name, of a signal of this kind in the open scopes, is wanted; otherwise it is counted as left out.
+    pub(super) fn is_wanted(&mut self, name: &str, kind: Kind) -> Result<bool, String> {
+        let Some(wanted) = self.selection.0.clone() else {
+            return Ok(true);
+        };
+        let (path, vector, range) = self.path(name, kind);
+        let whole = range.is_some().then_some(vector.as_str());
+        let answer = wanted(&path, whole);
+        self.root_is_known |= answer.is_some();
+        if answer == Some(true) {
+            return Ok(true);
+        }
+        self.left_out += 1;
+        if self.left_out as u64 > MOST_SIGNALS {
+            return Err(too_many_signals());
+        }
+        Ok(false)
+    }
+
+    /// Returns the slot of signals without a wanted name.
+    pub(super) fn unwanted_slot(&mut self) -> Result<u32, String> {
+        if let Some(slot) = self.unwanted {
+            return Ok(slot);
+        }
+        let slot = self.add_slot(Kind::Bits(0))?;
+        self.unwanted = Some(slot);
+        Ok(slot)
+    }
+
+    /// Whether a slot is that of signals without a wanted name.
+    pub(super) fn is_unwanted(&self, slot: u32) -> bool {
+        self.unwanted == Some(slot)
+    }
+
+    /// Returns the path of a name in the open scopes, that of the vector if it is a part of one, and the declared bits.
+    fn path(&self, name: &str, kind: Kind) -> (String, String, Option<Range>) {
+        let width = match kind {
+            Kind::Bits(width) => u64::from(width),
+            Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => 0,
+        };
+        let whole_name = plain(name);
+        let (name, range) = split_range(whole_name, width);
+        let vector = format!("{}{name}", self.scope);
+        let path = match range {
+            // With the brackets that the file has.
+            Some(Range { left, right }) if left == right => match whole_name.ends_with(']') {
+                true => format!("{vector}[{left}]"),
+                false => format!("{}{whole_name}", self.scope),
+            },
+            _ => vector.clone(),
+        };
+        (path, vector, range)
+    }
+
     /// Adds a value of `kind`; returns its slot.
     pub(crate) fn add_slot(&mut self, kind: Kind) -> Result<u32, String> {
         let bits = match kind {
@@ -184,28 +264,14 @@ impl Declarations {
 
     /// Adds a name for a slot, in the open scopes. If it was declared before for the same slot, nothing happens.
     pub(crate) fn add_name(&mut self, name: &str, slot: u32) -> Result<(), String> {
-        let width = match self.kinds[slot as usize] {
-            Kind::Bits(width) => u64::from(width),
-            Kind::Real | Kind::Text | Kind::Event | Kind::Any(_) => 0,
-        };
-        let whole_name = plain(name);
-        let (name, range) = split_range(whole_name, width);
-        self.name_bytes += self.scope.len() + name.len();
+        let (mut path, vector, range) = self.path(name, self.kinds[slot as usize]);
+        self.name_bytes += vector.len();
         if self.name_bytes > NAME_BYTES {
             return Err(format!("more than {NAME_BYTES} bytes of names: dump fewer scopes"));
         }
         if self.names.len() as u64 == MOST_SIGNALS {
             return Err(too_many_signals());
         }
-        let vector = format!("{}{name}", self.scope);
-        let mut path = match range {
-            // With the brackets that the file has.
-            Some(Range { left, right }) if left == right => match whole_name.ends_with(']') {
-                true => format!("{vector}[{left}]"),
-                false => format!("{}{whole_name}", self.scope),
-            },
-            _ => vector.clone(),
-        };
         let (count, first) = self.seen.entry(path.clone()).or_insert((0, slot));
         *count += 1;
         if *count > 1 && *first == slot {

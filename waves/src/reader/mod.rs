@@ -47,7 +47,7 @@ pub(crate) use self::feed::Feed;
 use self::fst::FstValues;
 use self::gatherer::Gatherer;
 pub(crate) use self::gatherer::Watch;
-pub(crate) use self::header::{Declarations, Kind, Named, Range};
+pub(crate) use self::header::{Declarations, Kind, Named, Range, Selection};
 use self::ids::Ids;
 pub(crate) use self::section::FileEnd;
 use self::section::Section;
@@ -81,6 +81,11 @@ pub(crate) struct Wave {
 impl Wave {
     /// Opens a VCD or an FST, distinguished by its beginning, and reads its declarations.
     pub(crate) fn open(path: &Path) -> Result<Self, WaveError> {
+        Self::open_selected(path, Selection::default())
+    }
+
+    /// As [`Wave::open`], with the names that are wanted.
+    pub(crate) fn open_selected(path: &Path, selection: Selection) -> Result<Self, WaveError> {
         let source = unpack::open(path)?;
         let counted = Counted {
             input: source.input,
@@ -109,10 +114,10 @@ impl Wave {
                     problem: "an FST is read from a plain file only: unpack it, or save it, first".to_owned(),
                 });
             }
-            let (declarations, values) = fst::open(path)?;
+            let (declarations, values) = fst::open(path, selection)?;
             (declarations, Rest::Fst(Box::new(values)), None)
         } else {
-            let (declarations, ids) = read_declarations(path, &mut input)?;
+            let (declarations, ids) = read_declarations(path, &mut input, selection)?;
             let ids = Arc::new(ids);
             let section = Section::new(path, input, Arc::clone(&ids), source.file.is_some());
             let again = source.file.map(|file| (file, ids));
@@ -195,12 +200,16 @@ pub(crate) fn can_be_read_again(path: &Path) -> bool {
 }
 
 /// Reads a VCD up to the value changes.
-fn read_declarations(path: &Path, input: &mut BufReader<Counted>) -> Result<(Declarations, Ids), WaveError> {
+fn read_declarations(
+    path: &Path,
+    input: &mut BufReader<Counted>,
+    selection: Selection,
+) -> Result<(Declarations, Ids), WaveError> {
     if input.buffer().starts_with(BYTE_ORDER_MARK) {
         input.consume(BYTE_ORDER_MARK.len());
     }
     let mut line = 1;
-    let read = declarations::read(input, &mut line);
+    let read = declarations::read(input, &mut line, selection);
     read.map_err(|stop| match stop {
         Stop::Cut(inside) => truncated(path, input.get_ref().bytes, inside),
         Stop::Wrong(problem) => WaveError::Damaged {

@@ -155,6 +155,10 @@ impl Section {
                 Pause::More => self.fill()?,
             }
         }
+        if self.in_dump && gatherer.has_all_values() {
+            // `fst2vcd` closes no `$dumpvars`, and there may be no other time.
+            self.in_dump = false;
+        }
         let whole =
             self.from == self.to && !self.in_dump && !self.in_comment && !self.broken && self.last_byte == b'\n';
         if self.file_end == FileEnd::UpToLastTime && !whole {
@@ -300,7 +304,7 @@ impl Section {
                             let Some(end) = word_end(data, at + 1) else {
                                 return Ok(Pause::More);
                             };
-                            let what = format!("`{}` is not a time", shown(&data[at..end]));
+                            let what = format!("`{}` is not a time, which is a whole number", shown(&data[at..end]));
                             return Err(Fault { at, what });
                         }
                     };

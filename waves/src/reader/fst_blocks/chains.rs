@@ -150,7 +150,7 @@ impl Chains {
             return Ok(None);
         }
         let from = self.from;
-        let target = (PER_CHAIN * self.cursors.len()).max(CHANGES).min(MOST_CHANGES / 2);
+        let target = (PER_CHAIN * self.cursors.len()).clamp(CHANGES, MOST_CHANGES / 2);
         let mut saved = Vec::new();
         let mut until = (from + self.length).min(self.times);
         if until - from > 1 {

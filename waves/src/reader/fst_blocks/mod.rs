@@ -19,7 +19,7 @@ mod packing;
 mod same;
 mod written;
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::Arc;
 
@@ -33,6 +33,7 @@ use super::digits::{is_state, pack, state};
 use super::fst_file::Bytes;
 use super::gatherer::Gatherer;
 use super::header::Kind;
+use super::put::put_port;
 use super::values::pack_text;
 
 /// Kinds of blocks.
@@ -73,6 +74,13 @@ pub(super) enum Form {
     Text,
 }
 
+/// Returns the number of bits of a port, a value of which is the states of its bits, and, each after a space, as many
+/// strengths of zero and of one; `None` if it cannot be one.
+pub(super) fn port_bits(length: u32) -> Option<u32> {
+    let bits = length.checked_sub(2)?;
+    (bits > 0 && bits.is_multiple_of(3)).then_some(bits / 3)
+}
+
 impl Form {
     /// Returns the number of bytes of a value before the first change.
     fn bytes_before(self) -> usize {
@@ -95,6 +103,8 @@ pub(super) struct Blocks {
     little_endian: bool,
     /// For each block, a bit for each time at which something changes that is not read here ([`same`]); or empty.
     more_times: Vec<Vec<u64>>,
+    /// The signals that change at these times.
+    left_out: HashSet<usize>,
 }
 
 /// Why the blocks could not be read.
@@ -144,6 +154,7 @@ impl Blocks {
             blackouts: blackouts.into(),
             little_endian: true,
             more_times: Vec::new(),
+            left_out: HashSet::new(),
         };
         let mut euler = [0; 8];
         found.file.seek(SeekFrom::Start(EULER_AT))?;
@@ -157,9 +168,9 @@ impl Blocks {
         Ok(found)
     }
 
-    /// Makes a step also of each time of which a bit is set, block by block.
-    pub(super) fn stop_at(&mut self, more_times: Vec<Vec<u64>>) {
-        self.more_times = more_times;
+    /// Makes a step also of each time of which a bit is set, block by block; the signals that change then are left out.
+    pub(super) fn stop_at(&mut self, more_times: Vec<Vec<u64>>, left_out: HashSet<usize>) {
+        (self.more_times, self.left_out) = (more_times, left_out);
     }
 
     /// Reads all blocks. `hand_over` takes full batches, and returns whether to continue.
@@ -300,16 +311,20 @@ impl Blocks {
                 .get(at..at + length)
                 .ok_or_else(|| damaged("the first values end too early"))?;
             at += length;
-            let Some(slot) = slots.get(handle).copied().flatten() else {
-                continue;
-            };
-            match form {
-                Form::Bits(_) if !all && value.iter().all(|digit| matches!(digit, b'x' | b'X')) => {}
-                Form::Bits(width) => put_digits(gatherer, slot, *width, value)?,
+            let is_told = match form {
+                Form::Bits(_) => all || !value.iter().all(|digit| matches!(digit, b'x' | b'X')),
                 // Writers have no other number for one that has had no value yet.
-                Form::Real if self.real(value).is_nan() => {}
-                Form::Real => self.put_real(gatherer, slot, value),
-                Form::Text => {}
+                Form::Real => !self.real(value).is_nan(),
+                Form::Text => false,
+            };
+            if !is_told {
+                continue;
+            }
+            match (slots.get(handle).copied().flatten(), form) {
+                (None, _) if !self.more_times.is_empty() && self.left_out.contains(&handle) => gatherer.keep_step(),
+                (None, _) | (_, Form::Text) => {}
+                (Some(slot), Form::Bits(width)) => put_digits(gatherer, slot, *width, value)?,
+                (Some(slot), Form::Real) => self.put_real(gatherer, slot, value),
             }
         }
         Ok(())
@@ -383,11 +398,7 @@ fn advance(gatherer: &mut Gatherer, time: u64, hand_over: &mut dyn FnMut(&mut Ga
 fn put_digits(gatherer: &mut Gatherer, slot: u32, width: u32, digits: &[u8]) -> Result<(), Stop> {
     match gatherer.kind(slot) {
         Kind::Bits(declared) if declared == width => {}
-        // The states of a port, with their strengths.
-        Kind::Text => {
-            pack_text(digits, gatherer.put_words(slot));
-            return Ok(());
-        }
+        Kind::Bits(bits) if port_bits(width) == Some(bits) => return put_port_of(gatherer, slot, bits, digits),
         _ => return Ok(()),
     }
     let words = gatherer.put_words(slot);
@@ -399,4 +410,17 @@ fn put_digits(gatherer: &mut Gatherer, slot: u32, width: u32, digits: &[u8]) -> 
         gatherer.note_state(state(digits));
     }
     Ok(())
+}
+
+/// Takes the value of a port: states and strengths, or digits.
+fn put_port_of(gatherer: &mut Gatherer, slot: u32, bits: u32, value: &[u8]) -> Result<(), Stop> {
+    let mut words = value.split(|byte| *byte <= b' ').filter(|word| !word.is_empty());
+    let states = words.next().unwrap_or_default();
+    if states.len() == bits as usize {
+        let strengths = [words.next(), words.next()].map(Option::unwrap_or_default);
+        return put_port(gatherer, slot, states, strengths).map_err(Stop::Unknown);
+    }
+    // `vcd2fst` extends digits to the length of states and strengths.
+    let digits = &value[value.len() - bits as usize..];
+    super::put::put_digits(gatherer, slot, digits).map_err(Stop::Damaged)
 }
