@@ -123,18 +123,12 @@ fn link_key(link: &LinkSection) -> &'static str {
 
 /// The stage of a machine with its line.
 fn linked(machine: &Machine, link: &LinkSection, stage: &Stage, path: &Path) -> Result<LinkedStageBlock, Failure> {
-    let component = stage.block.component();
-    let config = link.bridge(&machine.clock, address_limit(component));
+    let config = link.bridge(&machine.clock, address_limit(stage.block.component()));
     let config = config.map_err(|error| at_key(path, 0, link_key(link), error))?;
-    let axes: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let top = format!("{}{LINK_SUFFIX}", machine.name);
     let names = [top.as_str(), &stage.block.top(), &machine.name];
-    Ok(LinkedStageBlock::new(
-        component,
-        (config, machine.clock.frequency_hz),
-        &axes,
-        names,
-    ))
+    let line = (config, machine.clock.frequency_hz);
+    LinkedStageBlock::new(&stage.of_machine.config, line, names).map_err(Failure::because)
 }
 
 impl Stage {

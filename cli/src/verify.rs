@@ -3,6 +3,7 @@
 mod dependence;
 mod document;
 mod folder;
+mod reached;
 
 use self::document::Document;
 use self::folder::Folder;
@@ -14,7 +15,7 @@ use crate::output;
 use crate::{blocks, command, machine, moves, replay};
 use posicast_model::spelling::did_you_mean;
 use posicast_synth::package;
-use posicast_testbench::blocks::{Block, ShortTicksBlock, Sources, StageBlock};
+use posicast_testbench::blocks::{Block, DenseLinkBlock, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use std::path::{Path, PathBuf};
 
@@ -47,6 +48,9 @@ pub(crate) struct Args {
     /// Let both simulators judge Verilog of the folder that was edited; without this it is no match
     #[arg(long)]
     edited: bool,
+    /// Also print what the clocks of each row reached (samples, moves, taps, registers) and how much of it a match needs
+    #[arg(short, long, conflicts_with = "json")]
+    verbose: bool,
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -129,7 +133,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print_styled(&document.text())?
+        let reached = if args.verbose {
+            reached::text(&report) + "\n"
+        } else {
+            String::new()
+        };
+        output::print_styled(&(reached + &document.text()))?
     }
     match document.reason {
         None => Ok(()),
@@ -191,7 +200,14 @@ impl Job {
             let short = short.map(|short| short.with_prefix(&machine.name));
             others.push(Box::new(block));
             others.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
-            others.extend(built.link.map(|block| Box::new(block) as Box<dyn Block>));
+            if let Some(link) = built.link {
+                if folder.is_some() {
+                    others.push(link.bridge());
+                }
+                let dense = DenseLinkBlock::new(&stage.of_machine.config, &link).map_err(Failure::because)?;
+                others.push(Box::new(link));
+                others.extend(dense.map(|block| Box::new(block) as Box<dyn Block>));
+            }
         }
         let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {

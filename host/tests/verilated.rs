@@ -105,8 +105,8 @@ fn long_the_library_operates_the_verilog_of_a_stage_with_its_bridge() {
         .unwrap()
         .bridge(&machine.clock, address_limit(&stage.component))
         .unwrap();
-    let axes = ["x", "y"].map(str::to_owned);
-    let block = LinkedStageBlock::new(&stage.component, (config, 50e6), &axes, ["xy_link", "xy_stage", "xy"]);
+    let names = ["xy_link", "xy_stage", "xy"];
+    let block = LinkedStageBlock::new(&stage.of_machine.config, (config, 50e6), names).unwrap();
     let device = Sources::write(&block).unwrap().verilated(&block, 1).unwrap();
     let count = |direction| device.ports().iter().filter(|port| port.direction == direction).count();
     let (inputs, outputs) = (count(Direction::Input), count(Direction::Output));

@@ -41,6 +41,7 @@ pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<LockstepRepo
         first: None,
         not_exercised: Vec::new(),
         unchanged: Vec::new(),
+        reached: Vec::new(),
         findings,
     };
     Ok(Some(LockstepReport::new(cycles, vec![row])))

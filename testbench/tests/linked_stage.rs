@@ -7,8 +7,11 @@ use posicast_model::link::{Reply, Request};
 use posicast_model::machine_file::{self, Machine};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::linked_stage::{BridgeConfig, LinkedStage, address_limit};
+use posicast_model::rtl::stage::StageConfig;
 use posicast_model::rtl::{ClockedBlock, Direction, Port};
-use posicast_testbench::blocks::{LinkedStageBlock, Sources, check};
+use posicast_testbench::blocks::{self, Block, DenseLinkBlock, LinkedStageBlock, Sources};
+use posicast_testbench::lockstep::report::LockstepVerdict;
+use posicast_testbench::mutation::NamedMutant;
 
 /// Clocks of a bit at 3,000,000 baud and 50 MHz, times three.
 const THREE_BITS: u64 = 50;
@@ -35,19 +38,30 @@ fn stage(machine: &Machine) -> (Component, BridgeConfig) {
     (component, config)
 }
 
-fn block(line: &str) -> LinkedStageBlock {
-    let (component, config) = stage(&machine(line));
-    let axes = ["x", "y"].map(str::to_owned);
-    LinkedStageBlock::new(&component, (config, 50e6), &axes, ["xy_link", "xy_stage", "xy"])
+fn block(line: &str) -> (StageConfig, LinkedStageBlock) {
+    let machine = machine(line);
+    let (_, config) = stage(&machine);
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap())
+        .unwrap()
+        .unwrap()
+        .config;
+    let block = LinkedStageBlock::new(&stage, (config, 50e6), ["xy_link", "xy_stage", "xy"]).unwrap();
+    (stage, block)
+}
+
+/// The same, as dense as it can be.
+fn dense(line: &str) -> DenseLinkBlock {
+    let (stage, machine) = block(line);
+    DenseLinkBlock::new(&stage, &machine).unwrap().unwrap()
 }
 
 /// A few requests in the simulator that compiles fast; the long tests have many.
 fn a_few_requests_agree(line: &str) {
-    let block = block(line);
+    let block = dense(line);
     let sources = Sources::write(&block).unwrap();
     assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
     let mut device = sources.icarus(&block).unwrap();
-    let report = check(&block, &mut device, 10_000, 1, &mut |_| {}).unwrap();
+    let report = blocks::check(&block, &mut device, 8_000, 1, &mut |_| {}).unwrap();
     assert_eq!(report.mismatches(), 0, "{:?}", report.blocks);
 }
 
@@ -61,29 +75,98 @@ fn lockstep_a_host_at_the_spi_lines_of_a_stage() {
     a_few_requests_agree(SPI);
 }
 
-fn many_requests_agree(line: &str) {
-    let block = block(line);
+/// What the stimuli reach, on the model alone: a driver at the line does what one at the bus does.
+fn reaches_everything(line: &str, clocks: u64) {
+    let block = dense(line);
+    let mut model = posicast_testbench::lockstep::TwoValued(block.model(1));
+    let report = blocks::judge(&block, &mut model, clocks..=clocks, 1, &mut |_| {}).unwrap();
+    assert_eq!(
+        report.result,
+        LockstepVerdict::Match,
+        "{:?}",
+        report.not_exercised_names()
+    );
+    assert!(report.samples > 200, "{}", report.samples);
+    let reached = &report.blocks[0].reached;
+    let count = |what: &str| reached.iter().find(|count| count.what == what).unwrap().count;
+    for axis in ["x", "y"] {
+        assert!(count(&format!("moves of {axis}")) >= 1, "{reached:?}");
+        assert!(count(&format!("taps of {axis}")) >= 2, "{reached:?}");
+    }
+}
+
+#[test]
+fn unit_a_driver_at_the_serial_line_moves_every_axis_and_loads_tables() {
+    reaches_everything(UART, 300_000);
+}
+
+#[test]
+fn long_a_driver_at_the_spi_lines_moves_every_axis_and_loads_tables() {
+    reaches_everything(SPI, 400_000);
+}
+
+/// Faults that a million clocks of the former row did not find: the halves of each word of a memory, and single bits.
+const MUTANTS: [NamedMutant<'static>; 6] = [
+    NamedMutant {
+        name: "a read that is taken in its first clock",
+        module: None,
+        from: "(avm_read & ~read_before)",
+        to: "(1'b0)",
+    },
+    NamedMutant {
+        name: "the halves of a history's words exchanged",
+        module: Some("ram_128x32"),
+        from: "words[write_address] <= write_data;",
+        to: "words[write_address] <= {write_data[15:0], write_data[31:16]};",
+    },
+    NamedMutant {
+        name: "a bit of the taps inverted",
+        module: Some("ram_128x25"),
+        from: "words[write_address] <= write_data;",
+        to: "words[write_address] <= write_data ^ 25'h40;",
+    },
+    NamedMutant {
+        name: "a bit of the shaped position inverted",
+        module: Some("xy_stage_x"),
+        from: ".reference_position     (shaped_position)",
+        to: ".reference_position     (shaped_position ^ 32'h1000)",
+    },
+    NamedMutant {
+        name: "a bit of the measured position inverted",
+        module: Some("xy_stage_y"),
+        from: ".position               (captured_position)",
+        to: ".position               (captured_position ^ 32'h10)",
+    },
+    NamedMutant {
+        name: "a bit of the controller's duty inverted",
+        module: Some("xy_stage_y"),
+        from: ".controller_duty    (controller_duty)",
+        to: ".controller_duty    (controller_duty ^ 18'h4)",
+    },
+];
+
+fn every_mutant_is_found(line: &str) {
+    let block = dense(line);
     let sources = Sources::write(&block).unwrap();
     let mut device = sources.verilated(&block, 1).unwrap();
-    let report = check(&block, &mut device, 400_000, 1, &mut |_| {}).unwrap();
-    assert_eq!(report.mismatches(), 0, "{:?}", report.blocks);
-    // A read that is taken in its first clock is that of the word before.
-    let wrong = sources
-        .rewritten(|_, text| text.replace("(avm_read & ~read_before)", "(1'b0)"))
-        .unwrap();
-    let mut device = wrong.verilated(&block, 1).unwrap();
-    let report = check(&block, &mut device, 400_000, 1, &mut |_| {}).unwrap();
-    assert!(report.mismatches() > 0);
+    let report = blocks::judge(&block, &mut device, 400_000..=400_000, 1, &mut |_| {}).unwrap();
+    assert_eq!(report.result, LockstepVerdict::Match, "{:?}", report.blocks[0].first);
+    for mutant in &MUTANTS {
+        let sources = Sources::of_modules(&mutant.put_into(&block.modules().unwrap()).unwrap()).unwrap();
+        let mut device = sources.verilated(&block, 1).unwrap();
+        let report = blocks::check(&block, &mut device, 400_000, 1, &mut |_| {}).unwrap();
+        assert!(report.mismatches() > 0, "{}", mutant.name);
+    }
 }
 
 #[test]
-fn long_lockstep_a_host_at_the_serial_line_of_a_stage() {
-    many_requests_agree(UART);
+fn long_lockstep_catches_every_mutant_behind_the_serial_line() {
+    every_mutant_is_found(UART);
 }
 
 #[test]
-fn long_lockstep_a_host_at_the_spi_lines_of_a_stage() {
-    many_requests_agree(SPI);
+fn long_lockstep_catches_every_mutant_behind_the_spi_lines() {
+    every_mutant_is_found(SPI);
 }
 
 /// A line with a host at it: sends a request, and returns the reply and the clocks from the first bit of the request to the last of the

@@ -80,4 +80,9 @@ pub trait ClockedBlock {
     /// # Errors
     /// [`StepError`] where a simulator fails; a model never fails.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
+
+    /// The composition whose nets show what happens inside; `None` for a block that is none, and for simulators.
+    fn composed(&self) -> Option<&composition::Composed> {
+        None
+    }
 }

@@ -7,8 +7,9 @@ use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
 
 use super::changes::Changes;
+use super::reached::AtThePorts;
 use super::registry::RegistryRow;
-use super::{Bins, Block, inside, not_in_rusthdl, proofs};
+use super::{Bins, Block, Reach, inside, not_in_rusthdl, proofs};
 use crate::Error;
 use crate::stimuli::{ComponentRandom, Stimuli};
 
@@ -111,6 +112,11 @@ impl Block for ComponentBlock {
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
         Box::new(ComponentRandom::new(&self.component, seed))
+    }
+
+    fn reach(&self) -> Box<dyn Reach + '_> {
+        let ports = self.component.composition().ports();
+        Box::new(AtThePorts::new(&self.instance, "", ports, Some(self.component.map())))
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

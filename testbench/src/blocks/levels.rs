@@ -114,6 +114,7 @@ mod tests {
                 inputs: &[0],
                 expected,
                 actual: expected,
+                inside: None,
             });
         }
         levels

@@ -35,6 +35,7 @@ mod part;
 mod proofs;
 mod pulse_counter;
 mod pwm;
+mod reached;
 mod registers;
 mod registry;
 mod segments;
@@ -57,10 +58,11 @@ pub use self::error_table::ErrorTableBlock;
 pub use self::excitation::ExcitationBlock;
 pub use self::library::{library, library_sizes};
 pub use self::linear_scale::LinearScaleBlock;
-pub use self::linked_stage::LinkedStageBlock;
+pub use self::linked_stage::{DenseLinkBlock, LinkedStageBlock};
 pub use self::part::{PartBlock, SmallPart};
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::pwm::PwmBlock;
+pub use self::reached::{Reach, Reached};
 pub use self::registers::RegistersBlock;
 pub use self::registry::{
     AreaBudget, AreaRow, BenchSizes, SmallBench, areas, benches, proofs, proofs_named, small_benches,
@@ -81,6 +83,7 @@ use posicast_model::rtl::{ClockedBlock, Port};
 
 use std::ops::{ControlFlow, RangeInclusive};
 
+use self::reached::AtThePorts;
 use crate::Error;
 use crate::lockstep::report::LockstepReport;
 use crate::lockstep::{self, Clock, Device, Instance, LockstepOptions};
@@ -155,6 +158,12 @@ pub trait Block: Send + Sync {
             model.ports(),
             &self.fixed(),
         )))
+    }
+
+    /// Creates the counters of what a run reaches, with the bars of a verdict.
+    fn reach(&self) -> Box<dyn Reach + '_> {
+        let model = self.model(0);
+        Box::new(AtThePorts::new(self.instance(), "", model.ports(), None))
     }
 
     /// Returns the output flags that cannot change as the block is built, each with the reason.
@@ -277,7 +286,7 @@ pub fn check(
 }
 
 /// As [`check`], for a verdict: it compares the smallest number of `clocks`, then continues until everything was
-/// exercised or the largest number is reached. The report lists what was not exercised then, and is not a match.
+/// exercised and every bar was reached, or the largest number of clocks. The report lists what was missing then, and is not a match.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -291,13 +300,19 @@ pub fn judge(
     let fewest = *clocks.start();
     let mut stimuli = block.stimuli(fewest, seed);
     let mut exercise = block.exercise();
+    let mut reach = block.reach();
     let mut watch = |clock: &Clock<'_>| {
         if let Some(exercise) = &mut exercise {
             exercise.observe(clock);
         }
+        reach.observe(clock);
         let done = clock.time + 1;
         let looks = done == fewest || (done > fewest && done.is_multiple_of(LOOK_CLOCKS));
-        match looks && exercise.as_ref().is_none_or(|exercise| exercise.missing().is_empty()) {
+        let is_enough = || {
+            let exercised = exercise.as_ref().is_none_or(|exercise| exercise.missing().is_empty());
+            exercised && !reach.reached().iter().any(|(_, count)| count.is_low())
+        };
+        match looks && is_enough() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
@@ -310,6 +325,7 @@ pub fn judge(
         &mut watch,
         progress,
     )?;
+    let report = report.with_reached(reach.reached());
     Ok(match exercise {
         Some(exercise) => report.without(exercise.missing()).with_unchanged(exercise.unchanged()),
         None => report,

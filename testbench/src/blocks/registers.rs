@@ -10,8 +10,9 @@ use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 
+use super::reached::AtThePorts;
 use super::registry::{AreaRow, RegistryRow, small};
-use super::{Bins, Block, not_in_rusthdl, proofs, shaper};
+use super::{Bins, Block, Reach, not_in_rusthdl, proofs, shaper};
 use crate::Error;
 use crate::formal::refused;
 use crate::lockstep::Clock;
@@ -111,6 +112,10 @@ impl Block for RegistersBlock {
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
         Box::new(RegistersRandom::new(&self.map, self.map.ports(), seed))
+    }
+
+    fn reach(&self) -> Box<dyn Reach + '_> {
+        Box::new(AtThePorts::new(&self.instance, "", self.map.ports(), Some(&self.map)))
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

@@ -8,8 +8,9 @@ use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 use posicast_model::taps::{Tap, TapTable};
 
+use super::reached::AtThePorts;
 use super::registry::{AreaRow, RegistryRow, one, small};
-use super::{Bins, Block, Exercise, named, proofs};
+use super::{Bins, Block, Exercise, Reach, Reached, named, proofs};
 use crate::Error;
 use crate::campaign::Campaign;
 use crate::formal::refused;
@@ -227,12 +228,40 @@ impl Block for MachineShapers {
         Some(Box::new(OfInstances { shown, names }))
     }
 
+    fn reach(&self) -> Box<dyn Reach + '_> {
+        Box::new(SideBySideReach::new(&self.shapers))
+    }
+
     fn coverage(&self) -> Box<dyn Bins + '_> {
         Box::new(OfLayout::new(&self.layout, self.shapers.iter().map(|s| &s.config)))
     }
 
     fn instances(&self, _ports: &[Port]) -> Vec<Instance> {
         joined(&self.shapers, 0).instances(self.name())
+    }
+}
+
+/// What each shaper reaches.
+struct SideBySideReach(Vec<AtThePorts>);
+
+impl SideBySideReach {
+    fn new(shapers: &[AxisShaper]) -> Self {
+        let joined = joined(shapers, 0);
+        let of = |shaper: &AxisShaper| {
+            let prefix = format!("{}_", shaper.axis);
+            AtThePorts::new(&shaper.axis, &prefix, joined.ports(), None)
+        };
+        Self(shapers.iter().map(of).collect())
+    }
+}
+
+impl Reach for SideBySideReach {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.0.iter_mut().for_each(|shaper| shaper.observe(clock));
+    }
+
+    fn reached(&self) -> Vec<(String, Reached)> {
+        self.0.iter().flat_map(AtThePorts::reached).collect()
     }
 }
 

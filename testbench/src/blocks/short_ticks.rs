@@ -20,7 +20,8 @@ use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::stage::{StageConfig, StageError};
 
-use super::{Bins, Block, Sources, StageBlock, not_in_rusthdl};
+use super::stage::BARS;
+use super::{Bins, Block, Reach, Sources, StageBlock, not_in_rusthdl};
 use crate::Error;
 use crate::stimuli::Stimuli;
 
@@ -66,6 +67,11 @@ impl ShortTicksBlock {
         }))
     }
 
+    /// Returns the stage with short ticks alone, as it is emitted with them.
+    pub fn stage(&self) -> &StageBlock {
+        &self.short
+    }
+
     /// Sets the prefix of a package: see [`StageBlock::with_prefix`].
     pub fn with_prefix(self, prefix: &str) -> Self {
         Self {
@@ -74,36 +80,47 @@ impl ShortTicksBlock {
             ..self
         }
     }
+}
 
-    /// Returns the modules by their names in the machine, each with its text for short ticks. Sizes are part of the
-    /// names of modules, and those change with the ticks.
-    fn pairs(&self) -> Result<HashMap<String, (String, String)>, EmitError> {
-        let (machine, short) = (self.machine.modules()?, self.short.modules()?);
-        let names: HashMap<&str, &str> = short
-            .iter()
-            .zip(&machine)
-            .map(|(short, machine)| (short.name.as_str(), machine.name.as_str()))
-            .collect();
-        let named = |text: &str| {
-            let words = text.split_inclusive(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
-            let word = |word: &str| {
-                let end = word
-                    .trim_end_matches(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
-                    .len();
-                let (name, rest) = word.split_at(end);
-                format!("{}{rest}", names.get(name).unwrap_or(&name))
-            };
-            words.map(word).collect::<String>()
+/// The modules of a machine by their names, each with its text as emitted and with other constants.
+pub(super) type Pairs = HashMap<String, (String, String)>;
+
+/// Returns the modules of `machine` by their names, each with its text in `other`, which is the same with other constants. Sizes
+/// are part of the names of modules, and those change with the constants.
+pub(super) fn pairs(machine: &dyn Block, other: &dyn Block) -> Result<Pairs, EmitError> {
+    let (machine, other) = (machine.modules()?, other.modules()?);
+    let names: HashMap<&str, &str> = other
+        .iter()
+        .zip(&machine)
+        .map(|(other, machine)| (other.name.as_str(), machine.name.as_str()))
+        .collect();
+    let named = |text: &str| {
+        let words = text.split_inclusive(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+        let word = |word: &str| {
+            let end = word
+                .trim_end_matches(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+                .len();
+            let (name, rest) = word.split_at(end);
+            format!("{}{rest}", names.get(name).unwrap_or(&name))
         };
-        let pairs = machine.iter().zip(&short);
-        Ok(pairs
-            .map(|(machine, short)| (machine.name.clone(), (machine.text.clone(), named(&short.text))))
-            .collect())
-    }
+        words.map(word).collect::<String>()
+    };
+    let pairs = machine.iter().zip(&other);
+    Ok(pairs
+        .map(|(machine, other)| (machine.name.clone(), (machine.text.clone(), named(&other.text))))
+        .collect())
+}
+
+/// Returns these files with the other constants, in lines that are still as emitted.
+pub(super) fn adapted(sources: &Sources, pairs: &Pairs) -> Result<Sources, Error> {
+    sources.rewritten(|name, text| match pairs.get(name) {
+        Some((emitted, other)) => exchanged(text, emitted, other),
+        None => text.to_owned(),
+    })
 }
 
 /// Returns the stage with its shortest tick, if that is less than half of its own.
-fn shortened(config: &StageConfig) -> Option<StageConfig> {
+pub(super) fn shortened(config: &StageConfig) -> Option<StageConfig> {
     let mut short = config.clone();
     let times = |axis: &posicast_model::rtl::stage::StageAxis| {
         u32::from(axis.pwm.dead_time_floor_clocks()) + u32::from(axis.pwm.minimum_pulse_floor_clocks())
@@ -153,11 +170,7 @@ impl Block for ShortTicksBlock {
     }
 
     fn adapted(&self, sources: Sources) -> Result<Sources, Error> {
-        let pairs = self.pairs()?;
-        sources.rewritten(|name, text| match pairs.get(name) {
-            Some((emitted, short)) => exchanged(text, emitted, short),
-            None => text.to_owned(),
-        })
+        adapted(&sources, &pairs(&self.machine, &self.short)?)
     }
 
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
@@ -178,6 +191,10 @@ impl Block for ShortTicksBlock {
 
     fn least_clocks(&self) -> u64 {
         LEAST_CLOCKS
+    }
+
+    fn reach(&self) -> Box<dyn Reach + '_> {
+        Box::new(self.short.reach_with(&self.instance, BARS))
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

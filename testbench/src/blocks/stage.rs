@@ -9,8 +9,9 @@ use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::{StageConfig, StageError};
 use posicast_model::{hardware, machine_file};
 
+use super::reached::InsideAStage;
 use super::registry::{AreaRow, RegistryRow, one};
-use super::{Bins, Block, inside, not_in_rusthdl, proofs};
+use super::{Bins, Block, Reach, inside, not_in_rusthdl, proofs};
 use crate::Error;
 use crate::formal::refused;
 use crate::lockstep::Clock;
@@ -41,7 +42,16 @@ pub struct StageBlock {
     instance: String,
     top: String,
     prefix: String,
+    /// Moves, taps and per cent of the registers that a run must reach.
+    bars: [u64; 3],
 }
+
+/// The bars of a run with short ticks. Its least clocks write 28 of 66 words that can be written, and read 67 of 97 as other words than 0.
+pub(super) const BARS: [u64; 3] = [1, 1, 35];
+/// The bars of a run with so few ticks that an axis may not come to its first move.
+pub(super) const FEW_TICKS_BARS: [u64; 3] = [0, 0, 10];
+/// Clocks per tick from which on a run has few ticks.
+const LONG_TICK_CLOCKS: u32 = 1500;
 
 impl StageBlock {
     /// Creates the stage with the top module `top`.
@@ -56,7 +66,17 @@ impl StageBlock {
             axes,
             top: top.to_owned(),
             prefix: top.to_owned(),
+            bars: if config.tick.tick_clocks() < LONG_TICK_CLOCKS {
+                BARS
+            } else {
+                FEW_TICKS_BARS
+            },
         })
+    }
+
+    /// Counts what a row of this stage reaches, whatever its bus is.
+    pub(super) fn reach_with(&self, instance: &str, bars: [u64; 3]) -> InsideAStage {
+        InsideAStage::new(instance, &self.axes, self.component.map(), bars)
     }
 
     /// Returns the stage's blocks, each with the modules of the stage, on the bench of its kind: those that all axes
@@ -75,6 +95,11 @@ impl StageBlock {
             prefix: prefix.to_owned(),
             ..self
         }
+    }
+
+    /// Returns the names of its axes.
+    pub fn axes(&self) -> &[String] {
+        &self.axes
     }
 
     /// Returns the stage.
@@ -114,6 +139,10 @@ impl Block for StageBlock {
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
         Box::new(StageRandom::new(&self.component, &self.axes, seed))
+    }
+
+    fn reach(&self) -> Box<dyn Reach + '_> {
+        Box::new(self.reach_with(&self.instance, self.bars))
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

@@ -18,6 +18,7 @@ mod joined;
 pub mod report;
 mod window;
 
+use posicast_model::rtl::composition::Composed;
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 use std::ops::ControlFlow;
 
@@ -114,7 +115,7 @@ impl LockstepOptions {
 }
 
 /// Values of one clock, for coverage and waveforms.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Clock<'a> {
     /// Number of clocks since the start of the run.
     pub time: u64,
@@ -124,6 +125,8 @@ pub struct Clock<'a> {
     pub expected: &'a [u64],
     /// The device's outputs, in the same order.
     pub actual: &'a [u64],
+    /// The nets inside the model, if it is a composition.
+    pub inside: Option<&'a Composed>,
 }
 
 /// Runs model and device, and compares them.
@@ -171,6 +174,7 @@ pub fn run_until(
             inputs: &inputs,
             expected: &both.expected,
             actual: &both.actual,
+            inside: model.composed(),
         });
         if goes_on.is_break() {
             break;
@@ -388,6 +392,7 @@ impl Comparison {
             mismatches: watched.mismatches,
             not_exercised: Vec::new(),
             unchanged: Vec::new(),
+            reached: Vec::new(),
             findings: Vec::new(),
         });
         LockstepReport::new(cycles, blocks.collect())

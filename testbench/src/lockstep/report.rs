@@ -6,6 +6,7 @@ use posicast_model::rtl::{Direction, Port};
 use serde::Serialize;
 
 use super::window::{Row, Window};
+use crate::blocks::Reached;
 use wavecmp::diff::{Shown, View, value, value_and_digits};
 
 /// Verdict of a lock step.
@@ -74,6 +75,27 @@ impl LockstepReport {
         Self::new(self.cycles, self.blocks)
     }
 
+    /// Adds what the clocks reached, each with the instance of its row. What is below its bar counts as not exercised. Samples
+    /// are those counted here where a block has no `valid`.
+    pub fn with_reached(mut self, counts: Vec<(String, Reached)>) -> Self {
+        let low = counts.iter().filter(|(_, count)| count.is_low());
+        let low = low.map(|(row, count)| {
+            (
+                row.clone(),
+                format!("{} {} of at least {}", count.count, count.what, count.least),
+            )
+        });
+        let low: Vec<(String, String)> = low.collect();
+        for block in &mut self.blocks {
+            let own = counts.iter().filter(|(row, _)| *row == block.instance);
+            block.reached = own.map(|(_, count)| count.clone()).collect();
+            let samples = block.reached.iter().filter(|count| count.what.starts_with("samples"));
+            let samples = samples.map(|count| count.count).reduce(|all, more| all + more);
+            block.samples = block.samples.or(samples);
+        }
+        self.without(low)
+    }
+
     /// Adds bits of words that never changed, each with the instance of its row.
     pub fn with_unchanged(mut self, bits: Vec<(String, String)>) -> Self {
         for (instance, bits) in bits {
@@ -124,6 +146,9 @@ pub struct BlockReport {
     /// Bits of words that kept one level during the whole run, as `word[31:20]`: mostly the upper bits of counters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unchanged: Vec<String>,
+    /// What the clocks reached, with the bars.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reached: Vec<Reached>,
     /// Findings of a directed test that the lock step cannot see, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,

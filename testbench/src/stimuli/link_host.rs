@@ -1,6 +1,8 @@
 //! A host of the link, whatever its line is: requests of every kind, right and wrong, frames that are damaged in every way; and what
 //! such a run must reach.
 
+use std::collections::VecDeque;
+
 use posicast_model::link::{Crc, MOST_WORDS, Request, cobs};
 use posicast_model::rtl::uart_bridge::OUTPUT_PORTS;
 use rand::{Rng, RngExt};
@@ -8,6 +10,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::table::pick;
 
+/// Registers below this address exist in the beginning.
+const LIMIT: u16 = 300;
 /// Places of outputs, which all bridges have.
 const ADDRESS: usize = 1;
 const READ: usize = 2;
@@ -31,15 +35,18 @@ pub(super) struct LinkHost {
     pub(super) address_limit: u16,
     sequence: u8,
     last_frame: Vec<u8>,
+    /// Frames to send before random ones.
+    directed: VecDeque<Vec<u8>>,
 }
 
 impl LinkHost {
-    /// A host of registers below 300.
+    /// A host of registers below [`LIMIT`].
     pub(super) fn new() -> Self {
         Self {
-            address_limit: 300,
+            address_limit: LIMIT,
             sequence: 0,
             last_frame: Vec::new(),
+            directed: border_cases(LIMIT, LIMIT / 2).into(),
         }
     }
 
@@ -91,7 +98,15 @@ impl LinkHost {
         frame
     }
 
+    /// Whether directed requests are left: nothing of the line or the registers' side changes before they are over.
+    pub(super) fn is_directed(&self) -> bool {
+        !self.directed.is_empty()
+    }
+
     pub(super) fn frame(&mut self, rng: &mut Xoshiro256PlusPlus) -> Vec<u8> {
+        if let Some(frame) = self.directed.pop_front() {
+            return frame;
+        }
         if one_in(rng, 6) && !self.last_frame.is_empty() {
             return self.last_frame.clone();
         }
@@ -133,6 +148,134 @@ pub(super) fn damage(rng: &mut Xoshiro256PlusPlus, frame: &mut Vec<u8>) {
             let byte = 1 + rng.random_range(0..254_u8);
             let length = rng.random_range(245..260);
             frame.splice(0..0, vec![byte; length]);
+        }
+    }
+}
+
+/// Requests at the borders of what a bridge takes, with which each conversation begins: sequence numbers that differ in their upper
+/// bits alone, one request with the number 0 twice, addresses at and beside `limit`. Words are written to `address` alone, and to
+/// the last one.
+pub(super) fn border_cases(limit: u16, address: u16) -> Vec<Vec<u8>> {
+    let last = limit.wrapping_sub(1);
+    let read = |address, count| Request::Read { address, count };
+    let write = |word| Request::Write {
+        address,
+        words: vec![word],
+    };
+    let cases = [
+        (0, read(address, 1)),
+        (0, read(address, 1)),
+        (0x15, write(0x1234)),
+        // Bits 6 and 7 alone differ, then bit 7, then bit 6, then each lower one.
+        (0xd5, write(0x2345)),
+        (0x55, write(0x3456)),
+        (0x15, write(0x4567)),
+        (0x35, write(0x5678)),
+        (0x25, write(0x6789)),
+        (0x2d, write(0x789a)),
+        (0x29, write(0x89ab)),
+        (0x2b, write(0x9abc)),
+        (0x2a, write(0xabcd)),
+        (0x2a, write(0xabcd)),
+        (0, read(address, 1)),
+        (1, read(last, 1)),
+        (2, read(limit, 1)),
+        (3, read(last, 2)),
+        (4, Request::ReadList(vec![address, limit])),
+        (5, Request::WriteList(vec![(address, 1), (limit, 2)])),
+        (
+            6,
+            Request::Write {
+                address: limit,
+                words: vec![3],
+            },
+        ),
+        (7, Request::WriteList(vec![(last, 4), (address, 5)])),
+    ];
+    let frames = cases.iter().map(|(sequence, request)| request.encode(*sequence));
+    frames.filter_map(Result::ok).collect()
+}
+
+/// Tells when a reply is over: the byte 0 after other bytes.
+#[derive(Debug, Clone)]
+pub(super) struct ReplyEnd {
+    bit_clocks: f64,
+    /// Clocks until the next look at a serial line; `None` between bytes.
+    look: Option<f64>,
+    byte: u32,
+    bits: u32,
+    began: bool,
+    over: bool,
+}
+
+impl ReplyEnd {
+    /// For a line with this many clocks per bit, if it is serial.
+    pub(super) fn new(bit_clocks: f64) -> Self {
+        Self {
+            bit_clocks,
+            look: None,
+            byte: 0,
+            bits: 0,
+            began: false,
+            over: true,
+        }
+    }
+
+    /// A request is being sent.
+    pub(super) fn begin(&mut self) {
+        let bit_clocks = self.bit_clocks;
+        *self = Self {
+            over: false,
+            ..Self::new(bit_clocks)
+        };
+    }
+
+    /// No reply is awaited any more.
+    pub(super) fn is_over(&self) -> bool {
+        self.over
+    }
+
+    /// Nothing comes at the moment.
+    pub(super) fn is_silent(&self) -> bool {
+        self.look.is_none() && !self.began
+    }
+
+    /// The level of the serial line to the host in a clock.
+    pub(super) fn serial(&mut self, level: bool) {
+        let Some(look) = &mut self.look else {
+            if !level {
+                (self.look, self.byte, self.bits) = (Some(1.5 * self.bit_clocks), 0, 0);
+            }
+            return;
+        };
+        *look -= 1.0;
+        if *look > 0.0 {
+            return;
+        }
+        *look += self.bit_clocks;
+        if self.bits == 8 {
+            self.look = None;
+            self.byte();
+            return;
+        }
+        self.byte |= u32::from(level) << self.bits;
+        self.bits += 1;
+    }
+
+    /// The level of MISO at a rising edge of the clock.
+    pub(super) fn spi_bit(&mut self, level: bool) {
+        self.byte = self.byte << 1 | u32::from(level);
+        self.bits += 1;
+        if self.bits == 8 {
+            self.byte();
+            (self.byte, self.bits) = (0, 0);
+        }
+    }
+
+    fn byte(&mut self) {
+        match self.byte & 0xff {
+            0 => self.over |= self.began,
+            _ => self.began = true,
         }
     }
 }

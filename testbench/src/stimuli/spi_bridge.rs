@@ -90,7 +90,8 @@ impl SpiBridgeRandom {
     }
 
     fn byte(&mut self, byte: u8) {
-        match self.rng.random_range(0..1600) {
+        let faults = if self.host.is_directed() { 1599..1600 } else { 0..1600 };
+        match self.rng.random_range(faults) {
             // The selection ends within the byte, or between two.
             0 => {
                 let count = self.rng.random_range(1..8);
@@ -126,20 +127,21 @@ impl SpiBridgeRandom {
     }
 
     fn send(&mut self) {
-        if one_in(&mut self.rng, 8) {
+        let directed = self.host.is_directed();
+        if !directed && one_in(&mut self.rng, 8) {
             self.half = *pick(&mut self.rng, &[4, 4, 4, 4, 3, 3, 2, 5, 12]);
             self.silence_limit = *pick(&mut self.rng, &[40, 20, 0xf_ffff, 30]);
             self.host.address_limit = *pick(&mut self.rng, &[300, 300, 512, 1, 0, 0xffff, 0x8000]);
             self.waits = *pick(&mut self.rng, &[1, 2, 8, 100]);
         }
         let mut frame = self.host.frame(&mut self.rng);
-        if one_in(&mut self.rng, 6) {
+        if !directed && one_in(&mut self.rng, 6) {
             damage(&mut self.rng, &mut frame);
         }
         for byte in frame {
             self.byte(byte);
         }
-        self.reads = if one_in(&mut self.rng, 12) {
+        self.reads = if !directed && one_in(&mut self.rng, 12) {
             self.rng.random_range(0..20)
         } else {
             MOST_READ
@@ -155,7 +157,7 @@ impl SpiBridgeRandom {
             // As long as the bridge is busy, and for a byte or two after it.
             if self.reads > 0 {
                 self.reads = if busy { self.reads - 1 } else { self.reads.min(3) - 1 };
-                let speaks = one_in(&mut self.rng, 200);
+                let speaks = !self.host.is_directed() && one_in(&mut self.rng, 200);
                 let byte = if speaks { self.rng.random() } else { 0 };
                 self.byte(byte);
             } else {
@@ -190,7 +192,8 @@ impl Stimuli for SpiBridgeRandom {
         };
         let busy = seen.get(BUSY).is_some_and(|busy| *busy != 0);
         let resets = if busy { 12_000 } else { 40_000 };
-        *rst = u64::from(self.clock < 2 || one_in(&mut self.rng, resets));
+        let resets = !self.host.is_directed() && one_in(&mut self.rng, resets);
+        *rst = u64::from(self.clock < 2 || resets);
         self.next(busy);
         [*sck, *cs_n, *mosi] = [self.now.sck, self.now.cs_n, self.now.mosi].map(u64::from);
         *silence_limit = self.silence_limit;

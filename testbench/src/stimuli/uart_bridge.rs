@@ -52,7 +52,8 @@ impl UartBridgeRandom {
 
     /// Puts the next frame on the line.
     fn send(&mut self) {
-        if one_in(&mut self.rng, 8) {
+        let directed = self.host.is_directed();
+        if !directed && one_in(&mut self.rng, 8) {
             self.baud_step = *pick(
                 &mut self.rng,
                 &[0xffff, 0xffff, 0xffff, 0xffff, 0xf000, 0xc001, 0x7000, 16_000],
@@ -62,11 +63,12 @@ impl UartBridgeRandom {
             self.waits = *pick(&mut self.rng, &[1, 2, 8, 100]);
         }
         let mut frame = self.host.frame(&mut self.rng);
-        if one_in(&mut self.rng, 6) {
+        if !directed && one_in(&mut self.rng, 6) {
             damage(&mut self.rng, &mut frame);
         }
         let cut = self.rng.random_range(0..=frame.len());
-        let fault = self.rng.random_range(0..40);
+        let faults = if directed { 39..40 } else { 0..40 };
+        let fault = self.rng.random_range(faults);
         for (place, byte) in frame.into_iter().enumerate() {
             if place == cut {
                 match fault {
@@ -86,7 +88,7 @@ impl UartBridgeRandom {
                 self.line.push_back((true, self.rng.random_range(1..12)));
             }
         }
-        self.patience = if one_in(&mut self.rng, 12) { 0 } else { 60 };
+        self.patience = if !directed && one_in(&mut self.rng, 12) { 0 } else { 60 };
     }
 
     /// The level of the line in the next clock.
@@ -131,7 +133,8 @@ impl Stimuli for UartBridgeRandom {
         let busy = seen.get(BUSY).is_some_and(|busy| *busy != 0);
         // Most of the time the host speaks, and a reset then meets no request.
         let clocks_between_resets = if busy { 8_000 } else { 40_000 };
-        *rst = u64::from(self.clock < 2 || one_in(&mut self.rng, clocks_between_resets));
+        let resets = !self.host.is_directed() && one_in(&mut self.rng, clocks_between_resets);
+        *rst = u64::from(self.clock < 2 || resets);
         *uart_rx = u64::from(self.level(busy));
         *baud_step = self.baud_step;
         *silence_limit = self.silence_limit;

@@ -232,6 +232,10 @@ impl ClockedBlock for Composed {
         self.show_with(inputs, outputs);
         self.clock()
     }
+
+    fn composed(&self) -> Option<&Composed> {
+        Some(self)
+    }
 }
 
 impl Moore for Composed {

@@ -137,4 +137,8 @@ impl ClockedBlock for LinkedStage {
             .for_each(|(output, (_, value))| *output = *value);
         Ok(())
     }
+
+    fn composed(&self) -> Option<&Composed> {
+        Some(&self.stage)
+    }
 }

@@ -354,12 +354,7 @@ impl StageRandom {
 
     /// Makes the driver's next access, if there is one.
     fn drive(&mut self, seen: &[u64], inputs: &mut [u64]) {
-        for (at, axis) in self.axes.iter().enumerate() {
-            let on = seen.get(axis.shown[2]).is_some_and(|value| value & 1 != 0);
-            if !self.mood.scene {
-                self.driver.plan(at, on, self.mood.request_pace);
-            }
-        }
+        self.think(seen);
         if let Some((offset, data)) = self.driver.clock() {
             inputs[ADDRESS] = offset.into();
             inputs[WRITE_DATA] = data.into();
@@ -375,8 +370,41 @@ impl StageRandom {
     }
 }
 
-impl Stimuli for StageRandom {
-    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+/// For a host at a line, whose accesses take hundreds of clocks.
+impl StageRandom {
+    /// Makes `rst` and the pins of a clock, and plans; leaves the bus alone. Time stands still for the axes in the mask
+    /// `waiting`, whose writes are on the line. A mood lasts `longer` times as long as on the bus.
+    pub(in super::super) fn beside_a_line(&mut self, seen: &[u64], inputs: &mut [u64], waiting: u32, longer: u64) {
+        self.change_mood(longer);
+        self.pins(seen);
+        inputs[0] = self.reset().into();
+        self.encoders(seen, inputs);
+        self.lines(inputs);
+        self.think(seen);
+        self.driver.pass(waiting);
+        self.clock += 1;
+    }
+
+    /// Returns at most so many writes that the driver would make now, and the mask of the axes that they belong to.
+    pub(in super::super) fn due_writes(&mut self, most: usize) -> (Vec<(u32, u32)>, u32) {
+        self.driver.due_writes(most)
+    }
+
+    /// Whether random writes may go to any register now.
+    pub(in super::super) fn is_wild(&self) -> bool {
+        self.mood.wild
+    }
+
+    /// Whether the driver is in a sequence of writes to an axis.
+    pub(in super::super) fn writes(&self, axis: usize) -> bool {
+        self.driver.writes(axis)
+    }
+
+    fn reset(&mut self) -> bool {
+        self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace)
+    }
+
+    fn change_mood(&mut self, longer: u64) {
         let is_over = if self.mood.scene {
             self.driver.is_idle()
         } else {
@@ -384,14 +412,30 @@ impl Stimuli for StageRandom {
         };
         if is_over {
             self.new_mood();
-            self.mood_ends = self.clock + MOOD_CLOCKS[usize::from(!self.mood.wild)];
+            self.mood_ends = self.clock + longer * MOOD_CLOCKS[usize::from(!self.mood.wild)];
         }
+    }
+
+    fn think(&mut self, seen: &[u64]) {
+        if self.mood.scene {
+            return;
+        }
+        for (at, axis) in self.axes.iter().enumerate() {
+            let on = seen.get(axis.shown[2]).is_some_and(|value| value & 1 != 0);
+            self.driver.plan(at, on, self.mood.request_pace);
+        }
+    }
+}
+
+impl Stimuli for StageRandom {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        self.change_mood(1);
         self.pins(seen);
         self.registers.fill(seen, inputs);
         if !self.mood.wild {
             inputs[WRITE] = 0;
         }
-        inputs[0] = (self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace)).into();
+        inputs[0] = self.reset().into();
         self.encoders(seen, inputs);
         self.lines(inputs);
         self.drive(seen, inputs);

@@ -126,7 +126,45 @@ impl Driver {
 
     /// Advances by a clock. Returns the register and the word to write in it, if any.
     pub(super) fn clock(&mut self) -> Option<(u32, u32)> {
-        for axis in &mut self.axes {
+        self.pass(0);
+        let first = self.below(self.axes.len() as u32) as usize;
+        if self.one_in(5) {
+            return None;
+        }
+        self.next_write(first)
+    }
+
+    /// Returns at most so many writes that come next, and the mask of the axes that they belong to. Those of an axis stay in
+    /// order.
+    pub(super) fn due_writes(&mut self, most: usize) -> (Vec<(u32, u32)>, u32) {
+        let (mut writes, mut axes) = (Vec::new(), 0);
+        let first = self.below(self.axes.len() as u32) as usize;
+        let count = self.axes.len();
+        for axis in (0..count).map(|at| (first + at) % count) {
+            while writes.len() < most
+                && let Some(write) = self.next_write(axis)
+            {
+                writes.push(write);
+                axes |= 1 << axis;
+            }
+        }
+        (writes, axes)
+    }
+
+    fn next_write(&mut self, axis: usize) -> Option<(u32, u32)> {
+        match self.axes[axis].script.front().copied() {
+            Some(Do::Write(offset, data)) => {
+                self.axes[axis].script.pop_front();
+                Some((offset, data))
+            }
+            _ => None,
+        }
+    }
+
+    /// Lets a clock pass for the axes that are not in the mask `waiting`: those await an access.
+    pub(super) fn pass(&mut self, waiting: u32) {
+        let passes = |(at, axis)| (waiting >> at & 1 == 0).then_some(axis);
+        for axis in self.axes.iter_mut().enumerate().filter_map(passes) {
             match axis.script.front_mut() {
                 Some(Do::Wait(0)) => {
                     axis.script.pop_front();
@@ -158,17 +196,6 @@ impl Driver {
                 }
                 Some(Do::Write(..)) | None => {}
             }
-        }
-        let first = self.below(self.axes.len() as u32) as usize;
-        if self.one_in(5) {
-            return None;
-        }
-        match self.axes[first].script.front().copied() {
-            Some(Do::Write(offset, data)) => {
-                self.axes[first].script.pop_front();
-                Some((offset, data))
-            }
-            _ => None,
         }
     }
 

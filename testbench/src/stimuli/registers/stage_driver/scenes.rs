@@ -10,8 +10,10 @@ use rand::Rng;
 
 use super::{Do, Driver, Moves};
 
-/// All scenes. Those that drive the most wires between the blocks in the fewest ticks come first.
-pub(in super::super) const SCENES: [fn(&mut Driver, usize); 23] = [
+/// All scenes. Those that drive the most wires between the blocks in the fewest ticks come first; the first one loads a table, moves,
+/// trips and recovers, and a host at a line does not come much further.
+pub(in super::super) const SCENES: [fn(&mut Driver, usize); 25] = [
+    Driver::command_beyond_a_soft_limit,
     Driver::follows_badly,
     Driver::slips,
     Driver::runs_dry,
@@ -20,6 +22,7 @@ pub(in super::super) const SCENES: [fn(&mut Driver, usize); 23] = [
     Driver::overflows,
     Driver::limit_switches,
     Driver::holds_the_feed,
+    Driver::clears_in_a_quick_stop,
     Driver::is_disabled_before_it_starts,
     Driver::emergency,
     Driver::settings_and_laws,
@@ -180,10 +183,72 @@ impl Driver {
         let [plus, minus] = if back { [far, here - near] } else { [here + near, -far] };
         self.tell(axis, "soft_limit_plus", plus as u32);
         self.tell(axis, "soft_limit_minus", minus as u32);
+        self.tell(axis, "homed", 1);
         self.company(axis);
         self.goes(axis, SLOW << 2, back);
         self.set_off(axis);
         self.ticks(axis, 8);
+    }
+
+    /// Clears faults during a quick stop, which must not clear the flags of any block: each has one, and the stop takes ticks.
+    fn clears_in_a_quick_stop(&mut self, axis: usize) {
+        // The cause of the stop does not switch off, whatever the round is.
+        self.tell(axis, "watchdog", 0);
+        let deceleration = 1 << 26 | self.below(1 << 25);
+        self.tell(axis, "stop_deceleration", deceleration);
+        self.tell(axis, "settle", 3);
+        // Refused: a tap for the machine's own bank, a swap to no bank, an entry of no ticks.
+        self.tell(axis, "tap_address", 0);
+        self.tell(axis, "tap", 1);
+        self.tell(axis, "swap", 3);
+        self.entry(axis, 0, EntryMotion::Jerk(1), false);
+        let back = self.is_odd(axis);
+        self.goes(axis, FAST, back);
+        self.set_off(axis);
+        self.ticks(axis, 4);
+        self.act(axis, Do::Slip);
+        let before = self.below(self.tick_clocks);
+        self.wait(axis, self.tick_clocks / 2 + before);
+        for _ in 0..3 {
+            self.tell(axis, "clear_faults", 0);
+            let between = 20 + self.below(self.tick_clocks);
+            self.wait(axis, between);
+        }
+        self.ticks(axis, 4);
+    }
+
+    /// Moves the command beyond a soft limit at once, and the shaped position only when the last taps come: the limit lies between the
+    /// first tap's part of the way and all of it.
+    fn command_beyond_a_soft_limit(&mut self, axis: usize) {
+        let fraction = self.fraction(axis);
+        // A table of its own: a quarter at once, the rest some ticks later.
+        let late = 5 + u64::from(self.below(4));
+        self.load(axis, 1, &[(1 << (fraction - 2), 0), (3 << (fraction - 2), late)]);
+        self.tell(axis, "swap", 1);
+        self.tell(axis, "settle", 12);
+        self.ticks(axis, 2);
+        let way = 60 << 8;
+        let back = self.is_odd(axis);
+        let here = self.axes[axis].here << 8;
+        let sign = if back { -1 } else { 1 };
+        let limit = here + sign * way / 2;
+        let far = here - sign * (1 << 29);
+        let [plus, minus] = if back { [far, limit] } else { [limit, far] };
+        self.tell(axis, "soft_limit_plus", plus as u32);
+        self.tell(axis, "soft_limit_minus", minus as u32);
+        self.tell(axis, "homed", 1);
+        self.company(axis);
+        // 60 counts in four ticks: the jerks j, -j, -j, j of a tick each make 2 j.
+        let jerk = i64::from(sign) * (i64::from(way) << 24) / 2;
+        for jerk in [jerk, -jerk, -jerk, jerk] {
+            self.entry(axis, 1, EntryMotion::Jerk(jerk), false);
+        }
+        self.entry(axis, 20, EntryMotion::Jerk(0), false);
+        self.set_off(axis);
+        self.ticks(axis, 14);
+        self.unlimited(axis);
+        self.tell(axis, "swap", 0);
+        self.ticks(axis, 1);
     }
 
     /// Sets a limit of the following error, with an encoder that does not follow.
