@@ -248,7 +248,10 @@ impl Gatherer {
             }
             changes.grow(count);
             if count < places {
-                break;
+                match lines.none(data, at) {
+                    Some(next) => at = next,
+                    None => break,
+                }
             }
         }
         if let Some(digit) = clock {
