@@ -17,10 +17,11 @@ use std::time::Instant;
 
 use posicast_testbench::ladder::{Columns, Rung, rows, table};
 
-const RUNGS: [&str; 9] = [
+const RUNGS: [&str; 10] = [
     "lock step",
     "second simulator",
     "netlist",
+    "reset",
     "formal",
     "mutation",
     "coverage",
@@ -104,6 +105,7 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
                 &[("LUT", "LUT"), ("flip-flops", "flip-flops")],
             )
         }
+        "reset" => example(name, "unset", &[], &[("memories and multipliers", "cut out")]),
         "formal" => example(
             name,
             "formal",

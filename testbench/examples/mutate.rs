@@ -5,6 +5,7 @@
 //! --block NAME    only this block                    --mutants N   per block (60)
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
 //! --write         renews the table in docs/verification.md, or the rows of the block
+//! --wires         each constant and wire of the stage's description instead; --mutants takes so many of them
 //! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
 //! ```
 //!
@@ -20,11 +21,12 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
+use posicast_model::rtl::stage::StageConfig;
 use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::Error;
 use posicast_testbench::mutation::{
-    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, all, hunt, inside_table, merged, named, run, table,
-    unlisted,
+    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, WIRES_MARKS, all, hunt, inside_table, merged, named,
+    run, table, unlisted, wires, wires_table,
 };
 
 fn main() -> ExitCode {
@@ -43,6 +45,8 @@ struct Arguments {
     options: MutationOptions,
     write: bool,
     inside: bool,
+    /// The most mutants of the wires, if they are asked for.
+    wires: Option<usize>,
 }
 
 /// The machine whose stage gets the named mutants.
@@ -55,7 +59,9 @@ impl Arguments {
             options: MutationOptions::default(),
             write: false,
             inside: false,
+            wires: None,
         };
+        let mut mutants = None;
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut value = || {
@@ -64,17 +70,23 @@ impl Arguments {
             };
             match word.as_str() {
                 "--block" => found.block = Some(value()?),
-                "--mutants" => found.options.mutants = number(&word, &value()?)?,
+                "--mutants" => mutants = Some(number(&word, &value()?)?),
                 "--seed" => found.options.seed = number(&word, &value()?)?,
                 "--clocks" => found.options.clocks = number(&word, &value()?)?,
                 "--write" => found.write = true,
                 "--inside" => found.inside = true,
+                "--wires" => found.wires = Some(usize::MAX),
                 other => {
                     return Err(Error::Option(format!(
-                        "`{other}`: the options are --block, --mutants, --seed, --clocks, --write and --inside"
+                        "`{other}`: the options are --block, --mutants, --seed, --clocks, --write, --wires and --inside"
                     )));
                 }
             }
+        }
+        match (&mut found.wires, mutants) {
+            (Some(wires), Some(most)) => *wires = most,
+            (None, Some(mutants)) => found.options.mutants = mutants,
+            (_, None) => {}
         }
         if found.write && found.options != MutationOptions::default() {
             return Err(Error::Option(
@@ -96,7 +108,11 @@ fn mutate() -> Result<bool, Error> {
         options,
         write,
         inside,
+        wires: most_wires,
     } = Arguments::read()?;
+    if let Some(most) = most_wires {
+        return mutate_wires(most, &options, write);
+    }
     if inside {
         return mutate_inside(&options, write);
     }
@@ -168,17 +184,46 @@ fn mutate() -> Result<bool, Error> {
     Ok(unlisted.is_empty())
 }
 
-/// Tries the named mutants, each in the stage of the example machine.
-fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> {
+/// The stage of the example machine.
+fn example_stage() -> Result<StageConfig, Error> {
     let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
     let machine = machine_file::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
     let design = design_machine(&machine).map_err(|error| refused(&error))?;
     let stage = hardware::stage(&machine, &design).map_err(|error| refused(&error))?;
-    let stage = stage.ok_or_else(|| refused(&"it has no stage"))?;
+    Ok(stage.ok_or_else(|| refused(&"it has no stage"))?.config)
+}
+
+/// Tries the constants and wires of the stage of the example machine; true if the page lists each that was not found.
+fn mutate_wires(most: usize, options: &MutationOptions, write: bool) -> Result<bool, Error> {
+    let folder = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
+    let found = wires(&example_stage()?, "xy_stage_stage", most, options, &folder);
+    // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
+    let _ = std::fs::remove_dir_all(&folder);
+    let (all, fates) = found?;
+    let table = wires_table(all, &fates, options.clocks);
+    if write {
+        WIRES_MARKS.renew(|_| table.clone())?;
+    }
+    print!("{table}");
+    let page = WIRES_MARKS.read()?;
+    let unseen = fates.iter().filter(|fate| fate.kill.is_none());
+    let unlisted: Vec<String> = unseen
+        .map(|fate| fate.mutant.describe())
+        .filter(|mutant| !page.contains(mutant))
+        .collect();
+    for mutant in &unlisted {
+        eprintln!("not found, and not listed in docs/verification.md: {mutant}");
+    }
+    Ok(unlisted.is_empty())
+}
+
+/// Tries the named mutants, each in the stage of the example machine.
+fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> {
+    let stage = example_stage()?;
     let mut fates = Vec::new();
     for mutant in INSIDE {
         let start = Instant::now();
-        let found = hunt(&mutant, &stage.config, "xy_stage_stage", options.clocks, options.seed)?;
+        let found = hunt(&mutant, &stage, "xy_stage_stage", options.clocks, options.seed)?;
         let by = found
             .as_ref()
             .map_or("NOT FOUND".to_owned(), |found| format!("{found:?}"));

@@ -179,7 +179,7 @@ impl Bench<'_> {
 
 /// The module without the values that its registers have at power-up. A memory keeps its contents, because those of a
 /// ROM are fixed.
-fn without_initial_values(module: &Module) -> Module {
+pub fn without_initial_values(module: &Module) -> Module {
     if has_memory(module) {
         return module.clone();
     }

@@ -32,6 +32,7 @@ pub mod asynchronous;
 pub mod blocks;
 pub mod campaign;
 pub mod coverage;
+pub mod crossings;
 pub mod crosssim;
 mod error;
 pub mod fault_campaign;
@@ -52,6 +53,7 @@ pub mod stage_bench;
 pub mod stage_run;
 pub mod stimuli;
 mod tool;
+pub mod unset;
 pub mod verilator;
 pub mod wave;
 

@@ -71,3 +71,19 @@ fn lockstep_catches_a_sequence_number_that_loses_a_bit_on_the_way() {
         300_000,
     );
 }
+
+/// With these the requests at the borders begin: random numbers take long to come upon them.
+#[test]
+fn lockstep_catches_a_sequence_number_that_is_compared_on_six_bits_among_the_first_requests() {
+    caught(
+        &bridge(),
+        "(sequence_number == last_sequence)",
+        "(sequence_number[5:0] == last_sequence[5:0])",
+        20_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_number_0_that_repeats_among_the_first_requests() {
+    caught(&bridge(), "(|sequence_number)", "1'b1", 20_000);
+}

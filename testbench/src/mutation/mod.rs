@@ -31,6 +31,7 @@ mod properties;
 mod simulation;
 mod subject;
 mod table;
+mod wires;
 
 pub use self::by_name::NamedMutant;
 pub use self::inside::{Found, INSIDE, INSIDE_MARKS, hunt, inside_table};
@@ -38,6 +39,7 @@ pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};
 pub use self::table::{MARKS, MutationRow, merged, table, unlisted};
+pub use self::wires::{WIRES_MARKS, WireFate, WireKind, WireMutant, wires, wires_table, with_wires};
 
 use std::path::Path;
 use std::time::Duration;

@@ -1,0 +1,68 @@
+//! Proves of every block that nothing from before a reset reaches an output after it:
+//! `cargo run --release -p posicast-testbench --example unset [BLOCK…]`.
+//!
+//! Prints a row per block. Without names it takes all blocks but the stage, which consists of them. Exit status: 0 if all are proven, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
+
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use posicast_testbench::Error;
+use posicast_testbench::blocks::{Block, library};
+use posicast_testbench::netlist::{EquivalenceVerdict, NetlistParts};
+use posicast_testbench::unset::check;
+
+/// Time limit of each engine of a proof.
+const LIMIT: Duration = Duration::from_secs(300);
+
+fn main() -> ExitCode {
+    match prove() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(if error.is_missing_tool() { 3 } else { 2 })
+        }
+    }
+}
+
+fn prove() -> Result<bool, Error> {
+    let names: Vec<String> = std::env::args().skip(1).collect();
+    let blocks = library()?;
+    let is_known = |name: &&String| blocks.iter().any(|block| block.name() == *name);
+    if let Some(unknown) = names.iter().find(|name| !is_known(name)) {
+        return Err(Error::Option(format!("there is no block `{unknown}`")));
+    }
+    println!("| block | instance | memories and multipliers | after a reset | seconds |");
+    println!("|---|---|---|---|---|");
+    let mut is_good = true;
+    for block in blocks {
+        let wanted = match names.is_empty() {
+            true => block.name() != "stage",
+            false => names.iter().any(|name| name == block.name()),
+        };
+        if wanted {
+            is_good &= row(block.as_ref())?;
+        }
+    }
+    Ok(is_good)
+}
+
+/// Prints a block's row, and returns whether it is proven.
+fn row(block: &dyn Block) -> Result<bool, Error> {
+    let start = Instant::now();
+    let verdict = check(block, LIMIT)?;
+    let says = match verdict {
+        EquivalenceVerdict::Equivalent => "proven".to_owned(),
+        EquivalenceVerdict::Different { clock } => format!("differs in clock {clock}"),
+        EquivalenceVerdict::Unknown => "unknown".to_owned(),
+    };
+    println!(
+        "| {} | {} | {} | {says} | {:.1} |",
+        block.name(),
+        block.instance(),
+        NetlistParts::of(block.modules()?).kept.len(),
+        start.elapsed().as_secs_f64()
+    );
+    Ok(verdict == EquivalenceVerdict::Equivalent)
+}

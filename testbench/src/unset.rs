@@ -1,0 +1,119 @@
+//! Proves that no value from before the reset reaches an output: two copies of a block begin in any two states and show the same after it.
+//!
+//! ```text
+//!  inputs, any ─┬─► block without initial values, in any state ────────┬─► equal in every clock after the reset?
+//!               └─► the same block, in any other state ────────────────┘    (Yosys: miter ─► ABC: register correspondence, PDR)
+//! ```
+//!
+//! - Both are in reset in the first [`RESET_CLOCKS`] clocks; afterwards reset is an input like all others.
+//! - A register without a reset, or one whose reset takes more clocks, has another value in each copy: if an output, or the port of a
+//!   memory, depended on it, it would differ. So this is the question of a simulation with `x`, for all inputs and without the
+//!   pessimism of an `if` over `x`.
+//! - Memories, ROMs and multipliers are cut out as for [netlists](crate::netlist): their ports are compared like outputs, and what they give
+//!   is any value, the same in both. That no word of a memory is shown before it was written is not proven here; the second simulator
+//!   begins with `x` in all of them.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Duration;
+
+use posicast_system::scratch;
+
+use crate::Error;
+use crate::blocks::Block;
+use crate::crosssim::without_initial_values;
+use crate::formal::{YOSYS, abc, asserted};
+use crate::netlist::{EquivalenceVerdict, NetlistParts};
+
+/// Clocks of the reset: a synchroniser of two flip-flops has taken its input after two.
+pub const RESET_CLOCKS: u32 = 3;
+/// Length in clocks of the longest difference that is searched for.
+const SEARCHED_CLOCKS: u32 = 60;
+
+const COMPARING: &str = "comparing two copies after a reset";
+
+/// The reset of the first clocks, and the outputs afterwards. What is not connected here is any value.
+const AFTER_RESET: &str = "\
+module after_reset (input wire clk, input wire rst);
+    reg [1:0] clocks = 2'd0;
+    wire over = clocks == 2'd3;
+    wire differs;
+    always @(posedge clk) clocks <= over ? 2'd3 : clocks + 2'd1;
+    miter both (.in_clk(clk), .in_rst(rst | ~over), .trigger(differs));
+    always @* assert(!(over & differs));
+endmodule
+";
+
+/// Compares two copies of a block, as [`independent`].
+///
+/// # Errors
+/// As [`independent`]; [`crate::Error`] of the emitter where the block has no Verilog.
+pub fn check(block: &dyn Block, limit: Duration) -> Result<EquivalenceVerdict, Error> {
+    let temporary = std::env::temp_dir();
+    let folder = scratch::Folder::new(scratch::PREFIX).map_err(Error::file(&temporary, "create a folder in"))?;
+    independent(&block.top(), &NetlistParts::of(block.modules()?), folder.path(), limit)
+}
+
+/// Compares two copies of a block with the top module `top`, which has the inputs `clk` and `rst`, with files in `folder`. Each of
+/// ABC's engines gets the time limit `limit`.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses the Verilog; [`Error::File`] for the files.
+pub fn independent(
+    top: &str,
+    parts: &NetlistParts,
+    folder: &Path,
+    limit: Duration,
+) -> Result<EquivalenceVerdict, Error> {
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(Error::file(&path, "write"))
+    };
+    let (mut kept, mut cut) = (String::new(), String::new());
+    for module in &parts.kept {
+        let file = format!("{}.v", module.name);
+        write(&file, &module.text)?;
+        let _ = writeln!(kept, "read_verilog -lib {file}");
+        let _ = write!(cut, " t:{}", module.name);
+    }
+    if !cut.is_empty() {
+        cut = format!("expose -evert{cut}\n");
+    }
+    let mut logic = String::new();
+    for module in &parts.logic {
+        let file = format!("{}.v", module.name);
+        write(&file, &without_initial_values(module).text)?;
+        let _ = write!(logic, " {file}");
+    }
+    write("after_reset.v", AFTER_RESET)?;
+    let copy = |name: &str| {
+        format!(
+            "{kept}read_verilog{logic}\nhierarchy -check -top {top}\nproc\nflatten\nasync2sync\nopt_clean\n{cut}rename -top {name}\n\
+             design -stash {name}\n"
+        )
+    };
+    // No pass may give an unset register a value, nor merge registers of the copies: therefore no `opt`.
+    let script = format!(
+        "{}{}design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
+         miter -equiv -flatten gold gate miter\nread_verilog -formal after_reset.v\nhierarchy -top after_reset\nproc\nflatten\n\
+         setundef -undriven -anyseq\ntechmap\ndffunmap\nabc -g AND -fast\nopt_clean\n\
+         write_aiger -I -B -zinit -no-startoffset copies.aig\n",
+        copy("gold"),
+        copy("gate")
+    );
+    write("copies.ys", &script)?;
+    let mut yosys = YOSYS.command_in(folder);
+    yosys.args(["-q", "copies.ys"]);
+    YOSYS.run(&mut yosys, "joining two copies")?;
+
+    let seconds = limit.as_secs().max(1);
+    let proof = format!("read_aiger copies.aig; fold; strash; scorr; pdr -T {seconds}");
+    if abc(folder, &proof, COMPARING)?.contains("Property proved") {
+        return Ok(EquivalenceVerdict::Equivalent);
+    }
+    let search = format!("read_aiger copies.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {seconds}");
+    let found = asserted(&abc(folder, &search, COMPARING)?).next();
+    Ok(found.map_or(EquivalenceVerdict::Unknown, |(_, clock)| {
+        EquivalenceVerdict::Different { clock }
+    }))
+}

@@ -1,0 +1,65 @@
+//! The pins of a stage in the first clocks: off at power-up without a reset, during a reset, and after it until a host switches on.
+
+use posicast_hdl::emit::Module;
+use posicast_model::rtl::Direction;
+use posicast_testbench::blocks::{Block, Sources, StageBlock, library_sizes};
+use posicast_testbench::crosssim::without_initial_values;
+use posicast_testbench::lockstep::Device;
+
+/// Clocks before the reset, in it, and after it.
+const CLOCKS: [u64; 3] = [200, 3, 400];
+/// Pins that switch something on, after the axis's name.
+const SWITCHES: [&str; 6] = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
+
+/// The first clock and pin that is not low, from power-up on, in a simulator that knows `x`; lines do what they want, a host writes
+/// nothing.
+fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
+    let mut device = Sources::of_modules(modules).unwrap().icarus(block).unwrap();
+    let model = block.model(0);
+    let ports = |direction| model.ports().iter().filter(move |port| port.direction == direction);
+    let (mut inputs, outputs) = (
+        vec![0; ports(Direction::Input).count()],
+        ports(Direction::Output).count(),
+    );
+    let (mut shown, mut unknown) = (vec![0; outputs], vec![0; outputs]);
+    let pins: Vec<usize> = ports(Direction::Input)
+        .enumerate()
+        .filter(|(_, port)| port.name != "rst" && !port.name.starts_with("avs_"))
+        .map(|(at, _)| at)
+        .collect();
+    let watched: Vec<(usize, String)> = ports(Direction::Output)
+        .enumerate()
+        .filter(|(_, port)| port.name == "irq" || SWITCHES.iter().any(|pin| port.name.ends_with(&format!("_{pin}"))))
+        .map(|(at, port)| (at, port.name.clone()))
+        .collect();
+    assert_eq!(watched.len(), 13);
+    let mut random = 0x9e37_79b9_7f4a_7c15_u64;
+    for clock in 0..CLOCKS.iter().sum() {
+        for pin in &pins {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            // A line changes once in some clocks.
+            if random >> 60 == 0 {
+                inputs[*pin] ^= 1;
+            }
+        }
+        inputs[0] = (CLOCKS[0]..CLOCKS[0] + CLOCKS[1]).contains(&clock).into();
+        Device::step(&mut device, &inputs, &mut shown, &mut unknown).unwrap();
+        let on = watched.iter().find(|(at, _)| shown[*at] != 0 || unknown[*at] != 0);
+        if let Some((_, pin)) = on {
+            return Some((clock, pin.clone()));
+        }
+    }
+    None
+}
+
+#[test]
+fn unit_every_pin_is_off_from_power_up_on() {
+    let block = StageBlock::new(&library_sizes().unwrap().stage.unwrap(), "stage").unwrap();
+    let modules = block.modules().unwrap();
+    assert_eq!(first_on(&block, &modules), None);
+    // Without the values at power-up, the pins are unknown until the reset.
+    let unset: Vec<Module> = modules.iter().map(without_initial_values).collect();
+    assert_eq!(first_on(&block, &unset).map(|(clock, _)| clock), Some(0));
+}

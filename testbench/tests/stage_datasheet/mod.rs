@@ -1,0 +1,20 @@
+//! A bench of the stage from its data sheets alone: `docs/stage.md`, `axis.md`, `segments.md`, `pulse_counter.md`, `pwm.md`,
+//! `drive_command.md` and `register-tables.md`, against the emitted Verilog through bus and pins.
+//!
+//! The composition is one source for model and Verilog, so a wrong wire in it is in both, and lock step cannot see it. The expectations
+//! here are numbers of the data sheets. [`caught`] puts wrong wires into the Verilog and requires that a check fails.
+
+mod bed;
+mod caught;
+mod checks;
+
+use self::bed::{Bed, modules};
+use self::checks::CHECKS;
+
+#[test]
+fn unit_the_stage_does_what_its_data_sheets_say() {
+    let modules = modules();
+    for (_, check) in CHECKS {
+        check(&mut Bed::new(&modules));
+    }
+}
