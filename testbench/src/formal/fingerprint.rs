@@ -7,7 +7,7 @@ use super::tool::{ASSERTS, COVERS, input_files};
 
 impl Task {
     /// SHA-256, in 32 hexadecimal digits, of everything that decides the result of this task: Verilog, properties, scripts, engine,
-    /// and the program that runs the engines. Only the versions of Yosys and ABC are not in it.
+    /// and the program that runs the engines. Lines of comments are not in it, nor are the versions of Yosys and ABC.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         let mut add = |text: &str| {
@@ -17,11 +17,19 @@ impl Task {
         };
         for (name, text) in input_files(self, &[ASSERTS, COVERS]) {
             add(&name);
-            add(&text);
+            add(&without_comments(&text));
         }
         add(&format!("{:?}", self.engine));
-        add(include_str!("tool.rs"));
+        // The part before its tests.
+        let runner = include_str!("tool.rs").split("#[cfg(test)]").next();
+        add(&without_comments(runner.unwrap_or_default()));
         let digits = hash.finalize();
         digits.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
+}
+
+/// The text without the lines that are comments of Verilog.
+fn without_comments(text: &str) -> String {
+    let lines = text.split_inclusive('\n');
+    lines.filter(|line| !line.trim_start().starts_with("//")).collect()
 }

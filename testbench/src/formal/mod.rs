@@ -19,11 +19,13 @@
 //! searched.
 
 mod fingerprint;
+mod missing;
 mod names;
 mod task;
 mod tool;
 
+pub use self::missing::missing_tools;
 pub use self::task::{Engine, Task};
 pub(crate) use self::task::{INDUCTION, part, refused};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
-pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, missing_tools, proves, run, search};
+pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, proves, run, search};

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use super::names::{formal_top, peeks};
 use super::task::{Engine, Task};
 use crate::Error;
-use crate::error::MissingTool;
 use crate::tool::{Tool, text};
 
 /// Length in clocks of the longest counterexample that is searched where an engine finds no proof.
@@ -33,11 +32,6 @@ pub(crate) const ABC: Tool = Tool {
     purpose: "proves without invariants, finds counterexamples and covers",
     remedy: "It comes with Yosys (Debian: apt-get install --no-install-recommends yosys), or name it in POSICAST_YOSYS_ABC",
 };
-
-/// What the proofs need and is not installed.
-pub fn missing_tools() -> Vec<MissingTool> {
-    [YOSYS, ABC].iter().filter_map(Tool::missing).collect()
-}
 
 /// Result for a task's assertions.
 #[derive(Debug, Clone, PartialEq, Eq)]

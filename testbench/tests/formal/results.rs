@@ -29,7 +29,7 @@ pub(crate) fn known_or(task: &Task, asked: &str, compute: impl FnOnce() -> Strin
 }
 
 #[test]
-fn unit_a_fingerprint_changes_with_verilog_properties_and_engine() {
+fn a_fingerprint_changes_with_verilog_properties_and_engine_but_no_comment() {
     let proof = || {
         posicast_testbench::blocks::proofs_named("group")
             .unwrap()
@@ -41,6 +41,9 @@ fn unit_a_fingerprint_changes_with_verilog_properties_and_engine() {
     verilog.modules[0].text.push('\n');
     let mut engine = proof();
     engine.engine = posicast_testbench::formal::Engine::Induction { clocks: 7 };
+    let mut comment = proof();
+    comment.modules[0].text.insert_str(0, "// A word about it.\n");
+    assert_eq!(comment.fingerprint(), same);
     let other_properties = posicast_testbench::blocks::proofs_named("divider")
         .unwrap()
         .swap_remove(0);
