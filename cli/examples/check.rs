@@ -9,7 +9,7 @@
 //! of the block are run. Exit status: 0 all holds, 1 not so, 2 bad usage, 3 a tool is missing.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
-use posicast_model::rtl::Port;
+use posicast_blocks::Port;
 use posicast_synth::yosys::{Family, Yosys, YosysError};
 use posicast_testbench::blocks::{self, Block, Sources, library};
 use posicast_testbench::formal::{self, ProofVerdict};

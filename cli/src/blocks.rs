@@ -5,12 +5,12 @@ use crate::command::{self, Words};
 use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine::of_hardware;
+use posicast_blocks::group::MOST_AXES;
+use posicast_blocks::pwm::{ActiveLow, PwmConfig};
+use posicast_blocks::shaper::{MOTION_WORD_BITS, ShaperConfig, ShaperMotion};
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::hardware;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::rtl::group::MOST_AXES;
-use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
-use posicast_model::rtl::shaper::{MOTION_WORD_BITS, ShaperConfig, ShaperMotion};
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_testbench::blocks::{BenchSizes, Block, ComponentBlock, MachineShapers, benches};
 use std::path::Path;
 

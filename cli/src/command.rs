@@ -3,13 +3,13 @@
 use crate::allowance::Allowance;
 use crate::failure::Failure;
 use crate::output;
-use posicast_model::design::MachineDesign;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{
+use posicast_blocks::shaper::wrap;
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::motion::{
     AxisMove, SAMPLES_MAX, beyond_limits, command_words, end_velocity, modulo_words, resample, settle_s,
 };
-use posicast_model::rtl::shaper::wrap;
-use posicast_model::spelling::did_you_mean;
+use posicast_machine::plan::MachineDesign;
+use posicast_machine::spelling::did_you_mean;
 use std::fs::File;
 use std::path::Path;
 

@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::output::{self, Table, percent};
-use posicast_model::compare::{Candidate, KindComparison, compare};
-use posicast_model::machine_file::Machine;
+use posicast_machine::compare::{Candidate, KindComparison, compare};
+use posicast_machine::machine_file::Machine;
 use serde::Serialize;
 use std::fmt::Write;
 

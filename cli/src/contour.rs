@@ -8,10 +8,12 @@ use crate::output;
 use crate::plot;
 use crate::progress::Late;
 use file::PathFile;
-use posicast_model::contour::{self, Contour, ContourError, ContourLimits, CornerRules, Stroke, Survey, gcode, shapes};
-use posicast_model::machine_file::Machine;
-use posicast_model::motion::SAMPLES_MAX;
-use posicast_model::unit::AxisUnit;
+use posicast_machine::contour::{
+    self, Contour, ContourError, ContourLimits, CornerRules, Stroke, Survey, gcode, shapes,
+};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::motion::SAMPLES_MAX;
+use posicast_machine::unit::AxisUnit;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use report::Report;

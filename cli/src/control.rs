@@ -2,12 +2,13 @@
 
 use crate::plot::{Curve, Panel};
 use crate::warning::Warning;
-use posicast_model::control::DEFAULT_MARGIN;
-use posicast_model::control::sampled::Margins;
-use posicast_model::hardware::{AxisLoop, Hardware};
-use posicast_model::machine_file::Machine;
-use posicast_model::rtl::sliding_mode::{Law, SettingRow};
-use posicast_model::unit::{AxisUnit, show_seconds};
+use posicast_blocks::sliding_mode::{Law, SettingRow};
+use posicast_machine::control::DEFAULT_MARGIN;
+use posicast_machine::control::sampled::Margins;
+use posicast_machine::hardware::{AxisLoop, Hardware};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::unit::show_seconds;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

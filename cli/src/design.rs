@@ -20,15 +20,14 @@ use crate::output::{self, Table, UnitDocument, percent};
 use crate::plot;
 use crate::sopc;
 use crate::tolerance::beyond_tolerance;
-use posicast_model::analysis::INSENSITIVITY_LIMIT;
-use posicast_model::design::ratios::Class;
-use posicast_model::design::{
-    AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
-};
-use posicast_model::hardware::{Hardware, HardwareError};
-use posicast_model::machine_file::{AxisSection, DriveMode, Machine};
-use posicast_model::mode::Mode;
-use posicast_model::unit::trimmed;
+use posicast_machine::hardware::{Hardware, HardwareError};
+use posicast_machine::machine_file::{AxisSection, DriveMode, Machine};
+use posicast_machine::plan::{AxisTables, MachineDesign, ModeFigures, design_machine};
+use posicast_shaper::analysis::INSENSITIVITY_LIMIT;
+use posicast_shaper::design::ratios::Class;
+use posicast_shaper::design::{ConvolutionFigures, Findings, convolution_figures};
+use posicast_shaper::mode::Mode;
+use posicast_shaper::unit::trimmed;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use posicast_testbench::wording::counted;
@@ -194,7 +193,7 @@ impl<'a> DesignReport<'a> {
                 in_stage: self.design.stage.is_some(),
                 control: control.as_ref(),
                 modes: tables.mode_figures(axis, self.design.sample_hz),
-                convolution: convolution_figures(axis, &tables.design),
+                convolution: convolution_figures(axis.shaped(), &tables.design),
                 misfit: built.shaper.as_ref().err(),
                 family: self.families().find(|family| std::ptr::eq(family.axis, axis)),
                 error_table: ErrorTableReport::new(&self.hardware, axis, place),

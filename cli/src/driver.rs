@@ -3,10 +3,10 @@
 use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::verilog;
+use posicast_blocks::component::Component;
 use posicast_hdl::emit::Module;
-use posicast_model::machine_file::Machine;
-use posicast_model::motion::TickLimits;
-use posicast_model::rtl::component::Component;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::motion::TickLimits;
 use posicast_synth::core_file::{self, Core};
 use posicast_synth::driver::{self, AxisData, AxisFamily, DriverFile, StageDriver};
 use posicast_synth::package::Package;

@@ -9,8 +9,8 @@ use crate::machine;
 use crate::output;
 use clap::ValueEnum;
 use firmware::Wish;
-use posicast_model::design::{AxisTables, MachineDesign, design_machine};
-use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::plan::{AxisTables, MachineDesign, design_machine};
 use std::path::PathBuf;
 
 /// The designed impulses for the firmware of a printer, for C, CSV, NumPy or MATLAB

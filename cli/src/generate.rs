@@ -9,7 +9,7 @@ use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::output::{self, shell_word};
 use crate::{sopc, verilog};
-use posicast_model::machine_file::Machine;
+use posicast_machine::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
 use posicast_testbench::blocks::LinkedStageBlock;
 use posicast_testbench::wording::counted;

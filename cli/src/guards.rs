@@ -1,9 +1,9 @@
 //! Guards that an axis lacks because the machine file does not ask for them, and what can happen without them.
 
 use crate::warning::Warning;
-use posicast_model::control::{LostSign, lost_sign};
-use posicast_model::machine_file::{AxisSection, LimitsSection, Machine};
-use posicast_model::unit::trimmed;
+use posicast_machine::control::{LostSign, lost_sign};
+use posicast_machine::machine_file::{AxisSection, LimitsSection, Machine};
+use posicast_shaper::unit::trimmed;
 
 /// A following error of fewer counts than this is most likely meant in another unit.
 const LEAST_COUNTS: f64 = 4.0;

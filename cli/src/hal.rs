@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::machine::at_key;
 use crate::output;
-use posicast_model::design::MachineDesign;
-use posicast_model::hardware::NAME_KEY;
-use posicast_model::machine_file::Machine;
+use posicast_machine::hardware::NAME_KEY;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plan::MachineDesign;
 use posicast_synth::hal::{self, HalMachine};
 use posicast_synth::package::Package;
 use std::path::Path;

@@ -4,13 +4,13 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine::{at_key, of_hardware};
 use crate::warning::Warning;
+use posicast_blocks::component::Component;
+use posicast_blocks::linked_stage::address_limit;
+use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
-use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
-use posicast_model::machine_file::{LinkLine, LinkSection, Machine};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::address_limit;
-use posicast_model::rtl::stage::StageConfig;
+use posicast_machine::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
+use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
 use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
 use std::path::Path;
 

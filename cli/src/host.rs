@@ -9,10 +9,10 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine;
 use crate::moves::PerAxis;
+use posicast_blocks::uart_bridge::BAUD;
 use posicast_host::{HostError, HostedStage, Line as AnyLine, LinkError, LinkOptions};
-use posicast_model::hardware::StageHardware;
-use posicast_model::machine_file::Machine;
-use posicast_model::rtl::uart_bridge::BAUD;
+use posicast_machine::hardware::StageHardware;
+use posicast_machine::machine_file::Machine;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

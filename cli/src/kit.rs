@@ -4,9 +4,9 @@
 use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::verilog;
+use posicast_blocks::linked_stage::BridgeConfig;
 use posicast_hdl::emit::Module;
-use posicast_model::machine_file::Machine;
-use posicast_model::rtl::linked_stage::BridgeConfig;
+use posicast_machine::machine_file::Machine;
 use posicast_synth::datasheets::{self, BuiltBlocks};
 use posicast_synth::kit::{self, Kit, KitShaper};
 use posicast_synth::package::Package;

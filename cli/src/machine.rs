@@ -1,9 +1,10 @@
 //! Reads the machine file, and names the key of it that is to blame for an error.
 
 use crate::failure::Failure;
-use posicast_model::design::{DesignBlame, DesignError, blame};
-use posicast_model::hardware::HardwareError;
-use posicast_model::machine_file::{self, Machine};
+use posicast_machine::hardware::HardwareError;
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::plan::{DesignBlame, blame};
+use posicast_shaper::design::DesignError;
 use posicast_synth::yosys::Family;
 use std::cell::RefCell;
 use std::fmt;

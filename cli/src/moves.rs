@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::input;
 use crate::output::shell_word;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{AxisMove, AxisMoveError};
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::motion::{AxisMove, AxisMoveError};
 use std::path::PathBuf;
 use std::str::FromStr;
 

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::style;
 use anstream::adapter::strip_str;
 use anstream::{AutoStream, ColorChoice};
-use posicast_model::unit::AxisUnit;
+use posicast_machine::unit::AxisUnit;
 use posicast_system::output::OutputFiles;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};

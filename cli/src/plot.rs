@@ -12,7 +12,7 @@ use chart::{Frame, draw_chart, looks};
 use legend::Legend;
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use posicast_model::unit::{ShownUnit, time_unit};
+use posicast_shaper::unit::{ShownUnit, time_unit};
 use series::For;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use crate::bench::{self, Needs, Simulator};
 use crate::failure::Failure;
 use crate::output;
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::report::LockstepReport;

@@ -8,7 +8,7 @@ use crate::plot::{self, Curve, Panel};
 use crate::progress;
 use crate::style;
 use clap::builder::PossibleValuesParser;
-use posicast_model::papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
+use posicast_papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use serde::Serialize;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{self, shell_word};
-use posicast_model::machine_file;
+use posicast_machine::machine_file;
 use posicast_system::output::OutputFiles;
 use std::path::{Path, PathBuf};
 

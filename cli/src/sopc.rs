@@ -6,7 +6,7 @@ use crate::hardware::Stage;
 use crate::machine;
 use crate::warning::Warning;
 use posicast_hdl::linked_stage::emit_bridge;
-use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, BridgeUnit, Design, Unit};
 use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::hardware::{Built, COMPONENT_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
 use crate::{machine, progress, verilog};
-use posicast_model::machine_file::Machine;
+use posicast_machine::machine_file::Machine;
 use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::package;
 use posicast_synth::yosys::{BlockEstimate, Estimate, Excess, Family, Resources, Yosys, YosysError};

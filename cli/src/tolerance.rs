@@ -1,9 +1,10 @@
 //! Checks whether the integer tap tables keep the tolerance of the machine file.
 
 use crate::warning::Warning;
-use posicast_model::certify::{ModeCertificate, certify_axis};
-use posicast_model::design::{Findings, MachineDesign};
-use posicast_model::machine_file::Machine;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plan::MachineDesign;
+use posicast_machine::plan::{ModeCertificate, certify_axis};
+use posicast_shaper::design::Findings;
 
 /// Fraction of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps,
 /// which changes the residual of kinds that leave one by design.

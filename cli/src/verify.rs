@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::output;
 use crate::{blocks, command, machine, moves, replay};
-use posicast_model::spelling::did_you_mean;
+use posicast_machine::spelling::did_you_mean;
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, DenseLinkBlock, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};

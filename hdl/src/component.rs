@@ -9,7 +9,7 @@ use crate::{
     pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base,
     trace,
 };
-use posicast_model::rtl::component::{Component, ComponentPart, JoinedBlocks};
+use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`. Modules whose
 /// contents depend on the machine begin with `prefix`: for a component the machine's and axis's names; for a stage

@@ -5,13 +5,13 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
-use posicast_model::rtl::divider_share::{MOST_CHANNELS, PORTS, SHARE_CLOCKS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::divider_share::{MOST_CHANNELS, PORTS, SHARE_CLOCKS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
     /// Sizes: C channels.
     struct DividerShare<const C: usize>;
-    ports posicast_model::divider_share_ports;
+    ports posicast_blocks::divider_share_ports;
 
     registers {
         turn: Bits<4> = from_u64(MOST_CHANNELS as u64),

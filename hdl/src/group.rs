@@ -6,13 +6,13 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
-use posicast_model::rtl::group::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::group::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
     /// Sizes: N axes.
     struct Group<const N: usize>;
-    ports posicast_model::group_ports;
+    ports posicast_blocks::group_ports;
 
     registers { start_q[N]: Bit, stop_q[N]: Bit, hold_q[N]: Bit, emergency_q: Bit, refused_q: Bit }
     wires { blocked: Bit, moving: Bit }

@@ -43,7 +43,7 @@
 //! ```text
 //! kernel! {
 //!     pub(super) struct Pwm(config: &PwmConfig);
-//!     ports posicast_model::pwm_ports;
+//!     ports posicast_blocks::pwm_ports;
 //!
 //!     parts { .. }
 //! }

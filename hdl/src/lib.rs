@@ -2,7 +2,7 @@
 //!
 //! A block's kernel is written once, in Rust. RustHDL's own simulator runs it (`simulate` of each block), and our
 //! typed emitter writes its Verilog. Both are compared clock by clock with the bit-exact model of the same name in
-//! `posicast_model::rtl`. No RustHDL type leaves this crate, except that [`emit::emit`] takes a block.
+//! `posicast_blocks`. No RustHDL type leaves this crate, except that [`emit::emit`] takes a block.
 //!
 //! | module | what it is |
 //! |---|---|

@@ -5,9 +5,9 @@
 use crate::emit::print::{self, Lines};
 use crate::emit::{EmitError, Header, Module, Parameter, Type, add};
 use crate::{component, spi_bridge, uart_bridge};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::{BridgeConfig, ports};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::component::Component;
+use posicast_blocks::linked_stage::{BridgeConfig, ports};
+use posicast_blocks::{Direction, Port};
 
 /// Width of the bridge's addresses.
 const ADDRESS_BITS: u32 = 16;

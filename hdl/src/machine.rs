@@ -6,7 +6,7 @@
 
 use crate::emit::{EmitError, Header, Module, ModuleInstance, Parameter, add, compose};
 use crate::shaper;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 /// Inputs of the top that all axes share, in addition to `clk`.
 pub const SHARED_INPUTS: [&str; 2] = ["rst", "strobe"];

@@ -7,13 +7,13 @@ use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::sample_select::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::sample_select::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
     /// Sizes: W word bits, C channels.
     struct SampleSelect<const W: usize, const C: usize>;
-    ports posicast_model::sample_select_ports;
+    ports posicast_blocks::sample_select_ports;
 
     registers { strobe_q: Bit, start_q: Bit, x_q[C]: Signed<W> }
 }

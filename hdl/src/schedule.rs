@@ -8,12 +8,12 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::schedule::{PORTS, ScheduleConfig, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::schedule::{PORTS, ScheduleConfig, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
     struct Schedule(config: &ScheduleConfig);
-    ports posicast_model::schedule_ports;
+    ports posicast_blocks::schedule_ports;
 
     registers { since: Bits<17>, waits: Bit, control_q: Bit }
     wires { ends: Bit }

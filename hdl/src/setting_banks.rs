@@ -8,13 +8,13 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, LIBRARY, Module, digest, shared_name};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::setting_banks::{PORTS, ports};
-use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::setting_banks::{PORTS, ports};
+use posicast_blocks::sliding_mode::{SettingRow, Settings};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
     struct SettingBanks(machine: &Settings, rom: &str);
-    ports posicast_model::setting_banks_ports;
+    ports posicast_blocks::setting_banks_ports;
 
     parts {
         machine_settings: Rom<32, 4> = machine_rom(machine, rom),

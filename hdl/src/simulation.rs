@@ -4,7 +4,7 @@
 //! hundred times slower.
 
 use crate::prelude::*;
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 
 /// Number of updates of a design within one edge above which it counts as an oscillation.
 const MOST_UPDATES: usize = 100;

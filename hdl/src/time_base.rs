@@ -6,13 +6,13 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::time_base::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::time_base::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
     struct TimeBase(divider: &DividerConfig);
-    ports posicast_model::time_base_ports;
+    ports posicast_blocks::time_base_ports;
 
     registers { phase: Bits<17>, tick_q: Bit, divide_q: Bit, time_stamp_q: Bits<32>, tick_count_q: Bits<32> }
     constants {

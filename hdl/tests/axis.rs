@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::axis::{Axis, Inputs, LEAST_TICK_CLOCKS, OUTPUT_PORTS, ports};
 use posicast_hdl::axis::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::{Axis, Inputs, LEAST_TICK_CLOCKS, OUTPUT_PORTS, ports};
 use random::Random;
 
 #[test]

@@ -2,10 +2,10 @@
 
 use crate::random;
 
-use posicast_hdl::cascade::{emit, simulate};
-use posicast_model::rtl::cascade::{
+use posicast_blocks::cascade::{
     Cascade, CascadeConfig, Inputs, Outputs, RING_ADDRESS_BITS, STAGE_INDEX_BITS, pass_clocks, ports,
 };
+use posicast_hdl::cascade::{emit, simulate};
 use random::Random;
 
 /// Returns every size of ring and index, narrow and wide words, with delays at both ends of what the ring holds.

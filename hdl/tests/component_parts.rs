@@ -3,18 +3,18 @@
 
 use crate::random;
 
+use posicast_blocks::composition::{Composition, Part};
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::divider_share::DividerShare;
+use posicast_blocks::group::Group;
+use posicast_blocks::sample_select::SampleSelect;
+use posicast_blocks::schedule::{Schedule, ScheduleConfig};
+use posicast_blocks::setting_banks::SettingBanks;
+use posicast_blocks::sliding_mode::Settings;
+use posicast_blocks::time_base::TimeBase;
+use posicast_blocks::{ClockedBlock, Direction};
 use posicast_hdl::emit::{EmitCause, Header, connect};
 use posicast_hdl::{divider, divider_share, group, sample_select, schedule, setting_banks, time_base};
-use posicast_model::rtl::composition::{Composition, Part};
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::divider_share::DividerShare;
-use posicast_model::rtl::group::Group;
-use posicast_model::rtl::sample_select::SampleSelect;
-use posicast_model::rtl::schedule::{Schedule, ScheduleConfig};
-use posicast_model::rtl::setting_banks::SettingBanks;
-use posicast_model::rtl::sliding_mode::Settings;
-use posicast_model::rtl::time_base::TimeBase;
-use posicast_model::rtl::{ClockedBlock, Direction};
 use random::Random;
 
 /// Gives the same random inputs to both, with a reset now and then.
@@ -91,7 +91,7 @@ fn lockstep_group() {
 #[test]
 fn unit_a_module_that_is_not_the_part_is_refused() {
     let config = DividerConfig::new(5000).unwrap();
-    let part = Part::new("divider", &posicast_model::rtl::divider::ports());
+    let part = Part::new("divider", &posicast_blocks::divider::ports());
     let inputs = ["rst", "start", "steps", "elapsed", "clear_flags"];
     let composition = Composition::new(vec![part], &inputs, &["quotient"]).unwrap();
     let top = |name: &str, modules: &[&posicast_hdl::emit::Module]| {

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::divider::{Divider, DividerConfig, ports};
 use posicast_hdl::divider::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::divider::{Divider, DividerConfig, ports};
 use random::Random;
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::drive_command::{DriveCommand, OUTPUT_PORTS, ports};
 use posicast_hdl::drive_command::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::drive_command::{DriveCommand, OUTPUT_PORTS, ports};
 use random::Random;
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::encoder_generator::{EncoderGenerator, INPUT_PORTS, OUTPUT_PORTS, ports};
 use posicast_hdl::encoder_generator::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::encoder_generator::{EncoderGenerator, INPUT_PORTS, OUTPUT_PORTS, ports};
 use random::Random;
 
 #[test]

@@ -2,11 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::error_table::{EntryUnit, ErrorTable, ErrorTableConfig, ErrorTableFormat, OUTPUT_PORTS, ports};
 use posicast_hdl::error_table::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::error_table::{
-    EntryUnit, ErrorTable, ErrorTableConfig, ErrorTableFormat, OUTPUT_PORTS, ports,
-};
 use random::Random;
 
 fn config() -> ErrorTableConfig {

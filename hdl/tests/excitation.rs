@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::excitation::{Excitation, INPUT_PORTS, OUTPUT_PORTS, ports};
 use posicast_hdl::excitation::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::excitation::{Excitation, INPUT_PORTS, OUTPUT_PORTS, ports};
 use random::Random;
 
 #[test]

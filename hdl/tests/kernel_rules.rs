@@ -111,7 +111,7 @@ fn kernel_fields(declaration: &str) -> Vec<(String, String)> {
             }
         }
     }
-    let list = declaration.split("ports posicast_model::").nth(1);
+    let list = declaration.split("ports posicast_blocks::").nth(1);
     fields.extend(
         list.and_then(|rest| rest.split(';').next())
             .into_iter()
@@ -122,7 +122,7 @@ fn kernel_fields(declaration: &str) -> Vec<(String, String)> {
 
 /// Returns name and kind of the ports of a list in the model.
 fn listed(list: &str) -> Vec<(String, String)> {
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/src/rtl");
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/blocks/src");
     let texts = sources(&model)
         .into_iter()
         .filter_map(|file| fs::read_to_string(file).ok());
@@ -309,7 +309,7 @@ fn unit_the_fields_of_a_kernel_macro_are_checked_too() {
         ("number: Signed", "initial: Signed", "`initial` is no Verilog name"),
         (
             "    inputs { rst: Bit, number: Signed<8> }",
-            "    ports posicast_model::schedule_ports;",
+            "    ports posicast_blocks::schedule_ports;",
             "`control` is never assigned",
         ),
     ];

@@ -3,21 +3,21 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 
+use posicast_blocks::cascade::CascadeConfig;
+use posicast_blocks::component::Component;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::schedule::ScheduleConfig;
+use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
+use posicast_blocks::sliding_mode::{Law, Settings};
+use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
     axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group,
     linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper,
     sliding_mode, spi_bridge, time_base, trace, uart_bridge,
 };
-use posicast_model::rtl::cascade::CascadeConfig;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
-use posicast_model::rtl::sliding_mode::{Law, Settings};
-use posicast_model::rtl::trace::TraceConfig;
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
 
 /// Number of configurations that are tried.

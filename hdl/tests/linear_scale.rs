@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::linear_scale::{LinearScale, OUTPUT_PORTS, ports};
 use posicast_hdl::linear_scale::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::linear_scale::{LinearScale, OUTPUT_PORTS, ports};
 use random::Random;
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::pulse_counter::{Inputs, PulseCounter, ports};
 use posicast_hdl::pulse_counter::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter, ports};
 use random::Random;
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::pwm::{ActiveLow, Inputs, OUTPUT_PORTS, Pwm, PwmConfig, ports};
 use posicast_hdl::pwm::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pwm::{ActiveLow, Inputs, OUTPUT_PORTS, Pwm, PwmConfig, ports};
 use random::Random;
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::segments::{CUBIC, INPUT_PORTS, MORE, OUTPUT_PORTS, POINT, Segments, ports};
 use posicast_hdl::segments::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::segments::{CUBIC, INPUT_PORTS, MORE, OUTPUT_PORTS, POINT, Segments, ports};
 use random::Random;
 
 #[test]

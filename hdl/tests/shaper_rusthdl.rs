@@ -2,11 +2,11 @@
 
 use crate::stimulus;
 
-use posicast_model::rtl::shaper::{
+use posicast_blocks::shaper::{
     Inputs, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, ShaperMotion, TAP_INDEX_BITS, pass_clocks, swap_how,
 };
-use posicast_model::rtl::{ClockedBlock, Direction};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_blocks::{ClockedBlock, Direction};
+use posicast_taps::{Tap, TapTable};
 use stimulus::{Anything, Random, load, table};
 
 /// The two shapers side by side.

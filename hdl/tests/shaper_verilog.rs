@@ -1,8 +1,8 @@
 //! The shaper's Verilog as text: its names, its ports, its order. Its function is tested in lockstep.
 
+use posicast_blocks::shaper::{RING_ADDRESS_BITS, ShaperConfig, TAP_INDEX_BITS, ports};
 use posicast_hdl::shaper::emit;
-use posicast_model::rtl::shaper::{RING_ADDRESS_BITS, ShaperConfig, TAP_INDEX_BITS, ports};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 
 #[allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 fn config(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {

@@ -2,9 +2,9 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::sliding_mode::{INPUT_PORTS, OUTPUT_PORTS, SettingRow, SlidingMode, ports};
 use posicast_hdl::sliding_mode::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sliding_mode::{INPUT_PORTS, OUTPUT_PORTS, SettingRow, SlidingMode, ports};
 use random::Random;
 
 #[test]

@@ -2,10 +2,10 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::link::Request;
+use posicast_blocks::spi_bridge::{INPUT_PORTS, OUTPUT_PORTS, SpiBridge, ports};
 use posicast_hdl::spi_bridge::{emit, simulate};
-use posicast_model::link::Request;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::spi_bridge::{INPUT_PORTS, OUTPUT_PORTS, SpiBridge, ports};
 use random::Random;
 
 #[test]

@@ -2,8 +2,8 @@
 
 use crate::random;
 
+use posicast_blocks::trace::{Inputs, SAMPLES, Trace, TraceConfig, ports};
 use posicast_hdl::trace::{emit, simulate};
-use posicast_model::rtl::trace::{Inputs, SAMPLES, Trace, TraceConfig, ports};
 use random::Random;
 
 /// Plays random inputs, slow enough that traces become complete; returns the number of clocks in each state.

@@ -2,10 +2,10 @@
 
 use crate::random;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::link::Request;
+use posicast_blocks::uart_bridge::{INPUT_PORTS, OUTPUT_PORTS, UartBridge, ports};
 use posicast_hdl::uart_bridge::{emit, simulate};
-use posicast_model::link::Request;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::uart_bridge::{INPUT_PORTS, OUTPUT_PORTS, UartBridge, ports};
 use random::Random;
 
 #[test]

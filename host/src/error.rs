@@ -1,6 +1,6 @@
 //! Why a call on the link fails.
 
-use posicast_model::link::{LinkStatus, RequestError};
+use posicast_blocks::link::{LinkStatus, RequestError};
 use std::time::Duration;
 
 /// Why a call on the link fails.

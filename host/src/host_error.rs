@@ -1,7 +1,7 @@
 //! Why a stage does not do what a host asks for.
 
 use crate::LinkError;
-use posicast_model::motion::{AxisMoveError, PlanError};
+use posicast_machine::motion::{AxisMoveError, PlanError};
 
 /// Why a stage does not do what a host asks for.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! The host's end of the link: reads and writes the registers of a stage over a serial line, SPI or a network, and operates its axes.
 //!
-//! The frames are those of [`posicast_model::link`], the other end is the block of `docs/uart_bridge.md` or `docs/spi_bridge.md`.
+//! The frames are those of [`posicast_blocks::link`], the other end is the block of `docs/uart_bridge.md` or `docs/spi_bridge.md`.
 //!
 //! - A request that gets no reply in time is sent again with the same sequence number; the bridge executes it once. After
 //!   [`LinkOptions::attempts`] the call fails, and it is not known whether a write has been executed.

@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use posicast_model::link::{DELIMITER, MOST_REPLY_BYTES, MOST_WORDS, Reply, Request};
+use posicast_blocks::link::{DELIMITER, MOST_REPLY_BYTES, MOST_WORDS, Reply, Request};
 
 use crate::LinkError;
 

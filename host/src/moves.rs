@@ -2,9 +2,9 @@
 
 use std::io::{Read, Write};
 
-use posicast_model::motion::{AxisMove, TickLimits, plan_move};
-use posicast_model::rtl::axis::SupervisorState;
-use posicast_model::rtl::segments::Entry;
+use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::segments::Entry;
+use posicast_machine::motion::{AxisMove, TickLimits, plan_move};
 
 use crate::stage::{PATIENCE_TICKS, fault};
 use crate::{HostError, HostedStage};

@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 
-use posicast_model::link::DELIMITER;
+use posicast_blocks::link::DELIMITER;
 
 /// Bytes that a read sends for those that it takes: the reply to a write, 10 bytes, and some for the time that the bridge needs.
 const LOOK_BYTES: usize = 16;

@@ -2,10 +2,10 @@
 
 use std::io::{Read, Write};
 
-use posicast_model::hardware::StageHardware;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::rtl::axis::{Cause, KICK, SupervisorState};
-use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap};
+use posicast_blocks::axis::{Cause, KICK, SupervisorState};
+use posicast_blocks::registers::{Access, Field, Register, RegisterMap};
+use posicast_machine::hardware::StageHardware;
+use posicast_machine::machine_file::{AxisSection, Machine};
 
 use crate::{HostError, Link};
 
@@ -180,7 +180,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
             .iter()
             .map(|(name, word)| Ok((self.address(name)?, *word)))
             .collect();
-        for part in pairs?.chunks(posicast_model::link::MOST_WORDS.into()) {
+        for part in pairs?.chunks(posicast_blocks::link::MOST_WORDS.into()) {
             self.link.write_list(part)?;
         }
         Ok(())

@@ -2,8 +2,8 @@
 
 use std::io::{Read, Write};
 
-use posicast_model::rtl::registers::Format;
-use posicast_model::taps::{Tap, TapTable};
+use posicast_blocks::registers::Format;
+use posicast_taps::{Tap, TapTable};
 
 use crate::stage::PATIENCE_TICKS;
 use crate::{HostError, HostedStage};

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Read, Write};
 
-use posicast_model::rtl::registers::{Choice, Field, Format};
+use posicast_blocks::registers::{Choice, Field, Format};
 use vcd::{IdCode, TimescaleUnit, VarType};
 
 use crate::stage::{PATIENCE_TICKS, fault};

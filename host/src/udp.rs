@@ -15,7 +15,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::time::Instant;
 
-use posicast_model::link::DELIMITER;
+use posicast_blocks::link::DELIMITER;
 
 use crate::link::LOOK;
 use crate::{Link, LinkError, LinkOptions};

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
+use posicast_blocks::link::{Bus, LinkBridge, LinkStatus};
 use posicast_host::{Line as AnyLine, Link, LinkError, LinkOptions};
-use posicast_model::link::{Bus, LinkBridge, LinkStatus};
 
 pub(crate) const REGISTERS: u16 = 512;
 

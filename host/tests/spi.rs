@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use crate::faults::write_and_read;
 use crate::stage::stage;
+use posicast_blocks::link::{DELIMITER, Reply, Request};
+use posicast_blocks::linked_stage::{LinkedStage, address_limit};
+use posicast_blocks::spi_bridge::{Inputs, SpiBridge, SpiBridgeConfig};
+use posicast_blocks::{ClockedBlock, Direction};
 use posicast_host::{HostedStage, Link, LinkOptions, SpiLine, SpiTransfer};
-use posicast_model::link::{DELIMITER, Reply, Request};
-use posicast_model::machine_file;
-use posicast_model::rtl::linked_stage::{LinkedStage, address_limit};
-use posicast_model::rtl::spi_bridge::{Inputs, SpiBridge, SpiBridgeConfig};
-use posicast_model::rtl::{ClockedBlock, Direction};
-use posicast_model::taps::TapTable;
+use posicast_machine::machine_file;
+use posicast_taps::TapTable;
 
 const REGISTERS: u16 = 512;
 /// Clocks of half a bit: the fastest host.

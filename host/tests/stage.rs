@@ -4,18 +4,18 @@
 use std::time::Duration;
 
 use crate::faults::Line;
+use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::link::Bus;
+use posicast_blocks::linked_stage::address_limit;
+use posicast_blocks::registers::Access;
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions, Shake, TraceRequest};
 use posicast_identify::log::{self, Log};
 use posicast_identify::position;
-use posicast_model::design::design_machine;
-use posicast_model::hardware::{Hardware, StageHardware};
-use posicast_model::link::Bus;
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::axis::SupervisorState;
-use posicast_model::rtl::linked_stage::address_limit;
-use posicast_model::rtl::registers::Access;
-use posicast_model::taps::TapTable;
+use posicast_machine::hardware::{Hardware, StageHardware};
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_taps::TapTable;
 use posicast_testbench::linked_bench::LinkedBench;
 use posicast_testbench::stage_bench::StageBench;
 

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::faults::{REGISTERS, Registers};
+use posicast_blocks::link::LinkBridge;
 use posicast_host::{Link, LinkError, LinkOptions};
-use posicast_model::link::LinkBridge;
 use posicast_testbench::linked_bench::serve;
 use serialport::{SerialPort, TTYPort};
 

@@ -1,6 +1,6 @@
 //! A mode that was found in a log, with its uncertainty.
 
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// Half width of a 95 % interval in standard deviations of a normal distribution.
 pub const DEVIATIONS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;

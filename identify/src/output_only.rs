@@ -86,8 +86,8 @@ mod tests {
     use super::*;
     use crate::synthetic::Noise;
     use nalgebra::Vector2;
-    use posicast_model::mode::Mode;
-    use posicast_model::plant::free_motion;
+    use posicast_machine::plant::free_motion;
+    use posicast_shaper::mode::Mode;
 
     /// Acceleration of modes that are driven by white noise.
     fn shaken(modes: &[Mode], samples: usize, sample_s: f64) -> Vec<f64> {

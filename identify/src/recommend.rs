@@ -5,12 +5,12 @@
 //! mode counts.
 
 use crate::found::FoundMode;
-use posicast_model::analysis::worst_residual;
-use posicast_model::design::kind::ShaperKind;
-use posicast_model::design::{ModeSettings, design_mode};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::mode::Mode;
-use posicast_model::plant::free_motion;
+use posicast_machine::plant::free_motion;
+use posicast_shaper::analysis::worst_residual;
+use posicast_shaper::design::kind::ShaperKind;
+use posicast_shaper::design::{ModeSettings, design_mode};
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::mode::Mode;
 
 /// Criteria by which a shaper is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -242,7 +242,7 @@ pub fn deflection(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_model::impulse::Impulse;
+    use posicast_shaper::impulse::Impulse;
 
     fn found(frequency_hz: f64, damping: f64, participation: f64) -> FoundMode {
         FoundMode {

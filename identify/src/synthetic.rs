@@ -6,8 +6,8 @@
 use crate::signal::{AccelerationLog, Between, PositionLog};
 use crate::sweep::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAcceleration};
 use nalgebra::{Matrix2, Vector2};
-use posicast_model::mode::Mode;
-use posicast_model::plant::{Plant, PlantError, SampledPlant, free_motion};
+use posicast_machine::plant::{Plant, PlantError, SampledPlant, free_motion};
+use posicast_shaper::mode::Mode;
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;

@@ -131,7 +131,7 @@ fn compare(truths: &[KnownMode], found: &[FoundMode], seed: u64, report: &mut Tr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_model::mode::Mode;
+    use posicast_shaper::mode::Mode;
 
     fn found(truth: &KnownMode, frequency: f64, damping: f64, participation: f64) -> FoundMode {
         FoundMode {

@@ -4,7 +4,7 @@ use posicast_identify::log::{self, Log, LogError, Remark};
 use posicast_identify::position;
 use posicast_identify::synthetic::Noise;
 use posicast_identify::synthetic::pseudo_random;
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 use std::fmt::Write;
 
 const MODE: Mode = Mode {

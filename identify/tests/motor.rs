@@ -5,7 +5,7 @@ use posicast_identify::position::PositionRemark;
 use posicast_identify::position::motor::{self, FoundAtMotor};
 use posicast_identify::synthetic::Noise;
 use posicast_identify::synthetic::pseudo_random;
-use posicast_model::plant::drive_train::{
+use posicast_machine::plant::drive_train::{
     Amplifier, Contact, DriveTrain, DriveTrainPlant, Friction, Stribeck, TrainState, Winding, quantised,
 };
 

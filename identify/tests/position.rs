@@ -5,7 +5,7 @@ use posicast_identify::position::recursive::RecursiveArx;
 use posicast_identify::position::{self, FoundInPosition, PositionError, PositionRemark};
 use posicast_identify::synthetic::{KnownMode, Noise, position_log, pseudo_random, step};
 use posicast_identify::{Between, FoundMode, PositionLog};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 

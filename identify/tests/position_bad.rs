@@ -3,8 +3,8 @@
 use posicast_identify::position::{self, FoundInPosition, PositionError, PositionRemark};
 use posicast_identify::synthetic::Noise;
 use posicast_identify::{Between, PositionLog};
-use posicast_model::mode::Mode;
-use posicast_model::plant::{Plant, SampledPlant};
+use posicast_machine::plant::{Plant, SampledPlant};
+use posicast_shaper::mode::Mode;
 
 const MODE: Mode = Mode {
     frequency_hz: 20.0,

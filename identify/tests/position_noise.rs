@@ -5,7 +5,7 @@ use posicast_identify::position::{self, FoundInPosition, PositionRemark};
 use posicast_identify::synthetic::Noise;
 use posicast_identify::synthetic::pseudo_random;
 use posicast_identify::{Between, PositionLog};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// Gy of the XY stage sampled at 0.5 ms (golden/xy_stage.json, `arx_zoh`), and its mode (`plants`).
 const GY: [f64; 4] = [

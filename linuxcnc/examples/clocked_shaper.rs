@@ -6,7 +6,7 @@
 mod clocked;
 
 use clocked::Clocked;
-use posicast_model::shaper_tables::ShaperTables;
+use posicast_blocks::shaper_tables::ShaperTables;
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -8,9 +8,9 @@
 //! [`Axis::update`] is called by the servo thread: it allocates nothing, frees nothing, waits for nothing and cannot
 //! panic on any input.
 
-use posicast_model::rtl::shaper::{MotionShaper, swap_how, wrap};
-use posicast_model::shaper_tables::{AxisShaperTables, ShaperTablesError};
-use posicast_model::taps::TapTable;
+use posicast_blocks::shaper::{MotionShaper, swap_how, wrap};
+use posicast_blocks::shaper_tables::{AxisShaperTables, ShaperTablesError};
+use posicast_taps::TapTable;
 use std::sync::Arc;
 
 /// The shaper of an axis.

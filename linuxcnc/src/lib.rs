@@ -22,7 +22,7 @@ mod hal;
 
 use axis::Axis;
 use hal::{Component, Direction, INVALID, Pin};
-use posicast_model::shaper_tables::ShaperTables;
+use posicast_blocks::shaper_tables::ShaperTables;
 use std::ffi::{CStr, c_char, c_int, c_long, c_void};
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicPtr, Ordering};

@@ -1,7 +1,7 @@
 //! The hardware's shaper, clock by clock, fed with the words of the component.
 
-use posicast_model::rtl::shaper::{Inputs, Shaper, swap_how};
-use posicast_model::shaper_tables::{AxisShaperTables, ShaperTablesError};
+use posicast_blocks::shaper::{Inputs, Shaper, swap_how};
+use posicast_blocks::shaper_tables::{AxisShaperTables, ShaperTablesError};
 
 /// Clocks of a sample: more than the longest pass.
 const SAMPLE_CLOCKS: usize = 1100;

@@ -3,7 +3,7 @@
 use crate::axis::Axis;
 use crate::clocked::Clocked;
 use assert_no_alloc::assert_no_alloc;
-use posicast_model::shaper_tables::AxisShaperTables;
+use posicast_blocks::shaper_tables::AxisShaperTables;
 use proptest::prelude::*;
 
 fn tables(modulo: bool) -> AxisShaperTables {

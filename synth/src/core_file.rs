@@ -9,8 +9,8 @@
 //! The target `sim` runs a bench that is written here from the register map: it reads every constant of the stage
 //! over the bus, and ends with an error where one differs from the map.
 
-use posicast_model::rtl::registers::{Access, RegisterMap};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::registers::{Access, RegisterMap};
+use posicast_blocks::{Direction, Port};
 use std::fmt::Write;
 
 /// Version of the core, with the register maps' major number.

@@ -4,7 +4,7 @@
 //! clock ([`clock`]) of its Verilog.
 //!
 //! Folder and estimates do not know how the files were made: they take bytes and file names. The others are written
-//! from the register maps and ports of `posicast-model`.
+//! from the register maps and ports of `posicast-blocks`.
 
 pub mod clock;
 pub mod core_file;

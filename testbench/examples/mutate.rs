@@ -21,8 +21,9 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-use posicast_model::rtl::stage::StageConfig;
-use posicast_model::{design::design_machine, hardware, machine_file};
+use posicast_blocks::stage::StageConfig;
+use posicast_machine::plan::design_machine;
+use posicast_machine::{hardware, machine_file};
 use posicast_testbench::Error;
 use posicast_testbench::mutation::{
     INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, WIRES_MARKS, all, hunt, inside_table, merged, named,

@@ -1,7 +1,7 @@
 // axis: the supervisor reaches only its transition table, and its outputs obey its state.
 //
 // The properties are proven for all inputs in every clock, including resets; nothing is assumed. ALLOWED(from, to) is written by
-// the runner from `posicast_model::rtl::axis::TRANSITIONS`: there is one table.
+// the runner from `posicast_blocks::axis::TRANSITIONS`: there is one table.
 //
 //   known_state          only the six states occur
 //   in_table             a state follows another only as the table says

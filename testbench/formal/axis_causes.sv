@@ -2,7 +2,7 @@
 //
 // The properties are proven for all inputs in every clock, including resets; nothing is assumed. The properties are about pins;
 // only what the monitors have found comes from inside, and axis_monitors proves that. The bits of causes, and which of them always
-// switch off or are harmless, are macros from `posicast_model::rtl::axis::Cause`.
+// switch off or are harmless, are macros from `posicast_blocks::axis::Cause`.
 //
 //   exact_causes         each cause has its own line, flag or monitor: it is set in the clock in which that is active, by nothing
 //                        else, and stays until it is cleared; several at once are all kept

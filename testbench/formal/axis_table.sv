@@ -1,7 +1,7 @@
 // axis, its transitions: in every state the row is taken whose conditions hold, the first of several; without one it stays.
 //
 // The properties are proven for all inputs in every clock, including resets; nothing is assumed. NEXT(from) is written by the
-// runner from `posicast_model::rtl::axis::TRANSITIONS`, row by row in its order, with the conditions by their names in the model:
+// runner from `posicast_blocks::axis::TRANSITIONS`, row by row in its order, with the conditions by their names in the model:
 // if_tick and so on, which are stated here. All of them are pins but these: that causes stand, which axis_causes proves, and that
 // the time of brake or shaper is over, which axis_brake proves.
 //

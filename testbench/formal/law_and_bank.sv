@@ -44,7 +44,7 @@ module law_and_bank_properties (
     end
 
     always @(*) begin
-        // That a pass begins in the clock in which they change is in model/tests/controller_commit.rs, at every distance.
+        // That a pass begins in the clock in which they change is in model/blocks/tests/controller_commit.rs, at every distance.
         reach_pass: cover (busy & step == 5'd2 & linear);
         reach_waiting: cover (busy & waits);
     end

@@ -11,7 +11,7 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 use crate::stimuli::{Action, Directed, Fill, Layout, MotionStimuli, Random, Stimuli, cases, corners, motion_cases};
 

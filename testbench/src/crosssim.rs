@@ -20,8 +20,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use posicast_blocks::{Direction, Port};
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::{Direction, Port};
 
 use crate::Error;
 use crate::blocks::{Block, Sources};

@@ -4,9 +4,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use posicast_blocks::StepError;
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::EmitError;
-use posicast_model::rtl::StepError;
 use wavecmp::WaveError;
 
 /// Why a comparison could not be made. A *difference* is a result, never an error.

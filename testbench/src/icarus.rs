@@ -12,7 +12,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, ChildStdout, Stdio};
 
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 use posicast_system::process::{self, Running};
 use posicast_system::scratch;
 

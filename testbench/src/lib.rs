@@ -1,7 +1,7 @@
 //! Compares RTL with the bit-exact models: stimuli, simulators, lock step, waveforms.
 //!
 //! ```text
-//!  stimuli ──┬──► model  (posicast_model::rtl::ClockedBlock) ─┐
+//!  stimuli ──┬──► model  (posicast_blocks::ClockedBlock) ─┐
 //!            │                                                ├─► lockstep ─► report, first mismatch with its clocks
 //!            └──► device (verilator, icarus, RustHDL)  ───────┘       │
 //!                                                                     └─► wave ─► *.vcd ─► diff ─► verdict

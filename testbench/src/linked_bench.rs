@@ -15,8 +15,8 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use posicast_model::link::{Bus, LinkBridge};
-use posicast_model::machine_file::{ClockSection, LinkSection};
+use posicast_blocks::link::{Bus, LinkBridge};
+use posicast_machine::machine_file::{ClockSection, LinkSection};
 
 use crate::Error;
 use crate::stage_bench::StageBench;

@@ -16,7 +16,7 @@
 
 use std::path::Path;
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 use crate::Error;
 use crate::lockstep::Device;

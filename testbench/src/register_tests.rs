@@ -14,8 +14,8 @@
 //! may change by itself (live words, flags from outside, and registers that a pin guards) is left out unless
 //! [`RegisterHardware::Still`] says that the test controls the pins: inputs are then 0, and guards open.
 
-use posicast_model::rtl::registers::{Access, FlagSource, Register, RegisterMap};
-use posicast_model::rtl::{ClockedBlock, Direction};
+use posicast_blocks::registers::{Access, FlagSource, Register, RegisterMap};
+use posicast_blocks::{ClockedBlock, Direction};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -16,7 +16,7 @@
 
 use std::path::Path;
 
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 
 use crate::Error;
 use crate::blocks::Block;

@@ -20,12 +20,12 @@ mod watch;
 
 pub use watch::Watched;
 
-use posicast_model::plant::axis::{AxisPlant, DrivePins, EncoderPins};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::segments::Entry;
-use posicast_model::rtl::stage::StageConfig;
-use posicast_model::rtl::{Direction, Port, StepError};
+use posicast_blocks::component::Component;
+use posicast_blocks::composition::Composed;
+use posicast_blocks::segments::Entry;
+use posicast_blocks::stage::StageConfig;
+use posicast_blocks::{Direction, Port, StepError};
+use posicast_machine::plant::axis::{AxisPlant, DrivePins, EncoderPins};
 
 use crate::Error;
 use crate::lockstep::report::Mismatch;
@@ -46,7 +46,7 @@ const RECORDED: [&str; 4] = ["command_position", "shaped_position", "count", "er
 
 /// States of an axis, as values of `STATUS.state`.
 pub mod state {
-    use posicast_model::rtl::axis::SupervisorState;
+    use posicast_blocks::axis::SupervisorState;
 
     /// The outputs are off.
     pub const OFF: u32 = SupervisorState::Off as u32;

@@ -3,8 +3,8 @@
 
 use crate::support;
 
-use posicast_model::rtl::axis::Axis;
-use posicast_model::rtl::{ClockedBlock, axis};
+use posicast_blocks::axis::Axis;
+use posicast_blocks::{ClockedBlock, axis};
 use posicast_testbench::blocks::{AxisBlock, Block, Sources};
 use posicast_testbench::lockstep::{self, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{AxisRandom, AxisSafety};

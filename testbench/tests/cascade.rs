@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_blocks::cascade::CascadeConfig;
 use posicast_testbench::blocks::CascadeBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 

@@ -1,6 +1,6 @@
 //! Measures the coverage of a few blocks, as the example `coverage` does for all; unreached code must be detected.
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 use posicast_testbench::blocks::Block;
 use posicast_testbench::coverage::explanation::{all, parse};
 use posicast_testbench::coverage::point::{PointKind, read};

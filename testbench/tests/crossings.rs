@@ -1,8 +1,8 @@
 //! The asynchronous pins of the example's stage: what is behind each, on the netlist.
 
 use posicast_hdl::emit::Module;
-use posicast_model::design::design_machine;
-use posicast_model::{hardware, machine_file};
+use posicast_machine::plan::design_machine;
+use posicast_machine::{hardware, machine_file};
 use posicast_testbench::blocks::{Block, StageBlock};
 use posicast_testbench::crossings::{Crossing, crossings};
 use posicast_testbench::mutation::NamedMutant;

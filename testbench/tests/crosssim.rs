@@ -3,7 +3,7 @@
 //! The example `second_simulator`, which `scripts/verify-all` runs, covers all blocks.
 
 use crate::support::broken;
-use posicast_model::rtl::divider::DividerConfig;
+use posicast_blocks::divider::DividerConfig;
 use posicast_testbench::blocks::{Block, DividerBlock, PartBlock, SmallPart, library};
 use posicast_testbench::crosssim::{self, CrosssimOutcome};
 use posicast_testbench::lockstep::report;

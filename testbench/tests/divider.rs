@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_model::rtl::divider::DividerConfig;
+use posicast_blocks::divider::DividerConfig;
 use posicast_testbench::blocks::DividerBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 

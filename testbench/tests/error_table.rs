@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_model::rtl::error_table::{ErrorTable, FULL_WEIGHT, Inputs};
+use posicast_blocks::error_table::{ErrorTable, FULL_WEIGHT, Inputs};
 use posicast_testbench::blocks::{self, Block, ErrorTableBlock, Sources};
 use posicast_testbench::lockstep::TwoValued;
 use support::{caught, icarus_agrees, million_random_clocks};

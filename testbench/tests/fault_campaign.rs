@@ -5,14 +5,14 @@
 
 use std::thread;
 
-use posicast_model::control::Supervision;
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file::{self, Machine, PwmMode};
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::axis::Cause;
-use posicast_model::rtl::component::Component;
+use posicast_blocks::axis::Cause;
+use posicast_blocks::component::Component;
+use posicast_blocks::stage::Supervision;
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{self, Machine, PwmMode};
+use posicast_machine::motion::{TickLimits, plan_move};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::fault_campaign::{Bed, FaultKind, FaultReport, TABLE, run, run_with_rtl};

@@ -1,7 +1,7 @@
 //! The pins of a stage in the first clocks: off at power-up without a reset, during a reset, and after it until a host switches on.
 
+use posicast_blocks::Direction;
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::Direction;
 use posicast_testbench::blocks::{Block, Sources, StageBlock, library_sizes};
 use posicast_testbench::crosssim::without_initial_values;
 use posicast_testbench::lockstep::Device;

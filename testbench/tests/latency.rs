@@ -1,11 +1,11 @@
 //! How many clocks after a host's write the pins of a stage change: the figures of `docs/hosts.md`.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::segments::{CubicEntry, Entry, EntryMotion};
+use posicast_blocks::component::Component;
+use posicast_blocks::segments::{CubicEntry, Entry, EntryMotion};
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, DrivePins, PlantOptions};
 use posicast_testbench::stage_bench::StageBench;
 
 const TICK_CLOCKS: u64 = 5000;

@@ -1,14 +1,14 @@
 //! The stage with its line, serial or SPI: the Verilog of stage and bridge, joined, compared with the model, and what a host at the line
 //! sees.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::link::{Reply, Request};
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::{BridgeConfig, LinkedStage, address_limit};
-use posicast_model::rtl::stage::StageConfig;
-use posicast_model::rtl::{ClockedBlock, Direction, Port};
+use posicast_blocks::component::Component;
+use posicast_blocks::link::{Reply, Request};
+use posicast_blocks::linked_stage::{BridgeConfig, LinkedStage, address_limit};
+use posicast_blocks::stage::StageConfig;
+use posicast_blocks::{ClockedBlock, Direction, Port};
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::plan::design_machine;
 use posicast_testbench::blocks::{self, Block, DenseLinkBlock, LinkedStageBlock, Sources};
 use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::mutation::NamedMutant;
@@ -274,7 +274,7 @@ fn golden_a_host_over_spi_reads_the_constants_and_writes_a_register() {
     let (reply, _) = ask_spi(&mut linked, &Request::ReadList(vec![0x0d, 0x00]), 2);
     assert_eq!(reply.words, [0x1234, letters]);
     let (reply, _) = ask_spi(&mut linked, &Request::ReadList(vec![0x300]), 3);
-    assert_eq!(reply.status, posicast_model::link::LinkStatus::WrongAddress);
+    assert_eq!(reply.status, posicast_blocks::link::LinkStatus::WrongAddress);
 }
 
 #[test]
@@ -296,5 +296,5 @@ fn golden_a_host_at_the_serial_line_reads_the_constants_and_writes_a_register() 
     assert_eq!(reply.words, [0x1234, letters]);
     // Beyond the windows of the stage and its two axes.
     let (reply, _) = ask(&mut linked, &Request::ReadList(vec![0x300]), 3);
-    assert_eq!(reply.status, posicast_model::link::LinkStatus::WrongAddress);
+    assert_eq!(reply.status, posicast_blocks::link::LinkStatus::WrongAddress);
 }

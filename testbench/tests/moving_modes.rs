@@ -1,9 +1,9 @@
 //! An arm whose mode depends on its position, in the closed loop; it gives the figures of `docs/moving-modes.md`.
 
-use posicast_model::design::{TableFamily, design_machine};
-use posicast_model::hardware;
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::motion::AxisMove;
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::motion::AxisMove;
+use posicast_machine::plan::{TableFamily, design_machine};
 use posicast_testbench::stage_run::{Moved, Shaping, StageRun};
 
 const ARM: &str = include_str!("../../examples/telescope-arm.toml");

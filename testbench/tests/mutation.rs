@@ -1,6 +1,7 @@
 //! The mutation rung on small blocks: the fate of every mutant is known, and stimuli that find nothing are reported.
 
-use posicast_model::{design::design_machine, hardware, machine_file};
+use posicast_machine::plan::design_machine;
+use posicast_machine::{hardware, machine_file};
 use posicast_testbench::blocks::{Block, PartBlock, SmallPart};
 use posicast_testbench::mutation::{Fate, INSIDE, Mutant, MutationOptions, Subject, hunt, named, run, run_with};
 

@@ -2,9 +2,9 @@
 
 use crate::support;
 
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::sliding_mode::Settings;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::schedule::ScheduleConfig;
+use posicast_blocks::sliding_mode::Settings;
 use posicast_testbench::blocks::{PartBlock, SmallPart};
 use support::{caught, icarus_agrees, million_random_clocks};
 

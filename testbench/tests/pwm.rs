@@ -1,9 +1,9 @@
 //! Compares the PWM's Verilog with its bit-exact model, every output in every clock, and checks the gates' safety.
 
 use crate::support::broken;
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::pwm::{ActiveLow, Pwm, PwmConfig, ports};
 use posicast_hdl::pwm::{emit, name};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig, ports};
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
@@ -62,7 +62,7 @@ impl Bench {
         }
     }
 
-    fn source<'a>(&'a self, ports: &'a [posicast_model::rtl::Port]) -> VerilogSource<'a> {
+    fn source<'a>(&'a self, ports: &'a [posicast_blocks::Port]) -> VerilogSource<'a> {
         VerilogSource {
             files: self.sources.files(),
             top: &self.top,

@@ -2,8 +2,8 @@
 //! see.
 
 use crate::support::broken;
+use posicast_blocks::pwm::{ActiveLow, PwmConfig};
 use posicast_hdl::pwm::{emit, name};
-use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use std::process::Command;
 
 /// Compiles and runs `pwm_fault.v` with the emitted Verilog, in which the first `from` is replaced by `to`.

@@ -1,13 +1,13 @@
 //! Compares the PWM's Verilog with the pin rule alone, over a million periods: every edge on the pins is that of
-//! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not used.
+//! `posicast_blocks::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not used.
 
 use crate::support::broken;
-use posicast_hdl::pwm::{emit, name};
-use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
-use posicast_model::rtl::pwm::{
+use posicast_blocks::pwm::pulses::{Bridge, Half, Latched, Timing};
+use posicast_blocks::pwm::{
     ActiveLow, BridgeMode, COMMAND_CLOCKS, Gates, INPUT_PORTS, Inputs, OUTPUT_PORTS, PwmConfig, SHORTEST_PERIOD_CLOCKS,
     ports,
 };
+use posicast_hdl::pwm::{emit, name};
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::stimuli::GateSafety;
 use posicast_testbench::verilator::{Verilated, VerilogSource};

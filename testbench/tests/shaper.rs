@@ -2,9 +2,9 @@
 
 use crate::support;
 
+use posicast_blocks::shaper::{Shaper, ShaperConfig, ShaperMotion as ForMotion, pass_clocks};
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion as ForMotion, pass_clocks};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 use posicast_testbench::blocks::{Block, MachineShapers, ShaperBlock, Sources};
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};

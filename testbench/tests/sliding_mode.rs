@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs};
+use posicast_blocks::sliding_mode::{CONTROL_CLOCKS, Inputs};
 use posicast_testbench::blocks::{self, SlidingModeBlock, Sources};
 use support::{assert_match, icarus_agrees, million_random_clocks};
 

@@ -2,21 +2,21 @@
 
 use crate::support;
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware::{self, MachineStage};
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::linear_scale::ScaleRatio;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::segments::{self, Entry, NOTIFY};
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
-use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
-use posicast_model::rtl::stage::{StageConfig, StageScale};
-use posicast_model::rtl::{ClockedBlock, Direction};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_blocks::component::Component;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::linear_scale::ScaleRatio;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::segments::{self, Entry, NOTIFY};
+use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
+use posicast_blocks::sliding_mode::{Gain, SettingRow};
+use posicast_blocks::stage::{StageConfig, StageScale};
+use posicast_blocks::{ClockedBlock, Direction};
+use posicast_machine::hardware::{self, MachineStage};
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::motion::{TickLimits, plan_move};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_taps::{Tap, TapTable};
 use posicast_testbench::blocks::{self, Block, ComponentBlock, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::{Device, TwoValued};
 use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};

@@ -1,11 +1,11 @@
 //! A stage with linear scales and the aids for bringing it up: Verilog beside model, on the simulated machine.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::component::Component;
+use posicast_blocks::component::Component;
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::motion::{TickLimits, plan_move};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, state};

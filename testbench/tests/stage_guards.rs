@@ -1,13 +1,13 @@
 //! What a stage refuses, and what it waits for: a change of the feedback's sign with the drive on, a PWM out of step,
 //! an interrupt that cannot be cleared; and limits that wait for homing.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, EncoderPins, PlantOptions};
-use posicast_model::rtl::axis::Cause;
-use posicast_model::rtl::component::Component;
+use posicast_blocks::axis::Cause;
+use posicast_blocks::component::Component;
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::motion::{TickLimits, plan_move};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, EncoderPins, PlantOptions};
 use posicast_testbench::stage_bench::{StageBench, state};
 
 /// Returns the example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`:

@@ -2,13 +2,13 @@
 //! continue from there.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::segments::{Entry, EntryMotion};
+use posicast_blocks::component::Component;
+use posicast_blocks::segments::{Entry, EntryMotion};
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::motion::{TickLimits, plan_move};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::stage_bench::{StageBench, state};
 

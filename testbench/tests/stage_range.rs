@@ -4,14 +4,14 @@
 //! the end of the word, with the outputs off, takes as many clocks as counts.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::rtl::axis::Cause;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::segments::{Entry, EntryMotion, REACH_COUNTS, STAND_COUNTS};
-use posicast_model::rtl::{ClockedBlock, Direction};
+use posicast_blocks::axis::Cause;
+use posicast_blocks::component::Component;
+use posicast_blocks::composition::Composed;
+use posicast_blocks::segments::{Entry, EntryMotion, REACH_COUNTS, STAND_COUNTS};
+use posicast_blocks::{ClockedBlock, Direction};
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use posicast_testbench::stage_bench::state;
 
 /// One axis of the example, whose encoder is not filtered.

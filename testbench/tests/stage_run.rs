@@ -1,13 +1,13 @@
 //! The closed loop of `run`: the expectations for a move, and its result on the stage.
 
-use posicast_model::contour::{Contour, ContourLimits, CornerRules, shapes};
-use posicast_model::design::design_machine;
-use posicast_model::hardware::{self, MachineStage};
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::motion::AxisMove;
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
-use posicast_model::rtl::sliding_mode::SettingRow;
-use posicast_model::taps::{Tap, TapTable};
+use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
+use posicast_blocks::sliding_mode::SettingRow;
+use posicast_machine::contour::{Contour, ContourLimits, CornerRules, shapes};
+use posicast_machine::hardware::{self, MachineStage};
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::motion::AxisMove;
+use posicast_machine::plan::design_machine;
+use posicast_taps::{Tap, TapTable};
 use posicast_testbench::stage_run::{Compensated, Expected, Moved, Shaping, StageRun};
 
 const XY: &str = include_str!("../../examples/xy-stage.toml");

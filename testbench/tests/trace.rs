@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_model::rtl::trace::TraceConfig;
+use posicast_blocks::trace::TraceConfig;
 use posicast_testbench::blocks::TraceBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 

@@ -1,14 +1,14 @@
 //! A feedback of the wrong sign: the loop runs away, in HOLD from the smallest disturbance. It must trip after few
 //! ticks and counts; a healthy machine must not trip, however it stops.
 
-use posicast_model::control::{LostSign, lost_sign};
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file::{self, AxisSection, Machine};
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::axis::Cause;
-use posicast_model::rtl::component::Component;
+use posicast_blocks::axis::Cause;
+use posicast_blocks::component::Component;
+use posicast_machine::control::{LostSign, lost_sign};
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{self, AxisSection, Machine};
+use posicast_machine::motion::{TickLimits, plan_move};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::stage_bench::{StageBench, Wire, state};
 
 const VELOCITY: &str = include_str!("../../examples/xy-stage.toml");

@@ -17,7 +17,7 @@ mod waveforms;
 use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::progress;
-use posicast_model::spelling::did_you_mean;
+use posicast_machine::spelling::did_you_mean;
 use posicast_testbench::blocks::Block;
 use posicast_testbench::shard::{
     self, CampaignHead, FORMAT, MachineFileHash, MergedRow, Shard, ShardDocument, UnitResult,

@@ -2,9 +2,10 @@
 
 use crate::output::{Table, UnitDocument};
 use crate::plot::{Curve, Panel, label, time_axis};
-use posicast_model::contour::{ContourRow, CornerRules, FREQUENCY_FACTORS, FollowedContour, Survey};
-use posicast_model::machine_file::Machine;
-use posicast_model::unit::{AxisUnit, show_seconds};
+use posicast_machine::contour::{ContourRow, CornerRules, FREQUENCY_FACTORS, FollowedContour, Survey};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::unit::show_seconds;
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::fmt::Write;

@@ -1,10 +1,11 @@
 //! What is certified of an axis's table: `--certify`, and of every `optimal` design.
 
 use crate::output::{Table, percent};
-use posicast_model::certify::{AxisCertificate, ModeCertificate, certify_axis};
-use posicast_model::design::optimal::Optimal;
-use posicast_model::design::{AxisTables, Findings};
-use posicast_model::machine_file::AxisSection;
+use posicast_machine::machine_file::AxisSection;
+use posicast_machine::plan::AxisTables;
+use posicast_machine::plan::{AxisCertificate, ModeCertificate, certify_axis};
+use posicast_shaper::design::Findings;
+use posicast_shaper::design::optimal::Optimal;
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::fmt::Write;

@@ -2,9 +2,10 @@
 
 use super::together::{TogetherDocument, TogetherReport};
 use crate::output::Table;
-use posicast_model::design::{AxisDelay, MachineDesign, StageDelay};
-use posicast_model::machine_file::Machine;
-use posicast_model::unit::{AxisUnit, show_seconds};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plan::{AxisDelay, MachineDesign, StageDelay};
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::unit::show_seconds;
 use serde::Serialize;
 use std::fmt::Write;
 

@@ -8,10 +8,10 @@ use super::front::FrontDocument;
 use super::given_move::MoveDocument;
 use crate::control::ControlDocument;
 use crate::output::UnitDocument;
-use posicast_model::design::periodic::Solution;
-use posicast_model::design::ratios::Class;
-use posicast_model::mechanics::ScrewDrive;
-use posicast_model::taps::TapTable;
+use posicast_machine::mechanics::ScrewDrive;
+use posicast_shaper::design::periodic::Solution;
+use posicast_shaper::design::ratios::Class;
+use posicast_taps::TapTable;
 use serde::Serialize;
 
 /// `design --json`: the command line's contract.

@@ -1,9 +1,9 @@
 //! The error table of an axis, for people and for programs.
 
 use crate::warning::Warning;
-use posicast_model::hardware::{self, Hardware};
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::rtl::stage::StageErrorTable;
+use posicast_blocks::stage::StageErrorTable;
+use posicast_machine::hardware::{self, Hardware};
+use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 

@@ -3,11 +3,11 @@
 use crate::output::Table;
 use crate::plot::{Curve, Panel};
 use crate::warning::Warning;
-use posicast_model::analysis::{residual_vibration, tap_impulses};
-use posicast_model::design::{FamilyMember, TableFamily};
-use posicast_model::machine_file::{AxisSection, FamilySection};
-use posicast_model::mode::Mode;
-use posicast_model::unit::trimmed;
+use posicast_machine::machine_file::{AxisSection, FamilySection};
+use posicast_machine::plan::{FamilyMember, TableFamily};
+use posicast_shaper::analysis::{residual_vibration, tap_impulses};
+use posicast_shaper::mode::Mode;
+use posicast_shaper::unit::trimmed;
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::fmt::Write;
@@ -241,7 +241,11 @@ impl<'a> FamilyReport<'a> {
             chosen.push((shown(value), worst(now, value)));
             nominal.push((shown(value), worst(self.tables.nominal, value)));
         }
-        let tolerances = self.axis.modes.iter().map(|mode| 100.0 * self.axis.tolerance_of(mode));
+        let tolerances = self
+            .axis
+            .modes
+            .iter()
+            .map(|mode| 100.0 * self.axis.shaped().tolerance_of(mode));
         let tolerance = tolerances.fold(0.0, f64::max);
         let line = vec![(shown(low), tolerance), (shown(high), tolerance)];
         Panel {

@@ -5,8 +5,8 @@ use crate::failure::Failure;
 use crate::output::{Table, percent};
 use crate::plot::{Curve, Panel};
 use crate::progress;
-use posicast_model::design::Findings;
-use posicast_model::design::front::{FrontFigures, design_front};
+use posicast_shaper::design::Findings;
+use posicast_shaper::design::front::{FrontFigures, design_front};
 use serde::Serialize;
 
 /// Label of an axis that counts taps.

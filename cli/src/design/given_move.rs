@@ -4,9 +4,9 @@ use super::DesignReport;
 use crate::failure::Failure;
 use crate::moves::PerAxis;
 use crate::output::Table;
-use posicast_model::analysis::tap_impulses;
-use posicast_model::machine_file::AxisSection;
-use posicast_model::motion::{AxisMove, BetterMove, MoveComparison, MoveFigures, compare_move};
+use posicast_machine::machine_file::AxisSection;
+use posicast_machine::motion::{AxisMove, BetterMove, MoveComparison, MoveFigures, compare_move};
+use posicast_shaper::analysis::tap_impulses;
 use serde::Serialize;
 use std::fmt::Write;
 

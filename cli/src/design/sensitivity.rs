@@ -1,10 +1,10 @@
 //! Sensitivity curves: the residual over the mode's true frequency.
 
 use crate::plot::{Curve, Panel};
-use posicast_model::analysis::{sensitivity_curve, tap_impulses};
-use posicast_model::design::{AxisTables, MachineDesign};
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::unit::trimmed;
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::plan::{AxisTables, MachineDesign};
+use posicast_shaper::analysis::{sensitivity_curve, tap_impulses};
+use posicast_shaper::unit::trimmed;
 
 /// Range of frequency ratios that the sensitivity curves show.
 const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
@@ -40,7 +40,11 @@ fn sensitivity_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sam
             curve(tables.design.impulses.impulses()),
         ));
     }
-    let mut tolerances: Vec<f64> = axis.modes.iter().map(|mode| 100.0 * axis.tolerance_of(mode)).collect();
+    let mut tolerances: Vec<f64> = axis
+        .modes
+        .iter()
+        .map(|mode| 100.0 * axis.shaped().tolerance_of(mode))
+        .collect();
     tolerances.sort_by(f64::total_cmp);
     tolerances.dedup();
     for tolerance in tolerances {

@@ -1,8 +1,8 @@
 //! The joint design of a stage's axes, for people and for programs.
 
-use posicast_model::certify::{CheckedShorter, CheckedTogether, check_together};
-use posicast_model::design::MachineDesign;
-use posicast_model::design::optimal::TogetherDesign;
+use posicast_machine::plan::MachineDesign;
+use posicast_shaper::certify::{CheckedShorter, CheckedTogether, check_together};
+use posicast_shaper::design::optimal::TogetherDesign;
 use serde::Serialize;
 use std::fmt::Write;
 

@@ -7,7 +7,7 @@ use crate::machine;
 use crate::moves::PerAxis;
 use crate::output;
 use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
-use posicast_model::machine_file::Machine;
+use posicast_machine::machine_file::Machine;
 use posicast_system::output::OutputFiles;
 use std::path::Path;
 

@@ -3,9 +3,9 @@
 use super::{Port, failure};
 use crate::failure::Failure;
 use crate::output::{self, Table, UnitDocument};
+use posicast_blocks::axis::SupervisorState;
 use posicast_host::{AxisStatus, causes};
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::rtl::axis::SupervisorState;
+use posicast_machine::machine_file::{AxisSection, Machine};
 use serde::Serialize;
 
 /// `host status --json`: positions in m or rad.

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 #[cfg(target_os = "linux")]
 use posicast_host::SpiLine;
 use posicast_host::{Line, Link, LinkError, LinkOptions, UdpLine};
-use posicast_model::machine_file::{LinkLine, LinkSection, Machine};
+use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
 use std::path::Path;
 
 /// Begins the name of an SPI device.

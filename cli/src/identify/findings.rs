@@ -12,7 +12,8 @@ use posicast_identify::recommend::{Judgement, Recommendation, recommend};
 use posicast_identify::ring_down::{self, FoundInRingDown, RingDownError};
 use posicast_identify::sweep::{self, Band, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
-use posicast_model::unit::{AxisUnit, trimmed};
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::unit::trimmed;
 
 /// Measured data and what the modes explain of it, for the plots.
 pub(super) enum Evidence {

@@ -4,7 +4,8 @@ use super::findings::Findings;
 use crate::failure::Failure;
 use crate::machine;
 use crate::new::{Draft, MachineKind, to_measure};
-use posicast_model::unit::{AxisUnit, trimmed};
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::unit::trimmed;
 use std::path::Path;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 

@@ -6,9 +6,9 @@ use posicast_identify::log::Log;
 use posicast_identify::modal::ResponsePoint;
 use posicast_identify::recommend::{Recommendation, deflection};
 use posicast_identify::spectrum::{PowerSpectrum, welch};
-use posicast_model::analysis::sensitivity_curve;
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::unit::trimmed;
+use posicast_shaper::analysis::sensitivity_curve;
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::unit::trimmed;
 
 /// Number of shapers that are drawn.
 const SHAPERS: usize = 4;

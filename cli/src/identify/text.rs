@@ -6,7 +6,7 @@ use crate::new::{MachineKind, to_measure};
 use crate::output::{Table, percent, shell_word};
 use posicast_identify::recommend::Recommendation;
 use posicast_identify::{FoundMode, Interval};
-use posicast_model::unit::{show_seconds, trimmed};
+use posicast_shaper::unit::{show_seconds, trimmed};
 use posicast_testbench::wording::counted;
 use std::fmt::Write;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! The templates of machine files, and the replacement of a value in one.
 
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::unit::AxisUnit;
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::unit::AxisUnit;
 use std::path::Path;
 
 /// Kind of machine that a template is for.

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::progress;
-use posicast_model::papers::{BeyondRow, beyond};
+use posicast_papers::{BeyondRow, beyond};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 

@@ -173,7 +173,7 @@ pub(super) fn figure(of: &Excerpt) -> Markup {
                     @let bottom = TOP + ROW * of.lanes.len() as f64 + 14.0;
                     text.time x=(NAMES) y=(format!("{bottom:.1}")) { "0" }
                     text.time.end x=(WIDTH - 10.0) y=(format!("{bottom:.1}")) {
-                        (posicast_model::unit::show_seconds((of.to - of.from) as f64 * of.unit_s, 3))
+                        (posicast_shaper::unit::show_seconds((of.to - of.from) as f64 * of.unit_s, 3))
                     }
                 }
             }

@@ -1,9 +1,9 @@
 //! What a shaper costs and gains in the move of a run: how much later the command arrives, and how much sooner the load rests.
 
 use super::pictures::slowest_period_s;
-use posicast_model::analysis::settled_from;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::simulation::AxisSimulation;
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::simulation::AxisSimulation;
+use posicast_shaper::analysis::settled_from;
 use serde::Serialize;
 
 /// Where the figures come from.

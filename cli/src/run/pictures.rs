@@ -4,14 +4,14 @@ use super::waves::Waves;
 use crate::failure::Failure;
 use crate::plot::{Band, Curve, Panel, label, time_axis};
 use crate::simulate::si_per_lsb;
-use posicast_model::analysis::{settled_from, tap_impulses};
-use posicast_model::design::{AxisTables, MachineDesign};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::plant::response::step_response;
-use posicast_model::plant::{Plant, SampledPlant};
-use posicast_model::simulation::AxisSimulation;
-use posicast_model::unit::{ShownUnit, trimmed};
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::plan::{AxisTables, MachineDesign};
+use posicast_machine::plant::response::step_response;
+use posicast_machine::plant::{Plant, SampledPlant};
+use posicast_machine::simulation::AxisSimulation;
+use posicast_shaper::analysis::{settled_from, tap_impulses};
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::unit::{ShownUnit, trimmed};
 
 /// Duration that a step response shows, in shaper durations.
 const SHOWN_DURATIONS: f64 = 4.0;
@@ -193,7 +193,7 @@ fn move_panel(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_model::unit::time_unit;
+    use posicast_shaper::unit::time_unit;
     use std::f64::consts::TAU;
 
     /// The label of a vibration of 10 ms that begins at 7 and halves in each period, shown for this long.

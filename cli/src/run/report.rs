@@ -12,14 +12,14 @@ use crate::failure::Failure;
 use crate::output::{Table, UnitDocument, percent};
 use crate::simulate::si_per_lsb;
 use crate::synth;
-use posicast_model::analysis::tap_impulses;
-use posicast_model::compare::{DEFAULT_BAND, KindComparison};
-use posicast_model::design::{AxisTables, MachineDesign};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::plant::Plant;
-use posicast_model::plant::response::{PlantFigures, StepFigures, plant_figures};
-use posicast_model::simulation::AxisSimulation;
+use posicast_machine::compare::{DEFAULT_BAND, KindComparison};
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::plan::{AxisTables, MachineDesign};
+use posicast_machine::plant::Plant;
+use posicast_machine::plant::response::{PlantFigures, StepFigures, plant_figures};
+use posicast_machine::simulation::AxisSimulation;
+use posicast_shaper::analysis::tap_impulses;
+use posicast_shaper::impulse::ImpulseSequence;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
@@ -153,7 +153,7 @@ impl RunReport<'_> {
             let plant = &self.plants[index];
             let figures = tables.mode_figures(axis, self.sample_hz());
             let largest =
-                |pick: fn(&posicast_model::design::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
+                |pick: fn(&posicast_machine::plan::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
             residuals.row([
                 axis.name.clone(),
                 tables.design.kind.clone(),

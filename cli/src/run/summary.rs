@@ -12,7 +12,7 @@ use crate::generate;
 use crate::output::{Table, percent};
 use crate::simulate::si_per_lsb;
 use crate::style;
-use posicast_model::design::ModeFigures;
+use posicast_machine::plan::ModeFigures;
 use posicast_synth::yosys::Estimate;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

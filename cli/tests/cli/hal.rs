@@ -1,10 +1,10 @@
 //! `posicast generate --hal`: what LinuxCNC gets.
 
 use super::support::{example, posicast};
-use posicast_model::analysis::residual_vibration;
-use posicast_model::analysis::tap_impulses;
-use posicast_model::mode::Mode;
-use posicast_model::shaper_tables::ShaperTables;
+use posicast_blocks::shaper_tables::ShaperTables;
+use posicast_shaper::analysis::residual_vibration;
+use posicast_shaper::analysis::tap_impulses;
+use posicast_shaper::mode::Mode;
 use std::path::Path;
 
 fn generated(machine: &Path, folder: &Path) {

@@ -1,11 +1,11 @@
 //! `posicast host`, on the model of the stage with its machine behind a pseudo-terminal.
 
 use super::support::{example, generate, json, posicast, scratch};
-use posicast_model::design::design_machine;
-use posicast_model::hardware::Hardware;
-use posicast_model::machine_file;
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::linked_stage::address_limit;
+use posicast_blocks::linked_stage::address_limit;
+use posicast_machine::hardware::Hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::linked_bench::LinkedBench;
 use posicast_testbench::stage_bench::StageBench;
 use serialport::{SerialPort, TTYPort};

@@ -2,10 +2,10 @@
 //! registers.
 
 use super::support::{example, generate, json, posicast, scratch};
-use posicast_model::design::design_machine;
-use posicast_model::hardware::Hardware;
-use posicast_model::machine_file;
-use posicast_model::rtl::registers::Access;
+use posicast_blocks::registers::Access;
+use posicast_machine::hardware::Hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};

@@ -3,7 +3,7 @@
 use crate::cli::support::{identify, posicast};
 use posicast_identify::sweep::Sweep;
 use posicast_identify::synthetic::{KnownMode, Sensor, known, resonance_test};
-use posicast_model::plant::drive_train::{Amplifier, DriveTrain, DriveTrainPlant, quantised};
+use posicast_machine::plant::drive_train::{Amplifier, DriveTrain, DriveTrainPlant, quantised};
 use std::path::Path;
 
 /// A resonance test of 13 s.
@@ -35,7 +35,7 @@ fn cli_a_printers_log_becomes_a_machine_that_generates_hardware() {
         "{said}"
     );
     let machine = std::fs::read_to_string(folder.path().join("head.toml")).unwrap();
-    let machine = posicast_model::machine_file::parse("head.toml", &machine).unwrap();
+    let machine = posicast_machine::machine_file::parse("head.toml", &machine).unwrap();
     assert_eq!(
         (machine.name.as_str(), machine.axes.len(), machine.axes[0].name.as_str()),
         ("head", 1, "x")
@@ -86,7 +86,7 @@ fn cli_modes_go_into_an_axis_of_a_machine_that_is_there_and_nothing_else_changes
     let (status, _, problems) = identify(folder.path(), &[&base[..], &["new.toml", "--axis", "y"]].concat());
     assert_eq!(status, Some(0), "{problems}");
     let new = std::fs::read_to_string(folder.path().join("new.toml")).unwrap();
-    let parsed = |text: &str| posicast_model::machine_file::parse("m", text).unwrap();
+    let parsed = |text: &str| posicast_machine::machine_file::parse("m", text).unwrap();
     let (before, after) = (parsed(&old), parsed(&new));
     assert_eq!(before.axes[0], after.axes[0]);
     assert!((after.axes[1].modes[0].mode.frequency_hz - 60.0).abs() < 0.6);
@@ -355,7 +355,7 @@ fn cli_a_drive_and_its_motor_become_a_machine_with_the_motor_held() {
     );
     let machine = std::fs::read_to_string(folder.path().join("x.toml")).unwrap();
     assert!(machine.contains("measured = \"motor_held\""), "{machine}");
-    let machine = posicast_model::machine_file::parse("x.toml", &machine).unwrap();
+    let machine = posicast_machine::machine_file::parse("x.toml", &machine).unwrap();
     let (found, truth) = (machine.axes[0].modes[0].mode, train.held_mode());
     assert!(
         (found.frequency_hz / truth.frequency_hz - 1.0).abs() < 0.01,

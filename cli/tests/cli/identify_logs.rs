@@ -143,7 +143,7 @@ fn cli_the_two_commands_for_x_and_y_work_from_either_axis() {
         assert_eq!(status, Some(0), "{said}{problems}");
         assert!(said.contains(&format!("copies of those of axis {}", first.0)), "{said}");
         let text = std::fs::read_to_string(folder.path().join("both.toml")).unwrap();
-        let machine = posicast_model::machine_file::parse("both.toml", &text).unwrap();
+        let machine = posicast_machine::machine_file::parse("both.toml", &text).unwrap();
         assert_eq!(machine.axes.len(), 2);
         for (axis, (name, hz)) in machine.axes.iter().zip(axes) {
             assert_eq!(axis.name, name);

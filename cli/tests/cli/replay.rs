@@ -3,8 +3,8 @@
 #![cfg(test)] // lets clippy see that this is test code
 
 use crate::cli::support::{example, json, posicast};
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::{Direction, Port};
 use posicast_testbench::blocks::{Block, DividerBlock};
 use posicast_testbench::lockstep::{self, Instance, LockstepOptions, TwoValued};
 use posicast_testbench::stimuli::Stimuli;

@@ -3,11 +3,11 @@
 use super::readers::{self, OfKlipper};
 use super::{designed, export, mode, printer, refused, residual};
 use crate::cli::support::scratch;
-use posicast_model::analysis::WeightedMode;
-use posicast_model::firmware::closest::{OwnKind, closest};
-use posicast_model::firmware::klipper::{EiFormulas, Kind, impulses};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::mode::Mode;
+use posicast_shaper::analysis::WeightedMode;
+use posicast_shaper::firmware::closest::{OwnKind, closest};
+use posicast_shaper::firmware::klipper::{EiFormulas, Kind, impulses};
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::mode::Mode;
 
 /// Two modes that were measured on a printer: frequency, damping ratio, share of the tool's motion.
 const MODES: [(f64, f64, f64); 2] = [(38.7002, 0.0500062, 0.61541), (71.4997, 0.0399798, 0.38459)];

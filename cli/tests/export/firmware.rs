@@ -3,7 +3,7 @@
 use super::readers::{self, OfKlipper};
 use super::{DAMPINGS, designed, export, mode, printer, residual};
 use crate::cli::support::scratch;
-use posicast_model::firmware::klipper::{EiFormulas, Kind, impulses};
+use posicast_shaper::firmware::klipper::{EiFormulas, Kind, impulses};
 
 const HZ: f64 = 52.4;
 

@@ -5,7 +5,7 @@
 //! way to the state.
 
 use crate::prelude::*;
-use posicast_model::rtl::axis::{ALWAYS_OFF, CAUSE_BITS, Cause, HARMLESS};
+use posicast_blocks::axis::{ALWAYS_OFF, CAUSE_BITS, Cause, HARMLESS};
 
 kernel! {
     pub(super) struct Causes;

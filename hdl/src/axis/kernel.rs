@@ -8,11 +8,11 @@ use super::line::Line;
 use super::monitors::Monitors;
 use super::states::States;
 use crate::prelude::*;
-use posicast_model::rtl::axis::{CLEAR_CLOCKS, DOUBTFUL, KICK};
+use posicast_blocks::axis::{CLEAR_CLOCKS, DOUBTFUL, KICK};
 
 kernel! {
     pub(super) struct Axis;
-    ports posicast_model::axis_ports;
+    ports posicast_blocks::axis_ports;
 
     parts {
         emergency_stop_line: Line,

@@ -21,8 +21,8 @@ mod timer;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Axis;
-use posicast_model::rtl::axis::{CLEAR_CLOCKS, LINE_CLOCKS, PORTS, WATCH_CLOCKS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::axis::{CLEAR_CLOCKS, LINE_CLOCKS, PORTS, WATCH_CLOCKS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The supervisor in RustHDL's own simulator.
 ///

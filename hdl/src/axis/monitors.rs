@@ -12,7 +12,7 @@ use super::size_limit::SizeLimit;
 use super::soft_limits::SoftLimits;
 use super::tick_count::TickCount;
 use crate::prelude::*;
-use posicast_model::rtl::axis::Cause;
+use posicast_blocks::axis::Cause;
 
 kernel! {
     pub(super) struct Monitors;

@@ -4,8 +4,8 @@
 
 use super::timer::Timer;
 use crate::prelude::*;
-use posicast_model::rtl::axis::SupervisorState;
-use posicast_model::rtl::segments;
+use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::segments;
 
 kernel! {
     pub(super) struct States;

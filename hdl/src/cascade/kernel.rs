@@ -14,7 +14,7 @@
 //! A delay is 1 to 2^A − 2, so the word read is never the one written in the same clock.
 
 use crate::prelude::*;
-use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_blocks::cascade::CascadeConfig;
 
 kernel! {
     /// Sizes: W word bits, S sum bits (W + one per stage), A ring address bits, I stage index bits, ADDRESS = A + I.
@@ -23,7 +23,7 @@ kernel! {
     pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
         (config: &CascadeConfig)
         where S > W && ADDRESS == A + I;
-    ports posicast_model::cascade_ports;
+    ports posicast_blocks::cascade_ports;
 
     parts {
         delays: Rom<A, I> = delays_rom(config),

@@ -10,8 +10,8 @@ use crate::compiled::{self, Compiled};
 use crate::emit::{EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Cascade;
-use posicast_model::rtl::cascade::{CascadeConfig, PORTS, pass_clocks, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::cascade::{CascadeConfig, PORTS, pass_clocks, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The cascade with words of W bits, sums of S bits, ring buffers of 2^A samples and 2^I stages.
 macro_rules! cascade {

@@ -13,11 +13,11 @@
 //! are ones from there on. The phases are numbered such that they are easy to decode.
 
 use crate::prelude::*;
-use posicast_model::rtl::divider::DividerConfig;
+use posicast_blocks::divider::DividerConfig;
 
 kernel! {
     pub(super) struct Divider(config: &DividerConfig);
-    ports posicast_model::divider_ports;
+    ports posicast_blocks::divider_ports;
 
     registers {
         phase: Bits<7>, product: Bits<35>, remainder: Bits<24>, divisor: Bits<24>, negative: Bit,

@@ -7,8 +7,8 @@ mod kernel;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Divider;
-use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig, PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::divider::{DIVISION_CLOCKS, DividerConfig, PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The divider in RustHDL's own simulator.
 ///

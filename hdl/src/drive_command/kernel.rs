@@ -2,11 +2,11 @@
 //! for each gate that is tested.
 
 use crate::prelude::*;
-use posicast_model::rtl::axis::SupervisorState;
+use posicast_blocks::axis::SupervisorState;
 
 kernel! {
     pub(super) struct DriveCommand;
-    ports posicast_model::drive_command_ports;
+    ports posicast_blocks::drive_command_ports;
 
     registers {
         duty_q: Bits<17>, feed_q: Bit, pwm_enable_q: Bit, drive_enable_q: Bit, brake_release_q: Bit,

@@ -8,8 +8,8 @@ mod kernel;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::DriveCommand;
-use posicast_model::rtl::drive_command::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::drive_command::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The drive command in RustHDL's own simulator.
 ///

@@ -6,7 +6,7 @@ use super::names::{self, Taken};
 use super::print::{self, Lines};
 use super::types::{BIT, Type};
 use super::{Header, Module};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 /// One instance in a composed module.
 #[derive(Debug, Clone, Copy)]

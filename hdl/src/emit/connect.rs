@@ -5,8 +5,8 @@ use super::names::{self, Taken};
 use super::print::{self, Lines};
 use super::types::{BIT, Type};
 use super::{Header, Module};
-use posicast_model::rtl::composition::{Composition, Connection};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::composition::{Composition, Connection};
+use posicast_blocks::{Direction, Port};
 
 /// Writes the module `top`: one instance per part of `composition`, of the module with the same index in `modules`.
 ///

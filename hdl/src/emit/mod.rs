@@ -70,7 +70,7 @@ pub use library::{add, own_name, shared_name};
 pub use names::LIBRARY;
 pub use types::Type;
 
-use posicast_model::rtl::{Port, PortNote};
+use posicast_blocks::{Port, PortNote};
 use rust_hdl_core::prelude::Block;
 
 /// One Verilog module, one file `NAME.v`.

@@ -11,7 +11,7 @@ use super::print::{self, Lines};
 use super::scope::{NetId, Role, Scope};
 use super::statements::{comment_text, statements};
 use super::{EmitOptions, Module, flow, head};
-use posicast_model::rtl::{Direction, Port, PortNote};
+use posicast_blocks::{Direction, Port, PortNote};
 use rust_hdl_core::ast::VerilogStatement;
 use rust_hdl_core::prelude::Verilog;
 use std::collections::{BTreeMap, BTreeSet};

@@ -8,7 +8,7 @@ use super::scope::{NetId, Scope};
 use super::types::Type;
 use super::wrap::wrapped;
 use super::{Header, Parameter, head};
-use posicast_model::rtl::PortNote;
+use posicast_blocks::PortNote;
 use std::fmt::Write;
 
 /// Source of the modules that are written from kernels.

@@ -5,7 +5,7 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct EncoderGenerator;
-    ports posicast_model::encoder_generator_ports;
+    ports posicast_blocks::encoder_generator_ports;
 
     registers { sum: Signed<64>, period: Bits<14>, line_a: Bit, line_b: Bit, line_z: Bit, moved: Bit }
     parts {

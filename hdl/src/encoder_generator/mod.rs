@@ -7,8 +7,8 @@ mod kernel;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::EncoderGenerator;
-use posicast_model::rtl::encoder_generator::{LATENCY_CLOCKS, PORTS, RATE_FRACTION, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::encoder_generator::{LATENCY_CLOCKS, PORTS, RATE_FRACTION, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The internal encoder in RustHDL's own simulator.
 ///

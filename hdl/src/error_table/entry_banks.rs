@@ -6,7 +6,7 @@
 //!   reads as 0.
 
 use crate::prelude::*;
-use posicast_model::rtl::error_table::ErrorTableConfig;
+use posicast_blocks::error_table::ErrorTableConfig;
 
 kernel! {
     pub(super) struct EntryBanks(config: &ErrorTableConfig);

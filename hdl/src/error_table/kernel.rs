@@ -3,11 +3,11 @@
 use super::entry_banks::EntryBanks;
 use super::lookup::Lookup;
 use crate::prelude::*;
-use posicast_model::rtl::error_table::{ErrorTableConfig, FULL_WEIGHT};
+use posicast_blocks::error_table::{ErrorTableConfig, FULL_WEIGHT};
 
 kernel! {
     pub(super) struct ErrorTable(config: &ErrorTableConfig);
-    ports posicast_model::error_table_ports;
+    ports posicast_blocks::error_table_ports;
 
     parts { banks: EntryBanks = EntryBanks::new(config), lookup: Lookup = Lookup::new(config) }
     registers { weight: Bits<11>, loaded: Bit, base: Signed<32>, compensated_q: Signed<32>, valid_q: Bit }

@@ -11,7 +11,7 @@
 
 use super::average::Average;
 use crate::prelude::*;
-use posicast_model::rtl::error_table::{ErrorTableConfig, FULL_WEIGHT};
+use posicast_blocks::error_table::{ErrorTableConfig, FULL_WEIGHT};
 
 kernel! {
     pub(super) struct Lookup(config: &ErrorTableConfig);

@@ -10,8 +10,8 @@ mod lookup;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::ErrorTable;
-use posicast_model::rtl::error_table::{ErrorTableConfig, PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::error_table::{ErrorTableConfig, PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The error table in RustHDL's own simulator.
 ///

@@ -5,7 +5,7 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct Excitation;
-    ports posicast_model::excitation_ports;
+    ports posicast_blocks::excitation_ports;
 
     parts { wave: Wave }
     registers {

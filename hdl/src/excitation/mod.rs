@@ -8,8 +8,8 @@ mod wave;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Excitation;
-use posicast_model::rtl::excitation::{LATENCY_CLOCKS, PORTS, TICK_CLOCKS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::excitation::{LATENCY_CLOCKS, PORTS, TICK_CLOCKS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The excitation in RustHDL's own simulator.
 ///

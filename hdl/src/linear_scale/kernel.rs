@@ -5,7 +5,7 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct LinearScale;
-    ports posicast_model::linear_scale_ports;
+    ports posicast_blocks::linear_scale_ports;
 
     parts { serial: SerialRatio }
     registers {

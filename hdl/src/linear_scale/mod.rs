@@ -8,8 +8,8 @@ mod serial_ratio;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::LinearScale;
-use posicast_model::rtl::linear_scale::{LATENCY_CLOCKS, PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::linear_scale::{LATENCY_CLOCKS, PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The linear scale in RustHDL's own simulator.
 ///

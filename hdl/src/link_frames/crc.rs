@@ -1,7 +1,7 @@
 //! CRC-32 of IEEE 802.3, a bit per clock, lowest first.
 
 use crate::prelude::*;
-use posicast_model::link::{CRC_START, POLYNOMIAL, RESIDUE};
+use posicast_blocks::link::{CRC_START, POLYNOMIAL, RESIDUE};
 
 kernel! {
     pub(crate) struct Crc;

@@ -4,7 +4,7 @@
 //! skipped up to its end. A delimiter begins a new frame, whatever came before it.
 
 use crate::prelude::*;
-use posicast_model::link::MOST_REQUEST_BYTES;
+use posicast_blocks::link::MOST_REQUEST_BYTES;
 
 kernel! {
     pub(crate) struct FrameDecoder;

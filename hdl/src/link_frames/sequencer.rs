@@ -9,7 +9,7 @@
 //! Both passes over the addresses are the same states; `looks` tells the first, which accesses nothing.
 
 use crate::prelude::*;
-use posicast_model::link::{LinkStatus, MOST_WORDS, VERSION};
+use posicast_blocks::link::{LinkStatus, MOST_WORDS, VERSION};
 
 kernel! {
     pub(crate) struct Sequencer;

@@ -11,7 +11,7 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct PulseCounter;
-    ports posicast_model::pulse_counter_ports;
+    ports posicast_blocks::pulse_counter_ports;
 
     parts {
         line_a: Line,

@@ -12,8 +12,8 @@ use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
 pub(crate) use glitch_filter::GlitchFilter;
 use kernel::PulseCounter;
-use posicast_model::rtl::pulse_counter::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::pulse_counter::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The pulse counter in RustHDL's own simulator.
 ///

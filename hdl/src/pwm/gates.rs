@@ -1,7 +1,7 @@
 //! The gates: maps the leg to the pins of its mode, with a register each, followed by the asynchronous fault path.
 
 use crate::prelude::*;
-use posicast_model::rtl::pwm::PwmConfig;
+use posicast_blocks::pwm::PwmConfig;
 
 kernel! {
     pub(super) struct Gates(config: &PwmConfig);

@@ -7,11 +7,11 @@ use super::leg::Leg;
 use super::timing::Timing;
 use super::trip::Trip;
 use crate::prelude::*;
-use posicast_model::rtl::pwm::PwmConfig;
+use posicast_blocks::pwm::PwmConfig;
 
 kernel! {
     pub(super) struct Pwm(config: &PwmConfig);
-    ports posicast_model::pwm_ports;
+    ports posicast_blocks::pwm_ports;
 
     parts {
         carrier: Carrier = Carrier::new(config.is_on_time_base()),

@@ -15,8 +15,8 @@ mod trip;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Pwm;
-use posicast_model::rtl::pwm::{PORTS, PwmConfig, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::pwm::{PORTS, PwmConfig, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The PWM in RustHDL's own simulator.
 ///

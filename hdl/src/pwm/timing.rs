@@ -4,7 +4,7 @@
 //! ten.
 
 use crate::prelude::*;
-use posicast_model::rtl::pwm::PwmConfig;
+use posicast_blocks::pwm::PwmConfig;
 
 kernel! {
     pub(super) struct Timing(config: &PwmConfig);

@@ -3,7 +3,7 @@
 use super::text::{bits, joined, part, type_of};
 use crate::emit::Type;
 use crate::emit::print::Lines;
-use posicast_model::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
+use posicast_blocks::registers::{Access, Field, FlagSource, Register, RegisterMap};
 
 /// A flip-flop of the bank, as type, name and reset value.
 pub(super) type Flop = (Type, String, u32);

@@ -12,7 +12,7 @@ mod verilog;
 
 use crate::emit::names::check_name;
 use crate::emit::{EmitError, Header, Module, Parameter, digest, print, shared_name};
-use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap};
+use posicast_blocks::registers::{Access, Field, Register, RegisterMap};
 
 /// Verilog of the bank; [`name`] gives its name.
 ///

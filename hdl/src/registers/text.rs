@@ -2,7 +2,7 @@
 
 use crate::emit::Type;
 use crate::emit::print::Lines;
-use posicast_model::rtl::registers::Field;
+use posicast_blocks::registers::Field;
 
 pub(super) fn bits(width: u32) -> Type {
     Type { width, signed: false }

@@ -6,8 +6,8 @@ use super::blocks::{
 use super::text::{bits, joined, part};
 use crate::emit::Type;
 use crate::emit::print::{self, Lines};
-use posicast_model::rtl::Direction;
-use posicast_model::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
+use posicast_blocks::Direction;
+use posicast_blocks::registers::{Access, Field, FlagSource, Register, RegisterMap};
 
 pub(super) fn body(map: &RegisterMap) -> String {
     let clock = ("input  wire", bits(1), "clk".to_owned());

@@ -8,11 +8,11 @@
 use super::fifo::CommandFifo;
 use super::integrator::Integrator;
 use crate::prelude::*;
-use posicast_model::rtl::segments::SegmentsState;
+use posicast_blocks::segments::SegmentsState;
 
 kernel! {
     pub(super) struct Segments;
-    ports posicast_model::segments_ports;
+    ports posicast_blocks::segments_ports;
 
     parts { fifo: CommandFifo, integrator: Integrator }
     registers {

@@ -10,8 +10,8 @@ mod passes;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Segments;
-use posicast_model::rtl::segments::{ENTRIES_MAX, LATENCY_CLOCKS, PORTS, TICK_CLOCKS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::segments::{ENTRIES_MAX, LATENCY_CLOCKS, PORTS, TICK_CLOCKS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The command FIFO in RustHDL's own simulator.
 ///

@@ -20,7 +20,7 @@
 
 use super::product::Product;
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 kernel! {
     /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T + 1 accumulator bits, C channels, H = C − 1 results

@@ -10,7 +10,7 @@
 //! back for the position, and counts as zero for other channels.
 
 use crate::prelude::*;
-use posicast_model::rtl::shaper::{ShaperConfig, swap_how};
+use posicast_blocks::shaper::{ShaperConfig, swap_how};
 
 kernel! {
     /// Sizes: W word bits, A ring address bits.

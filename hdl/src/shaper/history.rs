@@ -11,7 +11,7 @@
 //! `delay` is at most 2^A − 2, so the word read is never the one being written.
 
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 kernel! {
     /// Sizes: W word bits, A ring address bits, C channels.

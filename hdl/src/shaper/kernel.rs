@@ -13,7 +13,7 @@ use super::history::History;
 use super::tap_banks::TapBanks;
 use super::weighted_sum::WeightedSum;
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 kernel! {
     /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T accumulator bits, A ring address bits, T index bits,
@@ -24,7 +24,7 @@ kernel! {
         const COUNT: usize, const SUM: usize, const WORD: usize, const U: usize>
         (config: &ShaperConfig)
         where P == W + 18 && ACC == P + T;
-    ports posicast_model::shaper_ports;
+    ports posicast_blocks::shaper_ports;
 
     parts {
         banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),

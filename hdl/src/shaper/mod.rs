@@ -21,8 +21,8 @@ use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Shaper;
 use motion::MotionShaper;
-use posicast_model::rtl::shaper::{ShaperConfig, moving, plain, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::shaper::{ShaperConfig, moving, plain, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The plain shaper with words of W bits, a ring buffer of 2^A samples, tables of 2^T taps, and U of the [`Shaper`].
 macro_rules! shaper {
@@ -240,8 +240,8 @@ fn header(config: &ShaperConfig) -> Header {
 mod tests {
     use super::*;
     use crate::emit::emit as emit_directly;
-    use posicast_model::rtl::shaper::ShaperMotion;
-    use posicast_model::taps::{Tap, TapTable};
+    use posicast_blocks::shaper::ShaperMotion;
+    use posicast_taps::{Tap, TapTable};
 
     fn table() -> TapTable {
         let tap = |(delay_samples, coefficient)| Tap {

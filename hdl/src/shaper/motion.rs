@@ -23,7 +23,7 @@ use super::handover::Handover;
 use super::history::History;
 use super::tap_banks::TapBanks;
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 kernel! {
     /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T + 1 accumulator bits, A ring address bits, T index
@@ -34,7 +34,7 @@ kernel! {
         const COUNT: usize, const SUM: usize, const WORD: usize, const C: usize, const H: usize>
         (config: &ShaperConfig)
         where P == W + 18 && ACC == P + T + 1 && C <= 3 && H + 1 == C;
-    ports posicast_model::motion_shaper_ports;
+    ports posicast_blocks::motion_shaper_ports;
 
     parts {
         banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),

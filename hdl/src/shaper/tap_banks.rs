@@ -17,8 +17,8 @@
 //!   is written; a tap that is not loaded reads as 0. The word passes `word` too, while no pass uses it.
 
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
-use posicast_model::taps::COEFFICIENT_BITS;
+use posicast_blocks::shaper::ShaperConfig;
+use posicast_taps::COEFFICIENT_BITS;
 
 kernel! {
     /// Sizes: A ring address bits, T index bits, COUNT = T + 1, SUM = 18 + T, WORD = 18 + A bits.
@@ -96,7 +96,7 @@ kernel! {
 /// The machine's table as `{delay, coefficient}`.
 fn rom_words(config: &ShaperConfig) -> Vec<RomWord> {
     let one = f64::from(1u32 << config.coefficient_fraction());
-    let word = |tap: &posicast_model::taps::Tap| RomWord {
+    let word = |tap: &posicast_taps::Tap| RomWord {
         pattern: u64::from(tap.delay_samples) << COEFFICIENT_BITS
             | (tap.coefficient as u64 & ((1 << COEFFICIENT_BITS) - 1)),
         meaning: format!(

@@ -11,7 +11,7 @@
 
 use super::product::Product;
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::shaper::ShaperConfig;
 
 kernel! {
     /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T accumulator bits; U as in [`Product`].

@@ -26,11 +26,11 @@ use super::sequencer::Sequencer;
 use super::sticky::Sticky;
 use super::tracking::Tracking;
 use crate::prelude::*;
-use posicast_model::rtl::sliding_mode::Saturation;
+use posicast_blocks::sliding_mode::Saturation;
 
 kernel! {
     pub(super) struct SlidingMode;
-    ports posicast_model::sliding_mode_ports;
+    ports posicast_blocks::sliding_mode_ports;
 
     parts {
         sequencer: Sequencer,

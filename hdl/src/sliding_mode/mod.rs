@@ -28,8 +28,8 @@ mod tracking;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::SlidingMode;
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::sliding_mode::{CONTROL_CLOCKS, PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The controller in RustHDL's own simulator.
 ///

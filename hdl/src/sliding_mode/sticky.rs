@@ -3,7 +3,7 @@
 //! e may saturate in any clock; all other values come one at a time, as `what`.
 
 use crate::prelude::*;
-use posicast_model::rtl::sliding_mode::Saturation;
+use posicast_blocks::sliding_mode::Saturation;
 
 kernel! {
     pub(super) struct Sticky;

@@ -6,7 +6,7 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct SpiBridge;
-    ports posicast_model::spi_bridge_ports;
+    ports posicast_blocks::spi_bridge_ports;
 
     parts { line: SpiLine, decoder: FrameDecoder, crc: Crc, sequencer: Sequencer, reply: Reply }
     registers { fraction: Bits<6>, dropped: Bits<8> }

@@ -14,8 +14,8 @@ mod line;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::SpiBridge;
-use posicast_model::rtl::spi_bridge::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::spi_bridge::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The bridge in RustHDL's own simulator.
 ///

@@ -12,14 +12,14 @@ use super::memory::TraceMemory;
 use super::signal_select::SignalSelect;
 use super::trigger::Trigger;
 use crate::prelude::*;
-use posicast_model::rtl::trace::{TraceConfig, TraceState};
+use posicast_blocks::trace::{TraceConfig, TraceState};
 
 kernel! {
     /// Sizes: A address bits, R = A + 1 bits of a number of rows.
     ///
     /// A trace memory for `config`, whose size must not be above this.
     pub(super) struct Trace<const A: usize, const R: usize>(config: &TraceConfig) where R == A + 1;
-    ports posicast_model::trace_ports;
+    ports posicast_blocks::trace_ports;
 
     parts { selector: SignalSelect, watch: Trigger, memory: TraceMemory<A> = TraceMemory::new(config) }
     registers {

@@ -6,7 +6,7 @@
 //! unknown.
 
 use crate::prelude::*;
-use posicast_model::rtl::trace::TraceConfig;
+use posicast_blocks::trace::TraceConfig;
 
 kernel! {
     /// Sizes: A address bits.

@@ -13,8 +13,8 @@ use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Trace;
-use posicast_model::rtl::trace::{PORTS, TraceConfig, ports, row_clocks};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::trace::{PORTS, TraceConfig, ports, row_clocks};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// Width of the recorded words.
 const WORD_BITS: u32 = 32;

@@ -7,7 +7,7 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct UartBridge;
-    ports posicast_model::uart_bridge_ports;
+    ports posicast_blocks::uart_bridge_ports;
 
     parts {
         receiver: Receiver, decoder: FrameDecoder, crc: Crc, sequencer: Sequencer, reply: Reply,

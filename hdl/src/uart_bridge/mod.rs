@@ -15,8 +15,8 @@ mod transmitter;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::UartBridge;
-use posicast_model::rtl::uart_bridge::{PORTS, ports};
-use posicast_model::rtl::{ClockedBlock, port_notes};
+use posicast_blocks::uart_bridge::{PORTS, ports};
+use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The bridge in RustHDL's own simulator.
 ///

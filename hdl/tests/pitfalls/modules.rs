@@ -2,8 +2,8 @@
 
 use crate::pitfalls::support::{Dff, Ram16x8, emit_as, local, text_of};
 use crate::pitfalls::tools;
+use posicast_blocks::{Direction, Port};
 use posicast_hdl::emit::{EmitCause, EmitOptions, Header, Module, ModuleInstance, Parameter, add, compose, emit};
-use posicast_model::rtl::{Direction, Port};
 use rust_hdl_core::prelude::*;
 
 /// A counter that adds `STEP` per clock.

@@ -4,8 +4,8 @@
 use crate::pitfalls::support::Row;
 use crate::pitfalls::tools;
 use crate::stimulus::{Anything, Random, table};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::shaper::{Inputs, Shaper, ShaperConfig, ShaperMotion};
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::shaper::{Inputs, Shaper, ShaperConfig, ShaperMotion};
 
 fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
     ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()

@@ -1,8 +1,8 @@
 //! Runs Icarus, Verilator and Yosys on emitted modules. A missing tool fails the test with a message.
 
 use crate::pitfalls::support::Row;
+use posicast_blocks::Direction;
 use posicast_hdl::emit::{Header, Module, ModuleInstance, compose};
-use posicast_model::rtl::Direction;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;

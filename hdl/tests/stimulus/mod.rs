@@ -1,7 +1,7 @@
 //! Stimuli for the shaper: random strobes, starts and resets, and a host that loads tables, mostly correctly.
 
-use posicast_model::rtl::shaper::{Inputs, ShaperConfig};
-use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
+use posicast_blocks::shaper::{Inputs, ShaperConfig};
+use posicast_taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 use std::collections::VecDeque;
 
 use crate::random;

@@ -12,7 +12,7 @@
 use crate::separable::Gram;
 use crate::signal::PositionLog;
 use nalgebra::{Complex, DMatrix, DVector};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 use std::f64::consts::TAU;
 use thiserror::Error;
 

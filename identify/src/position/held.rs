@@ -17,7 +17,7 @@ use super::memory::NoiseMemory;
 use crate::separable::Separable;
 use crate::signal::{Between, PositionLog, within};
 use nalgebra::{Complex, DMatrix, DVector};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 use std::ops::Range;
 
 /// A log prepared for the fit of its modes. The unknowns are `ln f` and `ln ζ` of each mode.

@@ -13,7 +13,7 @@
 use super::held::HeldModes;
 use super::search::{Found, LEAST_GAIN, ROUNDING, search};
 use crate::separable::{Effort, Separable, refine};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// An autoregressive model of noise.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,7 +17,7 @@ use crate::separable::{self, Effort, Separable};
 use crate::signal::{Between, PositionLog};
 use held::HeldModes;
 use memory::beside_noise;
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 use rigid::{clipped, is_tone, onset, rigid_delay};
 use search::{Found, LEAST_GAIN, search};
 use thiserror::Error;

@@ -23,7 +23,7 @@ use crate::found::{FoundMode, that_ring};
 use crate::separable::{Effort, Gram, Separable, deviation_over_stretches, refine};
 use crate::signal::{Between, DriveLog, PositionLog};
 use nalgebra::{Complex, DMatrix, DVector};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 use std::f64::consts::TAU;
 
 /// What drive and motor tell.

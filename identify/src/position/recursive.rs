@@ -6,7 +6,7 @@
 
 use super::arx::ArxModel;
 use nalgebra::{DMatrix, DVector};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// A model that is updated with every sample. Its memory is about `1/(1 − forgetting)` samples.
 #[derive(Debug, Clone)]

@@ -6,7 +6,7 @@ use super::search::{Found, LEAST_GAIN};
 use crate::separable::{Effort, refine};
 use crate::signal::{PositionLog, within};
 use nalgebra::DVector;
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// Longest delay that is tried, in samples.
 const LONGEST_DELAY: usize = 64;

@@ -3,7 +3,7 @@
 use super::held::HeldModes;
 use crate::separable::{Effort, Gram, Separable, Solution, refine};
 use nalgebra::{DMatrix, DVector};
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// Largest number of modes that are searched.
 const MOST: usize = 6;

@@ -4,7 +4,7 @@ use super::transfer::{Band, Transfer};
 use crate::found::{FoundMode, LEAST_PARTICIPATION, that_ring};
 use crate::modal::{self, Fit, ResponsePoint};
 use nalgebra::Complex;
-use posicast_model::mode::Mode;
+use posicast_shaper::mode::Mode;
 
 /// Fraction of the transfer function's power, above its noise's, that a fit explains.
 pub(super) fn told(transfer: &Transfer, fit: &Fit) -> f64 {

@@ -23,9 +23,9 @@ mod link;
 mod path;
 mod server;
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use server::Server;
 use std::error::Error;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! How far the load of the machine was from the path of a program.
 
 use plotters::prelude::*;
-use posicast_model::contour::{Shape, Stroke, gcode};
-use posicast_model::plant::axis::ErrorFigures;
+use posicast_machine::contour::{Shape, Stroke, gcode};
+use posicast_machine::plant::axis::ErrorFigures;
 use posicast_testbench::stage_bench::AxisSample;
 use std::error::Error;
 use std::path::Path;

@@ -2,10 +2,10 @@
 
 use crate::link::{Link, Request};
 use crate::path::{Recording, picture};
-use posicast_model::hardware::MachineStage;
-use posicast_model::machine_file::Machine;
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::component::Component;
+use posicast_blocks::component::Component;
+use posicast_machine::hardware::MachineStage;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, Wire, state};

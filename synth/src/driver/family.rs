@@ -1,9 +1,9 @@
 //! The table families of axes whose modes move, in C.
 
 use super::StageDriver;
-use posicast_model::design::TableFamily;
-use posicast_model::machine_file::Machine;
-use posicast_model::taps::TapTable;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plan::TableFamily;
+use posicast_taps::TapTable;
 use std::fmt::Write;
 
 /// The table family of an axis whose modes move.

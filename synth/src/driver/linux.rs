@@ -1,7 +1,7 @@
 //! The server for Linux, by which a host operates the stage over a network: it has the numbers of the link's frames from the model.
 
 use super::{DriverFile, file};
-use posicast_model::link::{
+use posicast_blocks::link::{
     MOST_REPLY_BYTES, MOST_REQUEST_BYTES, MOST_WORDS, POLYNOMIAL, REPLY_HEADER_BYTES, REQUEST_HEADER_BYTES, VERSION,
 };
 

@@ -1,9 +1,9 @@
 //! Writes the machine's tap tables, limits and controllers in C.
 
 use super::{AxisData, DriverFile, StageDriver, family, file};
-use posicast_model::rtl::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
-use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
-use posicast_model::rtl::stage::StageAxis;
+use posicast_blocks::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
+use posicast_blocks::sliding_mode::{SettingRow, Settings};
+use posicast_blocks::stage::StageAxis;
 use std::fmt::Write;
 
 /// Writes `machine_NAME.h` and `machine_NAME.c`.

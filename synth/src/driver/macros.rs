@@ -1,6 +1,6 @@
 //! Writes C macros for registers and their fields.
 
-use posicast_model::rtl::registers::{Access, Field, Format, Register};
+use posicast_blocks::registers::{Access, Field, Format, Register};
 use std::fmt::Write;
 
 /// Address of a register's word, in C.

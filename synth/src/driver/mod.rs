@@ -28,10 +28,10 @@ mod system;
 
 pub use family::AxisFamily;
 
-use posicast_model::motion::TickLimits;
-use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::stage::StageConfig;
-use posicast_model::unit::AxisUnit;
+use posicast_blocks::registers::RegisterMap;
+use posicast_blocks::stage::StageConfig;
+use posicast_machine::motion::TickLimits;
+use posicast_machine::unit::AxisUnit;
 
 /// Folder of the driver in the output folder.
 pub const FOLDER: &str = "driver";

@@ -1,7 +1,7 @@
 //! The header of a component's registers.
 
 use super::macros::{self, END, Place};
-use posicast_model::rtl::registers::RegisterMap;
+use posicast_blocks::registers::RegisterMap;
 
 /// Writes `TOP_regs.h`: IORD and IOWR of every register, offset and mask of every field.
 pub(super) fn header(top: &str, map: &RegisterMap) -> String {

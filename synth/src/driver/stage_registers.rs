@@ -6,15 +6,15 @@
 
 use super::StageDriver;
 use super::macros::{self, END, Place};
-use posicast_model::rtl::axis::{Cause, KICK};
-use posicast_model::rtl::group::MOST_AXES;
-use posicast_model::rtl::registers::{Field, Register, RegisterMap, WINDOW_WORDS};
-use posicast_model::rtl::segments::{
+use posicast_blocks::axis::{Cause, KICK};
+use posicast_blocks::group::MOST_AXES;
+use posicast_blocks::registers::{Field, Register, RegisterMap, WINDOW_WORDS};
+use posicast_blocks::segments::{
     ACCELERATION_BITS, ACCELERATION_FRACTION, CUBIC, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, MORE, NOTIFY, POINT,
     POSITION_FRACTION, SegmentsState, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
-use posicast_model::rtl::sliding_mode::{MANTISSA_BITS, SETTINGS, SHIFT_MAX, SettingRow};
-use posicast_model::rtl::stage::AXIS_INTERRUPTS;
+use posicast_blocks::sliding_mode::{MANTISSA_BITS, SETTINGS, SHIFT_MAX, SettingRow};
+use posicast_blocks::stage::AXIS_INTERRUPTS;
 use std::fmt::Write;
 
 const STAGE: &str = "POSICAST_STAGE";

@@ -1,7 +1,7 @@
 //! Files by which a system finds the driver: `_sw.tcl` and macros for the HAL, and the overlay of a device tree.
 
 use super::{DriverFile, FOLDER, StageDriver, bare_metal, file};
-use posicast_model::rtl::registers::RegisterMap;
+use posicast_blocks::registers::RegisterMap;
 
 /// Name in device trees without the version of the register map, as in the component for Platform Designer.
 const COMPATIBLE: &str = "posicast,stage";

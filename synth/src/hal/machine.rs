@@ -1,12 +1,13 @@
 //! From a machine file's machine to LinuxCNC's units.
 
 use super::{HalAxis, HalMachine};
-use posicast_model::design::{DesignError, MachineDesign, design_machine};
-use posicast_model::machine_file::{AxisSection, ClockSection, Machine};
-use posicast_model::motion::TickLimits;
-use posicast_model::shaper_tables::{AxisShaperTables, ShaperTables, ShaperTablesError};
-use posicast_model::taps::TapTable;
-use posicast_model::unit::AxisUnit;
+use posicast_blocks::shaper_tables::{AxisShaperTables, ShaperTables, ShaperTablesError};
+use posicast_machine::machine_file::{AxisSection, ClockSection, Machine};
+use posicast_machine::motion::TickLimits;
+use posicast_machine::plan::{MachineDesign, design_machine};
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::design::DesignError;
+use posicast_taps::TapTable;
 
 /// Why the machine cannot be driven at this servo rate.
 #[derive(Debug, thiserror::Error)]

@@ -17,7 +17,7 @@ mod wiring;
 pub use machine::ServoError;
 
 use crate::driver::DriverFile;
-use posicast_model::shaper_tables::ShaperTables;
+use posicast_blocks::shaper_tables::ShaperTables;
 use std::fmt::Write;
 
 /// Folder in the output folder.

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{Kit, KitShaper, is_input, range};
-use posicast_model::rtl::Port;
-use posicast_model::rtl::shaper::{moving, plain};
+use posicast_blocks::Port;
+use posicast_blocks::shaper::{moving, plain};
 
 /// Connection of a port of the shaper: none, a constant, or the user's signal.
 enum Connection {

@@ -19,8 +19,8 @@ mod example;
 mod pll;
 mod vendors;
 
-use posicast_model::rtl::shaper::{ShaperConfig, ports};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::shaper::{ShaperConfig, ports};
+use posicast_blocks::{Direction, Port};
 
 /// Idle clocks between two samples in the bench.
 const SPARE_CLOCKS: u32 = 4;

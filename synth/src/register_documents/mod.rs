@@ -15,7 +15,7 @@ mod svd;
 mod systemrdl;
 
 use crate::datasheets::FOLDER;
-use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, markdown};
+use posicast_blocks::registers::{Access, Field, Register, RegisterMap, markdown};
 
 /// Bytes per word.
 const WORD_BYTES: u32 = 4;

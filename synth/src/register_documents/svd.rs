@@ -3,7 +3,7 @@
 //! The peripheral is at address 0, because the system determines its address: add the component's base.
 
 use super::{Software, WORD_BYTES, fields, has_reset, meaning, software};
-use posicast_model::rtl::registers::{Field, Format, Register, RegisterMap};
+use posicast_blocks::registers::{Field, Format, Register, RegisterMap};
 use std::fmt::Write;
 
 /// Writes the map as a device.

@@ -1,7 +1,7 @@
 //! A register map as SystemRDL 2.0.
 
 use super::{Software, WORD_BYTES, fields, has_reset, meaning, software};
-use posicast_model::rtl::registers::{Access, Field, Format, Register, RegisterMap};
+use posicast_blocks::registers::{Access, Field, Format, Register, RegisterMap};
 use std::fmt::Write;
 
 /// Words that cannot be used as a name unescaped (Accellera SystemRDL 2.0, table 3 and its reserved words).

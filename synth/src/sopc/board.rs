@@ -170,7 +170,7 @@ static DE1_SOC: Facts = Facts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_model::machine_file::BOARDS;
+    use posicast_machine::machine_file::BOARDS;
     use std::collections::BTreeSet;
 
     #[test]

@@ -11,8 +11,8 @@
 
 use std::fmt::Write;
 
-use posicast_model::rtl::Port;
-use posicast_model::rtl::linked_stage::BridgeConfig;
+use posicast_blocks::Port;
+use posicast_blocks::linked_stage::BridgeConfig;
 
 use super::core::Line;
 use super::hw_tcl;

@@ -7,7 +7,7 @@ use super::core::{Core, Line};
 use super::pins::Pin;
 use super::unit::Unit;
 use super::{Design, system};
-use posicast_model::rtl::linked_stage::BridgeConfig;
+use posicast_blocks::linked_stage::BridgeConfig;
 
 /// A board with a project, what that has inside, and its pins.
 type Project<'a> = (Board, Core<'a>, Vec<Pin>);

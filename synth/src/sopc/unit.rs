@@ -12,9 +12,9 @@
 //! Every port is in exactly one interface. The rule uses the ports of the model's composition, which are those of the
 //! Verilog.
 
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::registers::{Access, Field, Format};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::component::Component;
+use posicast_blocks::registers::{Access, Field, Format};
+use posicast_blocks::{Direction, Port};
 
 /// A component of the package.
 #[derive(Debug, Clone)]

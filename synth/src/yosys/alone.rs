@@ -1,7 +1,7 @@
 //! Estimates a block by itself, in a module without logic, so that all of it is one row.
 
 use super::{Estimate, Family, Yosys, YosysError, process};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 use std::fs;
 use std::path::PathBuf;
 

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use posicast_model::machine_file::FAMILIES;
-use posicast_model::spelling::did_you_mean;
+use posicast_machine::machine_file::FAMILIES;
+use posicast_machine::spelling::did_you_mean;
 use serde::{Serialize, Serializer};
 
 /// A device family, with its name in the machine file.

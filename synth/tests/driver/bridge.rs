@@ -1,8 +1,8 @@
 //! Carries out the register accesses of a C program, line by line over its pipes, on a stage with its machine.
 
 use crate::driver::support::{Driver, beside, stage};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::component::Component;
+use posicast_blocks::component::Component;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::StageBench;

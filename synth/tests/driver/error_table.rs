@@ -3,7 +3,7 @@
 
 use crate::driver::bridge::Bridge;
 use crate::driver::support::Driver;
-use posicast_model::machine_file::{self, Machine};
+use posicast_machine::machine_file::{self, Machine};
 
 /// Returns the example, in which the screw of X is 20 µm too long over 100 mm.
 fn machine() -> Machine {

@@ -2,8 +2,8 @@
 
 use crate::driver::bridge::Bridge;
 use crate::driver::support::Driver;
-use posicast_model::design::design_machine;
-use posicast_model::machine_file::{self, Machine};
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::plan::design_machine;
 
 /// Returns the example with a mode that falls along the travel of its first axis.
 fn moving_machine() -> Machine {

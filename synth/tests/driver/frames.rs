@@ -2,7 +2,7 @@
 
 use super::bridge::{Asked, talk};
 use super::support::{Driver, beside};
-use posicast_model::link::{Bus, Crc, LinkBridge, MOST_WORDS, Request, VERSION, cobs};
+use posicast_blocks::link::{Bus, Crc, LinkBridge, MOST_WORDS, Request, VERSION, cobs};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;

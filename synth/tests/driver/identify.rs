@@ -5,8 +5,8 @@ use crate::driver::bridge::Bridge;
 use crate::driver::support::Driver;
 use posicast_identify::log::{self, Log};
 use posicast_identify::position::{self, motor};
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::plant::axis::{Coordinate, PlantOptions};
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::plant::axis::{Coordinate, PlantOptions};
 use std::fmt::Write;
 
 /// Returns the example with a scale at its load, a trace, and room for an excitation.

@@ -1,7 +1,7 @@
 //! The integrator and the planner in C compared with the model's arithmetic.
 
 use crate::driver::support::{Driver, beside};
-use posicast_model::rtl::segments::{ACCELERATION_BITS, CUBIC, CubicEntry, Entry, EntryMotion, Integrator, Point};
+use posicast_blocks::segments::{ACCELERATION_BITS, CUBIC, CubicEntry, Entry, EntryMotion, Integrator, Point};
 use std::io::Write;
 use std::process::{Command, Stdio};
 

@@ -12,9 +12,9 @@ pub(crate) mod support;
 mod udp;
 
 use bridge::{Bridge, INDEX_AT};
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
+use posicast_blocks::component::Component;
+use posicast_blocks::sliding_mode::{Gain, SettingRow};
+use posicast_machine::machine_file::{self, Machine};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::PathBuf;

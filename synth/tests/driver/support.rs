@@ -1,10 +1,10 @@
 //! The driver of the example's stage in a folder, and C compilers.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware::{self, MachineStage};
-use posicast_model::machine_file::{self, Machine};
-use posicast_model::motion::TickLimits;
-use posicast_model::rtl::component::Component;
+use posicast_blocks::component::Component;
+use posicast_machine::hardware::{self, MachineStage};
+use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::motion::TickLimits;
+use posicast_machine::plan::design_machine;
 use posicast_synth::driver::{AxisData, AxisFamily, FOLDER, StageDriver, component_header, stage_files};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -103,7 +103,7 @@ impl Driver {
 
 /// Returns a component that is not the stage.
 pub(crate) fn pwm() -> Component {
-    use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
+    use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
     Component::pwm(config, BridgeMode::HalfBridge, 2500).unwrap()
 }

@@ -2,11 +2,11 @@
 
 use super::bridge::{Asked, Bridge, talk};
 use super::support::{Driver, beside};
+use posicast_blocks::axis::SupervisorState;
 use posicast_host::{HostMove, HostedStage, Link, LinkError, LinkOptions};
-use posicast_model::design::design_machine;
-use posicast_model::hardware::Hardware;
-use posicast_model::machine_file;
-use posicast_model::rtl::axis::SupervisorState;
+use posicast_machine::hardware::Hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use std::cell::RefCell;
 use std::net::{SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};

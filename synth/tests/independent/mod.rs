@@ -3,12 +3,12 @@
 //!
 //! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::registers::{Access, Field, RegisterMap};
+use posicast_blocks::component::Component;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::registers::{Access, Field, RegisterMap};
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use posicast_synth::core_file::{self, Core};
 use posicast_synth::register_documents;
 use posicast_testbench::blocks::{Block, ComponentBlock};

@@ -4,7 +4,7 @@
 mod system;
 
 use crate::driver::support::Driver;
-use posicast_model::machine_file;
+use posicast_machine::machine_file;
 use system::{Firmware, HOME_FROM, INDEX_AT, Outcome, Step, System};
 
 /// Largest number of clocks of a run, enough for the slowest bridge; the program takes about two thirds of it.

@@ -7,11 +7,11 @@
 //! ```
 
 use crate::driver::support::{Driver, run, stage};
-use posicast_model::machine_file::Machine;
-use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::{ClockedBlock, Direction, Port};
+use posicast_blocks::component::Component;
+use posicast_blocks::composition::Composed;
+use posicast_blocks::{ClockedBlock, Direction, Port};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plant::axis::{AxisPlant, DrivePins, PlantOptions};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 use std::collections::BTreeMap;

@@ -1,13 +1,11 @@
 //! The blocks of the command: segments, and shapers for them.
 
 use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
+use posicast_blocks::cascade::{self as cascade_model, Cascade, CascadeConfig, SampleCascade};
+use posicast_blocks::segments::{self as segments_model, ENTRY_WORDS, Entry, Segments};
+use posicast_blocks::shaper::{self as shaper_model, MotionShaper, SampleShaper, Shaper, ShaperConfig, ShaperMotion};
 use posicast_hdl::{cascade, segments, shaper};
-use posicast_model::rtl::cascade::{self as cascade_model, Cascade, CascadeConfig, SampleCascade};
-use posicast_model::rtl::segments::{self as segments_model, ENTRY_WORDS, Entry, Segments};
-use posicast_model::rtl::shaper::{
-    self as shaper_model, MotionShaper, SampleShaper, Shaper, ShaperConfig, ShaperMotion,
-};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 use std::hint::black_box;
 
 /// Returns a configuration with six taps: ZVD digitised with two taps per impulse.

@@ -1,11 +1,9 @@
 //! The blocks of the drive: the controller and the bridge.
 
 use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
+use posicast_blocks::pwm::{self as pwm_model, ActiveLow, Pwm, PwmConfig};
+use posicast_blocks::sliding_mode::{Gain, Inputs, Law, SettingRow, Settings, SlidingMode, TickController, TickMotion};
 use posicast_hdl::{pwm, sliding_mode};
-use posicast_model::rtl::pwm::{self as pwm_model, ActiveLow, Pwm, PwmConfig};
-use posicast_model::rtl::sliding_mode::{
-    Gain, Inputs, Law, SettingRow, Settings, SlidingMode, TickController, TickMotion,
-};
 use std::hint::black_box;
 
 /// Returns the sliding-mode controller with one pass per tick.

@@ -21,8 +21,8 @@ mod drive;
 mod measurement;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use posicast_blocks::{ClockedBlock, Direction};
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 use std::hint::black_box;
 use std::path::PathBuf;

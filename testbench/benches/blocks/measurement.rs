@@ -1,9 +1,9 @@
 //! The blocks of the measurement: an encoder's edges, and the divisions for its velocity.
 
 use crate::{Block, CLOCKS, TICK_CLOCKS};
+use posicast_blocks::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
+use posicast_blocks::pulse_counter::{Inputs, PulseCounter};
 use posicast_hdl::{divider, pulse_counter};
-use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
-use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
 use std::hint::black_box;
 
 /// Returns a pulse counter with an encoder that has an edge every 230 to 370 clocks, glitches of two clocks, and a

@@ -3,12 +3,12 @@
 
 use crate::pins::encoder;
 use crate::{TICK_CLOCKS, Whole, stage};
+use posicast_blocks::component::Component;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pwm::BridgeMode;
+use posicast_blocks::registers::RegisterMap;
+use posicast_blocks::sliding_mode::Law;
 use posicast_hdl::component::emit;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::BridgeMode;
-use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::sliding_mode::Law;
 
 pub(crate) fn all() -> [Whole; 4] {
     let divider = DividerConfig::new(TICK_CLOCKS).unwrap();

@@ -21,9 +21,9 @@ mod pins;
 mod stage;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use posicast_blocks::composition::Composed;
+use posicast_blocks::{ClockedBlock, Direction, Moore, OutputKind};
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::{ClockedBlock, Direction, Moore, OutputKind};
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 use std::hint::black_box;
 use std::path::PathBuf;

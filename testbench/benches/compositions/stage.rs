@@ -2,13 +2,13 @@
 
 use crate::pins::encoder;
 use crate::{TICK_CLOCKS, Whole};
+use posicast_blocks::component::Component;
+use posicast_blocks::segments::{Entry, EntryMotion};
+use posicast_blocks::stage::StageConfig;
 use posicast_hdl::component::emit;
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::segments::{Entry, EntryMotion};
-use posicast_model::rtl::stage::StageConfig;
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use std::collections::HashMap;
 
 /// Returns the configuration of the example.

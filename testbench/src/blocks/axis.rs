@@ -1,10 +1,10 @@
 //! The bench of `axis`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::axis::Axis;
 use posicast_hdl::SimulationError;
 use posicast_hdl::axis::{emit, simulate};
 use posicast_hdl::emit::{EmitError, Module, shared_name};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::Axis;
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, proofs};

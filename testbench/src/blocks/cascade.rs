@@ -1,10 +1,10 @@
 //! The bench of `cascade`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::cascade::{Cascade, CascadeConfig, pass_clocks, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::cascade::{emit, simulate, simulated_as};
 use posicast_hdl::emit::{EmitError, Module, own_name};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::cascade::{Cascade, CascadeConfig, pass_clocks, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

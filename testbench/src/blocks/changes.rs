@@ -1,6 +1,6 @@
 //! Counts the coverage of a block that defines no bins.
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 use super::Bins;
 use crate::lockstep::Clock;

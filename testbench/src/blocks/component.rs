@@ -1,10 +1,10 @@
 //! The bench of a component: a block with registers, driven through its Avalon-MM agent.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::component::Component;
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::component::Component;
 
 use super::changes::Changes;
 use super::reached::AtThePorts;

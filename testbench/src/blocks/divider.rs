@@ -1,10 +1,10 @@
 //! The bench of `divider`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::divider::{DIVISION_CLOCKS, Divider, DividerConfig, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::divider::{emit, simulate};
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

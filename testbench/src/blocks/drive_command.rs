@@ -1,10 +1,10 @@
 //! The bench of `drive_command`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::drive_command::{DriveCommand, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::drive_command::{emit, simulate};
 use posicast_hdl::emit::{EmitError, Module, shared_name};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::drive_command::{DriveCommand, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named, proofs};

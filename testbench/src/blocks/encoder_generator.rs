@@ -1,10 +1,10 @@
 //! The bench of `encoder_generator`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::encoder_generator::{EncoderGenerator, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::encoder_generator::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::encoder_generator::{EncoderGenerator, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

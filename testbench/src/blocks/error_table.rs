@@ -1,10 +1,10 @@
 //! The bench of `error_table`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::error_table::{EntryUnit, ErrorTable, ErrorTableConfig, ErrorTableFormat, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::error_table::{emit, name, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::error_table::{EntryUnit, ErrorTable, ErrorTableConfig, ErrorTableFormat, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

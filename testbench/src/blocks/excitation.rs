@@ -1,10 +1,10 @@
 //! The bench of `excitation`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::excitation::{Excitation, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::excitation::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::excitation::{Excitation, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

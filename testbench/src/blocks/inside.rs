@@ -3,7 +3,7 @@
 //! Stimuli made for a block reach corner cases that traffic on the bus hardly ever does, and the ports of a block alone
 //! show what a stage shows only on request, or not at all.
 
-use posicast_model::rtl::component::{Component, ComponentPart as Part};
+use posicast_blocks::component::{Component, ComponentPart as Part};
 
 use super::part::SmallPart as Small;
 use super::{

@@ -5,7 +5,7 @@
 //! the block says that it cannot change as it is built ([`super::Block::fixed`]). Bits of wider outputs that never
 //! changed are only listed, because the upper bits of a counter take longer than any run.
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 use super::Exercise;
 use crate::lockstep::Clock;

@@ -8,16 +8,16 @@
 //! The kinds of blocks are those of the registry; a test of the command line checks that it contains every name of
 //! `verify`.
 
+use posicast_blocks::component::Component;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::linear_scale::ScaleRatio;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::shaper::ShaperConfig;
+use posicast_blocks::sliding_mode::{Law, Settings};
+use posicast_blocks::stage::Supervision;
+use posicast_blocks::stage::{StageAxis, StageConfig, StageErrorTable, StageScale};
+use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::control::Supervision;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::linear_scale::ScaleRatio;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::shaper::ShaperConfig;
-use posicast_model::rtl::sliding_mode::{Law, Settings};
-use posicast_model::rtl::stage::{StageAxis, StageConfig, StageErrorTable, StageScale};
-use posicast_model::rtl::trace::TraceConfig;
 
 use super::shaper::{MOTION, tap_table};
 use super::{BenchSizes, Block, ComponentBlock, ErrorTableBlock, MachineShapers, benches};

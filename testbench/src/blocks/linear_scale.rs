@@ -1,10 +1,10 @@
 //! The bench of `linear_scale`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::linear_scale::{LinearScale, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::linear_scale::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::linear_scale::{LinearScale, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

@@ -8,14 +8,14 @@
 //! At 3,000,000 baud and 50 MHz a driver writes some 700 words in a million clocks, and the stage has 200 ticks. The dense row has as many
 //! scenes as the row of the stage on its bus.
 
+use posicast_blocks::component::Component;
+use posicast_blocks::linked_stage::{BridgeConfig, LinkedStage, ports};
+use posicast_blocks::stage::{StageConfig, StageError};
+use posicast_blocks::uart_bridge::UartBridgeConfig;
+use posicast_blocks::{ClockedBlock, Direction};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::linked_stage::emit;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::{BridgeConfig, LinkedStage, ports};
-use posicast_model::rtl::stage::{StageConfig, StageError};
-use posicast_model::rtl::uart_bridge::UartBridgeConfig;
-use posicast_model::rtl::{ClockedBlock, Direction};
 
 use super::changes::Changes;
 use super::levels::Levels;

@@ -77,9 +77,9 @@ pub use self::stage::StageBlock;
 pub use self::trace::TraceBlock;
 pub use self::uart_bridge::UartBridgeBlock;
 
+use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::rtl::{ClockedBlock, Port};
 
 use std::ops::{ControlFlow, RangeInclusive};
 
@@ -94,7 +94,7 @@ const LOOK_CLOCKS: u64 = 1 << 10;
 
 /// A hardware block at one size. It can be shared between threads; models, devices and stimuli belong to one thread.
 pub trait Block: Send + Sync {
-    /// Returns its name, as in `model/src/rtl/` and `docs/`.
+    /// Returns its name, as in `model/blocks/src/` and `docs/`.
     fn name(&self) -> &str;
 
     /// Returns what distinguishes it from others of its kind: the axes that it serves, or its size.

@@ -1,14 +1,14 @@
 //! The bench of the small blocks that connect others: schedule, divider share, group, time base, sample select, setting
 //! banks.
 
+use posicast_blocks::component::ComponentPart as Model;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::schedule::ScheduleConfig;
+use posicast_blocks::shaper::MOTION_WORD_BITS;
+use posicast_blocks::sliding_mode::Settings;
+use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
-use posicast_model::rtl::component::ComponentPart as Model;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::MOTION_WORD_BITS;
-use posicast_model::rtl::sliding_mode::Settings;
-use posicast_model::rtl::{ClockedBlock, Port};
 
 use super::changes::Changes;
 use super::registry::{RegistryRow, one, small};

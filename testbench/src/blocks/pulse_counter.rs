@@ -1,10 +1,10 @@
 //! The bench of `pulse_counter`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::pulse_counter::{PulseCounter, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::pulse_counter::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pulse_counter::{PulseCounter, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};

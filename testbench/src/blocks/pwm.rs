@@ -1,10 +1,10 @@
 //! The bench of `pwm`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::pwm::{ActiveLow, Pwm, PwmConfig, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::pwm::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig, ports};
 
 use super::registry::{AreaRow, RegistryRow, small};
 use super::{Bins, Block};

@@ -12,8 +12,8 @@
 
 use std::collections::HashSet;
 
-use posicast_model::rtl::registers::{Access, RegisterMap};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::registers::{Access, RegisterMap};
+use posicast_blocks::{Direction, Port};
 use serde::Serialize;
 
 use crate::lockstep::Clock;

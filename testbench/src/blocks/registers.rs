@@ -1,14 +1,14 @@
 //! The bench of `registers`: the register bank of one map.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::component::{Component, ComponentError};
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::registers::{RegisterBank, RegisterMap};
+use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::registers::emit;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::component::{Component, ComponentError};
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
-use posicast_model::rtl::sliding_mode::{Law, Settings};
 
 use super::reached::AtThePorts;
 use super::registry::{AreaRow, RegistryRow, small};

@@ -9,12 +9,12 @@
 //!
 //! The row of a new block is in the file of its bench; add it to [`REGISTRY`].
 
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pwm::PwmConfig;
+use posicast_blocks::shaper::ShaperConfig;
+use posicast_blocks::sliding_mode::Settings;
+use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::PwmConfig;
-use posicast_model::rtl::shaper::ShaperConfig;
-use posicast_model::rtl::sliding_mode::Settings;
-use posicast_model::rtl::stage::StageConfig;
 
 use super::{
     Block, ComponentBlock, axis, cascade, component, divider, drive_command, encoder_generator, error_table,

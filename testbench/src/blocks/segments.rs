@@ -1,10 +1,10 @@
 //! The bench of `segments`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::segments::{REACH_COUNTS, STAND_COUNTS, Segments, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::segments::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::segments::{REACH_COUNTS, STAND_COUNTS, Segments, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};

@@ -1,12 +1,12 @@
 //! The bench of `shaper`: one shaper alone, or all shapers of a machine in its top module.
 
+use posicast_blocks::shaper::{Shaper, ShaperConfig, ShaperMotion, ports};
+use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_hdl::shaper::{emit, simulate, simulated_as};
-use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion, ports};
-use posicast_model::rtl::{ClockedBlock, Port};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 
 use super::reached::AtThePorts;
 use super::registry::{AreaRow, RegistryRow, one, small};

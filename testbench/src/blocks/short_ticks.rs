@@ -14,11 +14,11 @@
 
 use std::collections::HashMap;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::stage::{StageConfig, StageError};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::stage::{StageConfig, StageError};
 
 use super::stage::BARS;
 use super::{Bins, Block, Reach, Sources, StageBlock, not_in_rusthdl};
@@ -122,7 +122,7 @@ pub(super) fn adapted(sources: &Sources, pairs: &Pairs) -> Result<Sources, Error
 /// Returns the stage with its shortest tick, if that is less than half of its own.
 pub(super) fn shortened(config: &StageConfig) -> Option<StageConfig> {
     let mut short = config.clone();
-    let times = |axis: &posicast_model::rtl::stage::StageAxis| {
+    let times = |axis: &posicast_blocks::stage::StageAxis| {
         u32::from(axis.pwm.dead_time_floor_clocks()) + u32::from(axis.pwm.minimum_pulse_floor_clocks())
     };
     let longest = config.axes.iter().map(times).max()?;

@@ -1,10 +1,10 @@
 //! The bench of `sliding_mode`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::sliding_mode::SlidingMode;
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::sliding_mode::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sliding_mode::SlidingMode;
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, proofs};

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use posicast_blocks::Port;
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::Port;
 use posicast_system::scratch;
 
 use super::Block;

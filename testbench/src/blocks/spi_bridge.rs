@@ -1,10 +1,10 @@
 //! The bench of `spi_bridge`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::spi_bridge::{SpiBridge, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::spi_bridge::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::spi_bridge::{SpiBridge, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

@@ -1,13 +1,13 @@
 //! The bench of a whole `stage`, whose stimuli are a driver, random traffic, and lines and encoders at its pins.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::component::Component;
+use posicast_blocks::stage::{StageConfig, StageError};
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::design::design_machine;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::stage::{StageConfig, StageError};
-use posicast_model::{hardware, machine_file};
+use posicast_machine::plan::design_machine;
+use posicast_machine::{hardware, machine_file};
 
 use super::reached::InsideAStage;
 use super::registry::{AreaRow, RegistryRow, one};

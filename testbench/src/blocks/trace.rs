@@ -1,10 +1,10 @@
 //! The bench of `trace`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::trace::{SIGNALS, Trace, TraceConfig, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::trace::{emit, simulate, simulated_as};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::trace::{SIGNALS, Trace, TraceConfig, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};

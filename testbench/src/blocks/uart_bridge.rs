@@ -1,10 +1,10 @@
 //! The bench of `uart_bridge`.
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::uart_bridge::{UartBridge, ports};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::uart_bridge::{emit, simulate};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::uart_bridge::{UartBridge, ports};
 
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};

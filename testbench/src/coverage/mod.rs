@@ -19,7 +19,7 @@ pub mod explanation;
 pub mod point;
 pub mod table;
 
-use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
+use posicast_blocks::pwm::{ActiveLow, PwmConfig};
 use posicast_system::scratch;
 
 use crate::Error;

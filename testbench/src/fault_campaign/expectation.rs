@@ -1,7 +1,7 @@
 //! The expectation for a fault as data: one [`Expectation`] per kind, with the times of `docs/axis.md` and related
 //! pages.
 
-use posicast_model::rtl::axis::{Cause, WATCH_CLOCKS};
+use posicast_blocks::axis::{Cause, WATCH_CLOCKS};
 
 /// Axes that a fault hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Injects each kind of fault, and removes it again.
 
-use posicast_model::plant::axis::EncoderPins;
-use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::segments::{Entry, EntryMotion, Point};
+use posicast_blocks::axis::KICK;
+use posicast_blocks::segments::{Entry, EntryMotion, Point};
+use posicast_machine::plant::axis::EncoderPins;
 
 use super::case::Case;
 use super::kind::FaultKind;

@@ -1,7 +1,7 @@
 //! Compares the observations from the fault to the end with the expectation.
 
-use posicast_model::rtl::axis::{Cause, SupervisorState, switching_off};
-use posicast_model::rtl::stage::axis_interrupt_bit;
+use posicast_blocks::axis::{Cause, SupervisorState, switching_off};
+use posicast_blocks::stage::axis_interrupt_bit;
 
 use super::case::Case;
 use super::expectation::{Due, Others, Reaction};

@@ -1,6 +1,6 @@
 //! The table of faults: what is injected and what is expected, one row each.
 
-use posicast_model::rtl::axis::Cause;
+use posicast_blocks::axis::Cause;
 
 use super::expectation::{Due, Expectation, FAULT, Hit, Lasts, NOTHING, Others, Reaction, Seen, bits};
 use super::machine::{FILTER_CLOCKS, TICK_CLOCKS};

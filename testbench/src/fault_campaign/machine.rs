@@ -9,11 +9,11 @@
 //! | scale | none | on both axes, compared with the motor | to test its trip |
 //! | monitors | off | all | to test them |
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware::{self, MachineStage};
-use posicast_model::machine_file::{self, AxisSection, LimitsSection, Machine, Scale, ScaleUse};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
-use posicast_model::rtl::component::Component;
+use posicast_blocks::component::Component;
+use posicast_machine::hardware::{self, MachineStage};
+use posicast_machine::machine_file::{self, AxisSection, LimitsSection, Machine, Scale, ScaleUse};
+use posicast_machine::plan::design_machine;
+use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 
 use super::CampaignError;
 use crate::lockstep::Device;

@@ -1,7 +1,7 @@
 //! Records what happens to an axis from the fault on, and in which clock.
 
-use posicast_model::control::Supervision;
-use posicast_model::rtl::axis::SupervisorState;
+use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::stage::Supervision;
 
 use super::expectation::Seen;
 use super::machine::{LOST_TICKS, SATURATION_TICKS};

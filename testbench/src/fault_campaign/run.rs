@@ -1,8 +1,8 @@
 //! Runs one case, from reset to the small move after the fault.
 
-use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::rtl::axis::{SupervisorState, WATCH_CLOCKS};
-use posicast_model::rtl::segments::Entry;
+use posicast_blocks::axis::{SupervisorState, WATCH_CLOCKS};
+use posicast_blocks::segments::Entry;
+use posicast_machine::motion::{TickLimits, plan_move};
 
 use super::CampaignError;
 use super::case::Case;

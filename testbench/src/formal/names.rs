@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 /// A register inside the block that the properties read.
 #[derive(Debug, Clone, PartialEq, Eq)]

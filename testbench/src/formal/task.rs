@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use posicast_blocks::Port;
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::Port;
 
 use super::names::as_inputs;
 use crate::Error;

@@ -1,6 +1,6 @@
 //! The model of a machine's top module: one block per axis, with shared `rst` and `strobe`.
 
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 
 use super::Instance;
 

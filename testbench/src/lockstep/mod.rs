@@ -18,8 +18,8 @@ mod joined;
 pub mod report;
 mod window;
 
-use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::composition::Composed;
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 use std::ops::ControlFlow;
 
 pub use self::joined::SideBySide;

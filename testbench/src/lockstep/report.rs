@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 use serde::Serialize;
 
 use super::window::{Row, Window};

@@ -1,6 +1,6 @@
 //! The clocks around a mismatch: a ring of the latest ones, and the few that follow.
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 /// One clock with all ports.
 #[derive(Debug, Clone, Default)]

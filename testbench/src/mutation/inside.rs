@@ -11,7 +11,7 @@
 
 use std::fmt::Write as _;
 
-use posicast_model::rtl::stage::StageConfig;
+use posicast_blocks::stage::StageConfig;
 
 use super::NamedMutant;
 use crate::Error;

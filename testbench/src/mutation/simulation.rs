@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use posicast_model::rtl::{ClockedBlock, Direction, Port};
+use posicast_blocks::{ClockedBlock, Direction, Port};
 
 use super::MutationOptions;
 use super::netlist::{SELECT, SELECT_BITS};

@@ -15,12 +15,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::component::ComponentPart;
+use posicast_blocks::composition::{Composition, Connection};
+use posicast_blocks::stage::StageConfig;
+use posicast_blocks::{Direction, Port};
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::component::ComponentPart;
-use posicast_model::rtl::composition::{Composition, Connection};
-use posicast_model::rtl::stage::StageConfig;
-use posicast_model::rtl::{Direction, Port};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -1,6 +1,6 @@
 //! Checks for forbidden states of an axis's pins, in every clock of a bench.
 
-use posicast_model::plant::axis::{AxisPlant, DrivePins};
+use posicast_machine::plant::axis::{AxisPlant, DrivePins};
 
 /// Number of clocks for which the gates may stay on once the drive is disabled: the gates' register follows the
 /// enable's.
@@ -58,14 +58,14 @@ fn signed(counter: u64) -> i64 {
 
 #[cfg(test)]
 mod tests {
-    use posicast_model::plant::axis::PlantOptions;
+    use posicast_machine::plant::axis::PlantOptions;
 
     use super::*;
 
     #[test]
     fn unit_a_gate_may_follow_the_enable_by_one_clock() {
         let text = include_str!("../../../examples/xy-stage.toml");
-        let machine = posicast_model::machine_file::parse("xy-stage.toml", text).unwrap();
+        let machine = posicast_machine::machine_file::parse("xy-stage.toml", text).unwrap();
         let plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default()).unwrap();
         let mut watched = Watched::default();
         let pins = DrivePins {

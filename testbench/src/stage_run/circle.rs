@@ -1,9 +1,9 @@
 //! A circle of two axes as points, which unequal delays distort.
 
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{TickLimits, plan_circle};
-use posicast_model::plant::axis::{ErrorFigures, contour_error};
-use posicast_model::rtl::segments::{Entry, EntryMotion};
+use posicast_blocks::segments::{Entry, EntryMotion};
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::motion::{TickLimits, plan_circle};
+use posicast_machine::plant::axis::{ErrorFigures, contour_error};
 
 use super::host::{Host, Trouble};
 use super::{StageRun, StageRunError, moves};

@@ -1,8 +1,8 @@
 //! What an error table does for an axis: how far the load rests from its target with the table and without it.
 
-use posicast_model::hardware::error_table_departure_counts;
-use posicast_model::machine_file::{AxisSection, ErrorTableSection, ErrorUse};
-use posicast_model::rtl::stage::StageAxis;
+use posicast_blocks::stage::StageAxis;
+use posicast_machine::hardware::error_table_departure_counts;
+use posicast_machine::machine_file::{AxisSection, ErrorTableSection, ErrorUse};
 
 use super::{Expected, Moved};
 

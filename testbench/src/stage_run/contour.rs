@@ -1,9 +1,9 @@
 //! A path of the first two axes as points, starting where they stand at reset.
 
-use posicast_model::contour::{self, Contour, ContourError, ContourSample, FollowedContour, PlanePoint};
-use posicast_model::design::MachineDesign;
-use posicast_model::motion::plan_places;
-use posicast_model::rtl::segments::Entry;
+use posicast_blocks::segments::Entry;
+use posicast_machine::contour::{self, Contour, ContourError, ContourSample, FollowedContour, PlanePoint};
+use posicast_machine::motion::plan_places;
+use posicast_machine::plan::MachineDesign;
 
 use super::host::{Host, Trouble};
 use super::{StageRun, StageRunError, circle, moves};

@@ -2,13 +2,13 @@
 //! point, and the sampled loop ([`SampledLoop`]). They do not use the stage, its fixed-point words or the simulated
 //! pins, so that the two check each other. `docs/closed-loop.md` derives the bounds.
 
-use posicast_model::control::Derived;
-use posicast_model::control::sampled::{FollowLimits, SampledLoop};
-use posicast_model::design::{TableFamily, design_machine};
-use posicast_model::hardware;
-use posicast_model::machine_file::{AxisSection, DriveMode, FamilySection, Machine, PwmMode};
-use posicast_model::rtl::segments::{Entry, Integrator};
-use posicast_model::taps::TapTable;
+use posicast_blocks::segments::{Entry, Integrator};
+use posicast_machine::control::Derived;
+use posicast_machine::control::sampled::{FollowLimits, SampledLoop};
+use posicast_machine::hardware;
+use posicast_machine::machine_file::{AxisSection, DriveMode, FamilySection, Machine, PwmMode};
+use posicast_machine::plan::{TableFamily, design_machine};
+use posicast_taps::TapTable;
 
 use super::figures::{self, AxisFigures};
 use super::moves;
@@ -143,7 +143,7 @@ struct HandedOver<'a> {
     /// Table in use at the end.
     table: &'a TapTable,
     /// Largest vibration that remains from the start, with the first table, and from the handovers
-    /// ([`posicast_model::design::family`]).
+    /// ([`posicast_machine::plan::family`]).
     most: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Figures of a move, in m or rad.
 
-use posicast_model::plant::axis::{ErrorFigures, residual_vibration, tracking_error};
+use posicast_machine::plant::axis::{ErrorFigures, residual_vibration, tracking_error};
 
 use crate::stage_bench::AxisSample;
 

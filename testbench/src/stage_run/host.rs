@@ -1,8 +1,8 @@
 //! The host program that operates the stage's registers.
 
-use posicast_model::rtl::axis::{Cause, SupervisorState};
-use posicast_model::rtl::error_table::FULL_WEIGHT;
-use posicast_model::rtl::stage::StageConfig;
+use posicast_blocks::axis::{Cause, SupervisorState};
+use posicast_blocks::error_table::FULL_WEIGHT;
+use posicast_blocks::stage::StageConfig;
 use std::fmt;
 
 use super::shaping::Shaping;

@@ -22,14 +22,14 @@ mod moves;
 mod shaping;
 mod tables;
 
-use posicast_model::contour::{Contour, ContourError};
-use posicast_model::design::{MachineDesign, TableFamily, design_machine};
-use posicast_model::hardware::{self, MachineStageError};
-use posicast_model::machine_file::Machine;
-use posicast_model::motion::{AxisMove, PlanError};
-use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::stage::{StageConfig, StageError};
+use posicast_blocks::component::Component;
+use posicast_blocks::stage::{StageConfig, StageError};
+use posicast_machine::contour::{Contour, ContourError};
+use posicast_machine::hardware::{self, MachineStageError};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::motion::{AxisMove, PlanError};
+use posicast_machine::plan::{MachineDesign, TableFamily, design_machine};
+use posicast_machine::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
 
 use crate::Error;
 use crate::lockstep::Device;

@@ -1,9 +1,9 @@
 //! The move that all axes make at the same time.
 
-use posicast_model::design::TableFamily;
-use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{AxisMove, TickLimits, plan_move, settle_s};
-use posicast_model::rtl::segments::Entry;
+use posicast_blocks::segments::Entry;
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::motion::{AxisMove, TickLimits, plan_move, settle_s};
+use posicast_machine::plan::TableFamily;
 
 use super::figures::{self, AxisFigures};
 use super::host::{Host, Trouble};

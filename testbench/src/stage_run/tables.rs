@@ -1,10 +1,10 @@
 //! The tap tables of an axis whose modes move with its own position: they are loaded and handed over by the position
 //! of the command, as the driver's `posicast_select_table` does.
 
-use posicast_model::design::TableFamily;
-use posicast_model::machine_file::AxisSection;
-use posicast_model::rtl::shaper::swap_how;
-use posicast_model::taps::COEFFICIENT_BITS;
+use posicast_blocks::shaper::swap_how;
+use posicast_machine::machine_file::AxisSection;
+use posicast_machine::plan::TableFamily;
+use posicast_taps::COEFFICIENT_BITS;
 
 use crate::Error;
 use crate::stage_bench::StageBench;

@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, SupervisorState};
-use posicast_model::rtl::segments::{STAND_COUNTS, SegmentsState as Segments};
+use posicast_blocks::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, SupervisorState};
+use posicast_blocks::segments::{STAND_COUNTS, SegmentsState as Segments};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -1,7 +1,7 @@
 //! What a run of the supervisor reached, and the rules that it must never violate.
 
-use posicast_model::rtl::Direction;
-use posicast_model::rtl::axis::{
+use posicast_blocks::Direction;
+use posicast_blocks::axis::{
     AT_ONCE, CAUSE_BITS, Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, SupervisorState,
     TRANSITIONS, ports, switching_off,
 };

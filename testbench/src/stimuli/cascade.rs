@@ -1,7 +1,7 @@
 //! Seeded random inputs for the cascade: strobes as fast as a pass allows, one clock earlier, in every clock, after
 //! long pauses; commands that swing from end to end, ramp, rest or are noise; starts, clears and resets in any clock.
 
-use posicast_model::rtl::cascade::{CascadeConfig, pass_clocks};
+use posicast_blocks::cascade::{CascadeConfig, pass_clocks};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -1,7 +1,7 @@
 //! Scripts for the corner cases of one shaper's sizes: adjacent values, the longest delay, sums that miss one by a
 //! power of two. Random stimuli meet them too rarely.
 
-use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
+use posicast_taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
 
 use super::{Action, AxisLayout};
 use Action::{Clear, Reset, Start, StartAlone, Strobe, StrobeExact, Swap, Tap, TapExact, Wait, WaitIdle};

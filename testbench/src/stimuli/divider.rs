@@ -1,7 +1,7 @@
 //! Seeded random inputs for the divider: operands of every size, at the ends, and such that the quotient just fits or
 //! just does not; starts at the pace of a division and in any clock; clears and resets.
 
-use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig};
+use posicast_blocks::divider::{DIVISION_CLOCKS, DividerConfig};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use posicast_model::rtl::axis::SupervisorState;
-use posicast_model::rtl::drive_command::{DUTY_BITS, INPUT_PORTS, OUTPUT_PORTS};
+use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::drive_command::{DUTY_BITS, INPUT_PORTS, OUTPUT_PORTS};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -2,7 +2,7 @@
 //! clock; turns of every length; pins that change at any time; changes between pins and generator, and resets, in any
 //! clock.
 
-use posicast_model::rtl::encoder_generator::INPUT_PORTS;
+use posicast_blocks::encoder_generator::INPUT_PORTS;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -4,7 +4,7 @@
 //! that creeps over the table, beyond both of its ends and to those of its word; bank 1 loaded as it should be and otherwise, also while
 //! it is in use; enabled and not, homed and not; passes that begin before the previous one is over.
 
-use posicast_model::rtl::error_table::{ErrorTableConfig, FULL_WEIGHT, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs};
+use posicast_blocks::error_table::{ErrorTableConfig, FULL_WEIGHT, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

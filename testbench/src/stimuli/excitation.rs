@@ -2,7 +2,7 @@
 //! ended early by `enable`, `allowed`, a reset or another kind; positions at the ends of their word; ticks far apart,
 //! and now and then too close; settings that change while a signal runs.
 
-use posicast_model::rtl::excitation::{ExcitationKind, INPUT_PORTS, Inputs, OUTPUT_PORTS, TICK_CLOCKS, TURN_STEPS};
+use posicast_blocks::excitation::{ExcitationKind, INPUT_PORTS, Inputs, OUTPUT_PORTS, TICK_CLOCKS, TURN_STEPS};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -10,8 +10,8 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::rtl::shaper::{ShaperConfig, wrap};
-use posicast_model::taps::Tap;
+use posicast_blocks::shaper::{ShaperConfig, wrap};
+use posicast_taps::Tap;
 
 use super::{AxisLayout, Layout};
 use crate::lockstep::Clock;

@@ -1,6 +1,6 @@
 //! Indices of a shaper's ports among the ports of the simulated block.
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 use crate::Error;
 

@@ -2,7 +2,7 @@
 //! or not; counts that wrap and ratios that saturate; ticks, velocities and aligns at every pace, also during a pass.
 //! The tied inputs change in reset.
 
-use posicast_model::rtl::linear_scale::{INPUT_PORTS, OUTPUT_PORTS, PASS_CLOCKS};
+use posicast_blocks::linear_scale::{INPUT_PORTS, OUTPUT_PORTS, PASS_CLOCKS};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

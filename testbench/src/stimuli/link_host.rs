@@ -3,8 +3,8 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::link::{Crc, MOST_WORDS, Request, cobs};
-use posicast_model::rtl::uart_bridge::OUTPUT_PORTS;
+use posicast_blocks::link::{Crc, MOST_WORDS, Request, cobs};
+use posicast_blocks::uart_bridge::OUTPUT_PORTS;
 use rand::{Rng, RngExt};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

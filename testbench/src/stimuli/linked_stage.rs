@@ -10,12 +10,12 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::link::{MOST_WORDS, Request};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::BridgeConfig;
-use posicast_model::rtl::registers::{Access, RegisterMap};
-use posicast_model::rtl::spi_bridge::LEAST_CLOCKS_PER_BIT;
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::component::Component;
+use posicast_blocks::link::{MOST_WORDS, Request};
+use posicast_blocks::linked_stage::BridgeConfig;
+use posicast_blocks::registers::{Access, RegisterMap};
+use posicast_blocks::spi_bridge::LEAST_CLOCKS_PER_BIT;
+use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -1,6 +1,6 @@
 //! Seeded random inputs for the small blocks between others: every input changes at its own pace, which varies.
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -2,9 +2,9 @@
 //! glitches of about the filter's length, lost edges and index pulses; pairs of lines that disagree; ticks; a
 //! divider's answers that are late, early or missing; registers that change in any clock.
 
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pulse_counter::{Inputs, ports};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pulse_counter::{Inputs, ports};
+use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -3,8 +3,8 @@
 //! hosts that clear them; a controller that feeds the watchdog, or forgets to; a mask that comes and goes in any
 //! clock. [`GateSafety`] checks what every run must fulfil.
 
-use posicast_model::rtl::pwm::{ActiveLow, Inputs, ports};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::pwm::{ActiveLow, Inputs, ports};
+use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

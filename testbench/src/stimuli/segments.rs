@@ -1,7 +1,7 @@
 //! Seeded random inputs for the command FIFO: whole entries and single words, valid and invalid; moves that end at
 //! rest and others; ticks at every pace; requests, resets, and stops of every size.
 
-use posicast_model::rtl::segments::{
+use posicast_blocks::segments::{
     CUBIC, CubicEntry, ENTRIES_MAX, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState,
     TICK_CLOCKS,
 };

@@ -3,8 +3,8 @@
 //! change at any tick, starts at the pace of a pass and in any clock, inputs that change during a pass, clears and
 //! resets.
 
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, SETTINGS, Saturation, SettingRow, TickMotion, ports};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::sliding_mode::{CONTROL_CLOCKS, Inputs, SETTINGS, Saturation, SettingRow, TickMotion, ports};
+use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

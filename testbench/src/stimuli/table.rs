@@ -1,7 +1,7 @@
 //! Random tap tables that the hardware must accept: the sum is `2^F`, and every coefficient fits into 18 bits and is
 //! not zero.
 
-use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
+use posicast_taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
 use rand::{Rng, RngExt};
 
 /// Taps in the order in which they are written. The memory is kept between loads, so that a load does not allocate.

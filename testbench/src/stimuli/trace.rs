@@ -2,7 +2,7 @@
 //! signals that wander around the level; arms and halts in every state, settings that change meanwhile, reads of all
 //! addresses.
 
-use posicast_model::rtl::trace::{Inputs, ROW_SIGNALS, TraceConfig, TraceState, row_clocks};
+use posicast_blocks::trace::{Inputs, ROW_SIGNALS, TraceConfig, TraceState, row_clocks};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::rtl::uart_bridge::{INPUT_PORTS, OUTPUT_PORTS};
+use posicast_blocks::uart_bridge::{INPUT_PORTS, OUTPUT_PORTS};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::ptr::NonNull;
 
 use libloading::Library;
-use posicast_model::rtl::StepError;
+use posicast_blocks::StepError;
 
 use crate::Error;
 

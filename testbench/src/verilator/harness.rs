@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 
 use super::VerilogSource;
 use crate::Error;

@@ -28,7 +28,7 @@ mod unity;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 use posicast_system::{interrupt, scratch};
 use sha2::{Digest, Sha256};
 

@@ -25,7 +25,7 @@ mod output;
 
 use std::path::Path;
 
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::{Direction, Port};
 use vcd::{IdCode, VarType};
 
 use self::clocking::Clocking;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 use tempfile::TempDir;
 
 pub(crate) fn port(name: &str, direction: Direction, width: u32, signed: bool) -> Port {

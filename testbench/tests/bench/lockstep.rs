@@ -1,7 +1,7 @@
 //! Tests lockstep runs on hand-written Verilog: the errors that they must find, and their reports.
 
 use crate::bench::common::{COUNTER, Counter, Files, counter_ports};
-use posicast_model::rtl::{ClockedBlock, Port};
+use posicast_blocks::{ClockedBlock, Port};
 use posicast_testbench::Error;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use posicast_blocks::shaper::ShaperConfig;
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::rtl::shaper::ShaperConfig;
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 use posicast_testbench::blocks::{Block, MachineShapers};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::recording::{Move, RecordedMove};

@@ -4,7 +4,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use crate::bench::common::{COUNTER, Counter, Files, MEMORY, counter_ports, memory_ports, port};
-use posicast_model::rtl::{ClockedBlock, Direction};
+use posicast_blocks::{ClockedBlock, Direction};
 use posicast_testbench::Error;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::verilator::{self, Verilated, VerilogSource};

@@ -2,8 +2,8 @@
 
 use crate::registers::everything::everything;
 use crate::registers::support::{Bench, assert_match};
+use posicast_blocks::registers::RegisterBank;
 use posicast_hdl::registers::emit;
-use posicast_model::rtl::registers::RegisterBank;
 use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::stimuli::{RegistersCoverage, RegistersRandom};
 

@@ -3,10 +3,10 @@
 use crate::registers::components::{pulse_counter, pwm, shaper, sliding_mode};
 use crate::registers::everything::everything;
 use crate::registers::support::Bench;
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::component::Component;
+use posicast_blocks::registers::{RegisterBank, RegisterMap};
 use posicast_hdl::component::emit;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
 use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
 
 /// Returns the names of the tests that fail.

@@ -1,13 +1,13 @@
 //! Tests the components, that is registers and blocks together, through the bus and the pins.
 
 use crate::registers::support::{Bench, assert_match};
+use posicast_blocks::component::Component;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
+use posicast_blocks::sliding_mode::{Gain, Law, SettingRow, Settings};
 use posicast_hdl::component::emit;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
-use posicast_model::rtl::sliding_mode::{Gain, Law, SettingRow, Settings};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_taps::{Tap, TapTable};
 use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::stimuli::ComponentRandom;
 

@@ -1,6 +1,6 @@
 //! A register map with every kind of access, and fields at every kind of position.
 
-use posicast_model::rtl::registers::{Access, Description, Field, FlagSource, RegisterMap};
+use posicast_blocks::registers::{Access, Description, Field, FlagSource, RegisterMap};
 
 pub(crate) fn everything() -> RegisterMap {
     RegisterMap::new(description()).unwrap()

@@ -3,8 +3,8 @@
 //! Both sides of a leg are never on, and the dead time is between them; no gate is on in a clock of a raw fault; with
 //! the drive disabled no gate is on, and the brake is applied.
 
-use posicast_model::rtl::pwm::ActiveLow;
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::pwm::ActiveLow;
+use posicast_blocks::{Direction, Port};
 use posicast_testbench::lockstep::Clock;
 use posicast_testbench::stimuli::GateSafety;
 

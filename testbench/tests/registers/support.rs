@@ -1,8 +1,8 @@
 //! Writes Verilog to disk, with or without a deliberate fault, and runs it beside a model.
 
 use crate::support::broken;
+use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::{ClockedBlock, Port};
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};

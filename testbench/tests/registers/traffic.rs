@@ -3,14 +3,14 @@
 //!
 //! Proptest makes the traffic and shortens it after a failure. `PROPTEST_CASES` sets the number of cases.
 
-use posicast_model::design::design_machine;
-use posicast_model::hardware;
-use posicast_model::machine_file;
-use posicast_model::rtl::Direction;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::registers::RegisterMap;
+use posicast_blocks::Direction;
+use posicast_blocks::component::Component;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::registers::RegisterMap;
+use posicast_machine::hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use posicast_testbench::blocks::{Block, ComponentBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::{self, Clock, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{ReadPromises, Stimuli};

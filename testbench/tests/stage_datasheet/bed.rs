@@ -3,12 +3,12 @@
 
 use std::collections::HashMap;
 
+use posicast_blocks::component::Component;
+use posicast_blocks::{ClockedBlock, Direction, Port};
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::Module;
-use posicast_model::design::design_machine;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::{ClockedBlock, Direction, Port};
-use posicast_model::{hardware, machine_file};
+use posicast_machine::plan::design_machine;
+use posicast_machine::{hardware, machine_file};
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 

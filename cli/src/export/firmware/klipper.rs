@@ -7,16 +7,16 @@ use super::super::{Selected, Selection, list};
 use super::nearest::Own;
 use super::{Read, Refusal, Told, Wish, axis_of, heading, of_version, residuals};
 use crate::failure::Failure;
-use posicast_model::design::ShaperParts;
-use posicast_model::design::kind::ShaperKind;
-use posicast_model::design::smooth::Kernel;
-use posicast_model::firmware::closest::{Closest, OwnKind};
-use posicast_model::firmware::klipper::{DEFAULT_DAMPING, DEFAULT_TOLERANCE, EiFormulas, Kind, impulses};
-use posicast_model::firmware::merge::merged;
-use posicast_model::firmware::smoother::Smoother;
-use posicast_model::firmware::version::{Firmware, KlipperVersion};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::mode::Mode;
+use posicast_shaper::design::ShaperParts;
+use posicast_shaper::design::kind::ShaperKind;
+use posicast_shaper::design::smooth::Kernel;
+use posicast_shaper::firmware::closest::{Closest, OwnKind};
+use posicast_shaper::firmware::klipper::{DEFAULT_DAMPING, DEFAULT_TOLERANCE, EiFormulas, Kind, impulses};
+use posicast_shaper::firmware::merge::merged;
+use posicast_shaper::firmware::smoother::Smoother;
+use posicast_shaper::firmware::version::{Firmware, KlipperVersion};
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::mode::Mode;
 use std::fmt::Write;
 
 /// Limits of `custom`: number of impulses, smallest amplitude, and duration in seconds.
@@ -160,7 +160,7 @@ fn of_named(
         .axis
         .modes
         .first()
-        .map_or(DEFAULT_TOLERANCE, |mode| selected.axis.tolerance_of(mode));
+        .map_or(DEFAULT_TOLERANCE, |mode| selected.axis.shaped().tolerance_of(mode));
     let has_tolerance = matches!(kind, Kind::Ei | Kind::TwoHumpEi | Kind::ThreeHumpEi);
     let kind = match kind {
         _ if !has_tolerance || tolerance == DEFAULT_TOLERANCE => kind,
@@ -243,7 +243,7 @@ fn custom(selected: &Selected<'_>, axis: &str, firmware: &str) -> Result<Told, R
     let first_s = few.first().map_or(0.0, |first| first.time_s);
     let times_s: Vec<f64> = few.iter().map(|impulse| impulse.time_s - first_s).collect();
     let amplitudes: Vec<f64> = few.iter().map(|impulse| impulse.amplitude).collect();
-    let read = few.iter().map(|impulse| posicast_model::impulse::Impulse {
+    let read = few.iter().map(|impulse| posicast_shaper::impulse::Impulse {
         time_s: impulse.time_s - first_s,
         ..*impulse
     });
@@ -265,7 +265,7 @@ fn smoother(selected: &Selected<'_>, axis: &str, mode: Mode, kind: ShaperKind) -
         .axis
         .modes
         .first()
-        .map_or(DEFAULT_TOLERANCE, |mode| selected.axis.tolerance_of(mode));
+        .map_or(DEFAULT_TOLERANCE, |mode| selected.axis.shaped().tolerance_of(mode));
     let kernel = Kernel::new(kind, &mode, tolerance).ok();
     let smoother = kernel
         .and_then(|kernel| Smoother::near(&kernel, &mode))

@@ -4,14 +4,14 @@ use super::super::{Selected, Selection};
 use super::nearest::Own;
 use super::{Read, Refusal, Told, Wish, axis_of, heading, of_version, residuals};
 use crate::failure::Failure;
-use posicast_model::design::ShaperParts;
-use posicast_model::design::kind::ShaperKind;
-use posicast_model::firmware::closest::OwnKind;
-use posicast_model::firmware::marlin::{FT_DAMPING, FT_LEAST_HZ, FT_SAMPLE_HZ, FtKind, m593, m593_damping};
-use posicast_model::firmware::version::{Firmware, MarlinVersion};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::machine_file::DEFAULT_TOLERANCE;
-use posicast_model::mode::Mode;
+use posicast_shaper::axis::DEFAULT_TOLERANCE;
+use posicast_shaper::design::ShaperParts;
+use posicast_shaper::design::kind::ShaperKind;
+use posicast_shaper::firmware::closest::OwnKind;
+use posicast_shaper::firmware::marlin::{FT_DAMPING, FT_LEAST_HZ, FT_SAMPLE_HZ, FtKind, m593, m593_damping};
+use posicast_shaper::firmware::version::{Firmware, MarlinVersion};
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::mode::Mode;
 use std::fmt::Write;
 
 /// `M593` for each axis.
@@ -125,7 +125,7 @@ pub(crate) fn marlin_ft(selection: &Selection<'_>, wish: &Wish<'_>) -> Result<St
             .axis
             .modes
             .first()
-            .map_or(DEFAULT_TOLERANCE, |mode| selected.axis.tolerance_of(mode));
+            .map_or(DEFAULT_TOLERANCE, |mode| selected.axis.shaped().tolerance_of(mode));
         let read = ft
             .impulses(mode.frequency_hz, damping, tolerance)
             .ok_or_else(|| Refusal::new("fixed-time motion makes no shaper of these numbers", "check the mode"))?;

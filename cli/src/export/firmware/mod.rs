@@ -19,11 +19,11 @@ pub(super) use reprapfirmware::reprapfirmware;
 use super::{Selected, Selection};
 use crate::failure::Failure;
 use crate::output;
-use posicast_model::analysis::residual_vibration;
-use posicast_model::firmware::smoother::Smoother;
-use posicast_model::firmware::version::{Firmware, VersionError};
-use posicast_model::impulse::ImpulseSequence;
-use posicast_model::mode::Mode;
+use posicast_shaper::analysis::residual_vibration;
+use posicast_shaper::firmware::smoother::Smoother;
+use posicast_shaper::firmware::version::{Firmware, VersionError};
+use posicast_shaper::impulse::ImpulseSequence;
+use posicast_shaper::mode::Mode;
 
 /// Difference of two residuals from which on it is worth a warning.
 const WORTH_A_WARNING: f64 = 0.01;

@@ -3,8 +3,8 @@
 use super::super::Selected;
 use super::Refusal;
 use crate::failure::Failure;
-use posicast_model::analysis::WeightedMode;
-use posicast_model::firmware::closest::{BAND, Closest, OwnKind, closest, left};
+use posicast_shaper::analysis::WeightedMode;
+use posicast_shaper::firmware::closest::{BAND, Closest, OwnKind, closest, left};
 
 /// Kinds that a message lists.
 const LISTED: usize = 8;

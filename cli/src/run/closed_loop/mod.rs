@@ -10,8 +10,8 @@ use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::progress;
-use posicast_model::machine_file::Machine;
-use posicast_model::motion::AxisMove;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_run::{

@@ -3,7 +3,7 @@
 use super::ClosedLoop;
 use crate::plot::{Band, Curve, Mark, Panel, label, time_axis};
 use crate::run::pictures::{slowest_period_s, with_settling};
-use posicast_model::unit::ShownUnit;
+use posicast_shaper::unit::ShownUnit;
 use posicast_testbench::stage_bench::AxisSample;
 use posicast_testbench::stage_run::{Circled, Moved};
 

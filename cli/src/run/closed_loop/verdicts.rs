@@ -3,7 +3,7 @@
 use super::contours::Contours;
 use super::{ClosedLoop, MOVES};
 use crate::run::checks::{Check, Coverage};
-use posicast_model::machine_file::AxisSection;
+use posicast_machine::machine_file::AxisSection;
 use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
 use posicast_testbench::wording::counted;
 

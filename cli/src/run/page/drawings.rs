@@ -4,13 +4,13 @@ use crate::plot::{Curve, Level, Map, Note, Panel, Writing, label, time_axis};
 use crate::run::report::RunReport;
 use crate::simulate::si_per_lsb;
 use plotters::style::RGBColor;
-use posicast_model::analysis::{sensitivity_grid, tap_impulses};
-use posicast_model::compare::{Candidate, KindComparison};
-use posicast_model::design::AxisTables;
-use posicast_model::impulse::Impulse;
-use posicast_model::machine_file::AxisSection;
-use posicast_model::mode::Mode;
-use posicast_model::unit::trimmed;
+use posicast_machine::compare::{Candidate, KindComparison};
+use posicast_machine::machine_file::AxisSection;
+use posicast_machine::plan::AxisTables;
+use posicast_shaper::analysis::{sensitivity_grid, tap_impulses};
+use posicast_shaper::impulse::Impulse;
+use posicast_shaper::mode::Mode;
+use posicast_shaper::unit::trimmed;
 
 /// Frequency ratios that a map shows, its largest damping, and its points.
 const RATIOS: (f64, f64) = (0.6, 1.4);
@@ -105,7 +105,7 @@ impl RunReport<'_> {
         let taps = tap_impulses(&tables.table, self.sample_hz());
         axis.modes.iter().enumerate().map(move |(number, of)| {
             let Mode { frequency_hz, damping } = of.mode;
-            let tolerance = axis.tolerance_of(of);
+            let tolerance = axis.shaped().tolerance_of(of);
             let most = (2.0 * damping).clamp(DAMPINGS.0, DAMPINGS.1);
             let grid = sensitivity_grid(&taps, &of.mode, RATIOS, (0.0, most), GRID);
             let percent = |part: f64| format!("{} %", trimmed(100.0 * part, 3));

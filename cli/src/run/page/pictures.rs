@@ -7,7 +7,7 @@ use crate::plot::{Panel, inline_map};
 use crate::run::excerpt;
 use crate::run::report::RunReport;
 use maud::{Markup, html};
-use posicast_model::compare::DEFAULT_BAND;
+use posicast_machine::compare::DEFAULT_BAND;
 
 impl RunReport<'_> {
     pub(super) fn parts(&self, figures: &Figures, extra: &Extra) -> Result<Vec<Part>, Failure> {

@@ -5,8 +5,8 @@ use crate::output::percent;
 use crate::run::gain::{Gain, GainSource};
 use crate::run::report::RunReport;
 use maud::{Markup, html};
-use posicast_model::machine_file::AxisSection;
-use posicast_model::unit::show_seconds;
+use posicast_machine::machine_file::AxisSection;
+use posicast_shaper::unit::show_seconds;
 
 /// A time with the digits that a sentence needs.
 fn time(seconds: f64) -> String {
@@ -158,7 +158,7 @@ fn gained(axis: &AxisSection, gain: &Gain, index: usize, figures: &Figures) -> M
 mod tests {
     use super::*;
     use crate::run::gain::Gain;
-    use posicast_model::machine_file;
+    use posicast_machine::machine_file;
     use serde_json::json;
 
     /// The sentence of a load that is at rest at these times, with a command that arrives at 10 ms and at 14 ms.

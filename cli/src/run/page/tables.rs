@@ -4,8 +4,8 @@ use super::Figures;
 use crate::output::percent;
 use crate::run::report::RunReport;
 use maud::{Markup, html};
-use posicast_model::compare::KindComparison;
-use posicast_model::unit::show_seconds;
+use posicast_machine::compare::KindComparison;
+use posicast_shaper::unit::show_seconds;
 
 fn whole(number: f64) -> String {
     format!("{number:.0}")

@@ -1,7 +1,7 @@
 //! What is required of a case.
 
 use posicast_host::HostMove;
-use posicast_model::machine_file::Machine;
+use posicast_machine::machine_file::Machine;
 use posicast_testbench::fault_campaign::{Bed, TICK_CLOCKS};
 use posicast_testbench::stage_bench::state;
 

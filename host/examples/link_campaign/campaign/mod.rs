@@ -29,11 +29,11 @@ use std::rc::Rc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use posicast_blocks::component::Component;
+use posicast_blocks::linked_stage::address_limit;
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions};
-use posicast_model::hardware::StageHardware;
-use posicast_model::machine_file::{LinkLine, LinkSection};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::linked_stage::address_limit;
+use posicast_machine::hardware::StageHardware;
+use posicast_machine::machine_file::{LinkLine, LinkSection};
 use posicast_testbench::fault_campaign::{Bed, TICK_CLOCKS};
 use posicast_testbench::linked_bench::LinkedBench;
 use rand::{RngExt, SeedableRng};

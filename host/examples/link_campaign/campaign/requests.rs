@@ -1,6 +1,6 @@
 //! What the hosts sent, and whether it is what was written.
 
-use posicast_model::link::cobs;
+use posicast_blocks::link::cobs;
 
 /// Commands that write: words at consecutive addresses, and a word at each address.
 const WRITE: u8 = 0x11;

@@ -3,12 +3,12 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use posicast_blocks::axis::KICK;
+use posicast_blocks::component::Component;
+use posicast_blocks::segments::{CubicEntry, Entry, EntryMotion};
 use posicast_host::{HostError, HostMove, HostedStage, LinkError};
-use posicast_model::machine_file::Machine;
-use posicast_model::motion::{Profile, TickLimits};
-use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::segments::{CubicEntry, Entry, EntryMotion};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::motion::{Profile, TickLimits};
 
 use super::world::{Line, World};
 
@@ -113,7 +113,7 @@ fn points(machine: &Machine, of: &HostMove) -> Vec<Entry> {
     let n = f64::from(PERIOD_TICKS);
     let periods = (profile.duration_s() / n).ceil() as u32;
     let velocity = |tick: f64| profile.position(tick + 0.5) - profile.position(tick - 0.5);
-    let mut at = posicast_model::rtl::segments::Integrator::default();
+    let mut at = posicast_blocks::segments::Integrator::default();
     let mut entries = Vec::new();
     for period in 1..=periods {
         let scale = 2f64.powi(32);

@@ -1,10 +1,10 @@
 //! The proofs of the supervisor of an axis, with one property file per subject.
 
-use posicast_hdl::axis;
-use posicast_model::rtl::axis::{
+use posicast_blocks::axis::{
     self as model, ALWAYS_OFF, CAUSE_BITS, Cause, Condition, HARMLESS, KICK, SupervisorState, TRANSITIONS, Transition,
 };
-use posicast_model::rtl::segments;
+use posicast_blocks::segments;
+use posicast_hdl::axis;
 
 use crate::Error;
 use crate::formal::{Engine, INDUCTION, Task};

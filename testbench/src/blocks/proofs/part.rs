@@ -1,12 +1,12 @@
 //! The proofs of the small blocks that connect others.
 
-use posicast_hdl::{divider_share, group, sample_select, schedule, setting_banks, time_base};
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::{
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::schedule::ScheduleConfig;
+use posicast_blocks::{
     divider_share as share_model, group as group_model, sample_select as select_model, schedule as schedule_model,
     setting_banks as banks_model, time_base as time_model,
 };
+use posicast_hdl::{divider_share, group, sample_select, schedule, setting_banks, time_base};
 
 use crate::Error;
 use crate::blocks::stage::example;

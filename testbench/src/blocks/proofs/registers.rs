@@ -1,8 +1,8 @@
 //! The proofs of register banks: one with fields of every kind, and the commit of staged registers.
 
+use posicast_blocks::component::Component;
+use posicast_blocks::registers::{Access, Register, RegisterMap};
 use posicast_hdl::registers;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 
 use super::sliding_mode::controller;
 use crate::Error;

@@ -1,10 +1,10 @@
 //! Proofs of the shapers: the plain one, a small one, and the motion shaper.
 
+use posicast_blocks::Port;
+use posicast_blocks::shaper::{ShaperConfig, ShaperMotion, ports};
 use posicast_hdl::emit::Module;
 use posicast_hdl::shaper;
-use posicast_model::rtl::Port;
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion, ports};
-use posicast_model::taps::COEFFICIENT_BITS;
+use posicast_taps::COEFFICIENT_BITS;
 
 use crate::Error;
 use crate::blocks::shaper::tap_table as table;

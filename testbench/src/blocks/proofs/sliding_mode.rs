@@ -1,9 +1,9 @@
 //! The proofs of the controller: the control of a pass, lemmas of its arithmetic, and its component.
 
+use posicast_blocks::component::Component;
+use posicast_blocks::sliding_mode::{self as model, Law};
 use posicast_hdl::emit::Module;
 use posicast_hdl::{component, sliding_mode};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::sliding_mode::{self as model, Law};
 
 use super::stage::empty;
 use crate::Error;

@@ -1,9 +1,9 @@
 //! Proofs of supervisor, drive command and PWM as a stage wires them.
 
+use posicast_blocks::component::Component;
+use posicast_blocks::stage::StageAxis;
 use posicast_hdl::component;
 use posicast_hdl::emit::Module;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::stage::StageAxis;
 
 use super::axis;
 use crate::Error;

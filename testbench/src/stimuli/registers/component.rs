@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::rtl::Direction;
-use posicast_model::rtl::component::{Component, ComponentPart};
-use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_blocks::Direction;
+use posicast_blocks::component::{Component, ComponentPart};
+use posicast_blocks::registers::RegisterMap;
+use posicast_blocks::shaper::ShaperConfig;
 use rand::Rng;
 
 use super::super::table::Table;

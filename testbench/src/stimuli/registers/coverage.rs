@@ -1,7 +1,7 @@
 //! What a run of a bank reached.
 
-use posicast_model::rtl::Direction;
-use posicast_model::rtl::registers::{Access, FlagSource, RegisterMap};
+use posicast_blocks::Direction;
+use posicast_blocks::registers::{Access, FlagSource, RegisterMap};
 
 use super::{ADDRESS, BUS_INPUTS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 

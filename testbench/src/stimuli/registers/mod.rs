@@ -18,8 +18,8 @@ pub use self::promises::ReadPromises;
 pub use self::stage::StageRandom;
 pub use self::stage_coverage::StageCoverage;
 
-use posicast_model::rtl::registers::{Register, RegisterMap};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::registers::{Register, RegisterMap};
+use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

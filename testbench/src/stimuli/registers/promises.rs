@@ -10,7 +10,7 @@
 //! no read                                                           readdata as it was
 //! ```
 
-use posicast_model::rtl::registers::{Access, Register, RegisterMap};
+use posicast_blocks::registers::{Access, Register, RegisterMap};
 
 use super::{ADDRESS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 

@@ -1,9 +1,9 @@
 //! Seeded random inputs for a whole stage: a driver that switches on, loads, starts and stops, among random traffic
 //! on all windows; lines that are mostly healthy; encoders that move.
 
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::registers::{Access, Register, RegisterMap};
-use posicast_model::rtl::{Direction, Port};
+use posicast_blocks::component::Component;
+use posicast_blocks::registers::{Access, Register, RegisterMap};
+use posicast_blocks::{Direction, Port};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -3,12 +3,12 @@
 //! The pins show little of a stage, and a host sees only what it reads. Therefore a second model gets the same
 //! inputs, and its nets are observed in every clock.
 
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::{Cause, SupervisorState, TRANSITIONS};
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::registers::{Access, RegisterMap, WINDOW_WORDS};
-use posicast_model::rtl::stage::AXIS_INTERRUPTS;
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::axis::{Cause, SupervisorState, TRANSITIONS};
+use posicast_blocks::component::Component;
+use posicast_blocks::composition::Composed;
+use posicast_blocks::registers::{Access, RegisterMap, WINDOW_WORDS};
+use posicast_blocks::stage::AXIS_INTERRUPTS;
 
 /// Words of an axis's window whose flags are counted: states and flags of motion and supervision.
 const COUNTED_WORDS: std::ops::Range<u32> = 0x28..0x2e;
@@ -66,7 +66,7 @@ impl StageCoverage {
     pub fn new(component: &Component, axes: &[String]) -> Self {
         let twin = component.model(0);
         let outputs = component.composition().ports().iter();
-        let outputs = outputs.filter(|port| port.direction == posicast_model::rtl::Direction::Output);
+        let outputs = outputs.filter(|port| port.direction == posicast_blocks::Direction::Output);
         let mut coverage = Self {
             outputs: vec![0; outputs.count()],
             twin,

@@ -3,10 +3,10 @@
 
 use std::collections::VecDeque;
 
-use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::segments::{CubicEntry, ENTRY_WORDS, Entry, EntryMotion, Point};
-use posicast_model::taps::COEFFICIENT_MAX;
+use posicast_blocks::axis::KICK;
+use posicast_blocks::registers::RegisterMap;
+use posicast_blocks::segments::{CubicEntry, ENTRY_WORDS, Entry, EntryMotion, Point};
+use posicast_taps::COEFFICIENT_MAX;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -4,8 +4,8 @@
 //! *leader* into one fault while the others move or hold, and cleans up. Each scene is played with each axis as the
 //! leader, in rounds that alternate between causes that stop the axis and causes that switch it off.
 
-use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::segments::{EntryMotion, Point};
+use posicast_blocks::axis::KICK;
+use posicast_blocks::segments::{EntryMotion, Point};
 use rand::Rng;
 
 use super::{Do, Driver, Moves};

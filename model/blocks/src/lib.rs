@@ -1,0 +1,90 @@
+//! Bit-exact, cycle-accurate models of the hardware blocks, one file per block, with the block's name.
+//!
+//! A model, RustHDL's simulation and a Verilated module all have the same interface, [`ClockedBlock`], through which
+//! lock step compares them.
+
+pub mod axis;
+pub mod cascade;
+pub mod component;
+pub mod composition;
+pub mod divider;
+pub mod divider_share;
+pub mod drive_command;
+pub mod encoder_generator;
+pub mod error_table;
+pub mod excitation;
+pub mod group;
+pub mod linear_scale;
+pub mod link;
+mod link_frames;
+pub mod linked_stage;
+mod moore;
+mod ports;
+pub mod pulse_counter;
+pub mod pwm;
+pub mod registers;
+pub mod sample_select;
+pub mod schedule;
+pub mod segments;
+pub mod setting_banks;
+pub mod shaper;
+pub mod shaper_tables;
+pub mod sliding_mode;
+pub mod spi_bridge;
+pub mod stage;
+pub mod time_base;
+pub mod trace;
+pub mod uart_bridge;
+pub mod word;
+
+pub(crate) use moore::quiet_at_rest;
+pub use moore::{FOREVER, Moore, OutputKind};
+pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, port_notes};
+pub(crate) use ports::{clocked_block, ports};
+
+/// Direction of a port, seen from the block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Input: driven from outside.
+    Input,
+    /// Output: driven by the block.
+    Output,
+}
+
+/// A port of a block. `clk` is not listed: every block has it, and a step is one of its cycles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Port {
+    /// Name, as in the Verilog.
+    pub name: String,
+    /// Direction.
+    pub direction: Direction,
+    /// Width in bits, 1..=64.
+    pub width: u32,
+    /// Whether the value is a two's complement number.
+    pub signed: bool,
+}
+
+/// Why a block could not be stepped, for example because RustHDL's simulator did not settle.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StepError(pub String);
+
+/// A block with one clock and ports of at most 64 bits that can be stepped.
+///
+/// Values are raw bit patterns, right-aligned; bits above a port's width are zero.
+pub trait ClockedBlock {
+    /// The ports, inputs and outputs together, in the order of the Verilog's port list.
+    fn ports(&self) -> &[Port];
+
+    /// Simulates one clock cycle: applies `inputs` (one value per input port, in port order), writes the outputs just
+    /// *before* the rising edge to `outputs` (one value per output port, in port order), then clocks.
+    ///
+    /// # Errors
+    /// [`StepError`] where a simulator fails; a model never fails.
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
+
+    /// The composition whose nets show what happens inside; `None` for a block that is none, and for simulators.
+    fn composed(&self) -> Option<&composition::Composed> {
+        None
+    }
+}

@@ -1,0 +1,86 @@
+//! The quiet clocks of the PWM, in which only the carrier and a timer count.
+
+use super::ports::{INPUT_PORTS, Inputs};
+use super::{LEAD_CLOCKS, Pwm, State};
+use crate::{Moore, OutputKind};
+
+impl State {
+    /// Number of further clocks like the last one, in which `before` became the present state; `None` if more
+    /// happened in it than counting.
+    pub(super) fn more_of(&self, before: &Self, inputs: &Inputs) -> Option<u64> {
+        let state = self;
+        let mut counted = *before;
+        counted.position = before.position.wrapping_add(1);
+        counted.command.count(1);
+        let counts = state.leg.timer != before.leg.timer;
+        if counts {
+            counted.leg.timer = before.leg.timer.wrapping_sub(1);
+        }
+        if counted != *state || state.is_busy() || inputs.sync || inputs.rst {
+            return None;
+        }
+        let lead = state.period.wrapping_sub(LEAD_CLOCKS);
+        let events = [
+            Some(lead),
+            Some(lead >> 1),
+            Some(inputs.trigger_phase),
+            state.astray.then_some(inputs.phase),
+        ];
+        let distances = events
+            .into_iter()
+            .flatten()
+            .map(|position| position.wrapping_sub(state.position));
+        let timer = if counts { state.leg.timer } else { u16::MAX };
+        Some(u64::from(
+            distances.fold(timer.min(state.command.same_level()), u16::min),
+        ))
+    }
+
+    /// Whether it computes a command, or a strobe is high, which falls in the next clock.
+    fn is_busy(&self) -> bool {
+        let strobes = self.at_valley || self.at_peak || self.valley || self.peak || self.trigger;
+        strobes || self.command.step != 0 || self.command.works
+    }
+}
+
+/// The pins of the gates depend on the raw faults of the same clock; `show` writes them as during a fault.
+impl Moore for Pwm {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs(&Inputs::default()).to_raw()) {
+            *output = value;
+        }
+    }
+
+    fn output_kind(&self, output: &str) -> OutputKind {
+        match output {
+            "a_high" | "a_low" | "b_high" | "b_low" => OutputKind::Combinational,
+            _ => OutputKind::Register,
+        }
+    }
+
+    fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
+        let inputs = <&[u64; INPUT_PORTS]>::try_from(inputs).map_or_else(|_| Inputs::default(), Inputs::from_raw);
+        for (output, value) in outputs.iter_mut().zip(self.outputs(&inputs).to_raw()) {
+            *output = value;
+        }
+    }
+
+    /// Tries one clock: if it only counts, it and all like it are quiet.
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        if self.state.is_busy() {
+            return 0;
+        }
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
+            return 0;
+        };
+        let mut next = self.state;
+        next.clock(&self.config, &inputs);
+        next.more_of(&self.state, &inputs).map_or(0, |more| 1 + more)
+    }
+
+    fn pass(&mut self, inputs: &[u64], clocks: u64) {
+        if let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) {
+            self.hold(&Inputs::from_raw(raw), clocks);
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! Registers of an axis that a host writes: enable and commands, tables and settings, limits, and the decoding of its
+//! encoder.
+
+use super::config::StageAxis;
+use super::register::{command, register, with_the_drive_off};
+use crate::registers::{Access, Field, Register, maps};
+
+/// The registers in words of the axis's window, preceded by the parameters of its build.
+pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
+    [
+        parameters(axis),
+        commands(),
+        tables(axis),
+        supervision(axis),
+        encoder(axis),
+    ]
+    .concat()
+}
+
+fn parameters(axis: &StageAxis) -> Vec<Register> {
+    let constant = |name: &str, offset, meaning: &str, value| {
+        let field = Field::new(name, 0, 32, meaning).with_reset(value);
+        register(name, offset, Access::Constant, "parameter of the build", vec![field])
+    };
+    vec![
+        constant(
+            "pwm_period_clocks",
+            0x00,
+            "clocks of the PWM's period, which is full duty",
+            axis.pwm_period_clocks,
+        ),
+        constant(
+            "ring_samples",
+            0x01,
+            "size of the ring buffer: delays of a table reach up to this minus 2",
+            1 << axis.shaper.ring_address_bits(),
+        ),
+        constant("most_taps", 0x02, "taps per bank", axis.shaper.most_taps()),
+        constant(
+            "machine_taps",
+            0x03,
+            "number of taps of bank 0",
+            axis.shaper.table().taps().len() as u32,
+        ),
+        constant(
+            "coefficient_fraction",
+            0x04,
+            "number of fraction bits F of the coefficients",
+            axis.shaper.coefficient_fraction(),
+        ),
+    ]
+}
+
+fn commands() -> Vec<Register> {
+    vec![
+        register(
+            "control",
+            0x08,
+            Access::Configuration,
+            "enable and mode of the axis",
+            vec![
+                Field::flag(
+                    "enable",
+                    0,
+                    "1: outputs on; 0: outputs off, after a quick stop and the brake",
+                ),
+                Field::flag("direct_enable", 1, "requests direct mode, in READY"),
+                Field::flag(
+                    "self_test",
+                    3,
+                    "direct mode is a self-test of the PWM: pins, drive and brake stay off",
+                ),
+            ],
+        ),
+        register("stop", 0x09, command("stop"), "quick stop, then HOLD", vec![]),
+        register(
+            "clear_faults",
+            0x0a,
+            command("clear_faults"),
+            "forgets the causes that are over, and the flags of all blocks",
+            vec![],
+        ),
+        register("flush", 0x0b, command("flush"), "drops the waiting entries", vec![]),
+        register(
+            "kick",
+            0x0c,
+            command("kick"),
+            "kicks the host's watchdog",
+            vec![Field::new("kick_word", 0, 32, "0x4b49434b, `KICK`")],
+        ),
+        register(
+            "homed",
+            0x0f,
+            command("write_homed"),
+            "sets whether the axis is homed; the machine file may let the soft limits act only then",
+            vec![Field::flag(
+                "homed_value",
+                0,
+                "the origin, to which the soft limits refer, is known",
+            )],
+        ),
+        register(
+            "direct",
+            0x0d,
+            command("direct_kick"),
+            "duty of direct mode, which expires after some time",
+            vec![
+                Field::new("direct_duty", 0, 17, "limited by the machine file")
+                    .signed()
+                    .with_unit("clocks"),
+            ],
+        ),
+        register(
+            "fifo_control",
+            0x0e,
+            Access::Configuration,
+            "when the FIFO is low, and how long a move goes on without entries",
+            vec![
+                Field::new("low_water", 0, 6, "entries").with_reset(16),
+                Field::new(
+                    "extrapolation",
+                    8,
+                    8,
+                    "at the last velocity where entries are missing, then a quick stop",
+                )
+                .with_unit("ticks"),
+            ],
+        ),
+        register(
+            "segment",
+            0x10,
+            Access::Words {
+                strobe: "segment_write".to_owned(),
+                word: "segment_word".to_owned(),
+                words: 4,
+            },
+            "an entry of the FIFO, four words; the last commits: see docs/segments.md",
+            vec![Field::new("segment_data", 0, 32, "the word")],
+        ),
+    ]
+}
+
+fn tables(axis: &StageAxis) -> Vec<Register> {
+    let laws = [
+        (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
+        (1, "pd", "proportional and derivative"),
+        (2, "pid", "proportional, integral and derivative"),
+    ];
+    let banks = [
+        (0, "machine", "settings of the machine, in a ROM"),
+        (1, "loaded_1", "settings loaded into bank 1"),
+        (2, "loaded_2", "settings loaded into bank 2"),
+    ];
+    vec![
+        register(
+            "tap_address",
+            0x14,
+            Access::Configuration,
+            "address of the tap to write or read",
+            maps::tap_address(&axis.shaper),
+        ),
+        register(
+            "tap",
+            0x15,
+            command("tap_write"),
+            "writes a tap",
+            maps::tap(&axis.shaper),
+        ),
+        register(
+            "swap",
+            0x16,
+            command("swap"),
+            "makes a bank active",
+            maps::swap(&axis.shaper),
+        ),
+        register(
+            "tap_read",
+            0x27,
+            command("tap_read"),
+            "reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low",
+            vec![],
+        ),
+        register(
+            "setting_address",
+            0x17,
+            Access::Configuration,
+            "address of the setting to write or read",
+            vec![
+                Field::new("setting_row", 0, 4, "row of the setting: see docs/sliding_mode.md"),
+                Field::new("setting_bank", 8, 2, "bank 1 or 2"),
+            ],
+        ),
+        register(
+            "setting",
+            0x18,
+            command("setting_write"),
+            "writes a setting",
+            vec![Field::new("setting_word", 0, 32, "mantissa and shift, or the limit")],
+        ),
+        register(
+            "setting_read",
+            0x26,
+            command("setting_read"),
+            "reads back the word at `SETTING_ADDRESS`, which must stay until `setting_read_waits` is low",
+            vec![],
+        ),
+        register(
+            "law",
+            0x19,
+            Access::Staged,
+            "control law and settings in use",
+            vec![
+                Field::choice("law", 0, 2, "control law", &laws).with_reset(axis.law as u32),
+                Field::choice("law_bank", 8, 2, "settings in use; bank 3 is all 0", &banks),
+            ],
+        ),
+    ]
+}
+
+fn supervision(axis: &StageAxis) -> Vec<Register> {
+    let watched = &axis.supervision;
+    let limit = |name: &str, value: i32| {
+        Field::new(name, 0, 32, "limit of the shaped position; both 0: no soft limits")
+            .fixed(8)
+            .with_unit("counts")
+            .with_reset(value as u32)
+    };
+    vec![
+        register(
+            "soft_limit_plus",
+            0x1a,
+            Access::Configuration,
+            "end of the travel, in counts since reset: see `ORIGIN`",
+            vec![limit("soft_limit_plus", watched.soft_limit_plus)],
+        ),
+        register(
+            "soft_limit_minus",
+            0x1b,
+            Access::Configuration,
+            "the other end of the travel",
+            vec![limit("soft_limit_minus", watched.soft_limit_minus)],
+        ),
+        register(
+            "following_error_limit",
+            0x1c,
+            Access::Configuration,
+            "largest following error",
+            vec![
+                Field::new("following_error_limit", 0, 32, "Q16.16; 0 disables the check")
+                    .with_unit("counts / 65536")
+                    .with_reset(watched.following_error_limit),
+            ],
+        ),
+        register(
+            "watchdog",
+            0x1d,
+            Access::Configuration,
+            "the host's watchdog, and the reaction to each cause",
+            vec![
+                Field::new(
+                    "watchdog_ticks",
+                    0,
+                    16,
+                    "longest time without a kick; 0 disables the watchdog",
+                )
+                .with_unit("ticks")
+                .with_reset(watched.watchdog_ticks.into()),
+                Field::new(
+                    "off_causes",
+                    16,
+                    16,
+                    "one bit per cause: 1 switches the outputs off, 0 leads to a quick \
+                    stop",
+                )
+                .with_reset(watched.off_causes.into()),
+            ],
+        ),
+        register(
+            "stop_deceleration",
+            0x1e,
+            Access::Configuration,
+            "deceleration of a quick stop",
+            vec![
+                Field::new("stop_deceleration", 0, 31, "Q7.24; 0: the command stops at once")
+                    .with_unit("counts/tick^2 / 2^24")
+                    .with_reset(watched.stop_deceleration),
+            ],
+        ),
+        register(
+            "settle",
+            0x1f,
+            Access::Configuration,
+            "time in which a stop settles: the longest delay of the tables in use",
+            vec![
+                Field::new("settle_ticks", 0, 16, "time after the command's standstill")
+                    .with_unit("ticks")
+                    .with_reset(watched.settle_ticks.into()),
+            ],
+        ),
+    ]
+}
+
+fn encoder(axis: &StageAxis) -> Vec<Register> {
+    vec![
+        register(
+            "encoder",
+            0x24,
+            with_the_drive_off(),
+            "sign of the loop's feedback",
+            vec![
+                Field::flag("encoder_invert", 0, "reverses the encoder's direction")
+                    .with_reset(axis.encoder_invert.into()),
+            ],
+        ),
+        register(
+            "pwm_trigger",
+            0x25,
+            Access::Configuration,
+            "phase at which the pin `pwm_trigger` is high for a clock, for an ADC for example",
+            vec![Field::new("trigger_phase", 0, 16, "time after the valley").with_unit("clocks")],
+        ),
+        register(
+            "index",
+            0x20,
+            Access::Configuration,
+            "effect of an index, and measurement of the velocity",
+            vec![
+                Field::flag("index_always", 0, "latches every index"),
+                Field::flag("index_presets", 1, "a latched index also presets the position"),
+                Field::new(
+                    "index_gate",
+                    4,
+                    4,
+                    "bit 0: an index counts only while A equals bit 1; bit 2: only while B equals bit 3",
+                ),
+                Field::new(
+                    "smoothing",
+                    8,
+                    2,
+                    "k of the velocity's one-pole filter with coefficient 2^-k",
+                ),
+                Field::flag("velocity_m", 12, "velocity is the counts per tick alone"),
+            ],
+        ),
+        register(
+            "index_arm",
+            0x21,
+            command("index_arm"),
+            "latches the next index",
+            vec![],
+        ),
+        register(
+            "preset",
+            0x22,
+            command("preset"),
+            "sets the user's position; the loop's count does not jump",
+            vec![
+                Field::new("preset_value", 0, 32, "position")
+                    .signed()
+                    .with_unit("counts"),
+            ],
+        ),
+    ]
+}

@@ -1,0 +1,187 @@
+//! Configuration of a stage.
+
+use crate::component::ComponentError;
+use crate::composition::CompositionError;
+use crate::divider::DividerConfig;
+use crate::error_table::ErrorTableConfig;
+use crate::group::MOST_AXES;
+use crate::linear_scale::ScaleRatio;
+use crate::pwm::{BridgeMode, PwmConfig};
+use crate::registers::MapError;
+use crate::schedule::{ScheduleConfig, ScheduleConfigError};
+use crate::shaper::ShaperConfig;
+use crate::sliding_mode::{Law, Settings};
+use crate::stage::Supervision;
+use crate::trace::TraceConfig;
+
+use super::schedule::StageSchedule;
+
+/// A stage of one to four axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageConfig {
+    /// Clocks per tick, for time base and divider.
+    pub tick: DividerConfig,
+    /// Its axes.
+    pub axes: Vec<StageAxis>,
+    /// Contents of the register `MACHINE_CRC`, if it has one: the checksum of its machine file.
+    pub machine_crc: Option<u32>,
+}
+
+/// One axis of a stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageAxis {
+    /// Name of the axis, with which all its ports and registers begin.
+    pub name: String,
+    /// Its shaper, which has three channels.
+    pub shaper: ShaperConfig,
+    /// The controller's settings after reset.
+    pub settings: Settings,
+    /// The controller's law after reset.
+    pub law: Law,
+    /// Whether it is a rotary axis, whose positions wrap.
+    pub modulo: bool,
+    /// Build parameters of its PWM.
+    pub pwm: PwmConfig,
+    /// The PWM's mode.
+    pub pwm_mode: BridgeMode,
+    /// The PWM's period in clocks: 2 to 65,536, and a divisor of the tick.
+    pub pwm_period_clocks: u32,
+    /// Pulses of up to this many clocks on an encoder's line are ignored, 0 to 63.
+    pub encoder_filter_clocks: u32,
+    /// Whether the encoder's direction is reversed after reset.
+    pub encoder_invert: bool,
+    /// Words of its supervisor.
+    pub supervision: Supervision,
+    /// Its linear scale, if it has one.
+    pub scale: Option<StageScale>,
+    /// Its error table.
+    pub error_table: Option<StageErrorTable>,
+    /// What is there for bringing it up: trace memory, test signals, an encoder without a machine.
+    pub bring_up: Option<TraceConfig>,
+}
+
+/// The linear scale of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StageScale {
+    /// Ratio between its counts and the motor's.
+    pub ratio: ScaleRatio,
+    /// Whether the loop runs on the scale; else the scale is only compared.
+    pub closes_loop: bool,
+    /// Whether its direction is reversed after reset.
+    pub invert: bool,
+}
+
+/// The error table of an axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StageErrorTable {
+    /// The machine's table.
+    pub table: ErrorTableConfig,
+    /// The error is looked up where the axis is; else where it is to be.
+    pub on_measured: bool,
+}
+
+/// Why there is no such stage.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StageError {
+    /// The number of axes is 0 or too large.
+    #[error("a stage has 1 to {MOST_AXES} axes, not {0}")]
+    Axes(usize),
+    /// An axis's shaper does not shape velocity and acceleration.
+    #[error(
+        "the shaper of axis {axis} has {channels} channels of {word_bits} bits: a stage shapes position, velocity and \
+         acceleration in words of 32 bits; use command_bits = 32, and delays of at most 4094 samples"
+    )]
+    Channels {
+        /// Index of the axis.
+        axis: String,
+        /// Number of channels.
+        channels: usize,
+        /// Width of a word in bits.
+        word_bits: u32,
+    },
+    /// The computations of a tick take longer than a tick.
+    #[error("a tick of {available} clocks is too short: {schedule}; choose a lower sample rate or a faster clock")]
+    Schedule {
+        /// The computations with their clocks.
+        schedule: StageSchedule,
+        /// Clocks of a tick.
+        available: u32,
+    },
+    /// The PWM's period does not divide the tick.
+    #[error(
+        "the PWM of axis {axis} has {period} clocks per period, which do not divide a tick of {tick}; change one of them"
+    )]
+    Period {
+        /// Index of the axis.
+        axis: String,
+        /// Clocks of the PWM's period.
+        period: u32,
+        /// Clocks of a tick.
+        tick: u32,
+    },
+    /// The schedule block cannot be built.
+    #[error(transparent)]
+    ScheduleBlock(#[from] ScheduleConfigError),
+    /// The register map has an error: the name of an axis clashes with others.
+    #[error("the registers of the stage clash, rename an axis: {0}")]
+    Map(#[from] MapError),
+    /// The wiring has an error.
+    #[error("the ports of the stage clash, rename an axis: {0}")]
+    Composition(#[from] CompositionError),
+    /// The component has an error.
+    #[error("the stage's component: {0}")]
+    Component(#[from] ComponentError),
+}
+
+impl StageConfig {
+    /// The timing within a tick.
+    pub fn timing(&self) -> StageSchedule {
+        let passes: Vec<(&ShaperConfig, u32)> = (self.axes.iter())
+            .map(|axis| {
+                let table = axis.error_table.as_ref();
+                (&axis.shaper, table.map_or(0, |of| of.table.latency_clocks()))
+            })
+            .collect();
+        let scaled = self
+            .axes
+            .iter()
+            .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
+        StageSchedule::of(&passes, scaled)
+    }
+
+    pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {
+        Ok(ScheduleConfig::new(self.timing().control_clocks())?)
+    }
+
+    pub(super) fn check(&self) -> Result<(), StageError> {
+        if !(1..=MOST_AXES).contains(&self.axes.len()) {
+            return Err(StageError::Axes(self.axes.len()));
+        }
+        let tick = self.tick.tick_clocks();
+        for axis in &self.axes {
+            if axis.shaper.channels() != 3 || axis.shaper.word_bits() != 32 {
+                return Err(StageError::Channels {
+                    axis: axis.name.clone(),
+                    channels: axis.shaper.channels(),
+                    word_bits: axis.shaper.word_bits(),
+                });
+            }
+            let period = axis.pwm_period_clocks;
+            if !(2..=65_536).contains(&period) || !tick.is_multiple_of(period) {
+                return Err(StageError::Period {
+                    axis: axis.name.clone(),
+                    period,
+                    tick,
+                });
+            }
+        }
+        let schedule = self.timing();
+        match schedule.duty_clocks() < tick {
+            true => Ok(()),
+            false => Err(StageError::Schedule {
+                schedule,
+                available: tick,
+            }),
+        }
+    }
+}

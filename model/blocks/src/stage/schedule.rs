@@ -1,0 +1,72 @@
+//! The timing of a stage's computations within a tick.
+
+use std::fmt;
+
+use crate::divider_share::SHARE_CLOCKS;
+use crate::linear_scale;
+use crate::segments;
+use crate::shaper::ShaperConfig;
+use crate::sliding_mode::CONTROL_CLOCKS;
+
+/// Clocks from the tick to the divider's first operands, plus a clock for the last velocity.
+const CAPTURE_CLOCKS: u32 = 4;
+/// Clocks from the tick to the shaper's sample and from its result on: the latency of the segments, the strobe, and
+/// the test signal.
+const GENERATE_CLOCKS: u32 = segments::LATENCY_CLOCKS + 3;
+/// Clocks from the controller's `valid` to the duty at the PWM.
+const OUTPUT_CLOCKS: u32 = 2;
+
+/// The computations of a tick, in clocks after it. Shapers and divider work in parallel; all controllers start
+/// together when the longest time of the slower one is over, always in the same clock.
+///
+/// ```text
+/// tick ─┬─► capture ─► divide, one axis after the other ─► scale ─┬─► control ─► duty at the PWM, for its next boundary
+///       └─► generate ─► shape ────────────────────────────────────┘
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageSchedule {
+    divide: u32,
+    /// Clocks to convert the last velocity to counts of the scale.
+    scale: u32,
+    /// With the error table's pass behind the shaper's.
+    shape: u32,
+}
+
+impl StageSchedule {
+    /// Of axes with these shapers, and these clocks of an error table behind them; `on_scale`: the loop of one runs on its scale.
+    pub fn of(axes: &[(&ShaperConfig, u32)], on_scale: bool) -> Self {
+        let passes = axes
+            .iter()
+            .map(|(shaper, table_clocks)| shaper.pass_clocks(shaper.most_products()) + table_clocks);
+        Self {
+            divide: axes.len() as u32 * SHARE_CLOCKS,
+            scale: if on_scale { linear_scale::LATENCY_CLOCKS } else { 0 },
+            shape: passes.max().unwrap_or(0),
+        }
+    }
+
+    /// Clocks from the tick to the start of the controllers.
+    pub fn control_clocks(&self) -> u32 {
+        (CAPTURE_CLOCKS + self.divide + self.scale).max(GENERATE_CLOCKS + self.shape)
+    }
+
+    /// Clocks from the tick to the new duty, which the PWM takes at its next boundary.
+    pub fn duty_clocks(&self) -> u32 {
+        self.control_clocks() + CONTROL_CLOCKS + OUTPUT_CLOCKS
+    }
+}
+
+impl fmt::Display for StageSchedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "capture, divide and scale {CAPTURE_CLOCKS} + {} + {}, beside generate and shape {GENERATE_CLOCKS} + {}; control from {} on, \
+             {CONTROL_CLOCKS}; duty {OUTPUT_CLOCKS} later: {} clocks",
+            self.divide,
+            self.scale,
+            self.shape,
+            self.control_clocks(),
+            self.duty_clocks()
+        )
+    }
+}

@@ -1,0 +1,25 @@
+//! The tests of `posicast-blocks` in one program, because linking takes most of the time of a small test program.
+#![cfg(test)]
+
+mod axis;
+mod cascade_prop;
+mod composed;
+mod controller_commit;
+mod divider;
+mod drive_command;
+mod encoder_generator;
+mod excitation;
+mod linear_scale;
+mod link;
+mod port_tables;
+mod pulse_counter;
+mod pwm;
+mod quiet;
+mod registers;
+mod shaper_motion;
+mod shaper_prop;
+mod shaper_protocol;
+mod spi_bridge;
+mod support;
+mod trace;
+mod uart_bridge;

@@ -1,0 +1,271 @@
+//! `[[axis]]`: reading one axis, and checking that each of its blocks finds the others that it needs.
+
+use super::key::{Default, Key, Values};
+use super::range::COUNTS_PER_UNIT;
+use super::table::Table;
+use super::{
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, limits, mechanics, mode,
+    moving, pwm, scale, shaper, trace,
+};
+use crate::unit::AxisUnit;
+use posicast_blocks::shaper::MOTION_WORD_BITS;
+
+/// The keys of `[[axis]]`.
+pub(super) const KEYS: &[Key] = &[
+    Key::new("name", Values::Name, "Name of the axis, unique in the machine.").required(),
+    Key::new(
+        "counts_per_unit",
+        Values::Counts(COUNTS_PER_UNIT),
+        "Encoder counts per unit of the axis.",
+    )
+    .required(),
+    Key::new(
+        "unit",
+        Values::Word(|| AxisUnit::ALL.map(|(_, name)| name).to_vec()),
+        "Unit of all figures of the axis, including its counts.",
+    )
+    .default(Default::Word("m")),
+    Key::switch(
+        "modulo",
+        "A rotary axis without end stops: the position wraps at the end of its word.",
+    ),
+    Key::new(
+        "shaper",
+        Values::Table(shaper::KEYS),
+        "Shaper of the whole axis; leave it out where every mode has `shaper`.",
+    ),
+    Key::new(
+        "mode",
+        Values::Tables(mode::KEYS, mode::MAX_MODES),
+        "The modes of vibration; none is allowed with kind custom or none.",
+    ),
+    Key::new(
+        "mechanics",
+        Values::Table(mechanics::KEYS),
+        "Data-sheet figures of a ball screw, from which the mode is computed, in place of `[[axis.mode]]`.",
+    ),
+    Key::new(
+        "family",
+        Values::Table(moving::KEYS),
+        "Choice of the tap tables for an axis whose modes move.",
+    ),
+    Key::new(
+        "encoder",
+        Values::Table(encoder::KEYS),
+        "Encoder from which the position is read.",
+    ),
+    Key::new("scale", Values::Table(scale::KEYS), "Linear scale at the load."),
+    Key::new(
+        "pwm",
+        Values::Table(pwm::KEYS),
+        "Pulse width modulator that drives the pins.",
+    ),
+    Key::new(
+        "drive",
+        Values::Table(drive::KEYS),
+        "Drive behind the PWM: what its duty commands.",
+    ),
+    Key::new(
+        "controller",
+        Values::Table(controller::KEYS),
+        "Controller that closes the position loop.",
+    ),
+    Key::new(
+        "limits",
+        Values::Table(limits::KEYS),
+        "Limits of moves, and what the supervisor of the axis monitors.",
+    ),
+    Key::new(
+        "trace",
+        Values::Table(trace::KEYS),
+        "Trace memory that records signals of the loop.",
+    ),
+    Key::new(
+        "error_table",
+        Values::Table(error_table::KEYS),
+        "Compensates a measured error of the screw or the scale.",
+    ),
+];
+
+/// Reads one axis, whose name has been read already. Checks that need a valid clock or number format are skipped
+/// without one.
+pub(super) fn read(
+    table: &Table<'_, '_>,
+    name: Option<String>,
+    clock: Option<ClockSection>,
+    fixed_point: Option<FixedPoint>,
+) -> Option<AxisSection> {
+    table.allow(KEYS);
+    let unit = read_unit(table);
+    let counts_per_unit = table.required_counts("counts_per_unit", COUNTS_PER_UNIT, unit);
+    let choice = table
+        .table("shaper")
+        .map(|t| shaper::read(&t, clock).map(|choice| (t, choice)));
+    let kind = choice
+        .as_ref()
+        .and_then(|choice| choice.as_ref())
+        .map(|(_, choice)| choice.kind);
+    let screw = table.has("mechanics").then(|| mechanics::read(table, clock, unit));
+    let given = mode::read_all(table, clock, kind);
+    let (mut modes, mechanics) = match screw {
+        None => (given, None),
+        Some(None) => (None, None),
+        Some(Some((screw_table, mode, screw))) => (given.map(|_| vec![(screw_table, mode)]), Some(screw)),
+    };
+    let family = modes.as_mut().and_then(|modes| moving::read_family(table, modes, unit));
+    // A shaper that was refused is not compared with the modes, so that its fault is not reported twice.
+    if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
+        shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
+    }
+    let modulo = read_modulo(table, fixed_point);
+    let encoder = table.table("encoder").map(|t| encoder::read(&t));
+    let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
+    let drive = table.table("drive").map(|t| drive::read(&t, unit));
+    let controller = table.table("controller").map(|t| controller::read(&t, unit));
+    let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
+    let trace = table.table("trace").map(|t| trace::read(&t));
+    let loop_counts_per_unit = match scale {
+        Some(Some(scale)) if scale.usage == ScaleUse::Position => Some(scale.counts_per_unit),
+        _ => counts_per_unit,
+    };
+    // The position of a modulo axis wraps: any travel fits.
+    let word = loop_counts_per_unit.zip(fixed_point).filter(|_| !modulo);
+    let limits = table
+        .table("limits")
+        .map(|t| limits::read(table, &t, word, unit, clock));
+    let error_table = table.table("error_table").map(|t| {
+        let of_axis = error_table::OfAxis {
+            unit,
+            counts_per_unit: loop_counts_per_unit,
+            limits: limits.as_ref(),
+            modulo,
+            on_scale: scale.is_some_and(|scale| scale.is_some_and(|scale| scale.usage == ScaleUse::Position)),
+        };
+        error_table::read(&t, of_axis)
+    });
+    check_needs(table);
+    if let Some(family) = family.as_ref().and_then(Option::as_ref) {
+        moving::check(table, family, kind, limits.as_ref(), modulo, unit);
+    }
+    let shaper = match choice {
+        Some(choice) => Some(choice?.1),
+        None => None,
+    };
+    Some(AxisSection {
+        name: name?,
+        unit,
+        counts_per_unit: counts_per_unit?,
+        modulo,
+        shaper,
+        modes: modes?.into_iter().map(|(_, mode)| mode).collect(),
+        mechanics,
+        family: family?,
+        encoder: not_refused(encoder)?,
+        pwm: not_refused(pwm)?,
+        drive: not_refused(drive)?,
+        controller: not_refused(controller)?,
+        limits,
+        scale: not_refused(scale)?,
+        error_table: not_refused(error_table)?,
+        trace: not_refused(trace)?,
+    })
+}
+
+/// Turns what a reader returned round, so that `?` ends at a refusal: `Some(None)` where the table is absent, `None`
+/// where it was refused.
+fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
+    match read {
+        Some(value) => value.map(Some),
+        None => Some(None),
+    }
+}
+
+/// The unit of the axis's figures; metres where the file has none, or one that is refused.
+fn read_unit(table: &Table<'_, '_>) -> AxisUnit {
+    let names = AxisUnit::ALL.map(|(_, name)| name);
+    let word = table.choice_else(
+        "unit",
+        &names,
+        "write lengths in mm (an inch is 25.4 mm), angles in deg or rad",
+    );
+    let unit = AxisUnit::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    unit.map_or(AxisUnit::default(), |(unit, _)| unit)
+}
+
+/// Reads whether the axis is rotary. A rotary axis needs the shaper for motion, which not every word width has.
+fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
+    let modulo = table.boolean("modulo") == Some(true);
+    let bits = fixed_point.map(|format| format.command_bits);
+    if let Some(bits) = bits.filter(|bits| modulo && !MOTION_WORD_BITS.contains(bits)) {
+        let (least, most) = (MOTION_WORD_BITS.start(), MOTION_WORD_BITS.end());
+        let found = format!("modulo = true with command words of {bits} bits");
+        let allowed = format!("modulo = true with fixed_point.command_bits = {least} to {most}");
+        let remedy = match table.has("controller") {
+            true => format!("set fixed_point.command_bits = {most}, which a stage needs"),
+            false => format!("set fixed_point.command_bits = {least}"),
+        };
+        table.contradiction("modulo", found, allowed, remedy);
+    }
+    modulo
+}
+
+/// A block of an axis, with the other blocks that it needs.
+pub(super) struct Need {
+    pub(super) block: &'static str,
+    pub(super) others: &'static [&'static str],
+    allowed: &'static str,
+}
+
+/// Which blocks of an axis cannot work without others.
+pub(super) const NEEDS: [Need; 5] = [
+    Need {
+        block: "scale",
+        others: &["encoder"],
+        allowed: "a scale with [axis.encoder], the motor's, which it is compared with",
+    },
+    Need {
+        block: "drive",
+        others: &["pwm"],
+        allowed: "a drive with its [axis.pwm], which commands it",
+    },
+    Need {
+        block: "controller",
+        others: &["encoder", "pwm", "drive"],
+        allowed: "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
+    },
+    Need {
+        block: "error_table",
+        others: &["controller"],
+        allowed: "an error table with [axis.controller], whose reference it corrects",
+    },
+    Need {
+        block: "trace",
+        others: &["controller"],
+        allowed: "a trace with [axis.controller], whose loop it records",
+    },
+];
+
+/// Checks that every block finds the others that it cannot work without.
+fn check_needs(axis: &Table<'_, '_>) {
+    for Need { block, others, allowed } in NEEDS {
+        let missing: Vec<String> = others
+            .iter()
+            .filter(|other| axis.lacks(other))
+            .map(|other| format!("[axis.{other}]"))
+            .collect();
+        if axis.has(block) && !missing.is_empty() {
+            let missing = listed(&missing);
+            let found = format!("[axis.{block}] without {missing}");
+            let remedy = format!("add {missing}, or remove [axis.{block}]");
+            axis.contradiction(block, found, allowed, remedy);
+        }
+    }
+}
+
+/// Joins words as in `a, b and c`.
+fn listed(words: &[String]) -> String {
+    match words {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        words => words.concat(),
+    }
+}

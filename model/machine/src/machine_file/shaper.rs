@@ -1,0 +1,399 @@
+//! `[axis.shaper]`, and its checks against the modes' own `shaper` keys.
+
+use super::ClockSection;
+use super::key::{Default, Key, Values};
+use super::range::NumberRange;
+use super::table::Table;
+use posicast_optimal::{Command, Prefer};
+use posicast_shaper::axis::{AxisMode, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice};
+use posicast_shaper::design::kind::ShaperKind;
+use posicast_shaper::digitise::TAPS_MAX;
+use posicast_shaper::unit::short;
+
+/// Range of the residual that a shaper tolerates.
+pub(super) const TOLERANCE: NumberRange = NumberRange::positive(1.0).open_above();
+/// Range of the relative error of a frequency ratio.
+const RATIO_TOLERANCE: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
+/// Range of the times of the impulses of `custom` in seconds, and of their amplitudes: what 18 bits hold.
+const IMPULSE: NumberRange = NumberRange::closed(-65_535.0, 65_535.0);
+/// Largest number of impulses of `custom`: each becomes at least one tap, and the largest table holds 256.
+const MAX_IMPULSES: usize = 256;
+/// Largest distance from 1 that the decimals of amplitudes may leave in their sum.
+const SUM_ROUNDING: f64 = 1e-9;
+/// Largest number of zero pairs, or of frequencies per mode.
+const MAX_ORDER: u32 = 5;
+/// Largest search limit of `periodic`, before it is compared with the sample rate.
+const LOWEST_HZ: f64 = 1e9;
+/// Amplitudes of `simultaneous`.
+const AMPLITUDES: [&str; 2] = ["ps", "um"];
+/// Methods of `antisymmetric`.
+const METHODS: [&str; 3] = ["exact", "two-impulse", "three-impulse"];
+/// What a command behind `optimal` may do, in a word.
+const POSITIVE: &str = "positive";
+/// Bounds of a shaped step, in steps.
+const SUMS: NumberRange = NumberRange::closed(-1000.0, 1000.0);
+/// Which of the shortest shapers `optimal` takes.
+const PREFERENCES: [(&str, Prefer); 3] = [
+    ("fewest-taps", Prefer::FewestTaps),
+    ("least-residual", Prefer::LeastResidual),
+    ("least-delay", Prefer::LeastDelay),
+];
+/// Base shapers of `periodic`.
+const BASES: [ShaperKind; 3] = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi];
+
+const COMMAND: &str = "command";
+const AMPLITUDE_BOUNDS: &str = "amplitude_bounds";
+const TAPS: &str = "taps";
+const PREFER: &str = "prefer";
+
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new("kind", Values::Word(|| names(ShaperKind::is_built)), "Kind of shaper.").required(),
+    Key::new(
+        "tolerance",
+        Values::Number(TOLERANCE),
+        "Residual that an EI kind leaves at the mode, and the level at which every insensitivity is measured.",
+    )
+    .default(Default::Number(DEFAULT_TOLERANCE)),
+    ORDER,
+    Key::new(
+        "epsilon",
+        Values::Number(TOLERANCE),
+        "Bound of the residual of `vibrationless`.",
+    )
+    .default(Default::Number(DEFAULT_EPSILON)),
+    Key::new(
+        "base",
+        Values::Word(|| BASES.map(ShaperKind::name).to_vec()),
+        "Base shaper that `periodic` repeats.",
+    )
+    .default(Default::Word("multi-ei")),
+    Key::new(
+        "lowest_frequency_hz",
+        Values::Number(NumberRange::positive(LOWEST_HZ).open_above()),
+        "End of the search of `periodic`, in Hz. Absent: a tenth of the lowest mode's frequency.",
+    ),
+    Key::new(
+        "amplitude",
+        Values::Word(|| AMPLITUDES.to_vec()),
+        "Amplitudes of the impulses of `simultaneous`: ps is 1, −2, 2, …; um is 1, −1, 1, ….",
+    )
+    .default(Default::Word("ps")),
+    Key::new(
+        "method",
+        Values::Word(|| METHODS.to_vec()),
+        "Method by which `antisymmetric` is solved.",
+    )
+    .default(Default::Word("exact")),
+    Key::new(
+        "ratio_tolerance",
+        Values::Number(RATIO_TOLERANCE),
+        "Largest relative error at which `antisymmetric` takes a ratio of frequencies for odd.",
+    )
+    .default(Default::Number(0.0)),
+    Key::new(
+        COMMAND,
+        Values::WordOrPair(|| vec![POSITIVE], SUMS),
+        "What a step may do behind `optimal`: `positive`, only rise; or [low, high], stay between these multiples of itself.",
+    )
+    .default(Default::Word(POSITIVE)),
+    Key::new(
+        AMPLITUDE_BOUNDS,
+        Values::PlainPair(SUMS),
+        "Bounds of each amplitude of `optimal`, in steps, in place of `command`: [low, high] with low at most 0 and high above 0.",
+    ),
+    Key::new(
+        TAPS,
+        Values::Integer(2, TAPS_MAX as u32),
+        "Most taps of `optimal`: met by a longer duration where it must be.",
+    )
+    .default(Default::Integer(TAPS_MAX as u32)),
+    Key::new(
+        PREFER,
+        Values::Word(|| PREFERENCES.map(|(name, _)| name).to_vec()),
+        "Which of the shortest shapers `optimal` takes.",
+    )
+    .default(Default::Word("fewest-taps")),
+    Key::new(
+        "impulses",
+        Values::Pairs(IMPULSE, MAX_IMPULSES),
+        "Impulses of `custom`, [time_s, amplitude]: first time 0, times increasing, sum of the amplitudes 1.",
+    ),
+];
+
+/// The key `order`, which the shapers of an axis and of a mode share.
+pub(super) const ORDER: Key = Key::new(
+    "order",
+    Values::Integer(1, MAX_ORDER),
+    "Zero pairs of `chebyshev-ei` (default 3), or frequencies per mode of `vibrationless` (default 2).",
+);
+
+/// The kinds that have an order.
+const ORDER_KINDS: &[ShaperKind] = &[ShaperKind::ChebyshevEi, ShaperKind::Vibrationless];
+/// The keys that serve some kinds only, with those kinds.
+const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 11] = [
+    (COMMAND, &[ShaperKind::Optimal]),
+    (AMPLITUDE_BOUNDS, &[ShaperKind::Optimal]),
+    (TAPS, &[ShaperKind::Optimal]),
+    (PREFER, &[ShaperKind::Optimal]),
+    ("order", ORDER_KINDS),
+    ("epsilon", &[ShaperKind::Vibrationless]),
+    ("base", &[ShaperKind::Periodic]),
+    ("lowest_frequency_hz", &[ShaperKind::Periodic]),
+    ("amplitude", &[ShaperKind::Simultaneous]),
+    ("method", &[ShaperKind::Antisymmetric]),
+    ("ratio_tolerance", &[ShaperKind::Antisymmetric]),
+];
+
+/// Reads a kind of shaper by name. A kind that is known but not built counts as read.
+pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<ShaperKind> {
+    let built = names(ShaperKind::is_built);
+    let name = table.text(key, built.join(", "))?;
+    let Some(kind) = ShaperKind::from_name(name) else {
+        return table.choice(key, &built).and_then(ShaperKind::from_name);
+    };
+    if !kind.is_built() {
+        table.not_built(key, kind.name(), Some(built.join(", ")), "choose a kind of the list");
+    }
+    Some(kind)
+}
+
+/// Names of the kinds for which `wanted` is true.
+fn names(wanted: impl Fn(ShaperKind) -> bool) -> Vec<&'static str> {
+    ShaperKind::ALL
+        .iter()
+        .filter(|(kind, _)| wanted(*kind))
+        .map(|(_, name)| *name)
+        .collect()
+}
+
+/// Names of the kinds that can serve a single mode.
+pub(super) fn of_modes() -> Vec<&'static str> {
+    names(|kind| kind.is_built() && !kind.treats_modes_together())
+}
+
+/// Reads `order`.
+pub(super) fn order(table: &Table<'_, '_>) -> Option<u32> {
+    table.integer("order", 1, MAX_ORDER)
+}
+
+/// Reads `[axis.shaper]`.
+pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<ShaperChoice> {
+    table.allow(KEYS);
+    table.require("kind", names(ShaperKind::is_built).join(", "));
+    let kind = kind(table, "kind");
+    let half_sample_hz = clock.map_or(LOWEST_HZ, |c| c.sample_hz / 2.0);
+    let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
+    let (tolerance, order) = (table.number("tolerance", TOLERANCE), order(table));
+    let epsilon = table.number("epsilon", TOLERANCE);
+    let base = table
+        .choice("base", &BASES.map(ShaperKind::name))
+        .and_then(ShaperKind::from_name);
+    let lowest_frequency_hz = table.number("lowest_frequency_hz", lowest);
+    let amplitude = table.choice("amplitude", &AMPLITUDES).map(str::to_owned);
+    let method = table.choice("method", &METHODS).map(str::to_owned);
+    let ratio_tolerance = table.number("ratio_tolerance", RATIO_TOLERANCE);
+    let command = read_command(table);
+    let amplitudes = read_amplitude_bounds(table);
+    let taps = table.integer(TAPS, 2, TAPS_MAX as u32);
+    let prefer = table.choice(PREFER, &PREFERENCES.map(|(name, _)| name));
+    let prefer = PREFERENCES.into_iter().find(|(name, _)| Some(*name) == prefer);
+    let kind = kind?;
+    Some(ShaperChoice {
+        command: amplitudes.or(command),
+        taps,
+        prefer: prefer.map(|(_, prefer)| prefer),
+        kind,
+        tolerance,
+        order,
+        epsilon,
+        base,
+        lowest_frequency_hz,
+        amplitude,
+        method,
+        ratio_tolerance,
+        impulses: read_impulses(table, kind).unwrap_or_default(),
+    })
+}
+
+/// `"positive"`, or the bounds of the partial sums; 1, where a step ends, lies within them.
+fn read_command(table: &Table<'_, '_>) -> Option<Command> {
+    if table.has_text(COMMAND) {
+        return table.choice(COMMAND, &[POSITIVE]).map(|_| Command::Positive);
+    }
+    let [low, high] = table.numbers::<2>(COMMAND, SUMS)?;
+    if low < high && low <= 1.0 && high >= 1.0 {
+        return Some(Command::PartialSums { low, high });
+    }
+    let allowed = "[low, high] with low below high, low at most 1 and high at least 1, where a step ends";
+    table.refuse(
+        COMMAND,
+        allowed,
+        "such as `command = [-1, 1]`, or `command = \"positive\"`",
+    );
+    None
+}
+
+/// The bounds of each amplitude; 0 lies within them, because most samples have none.
+fn read_amplitude_bounds(table: &Table<'_, '_>) -> Option<Command> {
+    let [low, high] = table.numbers::<2>(AMPLITUDE_BOUNDS, SUMS)?;
+    if table.has(COMMAND) {
+        let found = format!("{AMPLITUDE_BOUNDS} beside {COMMAND}");
+        let allowed = format!("one of {AMPLITUDE_BOUNDS} and {COMMAND}");
+        let remedy = format!(
+            "remove `{COMMAND}`; `{AMPLITUDE_BOUNDS} = [0, {}]` is a positive command too",
+            short(high)
+        );
+        table.contradiction(AMPLITUDE_BOUNDS, found, allowed, remedy);
+        return None;
+    }
+    if low <= 0.0 && high > 0.0 {
+        return Some(Command::Amplitudes { low, high });
+    }
+    let allowed = "[low, high] with low at most 0 and high above 0";
+    table.refuse(AMPLITUDE_BOUNDS, allowed, "such as `amplitude_bounds = [0, 0.3]`");
+    None
+}
+
+fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f64)>> {
+    let key = "impulses";
+    if kind != ShaperKind::Custom {
+        if table.has(key) {
+            let found = format!("impulses with kind = \"{kind}\"");
+            table.contradiction(
+                key,
+                found,
+                "impulses with kind = \"custom\" only",
+                "remove impulses, or set kind = \"custom\"",
+            );
+        }
+        return None;
+    }
+    table.require(
+        key,
+        format_args!("a list of 1 to {MAX_IMPULSES} pairs [time_s, amplitude]"),
+    );
+    let rows = table.rows::<2>(key, IMPULSE, "time_s, amplitude", MAX_IMPULSES)?;
+    let impulses: Vec<(f64, f64)> = rows
+        .into_iter()
+        .map(|[time_s, amplitude]| (time_s, amplitude))
+        .collect();
+    let first_s = impulses.first()?.0;
+    if first_s != 0.0 {
+        let found = format!("a first impulse at {} s", short(first_s));
+        table.contradiction(
+            key,
+            found,
+            "a first impulse at 0 s",
+            format!("subtract {first_s} from all times"),
+        );
+    }
+    if let Some(pair) = impulses.windows(2).find(|p| p[1].0 <= p[0].0) {
+        let found = format!(
+            "an impulse at {} s after one at {} s",
+            short(pair[1].0),
+            short(pair[0].0)
+        );
+        table.contradiction(
+            key,
+            found,
+            "times that increase from impulse to impulse",
+            "sort the impulses, add those at equal times",
+        );
+    }
+    let sum: f64 = impulses.iter().map(|i| i.1).sum();
+    if (sum - 1.0).abs() > SUM_ROUNDING {
+        let found = format!("amplitudes with the sum {sum}");
+        let allowed = format!("amplitudes with the sum 1, within {SUM_ROUNDING:e}");
+        table.contradiction(key, found, allowed, format!("divide all amplitudes by {sum}"));
+    }
+    Some(impulses)
+}
+
+/// Checks an axis's shaper against its modes. Both come with their tables, which give the place of a problem.
+pub(super) fn check(
+    axis: &Table<'_, '_>,
+    shaper: Option<&(Table<'_, '_>, ShaperChoice)>,
+    modes: &[(Table<'_, '_>, AxisMode)],
+) {
+    let kind = shaper.map(|(_, choice)| choice.kind);
+    if axis.lacks("mode") && axis.lacks("mechanics") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
+        let allowed = "at least one [[axis.mode]], except with kind custom or none";
+        let remedy = format!(
+            "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"; {}",
+            super::mode::MEASURE
+        );
+        axis.contradiction("mode", "an axis without modes", allowed, remedy);
+    } else if kind.is_none() && axis.lacks("shaper") && modes.iter().any(|(_, mode)| mode.shaper.is_none()) {
+        let found = "no [axis.shaper], and a mode without `shaper`";
+        let allowed = "[axis.shaper], or `shaper` in every [[axis.mode]]";
+        axis.contradiction(
+            "shaper",
+            found,
+            allowed,
+            "add [axis.shaper] with `kind = \"zvd\"`, or another kind, or give every mode a `shaper`",
+        );
+    }
+    for (table, mode) in modes {
+        check_own_shaper(table, kind, mode);
+        let effective = mode.shaper.or(kind);
+        if mode.order.is_some() {
+            check_key(table, "order", ORDER_KINDS, effective.as_slice());
+        }
+    }
+    if let Some((table, choice)) = shaper {
+        let own_kinds = modes.iter().filter_map(|(_, mode)| mode.shaper);
+        let used: Vec<ShaperKind> = own_kinds.chain([choice.kind]).collect();
+        // The base of `periodic` has the order of its own kind.
+        let used: Vec<ShaperKind> = used.into_iter().chain(choice.base).collect();
+        for (key, kinds) in KEYS_OF_KINDS {
+            check_key(table, key, kinds, &used);
+        }
+    }
+}
+
+/// Checks a mode's own kind: it must serve a single mode, and the axis's kind must allow it.
+fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>, mode: &AxisMode) {
+    let Some(own) = mode.shaper else {
+        return;
+    };
+    if own.treats_modes_together() {
+        let found = format!("shaper = \"{own}\", which serves an axis and not one mode");
+        let allowed = of_modes().join(", ");
+        table.contradiction(
+            "shaper",
+            found,
+            allowed,
+            "set it as `kind` in [axis.shaper], or choose one of the list",
+        );
+        return;
+    }
+    match axis_kind.filter(|kind| kind.treats_modes_together()) {
+        Some(ShaperKind::Simultaneous) if !matches!(own, ShaperKind::Zv | ShaperKind::Zvd) => {
+            let found = format!("shaper = \"{own}\" under kind = \"simultaneous\"");
+            table.contradiction("shaper", found, "zv, zvd", "choose one of the list");
+        }
+        Some(ShaperKind::Simultaneous) | None => {}
+        Some(joint) => {
+            let found = format!("shaper = \"{own}\" under kind = \"{joint}\", which would ignore it");
+            let allowed = format!("no `shaper` in a mode under kind = \"{joint}\"");
+            table.contradiction(
+                "shaper",
+                found,
+                allowed,
+                "remove `shaper` here, or remove [axis.shaper]",
+            );
+        }
+    }
+}
+
+/// Checks that at least one of the kinds in use takes a key, if the key is present.
+fn check_key(table: &Table<'_, '_>, key: &str, takers: &[ShaperKind], used: &[ShaperKind]) {
+    if table.has(key) && !used.iter().any(|kind| takers.contains(kind)) {
+        let used: Vec<&str> = used.iter().map(|kind| kind.name()).collect();
+        let takers: Vec<&str> = takers.iter().map(|kind| kind.name()).collect();
+        let found = format!("{key} with kind {}", used.join(", "));
+        let allowed = format!("{key} with kind {}", takers.join(", "));
+        table.contradiction(key, found, allowed, format!("remove `{key}`: it would have no effect"));
+    }
+}

@@ -1,0 +1,416 @@
+//! An axis of the machine as the hardware sees it: PWM pins in, encoder pins out.
+//!
+//! ```text
+//! gates ─► mean of a PWM period ─► drive (first order) ─┬─ velocity ───────────────┬─► x ─► modes ─► load y
+//! drive_enable, brake_release ──────────────────────────┴─ force ─► mass, friction ┘   │               │
+//!                                        A, B, index ◄── encoder ◄── velocity drive: x; torque drive: y
+//!                                        A, B        ◄── scale   ◄───────────────────────────── y
+//! ```
+//!
+//! | | velocity drive | torque drive |
+//! |---|---|---|
+//! | `x`, the driven coordinate | the motor; the drive is stiff, so nothing acts back on it | the centre of all that is moved |
+//! | a mode | `y/x = ω²/(s² + 2ζωs + ω²)` | free vibration within the mass: `d″ + 2ζωd′ + ω²d = −x″`, `y = x + d` |
+//! | the encoder sees | `x`: the modes for which the shaper is designed are outside the loop | `y`: the modes are inside the loop |
+//! | friction | none: the drive overcomes it | viscous and Coulomb, on `x` |
+//!
+//! Vibration is always measured at the load. `docs/plant.md` has the reasons, and the idealisations.
+//!
+//! **Time** counts in clocks and is divided into cells of [`AxisPlant::cell_clocks`]. At the end of a cell the drive
+//! gets the mean of the pins over the last period of the PWM, the cell is integrated exactly, and the encoder moves
+//! to the new position during the next cell. How a time is divided into calls changes nothing: 5,000 calls with a
+//! clock each and one call with 5,000 clocks give the same edges, bit for bit.
+//!
+//! ```
+//! use posicast_machine::plant::axis::{AxisPlant, DrivePins, PlantOptions};
+//!
+//! let text = r#"
+//! name = "slide"
+//! [clock]
+//! frequency_hz = 50_000_000
+//! sample_hz = 10_000
+//! [[axis]]
+//! name = "x"
+//! counts_per_unit = 1_000_000
+//! [axis.shaper]
+//! kind = "none"
+//! [axis.pwm]
+//! mode = "locked-antiphase"
+//! frequency_hz = 20_000
+//! [axis.drive]
+//! mode = "velocity"
+//! full_scale_velocity = 0.5
+//! "#;
+//! let machine = posicast_machine::machine_file::parse("slide.toml", text)?;
+//! let mut plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default())?;
+//! let forward = DrivePins { a_high: true, b_low: true, drive_enable: true, brake_release: true, ..DrivePins::default() };
+//! plant.clocks(forward, 50_000);
+//! // A millisecond at 0.5 m/s, less half a period of 50 µs in which the mean grows.
+//! assert!((plant.motion().load - 0.5 * (1e-3 - 24e-6)).abs() < 1e-12);
+//! // The encoder is a cell behind, and a count is a micrometre.
+//! assert_eq!(plant.count(), 487);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod drive;
+mod encoder;
+mod figures;
+mod friction;
+mod modes;
+mod pins;
+mod two_mass;
+
+pub use encoder::EncoderPins;
+pub use figures::{ErrorFigures, contour_error, residual_vibration, tracking_error};
+pub use pins::DrivePins;
+
+use self::drive::Driven;
+use self::encoder::Encoder;
+use self::modes::LoadModes;
+use self::pins::PinMean;
+use super::{Plant, PlantError};
+use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode};
+
+/// Longest cell of the time grid, s: short compared with a tick and with the period of any mode.
+const CELL_S: f64 = 2e-6;
+/// Largest position in counts; up to it positions are exact to a small fraction of a count.
+const COUNTS_MAX: f64 = (1u64 << 40) as f64;
+
+/// Settings of the simulation that the machine file does not have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlantOptions {
+    /// Factor on all mode frequencies: 0.9 is a machine 10 % slower than its file. More than 0, at most 10.
+    pub frequency_factor: f64,
+    /// Initial position, m or rad.
+    pub position: f64,
+    /// Position that the encoder measures; `None`: the driven coordinate of a velocity drive, the load of a torque
+    /// drive.
+    pub encoder_at: Option<Coordinate>,
+    /// Count at which the index is, if the encoder has one.
+    pub index_at: i64,
+}
+
+impl Default for PlantOptions {
+    fn default() -> Self {
+        Self {
+            frequency_factor: 1.0,
+            position: 0.0,
+            encoder_at: None,
+            index_at: 0,
+        }
+    }
+}
+
+/// A point of the machine whose position can be measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinate {
+    /// The coordinate that the drive moves, without the modes.
+    Driven,
+    /// The load, with the modes.
+    Load,
+}
+
+/// Why an axis cannot be simulated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AxisPlantError {
+    /// A table of the axis is missing.
+    #[error("axis {axis} has no [axis.{table}]: a simulated axis needs [axis.pwm] and [axis.drive]; add it")]
+    Missing {
+        /// Name of the axis.
+        axis: String,
+        /// Name of the missing table.
+        table: &'static str,
+    },
+    /// The modes are invalid.
+    #[error("axis {axis}: {source}")]
+    Modes {
+        /// Name of the axis.
+        axis: String,
+        /// Why they are invalid.
+        source: PlantError,
+    },
+    /// The frequency factor is invalid.
+    #[error(
+        "a frequency factor of {0}: allowed is more than 0, at most 10; 0.9 is a machine 10 % slower than its file"
+    )]
+    FrequencyFactor(f64),
+    /// The initial position is outside the range of the simulation.
+    #[error(
+        "axis {axis}: a start at {position} is {counts:e} counts: at most 2^40 either way can be simulated; start nearer to 0"
+    )]
+    Position {
+        /// Name of the axis.
+        axis: String,
+        /// Initial position, m or rad.
+        position: f64,
+        /// Initial position in counts.
+        counts: f64,
+    },
+    /// The axis can be faster than one edge per clock.
+    #[error(
+        "axis {axis}: {what} is {found:e} counts per clock, and an encoder gives at most 1: use coarser counts per unit, \
+         a faster clock, or a smaller full scale"
+    )]
+    TooFast {
+        /// Name of the axis.
+        axis: String,
+        /// The fast quantity: the velocity drive's full scale, or the velocity that a torque drive gains within a
+        /// tick.
+        what: &'static str,
+        /// Counts per clock.
+        found: f64,
+    },
+}
+
+/// Motion of an axis at the end of the last whole cell. Lengths are in m or rad.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AxisMotion {
+    /// Position of the driven coordinate.
+    pub position: f64,
+    /// Velocity of the driven coordinate, per s.
+    pub velocity: f64,
+    /// Position of the load.
+    pub load: f64,
+    /// Sum of the amplitudes with which the modes ring: if the driven coordinate keeps its velocity, the load is
+    /// never farther than this from where it would be without ringing.
+    pub vibration: f64,
+    /// Mean command of the pins over the last period of the PWM, as a fraction of full scale, −1 to 1.
+    pub command: f64,
+    /// Output of the drive: current in A, or velocity per s.
+    pub drive: f64,
+}
+
+/// The simulation of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisPlant {
+    cell_clocks: u32,
+    cell_s: f64,
+    /// Clocks of the present cell that have passed.
+    passed: u32,
+    pins: PinMean,
+    command: f64,
+    driven: Driven,
+    modes: LoadModes,
+    encoder_at: Coordinate,
+    encoder: Encoder,
+    scale: Option<Encoder>,
+}
+
+impl AxisPlant {
+    /// Makes the axis of the machine file, at rest. `[axis.encoder]` says whether there is an index, and in which
+    /// direction the lines count.
+    ///
+    /// # Errors
+    /// [`AxisPlantError`] for an axis without PWM or drive, for invalid options, and for speeds above a count per
+    /// clock.
+    pub fn new(axis: &AxisSection, clock: &ClockSection, options: &PlantOptions) -> Result<Self, AxisPlantError> {
+        let name = || axis.name.clone();
+        let missing = |table| AxisPlantError::Missing { axis: name(), table };
+        let pwm = axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?;
+        let drive = axis.drive.as_ref().ok_or_else(|| missing("drive"))?;
+        let factor = options.frequency_factor;
+        if !(factor > 0.0 && factor <= 10.0) {
+            return Err(AxisPlantError::FrequencyFactor(factor));
+        }
+        // The scale is a second encoder, at the load.
+        let scale = axis.scale.map(|scale| scale.counts_per_unit);
+        let scales = [Some(axis.counts_per_unit), scale];
+        for counts_per_unit in scales.into_iter().flatten() {
+            check(axis, drive, clock, counts_per_unit, options.position)?;
+        }
+        let plant = Plant::of_axis(axis).map_err(|source| AxisPlantError::Modes { axis: name(), source })?;
+        let period_clocks = pwm.period_clocks(clock).max(1);
+        let cell_clocks = cell_clocks(clock, period_clocks);
+        let cell_s = f64::from(cell_clocks) / clock.frequency_hz;
+        let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
+        let encoder =
+            |counts_per_unit, index_at| Encoder::new(counts_per_unit, cell_clocks, index_at, options.position);
+        // The machine file says where the machine's wiring counts down, which the hardware inverts.
+        let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
+        let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
+        let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
+        let driven = Driven::new(drive, cell_s, options.position);
+        // Motor and table with stick-slip friction contain their mode.
+        let screw = axis.mechanics.as_ref();
+        let (driven, plant) = match screw.and_then(|screw| screw.stiction.map(|stiction| (screw, stiction))) {
+            Some((screw, stiction)) => {
+                let softer = screw.with_frequency_factor(factor);
+                (
+                    driven.with_stiction(drive, &softer, &stiction),
+                    Plant::of_shares(Vec::new()),
+                )
+            }
+            None => (driven, plant),
+        };
+        Ok(Self {
+            cell_clocks,
+            cell_s,
+            passed: 0,
+            pins: PinMean::new(pwm.mode, pwm.active_low, cell_clocks, period_clocks / cell_clocks),
+            command: 0.0,
+            driven,
+            modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff).along(axis, factor, options.position),
+            encoder_at: options
+                .encoder_at
+                .unwrap_or(if stiff { Coordinate::Driven } else { Coordinate::Load }),
+            encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at)).reversed(is_reversed),
+            scale: scale.map(|counts_per_unit| encoder(counts_per_unit, None).reversed(is_scale_reversed)),
+        })
+    }
+
+    /// Clocks of a cell: the largest divisor of the PWM period that lasts at most 2 µs.
+    pub fn cell_clocks(&self) -> u32 {
+        self.cell_clocks
+    }
+
+    /// Simulates this many clocks with these pins.
+    #[inline]
+    pub fn clocks(&mut self, pins: DrivePins, clocks: u64) {
+        let mut left = clocks;
+        while left > 0 {
+            let now = left.min(u64::from(self.cell_clocks - self.passed)) as u32;
+            left -= u64::from(now);
+            self.pins.add(&pins, now);
+            self.passed += now;
+            self.encoder.pass(self.passed);
+            if let Some(scale) = &mut self.scale {
+                scale.pass(self.passed);
+            }
+            if self.passed == self.cell_clocks {
+                self.end_cell();
+            }
+        }
+    }
+
+    /// Displaces the whole axis by this many counts of the encoder, as a hand or a shock would. The lines follow in
+    /// the cell after the present one.
+    pub fn displace(&mut self, counts: f64) {
+        self.driven.displace(self.encoder.length(counts));
+    }
+
+    fn end_cell(&mut self) {
+        let command = self.pins.take();
+        let before = self.driven.position;
+        self.driven.cell(&command);
+        self.modes
+            .cell((self.driven.position - before) / self.cell_s, self.driven.position);
+        self.command = command.share;
+        self.passed = 0;
+        let load = self.load();
+        self.encoder.move_to(match self.encoder_at {
+            Coordinate::Driven => self.driven.position,
+            Coordinate::Load => load,
+        });
+        if let Some(scale) = &mut self.scale {
+            scale.move_to(load);
+        }
+    }
+
+    fn load(&self) -> f64 {
+        self.driven
+            .load()
+            .map_or_else(|| self.driven.position + self.modes.deflection(), |(load, _)| load)
+    }
+
+    /// The encoder's lines in the next clock.
+    #[inline]
+    pub fn encoder(&self) -> EncoderPins {
+        self.encoder.pins()
+    }
+
+    /// The scale's lines in the next clock; without a scale they are low.
+    #[inline]
+    pub fn scale(&self) -> EncoderPins {
+        self.scale.as_ref().map_or_else(EncoderPins::default, Encoder::pins)
+    }
+
+    /// Number of clocks from now on, at least one, in which the lines of encoder and scale do not change, whatever
+    /// the pins do. It is at most a cell and a clock, because later motion is not yet known.
+    #[inline]
+    pub fn quiet_clocks(&self) -> u64 {
+        let scale = self.scale.as_ref().map_or(u32::MAX, Encoder::quiet_until);
+        u64::from(self.encoder.quiet_until().min(scale) - self.passed)
+    }
+
+    /// The encoder's count, as a counter that missed nothing shows it, counted from the initial position.
+    pub fn count(&self) -> i64 {
+        self.encoder.count()
+    }
+
+    /// The scale's count, if there is a scale.
+    pub fn scale_count(&self) -> Option<i64> {
+        self.scale.as_ref().map(Encoder::count)
+    }
+
+    /// Motion of the axis at the end of the last whole cell.
+    pub fn motion(&self) -> AxisMotion {
+        AxisMotion {
+            position: self.driven.position,
+            velocity: self.driven.velocity,
+            load: self.load(),
+            vibration: self.driven.load().map_or_else(
+                || self.modes.vibration(self.driven.velocity),
+                |(_, amplitude)| amplitude,
+            ),
+            command: self.command,
+            drive: self.driven.output(),
+        }
+    }
+
+    /// Number of clocks in which both sides of a leg were on: a short circuit, which a PWM must never make.
+    pub fn shorted_clocks(&self) -> u64 {
+        self.pins.shorted()
+    }
+}
+
+/// The longest cell that divides a period of the PWM.
+fn cell_clocks(clock: &ClockSection, period_clocks: u32) -> u32 {
+    let longest = ((clock.frequency_hz * CELL_S) as u32).clamp(1, period_clocks);
+    let divides = |cell: &u32| period_clocks.is_multiple_of(*cell);
+    (1..=longest).rev().find(divides).unwrap_or(1)
+}
+
+/// Checks that an encoder with this many counts per unit can follow the axis.
+fn check(
+    axis: &AxisSection,
+    drive: &Drive,
+    clock: &ClockSection,
+    counts_per_unit: f64,
+    position: f64,
+) -> Result<(), AxisPlantError> {
+    let counts = position * counts_per_unit;
+    if counts.is_nan() || counts.abs() > COUNTS_MAX {
+        return Err(AxisPlantError::Position {
+            axis: axis.name.clone(),
+            position,
+            counts,
+        });
+    }
+    let (what, speed) = match drive.mode {
+        DriveMode::Velocity { full_scale_velocity } => ("full scale", full_scale_velocity),
+        DriveMode::Torque {
+            equivalent_mass,
+            force_constant,
+            current_limit_a,
+            ..
+        } => {
+            let acceleration = force_constant / equivalent_mass * current_limit_a;
+            (
+                "the velocity gained within a tick",
+                acceleration * clock.sample_period_s(),
+            )
+        }
+    };
+    let found = speed * counts_per_unit / clock.frequency_hz;
+    if found <= 1.0 {
+        return Ok(());
+    }
+    Err(AxisPlantError::TooFast {
+        axis: axis.name.clone(),
+        what,
+        found,
+    })
+}
+
+#[cfg(test)]
+mod tests;
