@@ -1,6 +1,6 @@
 //! Verilog of components: blocks behind registers on an Avalon-MM agent, and the stage.
 //!
-//! `posicast_model::rtl::component` defines the parts of a component and their connections; this file adds the
+//! `posicast_blocks::component` defines the parts of a component and their connections; this file adds the
 //! modules and the top around them.
 
 use crate::emit::{EmitError, Header, Module, add, connect};

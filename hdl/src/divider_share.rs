@@ -1,6 +1,6 @@
 //! Shares one divider among all pulse counters of a stage: their divisions run one after the other, in a fixed order.
 //!
-//! The reference is `posicast_model::rtl::divider_share`.
+//! The reference is `posicast_blocks::divider_share`.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;

@@ -1,7 +1,7 @@
 //! What the axes of a stage have to do with each other: common start, group stop, emergency stop. They start in one clock, and
 //! one that stops for a fault stops all.
 //!
-//! The reference is `posicast_model::rtl::group`.
+//! The reference is `posicast_blocks::group`.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;

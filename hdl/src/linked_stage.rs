@@ -1,6 +1,6 @@
 //! The stage with its bridge in Verilog: a module that joins the two.
 //!
-//! The reference is `posicast_model::rtl::linked_stage`. It is text, not a composition: the widths of the two buses differ.
+//! The reference is `posicast_blocks::linked_stage`. It is text, not a composition: the widths of the two buses differ.
 
 use crate::emit::print::{self, Lines};
 use crate::emit::{EmitError, Header, Module, Parameter, Type, add};

@@ -1,7 +1,7 @@
 //! Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs come a clock
 //! late.
 //!
-//! The reference is `posicast_model::rtl::sample_select`.
+//! The reference is `posicast_blocks::sample_select`.
 
 use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};

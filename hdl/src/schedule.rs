@@ -1,6 +1,6 @@
 //! The schedule starts the controllers of a stage a fixed number of clocks after each tick.
 //!
-//! The reference is `posicast_model::rtl::schedule`.
+//! The reference is `posicast_blocks::schedule`.
 //!
 //! A counter runs freely from 0 in the clock after a tick, and wraps after as many bits as the time needs; synthesis
 //! removes the bits above. `waits` tells whether the end of the count matters.

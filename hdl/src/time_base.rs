@@ -1,7 +1,7 @@
 //! The time base of a component that stands alone: ticks at a fixed distance, a clock counter, a tick counter.
 //! `divide` is high in the clock after each tick.
 //!
-//! The reference is `posicast_model::rtl::time_base`.
+//! The reference is `posicast_blocks::time_base`.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;

@@ -4,7 +4,7 @@
 //! joint.N.motor-pos-cmd ─► posicast-shaper.N.pos-in … posicast-shaper.N.pos-out ─► stepgen, drive
 //! ```
 //!
-//! `docs/linuxcnc.md` has the pins. The arithmetic is `MotionShaper` of `posicast-model`, the model with which the hardware is
+//! `docs/linuxcnc.md` has the pins. The arithmetic is `MotionShaper` of `posicast-blocks`, the model with which the hardware is
 //! compared; the tables are in a file that `posicast generate --hal` writes.
 //!
 //! **No unwinding into C.** Functions that are `extern "C"` abort where a panic would leave them, which Rust guarantees since 1.81.

@@ -1,6 +1,6 @@
 //! The supervisor of an axis in hardware: it switches the outputs, starts and stops the motion, and reacts to faults.
 //!
-//! The datasheet is `docs/axis.md`, the reference `posicast_model::rtl::axis`.
+//! The datasheet is `docs/axis.md`, the reference `posicast_blocks::axis`.
 
 mod at_tick;
 mod bytes;

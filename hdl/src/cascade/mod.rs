@@ -1,6 +1,6 @@
 //! The cascade of half sums in hardware: `y_k[n] = y_{k−1}[n] + y_{k−1}[n − d_k]`, rounded once at the end.
 //!
-//! The datasheet is `docs/cascade.md`, the reference `posicast_model::rtl::cascade`.
+//! The datasheet is `docs/cascade.md`, the reference `posicast_blocks::cascade`.
 //!
 //! One kernel serves all sizes. It is compiled at three sizes, from which the emitter writes any: see `compiled`.
 

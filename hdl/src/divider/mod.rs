@@ -1,6 +1,6 @@
 //! The sequential divider in hardware: `quotient = steps · T · 2^16 / elapsed`, truncated toward zero.
 //!
-//! The datasheet is `docs/divider.md`, the reference `posicast_model::rtl::divider`.
+//! The datasheet is `docs/divider.md`, the reference `posicast_blocks::divider`.
 
 mod kernel;
 

@@ -1,7 +1,7 @@
 //! The drive command in hardware: it selects what the PWM gets: the controller's duty, in direct mode a manual one,
 //! or 0.
 //!
-//! The datasheet is `docs/drive_command.md`, the reference `posicast_model::rtl::drive_command`.
+//! The datasheet is `docs/drive_command.md`, the reference `posicast_blocks::drive_command`.
 
 mod kernel;
 

@@ -1,6 +1,6 @@
 //! The internal encoder in hardware: quadrature at a set rate, in place of the pins.
 //!
-//! The datasheet is `docs/encoder_generator.md`, the reference `posicast_model::rtl::encoder_generator`.
+//! The datasheet is `docs/encoder_generator.md`, the reference `posicast_blocks::encoder_generator`.
 
 mod kernel;
 

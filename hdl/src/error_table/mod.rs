@@ -1,6 +1,6 @@
 //! The error table in hardware: a measured error of screw or scale over position, taken from the position reference.
 //!
-//! The datasheet is `docs/error_table.md`, the reference `posicast_model::rtl::error_table`.
+//! The datasheet is `docs/error_table.md`, the reference `posicast_blocks::error_table`.
 
 mod average;
 mod entry_banks;

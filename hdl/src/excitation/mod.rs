@@ -1,6 +1,6 @@
 //! The excitation in hardware: adds a test signal to the position reference, behind the shaper.
 //!
-//! The datasheet is `docs/excitation.md`, the reference `posicast_model::rtl::excitation`.
+//! The datasheet is `docs/excitation.md`, the reference `posicast_blocks::excitation`.
 
 mod kernel;
 mod wave;

@@ -1,6 +1,6 @@
 //! The linear scale in hardware: relates the counts of a motor's encoder to those of a linear scale.
 //!
-//! The datasheet is `docs/linear_scale.md`, the reference `posicast_model::rtl::linear_scale`.
+//! The datasheet is `docs/linear_scale.md`, the reference `posicast_blocks::linear_scale`.
 
 mod kernel;
 mod serial_ratio;

@@ -1,6 +1,6 @@
 //! What the bridges of all lines share: from bytes to the bus and back, in hardware.
 //!
-//! A bridge joins a line, which gives and takes bytes, with these four. The reference is `posicast_model::rtl::link_frames`.
+//! A bridge joins a line, which gives and takes bytes, with these four. The reference is `posicast_blocks::link_frames`.
 //!
 //! | kernel | what it does |
 //! |---|---|

@@ -1,6 +1,6 @@
 //! The pulse counter in hardware: turns encoder or scale signals into position, index and velocity.
 //!
-//! The datasheet is `docs/pulse_counter.md`, the reference `posicast_model::rtl::pulse_counter`.
+//! The datasheet is `docs/pulse_counter.md`, the reference `posicast_blocks::pulse_counter`.
 
 mod decoder;
 mod glitch_filter;

@@ -1,7 +1,7 @@
 //! The PWM in hardware: turns a duty into the gates of a bridge, with dead time, minimum pulse, fault path and
 //! watchdog.
 //!
-//! The datasheet is `docs/pwm.md`, the reference `posicast_model::rtl::pwm`.
+//! The datasheet is `docs/pwm.md`, the reference `posicast_blocks::pwm`.
 
 mod carrier;
 mod command;

@@ -1,6 +1,6 @@
 //! Register banks in hardware: writes an Avalon-MM agent from its register map.
 //!
-//! The datasheet is `docs/registers.md`, the reference `posicast_model::rtl::registers`.
+//! The datasheet is `docs/registers.md`, the reference `posicast_blocks::registers`.
 //!
 //! A bank is not a RustHDL kernel: the kernel would contain only names, offsets and bits, which are in the map
 //! already, and RustHDL's struct of ports would have to be written again for every component. So the Verilog is

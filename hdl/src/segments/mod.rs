@@ -1,6 +1,6 @@
 //! The command FIFO in hardware: segments of constant jerk, integrated exactly, tick by tick.
 //!
-//! The datasheet is `docs/segments.md`, the reference `posicast_model::rtl::segments`.
+//! The datasheet is `docs/segments.md`, the reference `posicast_blocks::segments`.
 
 mod fifo;
 mod integrator;

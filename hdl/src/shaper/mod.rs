@@ -1,6 +1,6 @@
 //! The input shaper in hardware: `y[n] = saturate( (Σ c_i · x[n − d_i] + 2^(F−1)) >> F )`.
 //!
-//! The datasheet is `docs/shaper.md`, the reference `posicast_model::rtl::shaper`.
+//! The datasheet is `docs/shaper.md`, the reference `posicast_blocks::shaper`.
 //!
 //! One kernel serves all sizes of the plain shaper, and a second one all motion shapers, with channels, handover and
 //! modulo axes. Each is compiled at three sizes, from which the emitter writes any: see `compiled`. Options that

@@ -1,7 +1,7 @@
 //! The controller in hardware: computes the drive's command from reference and measurement, by sliding mode, PD or
 //! PID.
 //!
-//! The datasheet is `docs/sliding_mode.md`, the reference `posicast_model::rtl::sliding_mode`.
+//! The datasheet is `docs/sliding_mode.md`, the reference `posicast_blocks::sliding_mode`.
 //!
 //! | part | what it does |
 //! |---|---|

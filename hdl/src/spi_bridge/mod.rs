@@ -1,6 +1,6 @@
 //! The bridge from SPI to the registers in hardware.
 //!
-//! The datasheet is `docs/spi_bridge.md`, the reference `posicast_model::rtl::spi_bridge`.
+//! The datasheet is `docs/spi_bridge.md`, the reference `posicast_blocks::spi_bridge`.
 //!
 //! | kernel | what it does |
 //! |---|---|

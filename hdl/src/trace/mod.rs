@@ -1,6 +1,6 @@
 //! The trace memory in hardware: records up to four of 16 signals, row by row, around a trigger.
 //!
-//! The datasheet is `docs/trace.md`, the reference `posicast_model::rtl::trace`.
+//! The datasheet is `docs/trace.md`, the reference `posicast_blocks::trace`.
 //!
 //! One kernel serves all sizes. It is compiled at three sizes, from which the emitter writes any: see `compiled`.
 

@@ -1,6 +1,6 @@
 //! The bridge from a serial line to the registers in hardware.
 //!
-//! The datasheet is `docs/uart_bridge.md`, the reference `posicast_model::rtl::uart_bridge`.
+//! The datasheet is `docs/uart_bridge.md`, the reference `posicast_blocks::uart_bridge`.
 //!
 //! | kernel | what it does |
 //! |---|---|

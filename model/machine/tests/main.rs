@@ -20,7 +20,6 @@ mod optimal;
 mod plant_in_loop;
 mod prop_joint;
 mod prop_shapers;
-mod register_tables;
 mod segments;
 mod shaper_handover;
 mod sliding_mode;

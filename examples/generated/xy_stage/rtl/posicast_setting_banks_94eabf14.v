@@ -2,7 +2,7 @@
 // The settings of a controller that stands alone: bank 0 is a ROM with the machine's settings,
 // banks 1 and 2 can be loaded.
 //
-// The reference is `posicast_model::rtl::setting_banks`. Which rows were written since the reset is
+// The reference is `posicast_blocks::setting_banks`. Which rows were written since the reset is
 // kept in flip-flops, since a memory has no reset: others read as 0. A host reads any row back
 // while the controller is not busy.
 //

@@ -1,4 +1,4 @@
-//! A register map as Markdown: the page `docs/register-tables.md`.
+//! A register map as Markdown: the page `docs/TOP.md` of a package.
 
 use super::description::{Access, Field, Format, Register, WINDOW_WORDS};
 use super::map::RegisterMap;
@@ -6,11 +6,7 @@ use std::fmt::Write;
 
 /// The tables of a map, for each of its windows: one of its registers, one of their fields, one of each enumeration.
 pub fn markdown(map: &RegisterMap) -> String {
-    markdown_of(map, map.words() / WINDOW_WORDS)
-}
-
-/// The tables of the first windows of a map; those of further axes have the same registers as the second.
-pub fn markdown_of(map: &RegisterMap, windows: u32) -> String {
+    let windows = map.words() / WINDOW_WORDS;
     let mut text = format!("## {}\n\n{}\n\n", map.name(), map.about());
     let has_windows = map.words() > WINDOW_WORDS;
     let parts = (0..windows).map(|window| {

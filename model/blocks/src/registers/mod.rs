@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Description ─► RegisterMap ─┬─► RegisterBank          this crate: the bank, clock by clock
-//! (maps/)        (checked)    ├─► markdown              docs/register-tables.md
+//! (maps/)        (checked)    ├─► markdown              docs/TOP.md of a package
 //!                             └─► Verilog               posicast_hdl::registers
 //! ```
 //!
@@ -45,4 +45,4 @@ pub use description::{
 };
 pub use error::MapError;
 pub use map::RegisterMap;
-pub use markdown::{markdown, markdown_of};
+pub use markdown::markdown;
