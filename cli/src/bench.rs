@@ -308,7 +308,7 @@ mod tests {
     use super::clocks;
 
     #[test]
-    fn unit_clocks_are_read_as_people_write_them() {
+    fn clocks_are_read_as_people_write_them() {
         for text in ["1000000", "1_000_000", "1e6"] {
             assert_eq!(clocks(text), Ok(1_000_000));
         }

@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_versions_are_found_in_what_the_tools_print() {
+    fn versions_are_found_in_what_the_tools_print() {
         let cases = [
             ("Verilator 5.006 2023-01-22 rev (Debian 5.006-3)\n", "5.006"),
             ("g++ (Debian 12.2.0-14+deb12u1) 12.2.0\nCopyright", "12.2.0"),

@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_figure_is_for_all_axes_or_for_those_that_are_named() {
+    fn a_figure_is_for_all_axes_or_for_those_that_are_named() {
         assert_eq!("-4e-3".parse(), Ok(PerAxis::All(-0.004)));
         let named = PerAxis::Named(vec![("x".to_owned(), 40.0), ("y".to_owned(), -20.0)]);
         assert_eq!("x=40, y=-20".parse(), Ok(named));

@@ -263,7 +263,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_panel_shows_its_title_every_curve_the_band_and_the_mark() {
+    fn a_panel_shows_its_title_every_curve_the_band_and_the_mark() {
         let panel = Panel {
             title: "Residual".into(),
             x_label: "f / f0".into(),
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_band_that_is_wider_than_the_picture_fills_it_and_a_thin_one_has_ends() {
+    fn a_band_that_is_wider_than_the_picture_fills_it_and_a_thin_one_has_ends() {
         let drawn = |range: (f64, f64)| {
             let panel = Panel {
                 curves: vec![Curve::new("c", vec![(0.0, -1.0), (1.0, 1.0)])],
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_long_picture_shows_seconds() {
+    fn a_long_picture_shows_seconds() {
         let labels = [0.001, 0.3, 30.0].map(|duration_s| label("time", time_axis(duration_s)));
         assert_eq!(labels, ["time, µs", "time, ms", "time, s"]);
         assert_eq!(time_axis(0.3).of(0.25), 250.0);

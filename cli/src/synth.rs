@@ -203,7 +203,7 @@ mod tests {
     use posicast_synth::yosys::EstimateMethod;
 
     #[test]
-    fn unit_what_is_lacking_says_by_how_much_and_where() {
+    fn what_is_lacking_says_by_how_much_and_where() {
         let of = |cells| Resources {
             cells,
             ..Resources::default()

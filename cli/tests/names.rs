@@ -8,7 +8,7 @@ use std::path::PathBuf;
 const OF_EVERY_BLOCK: [&str; 2] = ["Inputs", "Outputs"];
 
 #[test]
-fn unit_a_public_type_name_has_one_meaning() {
+fn a_public_type_name_has_one_meaning() {
     let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for file in rust_sources(&["system", "model", "identify", "hdl", "waves", "testbench", "synth"]) {
         let text = std::fs::read_to_string(&file).unwrap();

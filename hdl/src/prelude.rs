@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_sign_extension_and_truncation_take_every_value() {
+    fn sign_extension_and_truncation_take_every_value() {
         for value in -128..128 {
             let short: Signed<8> = from_i64(value);
             assert_eq!(to_i64(short), value);
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_ends_of_64_bits() {
+    fn the_ends_of_64_bits() {
         for value in [i64::MIN, -1, 0, i64::MAX] {
             assert_eq!(to_i64(from_i64::<64>(value)), value);
         }

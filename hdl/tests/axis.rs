@@ -58,7 +58,7 @@ fn lockstep_everything_at_random() {
 }
 
 #[test]
-fn unit_the_verilog_has_the_ports_of_the_model() {
+fn the_verilog_has_the_ports_of_the_model() {
     let modules = emit("stage_x").unwrap();
     let top = modules.last().unwrap();
     assert_eq!(top.name.as_str(), "posicast_axis");

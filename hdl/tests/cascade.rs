@@ -75,7 +75,7 @@ fn lockstep_every_size_that_is_listed() {
 }
 
 #[test]
-fn unit_every_size_has_the_ports_of_its_model() {
+fn every_size_has_the_ports_of_its_model() {
     for config in sizes() {
         let modules = emit(&config, "stage_x").unwrap();
         let top = modules.last().unwrap();
@@ -91,7 +91,7 @@ fn unit_every_size_has_the_ports_of_its_model() {
 }
 
 #[test]
-fn unit_the_delays_stand_in_the_rom() {
+fn the_delays_stand_in_the_rom() {
     let modules = emit(&CascadeConfig::new(32, vec![5, 33]).unwrap(), "").unwrap();
     let rom = modules.iter().find(|module| module.name == "stage_delays").unwrap();
     assert!(rom.text.contains("words[1] = 6'h21; // 33 samples"), "{}", rom.text);

@@ -89,7 +89,7 @@ fn lockstep_group() {
 }
 
 #[test]
-fn unit_a_module_that_is_not_the_part_is_refused() {
+fn a_module_that_is_not_the_part_is_refused() {
     let config = DividerConfig::new(5000).unwrap();
     let part = Part::new("divider", &posicast_blocks::divider::ports());
     let inputs = ["rst", "start", "steps", "elapsed", "clear_flags"];

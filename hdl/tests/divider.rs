@@ -32,7 +32,7 @@ fn lockstep_everything_at_random() {
 }
 
 #[test]
-fn unit_the_verilog_has_the_ports_of_the_model() {
+fn the_verilog_has_the_ports_of_the_model() {
     let modules = emit(&DividerConfig::new(5000).unwrap(), "stage").unwrap();
     assert_eq!((modules.len(), modules[0].name.as_str()), (1, "posicast_divider_5000"));
     assert_eq!(modules[0].ports, ports());

@@ -34,7 +34,7 @@ fn lockstep_everything_at_random() {
 }
 
 #[test]
-fn unit_the_verilog_has_the_ports_of_the_model() {
+fn the_verilog_has_the_ports_of_the_model() {
     let modules = emit("stage").unwrap();
     let top = modules.last().unwrap();
     assert_eq!((modules.len(), top.name.as_str()), (2, "posicast_encoder_generator"));

@@ -233,7 +233,7 @@ fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
 }
 
 #[test]
-fn unit_our_kernels_keep_the_rules() {
+fn our_kernels_keep_the_rules() {
     let files = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
     let mut kernels = 0;
     for file in files {
@@ -273,7 +273,7 @@ impl Logic for Doubler {
 "#;
 
 #[test]
-fn unit_a_good_kernel_is_let_through() {
+fn a_good_kernel_is_let_through() {
     assert_eq!(broken_rules(GOOD), [""; 0]);
 }
 
@@ -296,7 +296,7 @@ fn with_the_macro() -> String {
 }
 
 #[test]
-fn unit_the_fields_of_a_kernel_macro_are_checked_too() {
+fn the_fields_of_a_kernel_macro_are_checked_too() {
     let good = with_the_macro();
     assert_eq!(broken_rules(&good), [""; 0]);
     let cases = [
@@ -324,7 +324,7 @@ fn unit_the_fields_of_a_kernel_macro_are_checked_too() {
 }
 
 #[test]
-fn unit_each_rule_that_is_broken_is_found() {
+fn each_rule_that_is_broken_is_found() {
     let cases = [
         ("Dff<Signed<8>>", "DFF<Signed<8>>", "uses DFF"),
         (

@@ -139,7 +139,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
 }
 
 #[test]
-fn unit_a_name_stands_for_one_content_in_all_machines() {
+fn a_name_stands_for_one_content_in_all_machines() {
     let mut library: BTreeMap<String, String> = BTreeMap::new();
     let mut variants: BTreeMap<String, usize> = BTreeMap::new();
     for number in 0..MACHINES {

@@ -61,7 +61,7 @@ fn lockstep_everything_at_random() {
 }
 
 #[test]
-fn unit_the_verilog_has_the_ports_of_the_model() {
+fn the_verilog_has_the_ports_of_the_model() {
     let modules = emit(&PwmConfig::new(ActiveLow::default(), 1, 1).unwrap(), "stage_x").unwrap();
     let top = modules.last().unwrap();
     assert_eq!(top.name, "posicast_pwm_1x1_0000");

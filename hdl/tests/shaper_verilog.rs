@@ -16,7 +16,7 @@ fn config(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {
 }
 
 #[test]
-fn unit_every_size_has_the_ports_of_its_model() {
+fn every_size_has_the_ports_of_its_model() {
     for word_bits in [8, 16, 24, 32] {
         for ring in RING_ADDRESS_BITS {
             for index in TAP_INDEX_BITS {
@@ -38,7 +38,7 @@ fn unit_every_size_has_the_ports_of_its_model() {
 }
 
 #[test]
-fn unit_the_machines_table_stands_in_the_rom() {
+fn the_machines_table_stands_in_the_rom() {
     let modules = emit(&config(32, 6, 6), "").unwrap();
     let rom = modules.iter().find(|module| module.name == "machine_taps").unwrap();
     assert!(
@@ -56,13 +56,13 @@ fn unit_the_machines_table_stands_in_the_rom() {
 }
 
 #[test]
-fn unit_the_same_each_time() {
+fn the_same_each_time() {
     let config = config(24, 10, 8);
     assert_eq!(emit(&config, "a"), emit(&config, "a"));
 }
 
 #[test]
-fn unit_a_prefix_that_is_no_name_is_refused() {
+fn a_prefix_that_is_no_name_is_refused() {
     for prefix in ["Stage", "1st", "a b", "a__b$"] {
         assert!(emit(&config(16, 6, 6), prefix).is_err(), "{prefix}");
     }

@@ -45,7 +45,7 @@ fn lockstep_requests_of_a_few_words() {
 }
 
 #[test]
-fn unit_the_verilog_has_the_ports_of_the_model() {
+fn the_verilog_has_the_ports_of_the_model() {
     let modules = emit("stage").unwrap();
     let top = modules.last().unwrap();
     assert_eq!((modules.len(), top.name.as_str()), (8, "posicast_spi_bridge"));

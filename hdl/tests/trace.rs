@@ -71,7 +71,7 @@ fn lockstep_every_size() {
 }
 
 #[test]
-fn unit_the_verilog_has_the_ports_of_the_model() {
+fn the_verilog_has_the_ports_of_the_model() {
     for samples in SAMPLES {
         let modules = emit(&TraceConfig::new(u64::from(samples)).unwrap(), "stage").unwrap();
         let top = modules.last().unwrap();

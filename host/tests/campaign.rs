@@ -21,7 +21,7 @@ fn run(cases: std::ops::Range<u64>, seed: u64) {
 }
 
 #[test]
-fn unit_the_comparison_finds_wrong_writes() {
+fn the_comparison_finds_wrong_writes() {
     cases::comparison_finds_wrong_writes();
 }
 

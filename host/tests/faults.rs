@@ -112,7 +112,7 @@ const FAST: LinkOptions = LinkOptions {
 };
 
 #[test]
-fn unit_words_are_read_and_written() {
+fn words_are_read_and_written() {
     let mut link = Link::new(line(0), FAST);
     assert_eq!(link.read(2, 3).unwrap(), [0x201, 0x301, 0x401]);
     let long = link.read(0, 100).unwrap();
@@ -124,7 +124,7 @@ fn unit_words_are_read_and_written() {
 }
 
 #[test]
-fn unit_what_the_bridge_refuses_is_an_error_and_does_nothing() {
+fn what_the_bridge_refuses_is_an_error_and_does_nothing() {
     let mut link = Link::new(line(0), FAST);
     let error = link.write_list(&[(1, 1), (REGISTERS, 1)]).unwrap_err();
     assert!(matches!(error, LinkError::Refused(LinkStatus::WrongAddress)), "{error}");
@@ -137,7 +137,7 @@ fn unit_what_the_bridge_refuses_is_an_error_and_does_nothing() {
 }
 
 #[test]
-fn unit_a_line_without_a_bridge_is_an_error_that_says_what_to_look_for() {
+fn a_line_without_a_bridge_is_an_error_that_says_what_to_look_for() {
     let mut link = Link::new(io::Cursor::new(vec![0_u8; 0]), FAST);
     let error = link.read(0, 1).unwrap_err().to_string();
     assert!(

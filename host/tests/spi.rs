@@ -110,7 +110,7 @@ fn options(timeout: Duration) -> LinkOptions {
 }
 
 #[test]
-fn unit_words_are_read_and_written() {
+fn words_are_read_and_written() {
     let mut link = Link::new(SpiLine::new(Bench::new(0)), options(Duration::from_secs(2)));
     assert_eq!(link.read(2, 3).unwrap(), [0x201, 0x301, 0x401]);
     let long = link.read(0, 100).unwrap();
@@ -124,7 +124,7 @@ fn unit_words_are_read_and_written() {
 
 /// Every write arrives once and in order, although one bit in 1500 is damaged.
 #[test]
-fn unit_damaged_bits_write_nothing_wrong_and_nothing_twice() {
+fn damaged_bits_write_nothing_wrong_and_nothing_twice() {
     let mut link = Link::new(SpiLine::new(Bench::new(1500)), options(Duration::from_millis(4)));
     let expected = write_and_read(&mut link, 150, 1);
     assert!(link.statistics().repeated > 10, "{:?}", link.statistics());
@@ -135,7 +135,7 @@ fn unit_damaged_bits_write_nothing_wrong_and_nothing_twice() {
 
 /// The rest of a long reply would hide the reply to what the host sends next.
 #[test]
-fn unit_a_repetition_first_takes_what_is_left_of_a_reply() {
+fn a_repetition_first_takes_what_is_left_of_a_reply() {
     let mut line = SpiLine::new(Bench::new(0));
     let frame = Request::Read { address: 0, count: 40 }.encode(0).unwrap();
     let mut reply = [0; 400];
@@ -191,7 +191,7 @@ impl SpiTransfer for Pins {
 }
 
 #[test]
-fn unit_a_host_sees_and_loads_the_stage_of_its_machine_file() {
+fn a_host_sees_and_loads_the_stage_of_its_machine_file() {
     let text = include_str!("../../examples/xy-stage.toml").to_owned() + "[link]\nline = \"spi\"\nsck_hz = 6_250_000\n";
     let machine = machine_file::parse("xy-stage.toml", &text).unwrap();
     let hardware = stage(&machine);

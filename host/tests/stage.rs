@@ -62,7 +62,7 @@ fn open<'m>(machine: &'m Machine, stage: &'m StageHardware) -> HostedStage<'m, L
 }
 
 #[test]
-fn unit_a_move_ends_on_its_target_and_the_axes_are_off() {
+fn a_move_ends_on_its_target_and_the_axes_are_off() {
     let machine = machine();
     let stage = stage(&machine);
     let mut host = open(&machine, &stage);
@@ -104,7 +104,7 @@ fn unit_a_move_ends_on_its_target_and_the_axes_are_off() {
 }
 
 #[test]
-fn unit_a_host_that_dies_in_a_move_leaves_a_machine_that_stops() {
+fn a_host_that_dies_in_a_move_leaves_a_machine_that_stops() {
     let machine = machine();
     let stage = stage(&machine);
     let mut host = open(&machine, &stage);
@@ -124,7 +124,7 @@ fn unit_a_host_that_dies_in_a_move_leaves_a_machine_that_stops() {
 
 /// The mode of the machine file is found through the line.
 #[test]
-fn unit_a_trace_of_a_shaken_axis_tells_its_mode() {
+fn a_trace_of_a_shaken_axis_tells_its_mode() {
     let machine = machine();
     let stage = stage(&machine);
     let mut host = open(&machine, &stage);
@@ -171,7 +171,7 @@ fn unit_a_trace_of_a_shaken_axis_tells_its_mode() {
 }
 
 #[test]
-fn unit_a_table_is_loaded_read_back_and_used() {
+fn a_table_is_loaded_read_back_and_used() {
     let machine = machine();
     let stage = stage(&machine);
     let mut host = open(&machine, &stage);
@@ -189,7 +189,7 @@ fn unit_a_table_is_loaded_read_back_and_used() {
 
 /// The clocks of `docs/hosts.md`, within 2 %.
 #[test]
-fn unit_calls_take_the_clocks_of_the_page() {
+fn calls_take_the_clocks_of_the_page() {
     let machine = machine();
     let stage = stage(&machine);
     let clocks = |calls: fn(&mut HostedStage<'_, LinkedBench>)| {
@@ -220,7 +220,7 @@ impl Bus for Constants {
 }
 
 #[test]
-fn unit_another_stage_is_refused_with_what_was_found_and_expected() {
+fn another_stage_is_refused_with_what_was_found_and_expected() {
     let machine = machine();
     let stage = stage(&machine);
     let constants = stage.component.map().registers().iter();

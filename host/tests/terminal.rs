@@ -37,7 +37,7 @@ impl Drop for End<'_> {
 }
 
 #[test]
-fn unit_requests_pass_through_a_terminal_without_being_changed() {
+fn requests_pass_through_a_terminal_without_being_changed() {
     let (far, near) = TTYPort::pair().unwrap();
     let port = near.name().unwrap();
     // One program holds a port: the host opens it again.
@@ -63,7 +63,7 @@ fn unit_requests_pass_through_a_terminal_without_being_changed() {
 }
 
 #[test]
-fn unit_a_port_that_is_not_there_is_named() {
+fn a_port_that_is_not_there_is_named() {
     let error = Link::open("/dev/no-such-port", 115_200, OPTIONS).unwrap_err();
     assert!(matches!(error, LinkError::Open { .. }));
     assert!(error.to_string().starts_with("/dev/no-such-port: "), "{error}");

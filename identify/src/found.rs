@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_modes_count_by_what_they_ring_with() {
+    fn modes_count_by_what_they_ring_with() {
         let found = |frequency_hz: f64, participation: f64| FoundMode {
             mode: Mode {
                 frequency_hz,

@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_modes_that_noise_shakes_are_found() {
+    fn modes_that_noise_shakes_are_found() {
         let truths = [(31.0, 0.03), (72.0, 0.02)].map(|(frequency_hz, damping)| Mode { frequency_hz, damping });
         let log = AccelerationLog {
             sample_s: 1e-3,
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_correlation_of_a_sine_is_its_cosine() {
+    fn the_correlation_of_a_sine_is_its_cosine() {
         let sine: Vec<f64> = (0..10_000).map(|n| (0.1 * f64::from(n)).sin()).collect();
         for (lag, value) in correlation(&sine, 100).iter().enumerate() {
             assert!((value - 0.5 * (0.1 * lag as f64).cos()).abs() < 1e-3);

@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_first_leaves_little_enough_and_none_that_does_is_shorter() {
+    fn the_first_leaves_little_enough_and_none_that_does_is_shorter() {
         let judgement = Judgement::default();
         let tried = recommend(&[found(40.0, 0.05, 0.7), found(90.0, 0.03, 0.3)], &judgement);
         assert_eq!(tried.len(), TRIED.len());
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_at_most_five_percent_is_at_most_five_percent() {
+    fn at_most_five_percent_is_at_most_five_percent() {
         // zv leaves 5.081 % of this mode within its interval and margin; another leaves little enough although it is shaped for 5 %.
         let mut mode = found(60.0, 0.02, 1.0);
         mode.frequency_sd_hz = 0.0;
@@ -342,7 +342,7 @@ mod tests {
     ];
 
     #[test]
-    fn unit_the_largest_acceleration_of_printers_is_klippers() {
+    fn the_largest_acceleration_of_printers_is_klippers() {
         for of in &KLIPPER {
             // They are written with nine digits.
             let sum: f64 = of.amplitudes.iter().sum();
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_slow_mode_with_a_small_share_decides() {
+    fn a_slow_mode_with_a_small_share_decides() {
         // 35.2 µm at 12 Hz and 15.0 µm at 90 Hz: a shaper for 90 Hz alone leaves 69 %.
         let modes = [found(12.0, 0.03, 0.04), found(90.0, 0.04, 0.96)];
         let judgement = Judgement::default();
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_kind_with_a_tolerance_keeps_within_it_whatever_the_damping() {
+    fn a_kind_with_a_tolerance_keeps_within_it_whatever_the_damping() {
         // Designed for exactly 5 % at 0.05, it would leave 5.1 % at the ends of the damping's interval.
         let mut vague = found(40.0, 0.05, 1.0);
         vague.damping_sd = 0.003;
@@ -399,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_without_margin_zv_leaves_nothing_of_a_mode_that_is_known() {
+    fn without_margin_zv_leaves_nothing_of_a_mode_that_is_known() {
         let mut mode = found(40.0, 0.05, 1.0);
         mode.frequency_sd_hz = 0.0;
         let judgement = Judgement {

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_ring_after_a_move_is_found_behind_its_last_push() {
+    fn the_ring_after_a_move_is_found_behind_its_last_push() {
         for (seed, modes) in [vec![(18.1, 0.05, 1.0)], vec![(24.0, 0.04, 0.6), (61.0, 0.03, 0.4)]]
             .iter()
             .enumerate()
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_amplitudes_of_accelerations_are_participations_and_those_of_positions_are_what_rings() {
+    fn amplitudes_of_accelerations_are_participations_and_those_of_positions_are_what_rings() {
         let modes = [(24.0f64, 0.04f64, 0.6), (61.0, 0.03, 0.4)];
         let rung = |amplitude: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
             let at = |t: f64| {
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_two_directions_that_ring_alike_are_asked_about() {
+    fn two_directions_that_ring_alike_are_asked_about() {
         let record = stop(&[(18.1, 0.05, 1.0)], 1);
         let log = AccelerationLog {
             sample_s: SAMPLE_S,

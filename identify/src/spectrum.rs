@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_sine_has_its_power_at_its_frequency() {
+    fn a_sine_has_its_power_at_its_frequency() {
         let sample_s = 1e-3;
         let sine: Vec<f64> = (0..20_000)
             .map(|n| 3.0 * (TAU * 50.0 * n as f64 * sample_s).sin() + 7.0)
@@ -132,12 +132,12 @@ mod tests {
     }
 
     #[test]
-    fn unit_lengths_are_products_of_small_primes() {
+    fn lengths_are_products_of_small_primes() {
         assert_eq!([7, 416_000, 419_431].map(fast_length), [8, 419_904, 419_904]);
     }
 
     #[test]
-    fn unit_there_and_back_is_the_signal() {
+    fn there_and_back_is_the_signal() {
         let signal: Vec<f64> = (0..30).map(|n| f64::from(n * n % 7)).collect();
         let transform = Transform::new(30);
         let lines = transform.forward(signal.clone());

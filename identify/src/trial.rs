@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_wrong_is_counted_and_named() {
+    fn what_is_wrong_is_counted_and_named() {
         let truths = [known(30.0, 0.05, 0.6), known(60.0, 0.03, 0.4)];
         let report_of = |list: &[FoundMode]| {
             let mut report = TrialReport::default();

@@ -84,7 +84,7 @@ fn is_the_stop(text: &str, options: &ReadOptions) -> Vec<Remark> {
 }
 
 #[test]
-fn unit_logs_of_firmware_and_tools_are_read_as_they_are() {
+fn logs_of_firmware_and_tools_are_read_as_they_are() {
     let default = ReadOptions::default();
     let mm = 1e3 * GRAVITY;
     // The file as it is written by: Klipper; Klipper with a line of statistics; a port with a line end of another system in the header;
@@ -131,7 +131,7 @@ fn unit_logs_of_firmware_and_tools_are_read_as_they_are() {
 }
 
 #[test]
-fn unit_gravity_decides_the_unit_that_a_header_does_not_state() {
+fn gravity_decides_the_unit_that_a_header_does_not_state() {
     for (header, unit, factor) in [
         ("time,x,y,z", "g", 1.0),
         ("Time,X,Y,Z", "m/s²", GRAVITY),
@@ -149,7 +149,7 @@ fn unit_gravity_decides_the_unit_that_a_header_does_not_state() {
 }
 
 #[test]
-fn unit_samples_without_times_get_them_from_the_rate() {
+fn samples_without_times_get_them_from_the_rate() {
     let numbered = |n: usize, g: &[f64; 3]| format!("{n},{:.3},{:.3},{:.3}", g[0], g[1], g[2]);
     let default = ReadOptions::default();
     // RepRapFirmware's rate stands in the last line, and its overflows are counted.
@@ -228,7 +228,7 @@ fn unit_samples_without_times_get_them_from_the_rate() {
 }
 
 #[test]
-fn unit_what_the_columns_leave_open_is_asked_with_the_option_that_decides_it() {
+fn what_the_columns_leave_open_is_asked_with_the_option_that_decides_it() {
     let flat = |n: usize, g: &[f64; 3]| format!("{:.6},{:.4},{:.4},{:.4}", n as f64 / RATE_HZ, g[0], g[1], g[2] - 1.0);
     // Without gravity, three axes may be positions; so may one or two, and two sensors are two.
     for (text, accelerations, position) in [
@@ -328,7 +328,7 @@ fn unit_what_the_columns_leave_open_is_asked_with_the_option_that_decides_it() {
 }
 
 #[test]
-fn unit_spectra_and_packed_files_are_refused_with_the_way_to_a_log() {
+fn spectra_and_packed_files_are_refused_with_the_way_to_a_log() {
     let rows = |header: &str| {
         let rows: Vec<String> = (0..100)
             .map(|n| format!("{n}.5,1.6e+03,8.5e+03,2.9e+03,1.3e+04"))

@@ -65,7 +65,7 @@ fn commands(rows: usize) -> [Vec<f64>; 2] {
 }
 
 #[test]
-fn unit_a_command_between_irregular_rows_is_refused() {
+fn a_command_between_irregular_rows_is_refused() {
     let times = times(1500, 0.4, 1);
     for command in commands(1500) {
         for mode in [None, Some(&MODE)] {
@@ -82,7 +82,7 @@ fn unit_a_command_between_irregular_rows_is_refused() {
 }
 
 #[test]
-fn unit_rows_that_waver_little_show_the_machine_and_nothing_else() {
+fn rows_that_waver_little_show_the_machine_and_nothing_else() {
     for seed in 0..5 {
         let times = times(1500, 0.09, seed);
         for command in commands(1500) {
@@ -116,7 +116,7 @@ fn unit_rows_that_waver_little_show_the_machine_and_nothing_else() {
 /// A free decay has no command that would have to be known between the rows: interpolated, it shows its mode and no
 /// other.
 #[test]
-fn unit_a_free_decay_at_irregular_times_shows_its_mode_alone() {
+fn a_free_decay_at_irregular_times_shows_its_mode_alone() {
     for seed in 0..5 {
         let times = times(1500, 0.4, seed);
         let mut noise = Noise::new(200 + seed);

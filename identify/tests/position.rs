@@ -51,7 +51,7 @@ fn check(found: &FoundInPosition, truths: &[(Mode, f64)], frequency: f64, dampin
 }
 
 #[test]
-fn unit_without_noise_every_command_gives_the_mode_to_rounding() {
+fn without_noise_every_command_gives_the_mode_to_rounding() {
     for truth in stage() {
         for command in [
             pseudo_random(1023, 1),
@@ -67,7 +67,7 @@ fn unit_without_noise_every_command_gives_the_mode_to_rounding() {
 }
 
 #[test]
-fn unit_units_change_nothing() {
+fn units_change_nothing() {
     let truths = [(stage()[1], 1.0)];
     for unit in [1e-300, 1e-9, 1e6, 1e300] {
         let mut log = log(&truths, &step(400), 0.5e-3, 0.001, 1);
@@ -82,7 +82,7 @@ fn unit_units_change_nothing() {
 }
 
 #[test]
-fn unit_with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() {
+fn with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() {
     for truth in stage() {
         // The samples per period increase, which makes plain least squares fail.
         for sample_s in [2e-3, 1e-3, 0.5e-3, 0.2e-3, 0.1e-3f64] {
@@ -100,7 +100,7 @@ fn unit_with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() 
 }
 
 #[test]
-fn unit_several_modes_close_and_weak_ones_are_told_apart() {
+fn several_modes_close_and_weak_ones_are_told_apart() {
     let machines = [
         vec![(mode(40.0, 0.03), 0.6), (mode(75.0, 0.05), 0.4)],
         vec![(mode(50.0, 0.03), 0.5), (mode(54.0, 0.03), 0.5)],
@@ -120,7 +120,7 @@ fn unit_several_modes_close_and_weak_ones_are_told_apart() {
 }
 
 #[test]
-fn unit_a_free_decay_tells_frequency_and_damping() {
+fn a_free_decay_tells_frequency_and_damping() {
     for truth in [mode(12.0, 0.02), mode(0.4, 0.005), mode(80.0, 0.1)] {
         let sample_s = 0.02 / truth.frequency_hz;
         let mut noise = Noise::new(9);
@@ -158,7 +158,7 @@ fn intervals_hold_the_truth(logs: u32) {
 }
 
 #[test]
-fn unit_stated_intervals_hold_the_truth() {
+fn stated_intervals_hold_the_truth() {
     intervals_hold_the_truth(30);
 }
 
@@ -168,7 +168,7 @@ fn long_stated_intervals_hold_the_truth_over_200_logs() {
 }
 
 #[test]
-fn unit_intervals_hold_the_truth_where_noise_has_a_memory() {
+fn intervals_hold_the_truth_where_noise_has_a_memory() {
     // Nine tenths of the noise stay from sample to sample: it lasts ten samples, in a period of fifteen.
     const STAYS: f64 = 0.9;
     let truth = stage()[0];
@@ -192,7 +192,7 @@ fn unit_intervals_hold_the_truth_where_noise_has_a_memory() {
 }
 
 #[test]
-fn unit_no_mode_is_invented() {
+fn no_mode_is_invented() {
     let mut noise = Noise::new(4);
     let mut noisy = |n: usize| (0..n).map(|_| noise.draw()).collect::<Vec<f64>>();
     let command = pseudo_random(2000, 5);
@@ -234,7 +234,7 @@ fn unit_no_mode_is_invented() {
 }
 
 #[test]
-fn unit_a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sample() {
+fn a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sample() {
     // The motor moves smoothly, and the scale is behind a mode, 20 times finer than the log, so that nothing is held.
     let truth = stage()[0];
     let fine_s = 1e-5;
@@ -290,7 +290,7 @@ fn golden_least_squares_are_the_models_of_the_stage() {
 }
 
 #[test]
-fn unit_instruments_take_the_bias_away() {
+fn instruments_take_the_bias_away() {
     // Notes, section 9: 1 % noise of the sensor moves the damping by about 1 % (X) and 5 % (Y); instrumental
     // variables leave 0.2 %.
     for truth in stage() {
@@ -309,7 +309,7 @@ fn unit_instruments_take_the_bias_away() {
 }
 
 #[test]
-fn unit_forgetting_follows_a_mode_that_moves() {
+fn forgetting_follows_a_mode_that_moves() {
     let (before, after) = (mode(100.0, 0.1), mode(120.0, 0.1));
     let command = pseudo_random(2000, 1);
     let logs = [before, after].map(|truth| log(&[(truth, 1.0)], &command, 1e-3, 0.0, 0));
@@ -327,7 +327,7 @@ fn unit_forgetting_follows_a_mode_that_moves() {
 }
 
 #[test]
-fn unit_a_mode_that_moves_during_a_log_is_said() {
+fn a_mode_that_moves_during_a_log_is_said() {
     let command = pseudo_random(2000, 2);
     let [mut first, second] = [100.0, 104.0].map(|hz| log(&[(mode(hz, 0.05), 1.0)], &command, 1e-3, 0.01, hz as u64));
     let steady = position::identify(&first).unwrap();
@@ -353,7 +353,7 @@ fn unit_a_mode_that_moves_during_a_log_is_said() {
 }
 
 #[test]
-fn unit_logs_that_cannot_be_are_refused() {
+fn logs_that_cannot_be_are_refused() {
     let good = log(&[(stage()[0], 1.0)], &step(100), 1e-3, 0.0, 0);
     let short = PositionLog {
         command: Vec::new(),

@@ -52,7 +52,7 @@ fn identify(log: &PositionLog) -> FoundInPosition {
 }
 
 #[test]
-fn unit_an_axis_that_follows_late_has_no_mode() {
+fn an_axis_that_follows_late_has_no_mode() {
     let command = pseudo_random(1500);
     for (delay, noise) in [(1, 0.0), (2, 0.0), (7, 0.01), (20, 0.01), (20, 0.0), (40, 0.003)] {
         let late = (0..1500).map(|k: usize| k.checked_sub(delay).map_or(0.0, |k| command[k]));
@@ -69,7 +69,7 @@ fn unit_an_axis_that_follows_late_has_no_mode() {
 }
 
 #[test]
-fn unit_a_tone_that_does_not_decay_is_no_mode() {
+fn a_tone_that_does_not_decay_is_no_mode() {
     let tone = |n: usize| 0.05 * (MODE.omega() * n as f64 * 1e-3).sin();
     let command = pseudo_random(1500);
     for (command, response) in [
@@ -90,7 +90,7 @@ fn unit_a_tone_that_does_not_decay_is_no_mode() {
 }
 
 #[test]
-fn unit_a_log_shorter_than_a_period_says_how_long_it_should_be() {
+fn a_log_shorter_than_a_period_says_how_long_it_should_be() {
     // The log is 30 ms of a mode with a period of 50 ms.
     let short = PositionLog {
         sample_s: 1e-4,
@@ -118,7 +118,7 @@ fn unit_a_log_shorter_than_a_period_says_how_long_it_should_be() {
 }
 
 #[test]
-fn unit_what_is_before_a_blow_is_left_out() {
+fn what_is_before_a_blow_is_left_out() {
     let struck = (0..2000).map(|n: usize| n.checked_sub(500).map_or(0.0, ring));
     let found = identify(&log(Vec::new(), noisy(struck, 0.01, 4)));
     let [only] = found.modes[..] else { panic!("{found:?}") };
@@ -131,7 +131,7 @@ fn unit_what_is_before_a_blow_is_left_out() {
 }
 
 #[test]
-fn unit_a_dead_sensor_is_refused() {
+fn a_dead_sensor_is_refused() {
     let dead = log(pseudo_random(100), vec![3.0; 100]);
     assert_eq!(
         position::identify(&dead),
@@ -143,7 +143,7 @@ fn unit_a_dead_sensor_is_refused() {
 }
 
 #[test]
-fn unit_a_step_that_has_died_away_by_half_of_the_log_is_not_said_to_move() {
+fn a_step_that_has_died_away_by_half_of_the_log_is_not_said_to_move() {
     let truth = Mode {
         frequency_hz: 131.0,
         damping: 0.158,
@@ -161,7 +161,7 @@ fn unit_a_step_that_has_died_away_by_half_of_the_log_is_not_said_to_move() {
 }
 
 #[test]
-fn unit_flat_tops_do_not_bias_a_mode() {
+fn flat_tops_do_not_bias_a_mode() {
     let truth = Mode {
         frequency_hz: 50.0,
         damping: 0.1,

@@ -45,7 +45,7 @@ fn identify(log: &PositionLog) -> FoundInPosition {
 }
 
 #[test]
-fn unit_noise_that_rings_is_no_mode() {
+fn noise_that_rings_is_no_mode() {
     let step: Vec<f64> = (0..1000).map(|n| if n < 100 { 0.0 } else { 1.0 }).collect();
     for seed in 0..3 {
         let noise = narrow(1000, seed);
@@ -63,7 +63,7 @@ fn unit_noise_that_rings_is_no_mode() {
 }
 
 #[test]
-fn unit_noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_intervals() {
+fn noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_intervals() {
     // Notes, section 9, "equation noise 1 %": the disturbance rings as the mode does. Least squares on the equation
     // are the best method for it: over 200 such logs they are off by at most 0.8 % and 5.6 %.
     const LOGS: u64 = 24;
@@ -98,7 +98,7 @@ fn unit_noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_inte
 }
 
 #[test]
-fn unit_a_decay_in_noise_that_rings_elsewhere_is_told() {
+fn a_decay_in_noise_that_rings_elsewhere_is_told() {
     let truth = Mode {
         frequency_hz: 20.0,
         damping: 0.03,

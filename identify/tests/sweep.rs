@@ -34,7 +34,7 @@ fn check(truths: &[KnownMode], found: &[FoundMode]) {
 }
 
 #[test]
-fn unit_the_modes_of_a_printers_log_are_found() {
+fn the_modes_of_a_printers_log_are_found() {
     // One mode; two; a pair 8 % apart; a weak one beside a strong one; four; one behind a rigid part of 30 %.
     let machines = [
         vec![known(44.3, 0.053, 1.0)],
@@ -91,7 +91,7 @@ fn intervals_hold_the_truth(logs: u32) {
 }
 
 #[test]
-fn unit_stated_intervals_hold_the_truth() {
+fn stated_intervals_hold_the_truth() {
     intervals_hold_the_truth(30);
 }
 
@@ -101,7 +101,7 @@ fn long_stated_intervals_hold_the_truth_over_200_logs() {
 }
 
 #[test]
-fn unit_no_mode_is_invented() {
+fn no_mode_is_invented() {
     // A rigid axis, and one whose only mode is negligible.
     for truths in [vec![], vec![known(60.0, 0.03, 0.0005)]] {
         let log = resonance_test(&truths, &quick(), &Sensor::default(), 3);
@@ -112,7 +112,7 @@ fn unit_no_mode_is_invented() {
 }
 
 #[test]
-fn unit_a_log_of_something_else_is_refused() {
+fn a_log_of_something_else_is_refused() {
     let mut noise = Noise::new(7);
     let record = (0..40_000).map(|_| noise.draw()).collect();
     let log = AccelerationLog {
@@ -153,7 +153,7 @@ fn unit_a_log_of_something_else_is_refused() {
 }
 
 #[test]
-fn unit_a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
+fn a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
     let truths = [known(60.0, 0.04, 1.0)];
     let mut log = resonance_test(&truths, &quick(), &Sensor::default(), 5);
     for (_, record) in &mut log.directions {
@@ -165,7 +165,7 @@ fn unit_a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
 }
 
 #[test]
-fn unit_a_sweep_of_which_the_log_has_neither_end_is_refused() {
+fn a_sweep_of_which_the_log_has_neither_end_is_refused() {
     // The shaking from 30 to 85 Hz at 2 Hz/s is also that of one from 5 to 135 Hz at 1 Hz/s, at twice its frequencies and in one direction.
     let driven = Sweep {
         start_hz: 30.0,
@@ -185,7 +185,7 @@ fn unit_a_sweep_of_which_the_log_has_neither_end_is_refused() {
 }
 
 #[test]
-fn unit_no_mode_is_told_of_frequencies_that_the_log_does_not_have() {
+fn no_mode_is_told_of_frequencies_that_the_log_does_not_have() {
     let truths = [known(30.0, 0.04, 0.6), known(90.0, 0.03, 0.4)];
     let mut log = resonance_test(&truths, &quick(), &Sensor::default(), 5);
     for (_, record) in &mut log.directions {
@@ -198,7 +198,7 @@ fn unit_no_mode_is_told_of_frequencies_that_the_log_does_not_have() {
 }
 
 #[test]
-fn unit_a_clock_that_drifts_is_set_by_the_sweep() {
+fn a_clock_that_drifts_is_set_by_the_sweep() {
     let truths = [known(38.0, 0.04, 0.7), known(66.0, 0.05, 0.3)];
     for error in [-2e-4, 1e-4, 5e-4] {
         let mut log = resonance_test(&truths, &Sweep::default(), &Sensor::default(), 5);
@@ -214,7 +214,7 @@ fn unit_a_clock_that_drifts_is_set_by_the_sweep() {
 }
 
 #[test]
-fn unit_a_log_that_is_mostly_noise_tells_what_it_can() {
+fn a_log_that_is_mostly_noise_tells_what_it_can() {
     let truths = [known(45.0, 0.05, 1.0)];
     let sensor = Sensor {
         noise: 15.0,

@@ -60,7 +60,7 @@ fn both_tests_tell_the_modes(rates_hz: &[f64]) {
 }
 
 #[test]
-fn unit_both_tests_of_the_firmware_tell_the_modes_at_400_and_800_hz() {
+fn both_tests_of_the_firmware_tell_the_modes_at_400_and_800_hz() {
     both_tests_tell_the_modes(&[400.0, 800.0]);
 }
 
@@ -78,7 +78,7 @@ fn case() -> AccelerationLog {
 
 /// A rigid machine under Klipper's present test from 5 to 40 Hz, by a generator that is not ours.
 #[test]
-fn unit_the_square_wave_of_a_rigid_machines_log_is_no_mode() {
+fn the_square_wave_of_a_rigid_machines_log_is_no_mode() {
     let sweep = Sweep {
         end_hz: 40.0,
         ..Sweep::default()
@@ -104,7 +104,7 @@ fn unit_the_square_wave_of_a_rigid_machines_log_is_no_mode() {
 }
 
 #[test]
-fn unit_a_wave_of_another_size_is_told_by_the_log() {
+fn a_wave_of_another_size_is_told_by_the_log() {
     let wave = SquareWave {
         acceleration: 0.25,
         period_s: 1.57,
@@ -130,7 +130,7 @@ fn unit_a_wave_of_another_size_is_told_by_the_log() {
 }
 
 #[test]
-fn unit_another_sweep_is_found_in_the_log() {
+fn another_sweep_is_found_in_the_log() {
     let truths = [known(44.0, 0.04, 0.6), known(71.0, 0.05, 0.4)];
     for (start_hz, end_hz, rate_hz_per_s, acceleration_per_hz, start_s) in [
         (30.0, 85.0, 2.0, 0.060, 0.437),
@@ -171,7 +171,7 @@ fn unit_another_sweep_is_found_in_the_log() {
 }
 
 #[test]
-fn unit_no_sweep_is_found_where_there_is_none() {
+fn no_sweep_is_found_where_there_is_none() {
     let mut noise = posicast_identify::synthetic::Noise::new(7);
     let log = AccelerationLog {
         sample_s: 1.0 / 800.0,
@@ -183,7 +183,7 @@ fn unit_no_sweep_is_found_where_there_is_none() {
 
 /// An antiresonance or a mode's phase takes the slowest pulses off the line in time and frequency, but the motion begins with them.
 #[test]
-fn unit_the_first_frequency_is_that_at_which_the_motion_begins() {
+fn the_first_frequency_is_that_at_which_the_motion_begins() {
     let machines = [
         ([known(36.3, 0.057, 0.48), known(57.0, 0.065, 0.52)], (11.0, 140.0, 1.5)),
         ([known(20.0, 0.038, 0.19), known(31.5, 0.016, 0.81)], (8.0, 85.0, 1.0)),
@@ -213,7 +213,7 @@ fn unit_the_first_frequency_is_that_at_which_the_motion_begins() {
 }
 
 #[test]
-fn unit_a_log_that_is_shorter_than_a_test_with_a_square_wave_is_no_reason_to_stop() {
+fn a_log_that_is_shorter_than_a_test_with_a_square_wave_is_no_reason_to_stop() {
     let described = |end_hz: f64| Sweep {
         start_hz: 11.0,
         end_hz,

@@ -4,7 +4,7 @@ use posicast_identify::trial;
 
 /// `posicast campaign identify` has as many as you like.
 #[test]
-fn unit_the_modes_of_random_machines_are_found_again() {
+fn the_modes_of_random_machines_are_found_again() {
     let report = trial::run(0..8);
     assert_eq!((report.logs, report.wrong.as_slice()), (8, &[][..]));
     assert!(report.modes > report.logs && report.frequencies_held <= report.modes);

@@ -59,7 +59,7 @@ proptest! {
 }
 
 #[test]
-fn unit_the_servo_thread_allocates_and_frees_nothing() {
+fn the_servo_thread_allocates_and_frees_nothing() {
     let mut axis = Axis::new(&tables(false)).unwrap();
     let ends = assert_no_alloc(|| {
         let period = |n: u32| axis.update(f64::from(n) * 0.01, n / 40 % 3, !n.is_multiple_of(500));
@@ -69,7 +69,7 @@ fn unit_the_servo_thread_allocates_and_frees_nothing() {
 }
 
 #[test]
-fn unit_a_disabled_axis_passes_its_command_on_and_begins_anew() {
+fn a_disabled_axis_passes_its_command_on_and_begins_anew() {
     let mut axis = Axis::new(&tables(false)).unwrap();
     for at in [3.0, -8.0, 5.0] {
         assert_eq!(axis.update(at, 0, false).position, at);
@@ -84,7 +84,7 @@ fn unit_a_disabled_axis_passes_its_command_on_and_begins_anew() {
 }
 
 #[test]
-fn unit_no_command_makes_it_jump() {
+fn no_command_makes_it_jump() {
     let mut axis = Axis::new(&tables(false)).unwrap();
     axis.update(1.0, 0, true);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
@@ -102,7 +102,7 @@ fn unit_no_command_makes_it_jump() {
 }
 
 #[test]
-fn unit_a_rotary_axis_turns_on_past_the_end_of_its_word() {
+fn a_rotary_axis_turns_on_past_the_end_of_its_word() {
     let tables = AxisShaperTables {
         word_bits: 18,
         ..tables(true)

@@ -59,7 +59,7 @@ fn golden_bounded_amplitudes_are_as_short_as_the_vector_diagram_says() {
 }
 
 #[test]
-fn unit_a_wide_bound_is_none_and_a_narrow_one_costs_duration() {
+fn a_wide_bound_is_none_and_a_narrow_one_costs_duration() {
     let samples = |command| {
         let request = Request {
             command,
@@ -74,7 +74,7 @@ fn unit_a_wide_bound_is_none_and_a_narrow_one_costs_duration() {
 }
 
 #[test]
-fn unit_integers_stay_within_the_bounds_of_amplitudes() {
+fn integers_stay_within_the_bounds_of_amplitudes() {
     for (low, high, prefer) in [
         (0.0, 0.3, Prefer::FewestTaps),
         (0.0, 0.07, Prefer::LeastResidual),
@@ -95,7 +95,7 @@ fn unit_integers_stay_within_the_bounds_of_amplitudes() {
 }
 
 #[test]
-fn unit_units_that_move_for_the_residual_stay_within_the_bounds() {
+fn units_that_move_for_the_residual_stay_within_the_bounds() {
     // So few fraction bits that rounding breaks the tolerance, and units move.
     let mut moved = 0;
     for (high, prefer) in [
@@ -131,7 +131,7 @@ fn unit_units_that_move_for_the_residual_stay_within_the_bounds() {
 }
 
 #[test]
-fn unit_where_the_sum_decides_the_duration_the_proof_has_no_points() {
+fn where_the_sum_decides_the_duration_the_proof_has_no_points() {
     // A tolerance that a sixth of a period keeps, but forty amplitudes are needed for the sum.
     let found = shortest(&bounded(0.0, 0.0253, 0.95)).unwrap();
     assert_eq!(found.least_samples, 39);
@@ -140,7 +140,7 @@ fn unit_where_the_sum_decides_the_duration_the_proof_has_no_points() {
 }
 
 #[test]
-fn unit_amplitudes_that_never_sum_to_one_are_refused() {
+fn amplitudes_that_never_sum_to_one_are_refused() {
     let short = Request {
         longest_samples: 50,
         ..bounded(0.0, 0.019, 0.05)

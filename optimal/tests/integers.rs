@@ -22,7 +22,7 @@ fn integers(request: &Request, fraction: u32) -> (Vec<(u32, i64)>, f64) {
 }
 
 #[test]
-fn unit_integers_keep_every_tolerance_to_a_unit_of_the_last_place() {
+fn integers_keep_every_tolerance_to_a_unit_of_the_last_place() {
     // ±10 % has no room at its least duration: two dozen integers cannot meet a dozen peaks to the last digit.
     for (width, units_above) in [(0.0, 0.0), (0.05, 0.0), (0.1, 1.0)] {
         let request = request(400.0, &four_modes(), 0.05, width);
@@ -34,7 +34,7 @@ fn unit_integers_keep_every_tolerance_to_a_unit_of_the_last_place() {
 }
 
 #[test]
-fn unit_signed_integers_stay_within_their_bounds_exactly() {
+fn signed_integers_stay_within_their_bounds_exactly() {
     let request = Request {
         command: SIGNED,
         ..request(20_000.0, &TWO_MODES, 0.001, 0.0)
@@ -49,7 +49,7 @@ fn unit_signed_integers_stay_within_their_bounds_exactly() {
 }
 
 #[test]
-fn unit_units_move_where_rounding_alone_breaks_a_tolerance() {
+fn units_move_where_rounding_alone_breaks_a_tolerance() {
     // Six fraction bits: a unit is 1.6 %, and the nearest integers leave more than the 5 % that better ones do.
     let request = request(200.0, &[(1.0, 0.0)], 0.05, 0.1);
     let exact = [(0, 0.2625), (89, 0.475), (178, 0.2625)];

@@ -23,7 +23,7 @@ fn mean_square(request: &Request, taps: &[(u32, f64)]) -> f64 {
 }
 
 #[test]
-fn unit_each_preference_is_best_at_what_it_prefers() {
+fn each_preference_is_best_at_what_it_prefers() {
     // Longer than the shortest: then there is a choice.
     let with = |prefer| {
         let request = Request {
@@ -54,7 +54,7 @@ fn unit_each_preference_is_best_at_what_it_prefers() {
 }
 
 #[test]
-fn unit_a_tap_budget_is_met_by_a_longer_duration() {
+fn a_tap_budget_is_met_by_a_longer_duration() {
     let four = request(400.0, &four_modes(), 0.05, 0.0);
     let free = shortest(&four).unwrap();
     let budget = Request {
@@ -70,7 +70,7 @@ fn unit_a_tap_budget_is_met_by_a_longer_duration() {
 }
 
 #[test]
-fn unit_a_budget_that_cannot_be_met_says_what_was_found() {
+fn a_budget_that_cannot_be_met_says_what_was_found() {
     // Two taps have one zero: they hold no band of ±20 %.
     let budget = Request {
         most_taps: 2,
@@ -83,7 +83,7 @@ fn unit_a_budget_that_cannot_be_met_says_what_was_found() {
 }
 
 #[test]
-fn unit_signed_commands_stay_within_their_bounds() {
+fn signed_commands_stay_within_their_bounds() {
     let request = Request {
         command: SIGNED,
         ..request(20_000.0, &TWO_MODES, 0.001, 0.0)
@@ -98,7 +98,7 @@ fn unit_signed_commands_stay_within_their_bounds() {
 }
 
 #[test]
-fn unit_a_band_of_damping_is_held_inside_too() {
+fn a_band_of_damping_is_held_inside_too() {
     let request = Request {
         bands: vec![Band {
             frequency_hz: [9.0, 11.0],
@@ -115,7 +115,7 @@ fn unit_a_band_of_damping_is_held_inside_too() {
 }
 
 #[test]
-fn unit_a_finer_grid_is_never_longer() {
+fn a_finer_grid_is_never_longer() {
     let duration_s = |sample_hz: f64| {
         let found = shortest(&request(sample_hz, &four_modes(), 0.05, 0.0)).unwrap();
         f64::from(found.least_samples) / sample_hz
@@ -125,7 +125,7 @@ fn unit_a_finer_grid_is_never_longer() {
 }
 
 #[test]
-fn unit_more_duration_buys_fewer_taps_or_less_residual() {
+fn more_duration_buys_fewer_taps_or_less_residual() {
     let request = request(400.0, &four_modes(), 0.05, 0.0);
     let least = shortest(&request).unwrap().least_samples;
     let points = front(&request, &[least, least + 16, least + 40]).unwrap();

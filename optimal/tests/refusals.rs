@@ -8,7 +8,7 @@ fn refused(request: &Request) -> OptimalError {
 }
 
 #[test]
-fn unit_bands_beyond_the_samples_are_refused() {
+fn bands_beyond_the_samples_are_refused() {
     let base = request(100.0, &[(10.0, 0.0)], 0.05, 0.1);
     for (frequency_hz, damping) in [
         ([0.0, 10.0], [0.0; 2]),
@@ -31,7 +31,7 @@ fn unit_bands_beyond_the_samples_are_refused() {
 }
 
 #[test]
-fn unit_a_tolerance_lies_between_nothing_and_everything() {
+fn a_tolerance_lies_between_nothing_and_everything() {
     for tolerance in [0.0, 1.0, -0.1, f64::NAN, f64::INFINITY] {
         let error = refused(&request(100.0, &[(10.0, 0.0)], tolerance, 0.1));
         assert!(matches!(error, OptimalError::Tolerance { band: 0, .. }), "{error}");
@@ -39,7 +39,7 @@ fn unit_a_tolerance_lies_between_nothing_and_everything() {
 }
 
 #[test]
-fn unit_what_is_longer_than_the_longest_says_how_much_is_left() {
+fn what_is_longer_than_the_longest_says_how_much_is_left() {
     for command in [posicast_optimal::Command::Positive, SIGNED] {
         let short = Request {
             longest_samples: 20,

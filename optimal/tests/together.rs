@@ -107,7 +107,7 @@ fn golden_a_lag_that_no_shaper_makes_up_for_costs_duration() {
 }
 
 #[test]
-fn unit_axes_that_never_meet_are_refused() {
+fn axes_that_never_meet_are_refused() {
     let mut partners = [partner(20.0, 0.0), partner(12.0, 500.0)];
     for partner in &mut partners {
         partner.request.longest_samples = 40;
@@ -127,7 +127,7 @@ fn unit_axes_that_never_meet_are_refused() {
 }
 
 #[test]
-fn unit_the_other_axes_keep_their_preference_and_their_budget() {
+fn the_other_axes_keep_their_preference_and_their_budget() {
     let mut partners = [partner(12.0, 0.0), partner(20.0, 0.0)];
     let taps = |partners: &[Partner]| together(partners).unwrap().taps[0].len();
     let few = taps(&partners);
@@ -146,7 +146,7 @@ fn unit_the_other_axes_keep_their_preference_and_their_budget() {
 }
 
 #[test]
-fn unit_the_delay_is_above_its_bound_by_the_room_for_rounding_alone() {
+fn the_delay_is_above_its_bound_by_the_room_for_rounding_alone() {
     // Of a tolerance of 5 %, 8e-5 are left for rounding.
     let room = 8e-5;
     let at = |tolerance: f64| {

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_links_to_pages_that_are_missing_become_words() {
+    fn links_to_pages_that_are_missing_become_words() {
         let text = "see [the pin rule](pwm.md#the-pin-rule), [area](area.md) and [below](#below), x[0] (y)";
         let kept = with_links_to(text, |name| name == "pwm");
         assert_eq!(
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_page_that_a_folder_links_to_is_in_it() {
+    fn every_page_that_a_folder_links_to_is_in_it() {
         for (built, pages) in [
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),

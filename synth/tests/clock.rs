@@ -33,7 +33,7 @@ fn netlist_a_longer_carry_is_a_slower_clock() {
 }
 
 #[test]
-fn unit_what_is_missing_is_named() {
+fn what_is_missing_is_named() {
     let missing = PlaceAndRoute::at(Path::new("no-such-nextpnr")).unwrap_err();
     assert!(matches!(missing, ClockError::Missing(_)));
     assert!(
@@ -43,7 +43,7 @@ fn unit_what_is_missing_is_named() {
 }
 
 #[test]
-fn unit_a_design_that_is_refused_or_takes_too_long_is_an_error() {
+fn a_design_that_is_refused_or_takes_too_long_is_an_error() {
     let yosys = Yosys::installed().unwrap();
     let refused = tool().highest_mhz(&yosys, &rtl("broken"), "broken").unwrap_err();
     assert!(matches!(refused, ClockError::Yosys(_)), "{refused}");

@@ -48,7 +48,7 @@ fn written() -> (TempDir, PathBuf) {
 }
 
 #[test]
-fn unit_a_new_folder_is_made_and_read_back() {
+fn a_new_folder_is_made_and_read_back() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("a/b/out");
     let paths = write(&folder, &FILES).unwrap().files;
@@ -69,14 +69,14 @@ fn unit_a_new_folder_is_made_and_read_back() {
 }
 
 #[test]
-fn unit_an_empty_folder_is_ours() {
+fn an_empty_folder_is_ours() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &FILES).unwrap();
     assert!(package::read(folder.path()).is_ok());
 }
 
 #[test]
-fn unit_the_same_files_give_the_same_bytes() {
+fn the_same_files_give_the_same_bytes() {
     let (_a, first) = written();
     let scratch = tempfile::tempdir().unwrap();
     let mut reversed = FILES;
@@ -88,7 +88,7 @@ fn unit_the_same_files_give_the_same_bytes() {
 }
 
 #[test]
-fn unit_a_folder_of_somebody_else_is_refused_untouched() {
+fn a_folder_of_somebody_else_is_refused_untouched() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
     let before = snapshot(folder.path());
@@ -102,7 +102,7 @@ fn unit_a_folder_of_somebody_else_is_refused_untouched() {
 }
 
 #[test]
-fn unit_a_file_is_no_folder() {
+fn a_file_is_no_folder() {
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("out");
     fs::write(&file, "text").unwrap();
@@ -111,7 +111,7 @@ fn unit_a_file_is_no_folder() {
 }
 
 #[test]
-fn unit_somebody_elses_manifest_is_refused() {
+fn somebody_elses_manifest_is_refused() {
     for text in [
         "",
         "{}",
@@ -128,7 +128,7 @@ fn unit_somebody_elses_manifest_is_refused() {
 }
 
 #[test]
-fn unit_a_manifest_cannot_point_outside() {
+fn a_manifest_cannot_point_outside() {
     let scratch = tempfile::tempdir().unwrap();
     fs::write(scratch.path().join("victim"), "").unwrap();
     let folder = scratch.path().join("out");
@@ -141,7 +141,7 @@ fn unit_a_manifest_cannot_point_outside() {
 }
 
 #[test]
-fn unit_an_edited_file_stops_the_next_run_before_anything_is_written() {
+fn an_edited_file_stops_the_next_run_before_anything_is_written() {
     let (_scratch, folder) = written();
     fs::write(
         folder.join("rtl/shaper_x.v"),
@@ -164,7 +164,7 @@ fn unit_an_edited_file_stops_the_next_run_before_anything_is_written() {
 }
 
 #[test]
-fn unit_an_edit_during_the_run_is_seen_at_the_end() {
+fn an_edit_during_the_run_is_seen_at_the_end() {
     let (_scratch, folder) = written();
     let mut package = Package::open(&folder, "xy_stage").unwrap();
     package.add("machine.toml", b"new").unwrap();
@@ -174,7 +174,7 @@ fn unit_an_edit_during_the_run_is_seen_at_the_end() {
 }
 
 #[test]
-fn unit_an_edit_that_equals_the_new_file_is_no_conflict() {
+fn an_edit_that_equals_the_new_file_is_no_conflict() {
     let (_scratch, folder) = written();
     let mut package = Package::open(&folder, "xy_stage").unwrap();
     package.add("machine.toml", b"new").unwrap();
@@ -183,7 +183,7 @@ fn unit_an_edit_that_equals_the_new_file_is_no_conflict() {
 }
 
 #[test]
-fn unit_files_no_longer_produced_go_and_extra_files_stay() {
+fn files_no_longer_produced_go_and_extra_files_stay() {
     let (_scratch, folder) = written();
     fs::write(folder.join("notes.txt"), "mine").unwrap();
     write(&folder, &[("machine.toml", "x"), ("sopc/driver.h", "y")]).unwrap();
@@ -196,7 +196,7 @@ fn unit_files_no_longer_produced_go_and_extra_files_stay() {
 }
 
 #[test]
-fn unit_a_file_in_the_way_is_never_overwritten() {
+fn a_file_in_the_way_is_never_overwritten() {
     let (_scratch, folder) = written();
     fs::write(folder.join("report.json"), "mine").unwrap();
     let before = snapshot(&folder);
@@ -210,7 +210,7 @@ fn unit_a_file_in_the_way_is_never_overwritten() {
 
 #[cfg(unix)]
 #[test]
-fn unit_links_are_not_followed_out_of_the_folder() {
+fn links_are_not_followed_out_of_the_folder() {
     let (scratch, folder) = written();
     let outside = scratch.path().join("outside");
     fs::rename(folder.join("rtl"), &outside).unwrap();
@@ -225,7 +225,7 @@ fn unit_links_are_not_followed_out_of_the_folder() {
 }
 
 #[test]
-fn unit_a_dropped_package_leaves_nothing() {
+fn a_dropped_package_leaves_nothing() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("a/out");
     let mut package = Package::open(&folder, "xy_stage").unwrap();
@@ -236,7 +236,7 @@ fn unit_a_dropped_package_leaves_nothing() {
 }
 
 #[test]
-fn unit_an_announced_file_that_nobody_wrote_is_an_error() {
+fn an_announced_file_that_nobody_wrote_is_an_error() {
     let (_scratch, folder) = written();
     let before = snapshot(&folder);
     let mut package = Package::open(&folder, "xy_stage").unwrap();
@@ -247,7 +247,7 @@ fn unit_an_announced_file_that_nobody_wrote_is_an_error() {
 }
 
 #[test]
-fn unit_paths_are_checked_and_taken_once() {
+fn paths_are_checked_and_taken_once() {
     let folder = tempfile::tempdir().unwrap();
     let mut package = Package::open(folder.path(), "m").unwrap();
     assert!(matches!(package.add("../evil", b""), Err(PackageError::Path { .. })));
@@ -256,7 +256,7 @@ fn unit_paths_are_checked_and_taken_once() {
 }
 
 #[test]
-fn unit_two_runs_on_one_folder_exclude_each_other() {
+fn two_runs_on_one_folder_exclude_each_other() {
     let scratch = tempfile::tempdir().unwrap();
     let first = Package::open(scratch.path(), "m").unwrap();
     assert!(matches!(Package::open(scratch.path(), "m"), Err(PackageError::Busy(_))));
@@ -265,7 +265,7 @@ fn unit_two_runs_on_one_folder_exclude_each_other() {
 }
 
 #[test]
-fn unit_what_a_killed_run_left_staged_goes() {
+fn what_a_killed_run_left_staged_goes() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir_all(folder.path().join(".posicast-staging/rtl")).unwrap();
     write(folder.path(), &FILES).unwrap();
@@ -274,7 +274,7 @@ fn unit_what_a_killed_run_left_staged_goes() {
 }
 
 #[test]
-fn unit_a_file_where_a_folder_belongs_is_refused_untouched() {
+fn a_file_where_a_folder_belongs_is_refused_untouched() {
     let (_scratch, folder) = written();
     fs::write(folder.join("wave"), "mine").unwrap();
     let before = snapshot(&folder);
@@ -287,7 +287,7 @@ fn unit_a_file_where_a_folder_belongs_is_refused_untouched() {
 }
 
 #[test]
-fn unit_what_is_missing_is_named() {
+fn what_is_missing_is_named() {
     let (_scratch, folder) = written();
     let files = package::read(&folder).unwrap().rtl;
     let text = fs::read(&files[0]).unwrap();
@@ -333,7 +333,7 @@ fn generated(machine: &'static str) -> Vec<(&'static str, &'static str)> {
 }
 
 #[test]
-fn unit_evidence_stays_as_long_as_machine_file_and_verilog_are_what_it_is_about() {
+fn evidence_stays_as_long_as_machine_file_and_verilog_are_what_it_is_about() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("out");
     let files = &generated("1\n");
@@ -366,7 +366,7 @@ fn unit_evidence_stays_as_long_as_machine_file_and_verilog_are_what_it_is_about(
 }
 
 #[test]
-fn unit_evidence_of_another_machine_file_or_other_verilog_goes_and_is_named() {
+fn evidence_of_another_machine_file_or_other_verilog_goes_and_is_named() {
     let other_verilog = {
         let mut files = generated("1\n");
         files[1].1 = "module other; endmodule\n";
@@ -393,7 +393,7 @@ fn unit_evidence_of_another_machine_file_or_other_verilog_goes_and_is_named() {
 }
 
 #[test]
-fn unit_evidence_that_the_user_deleted_is_not_missed() {
+fn evidence_that_the_user_deleted_is_not_missed() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("out");
     let files: Vec<_> = generated("1\n")

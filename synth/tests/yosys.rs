@@ -177,14 +177,14 @@ fn netlist_paths_with_spaces_work() {
 }
 
 #[test]
-fn unit_a_missing_tool_is_its_own_error() {
+fn a_missing_tool_is_its_own_error() {
     let error = Yosys::at(Path::new("/nowhere/yosys")).unwrap_err();
     assert!(matches!(error, YosysError::Missing(_)), "{error}");
     assert!(error.to_string().contains("apt-get install"), "{error}");
 }
 
 #[test]
-fn unit_a_file_that_is_missing_is_named() {
+fn a_file_that_is_missing_is_named() {
     let yosys = Yosys::installed().unwrap();
     let error = yosys.check(&rtl(&["nothing"]), "nothing").unwrap_err();
     assert!(
@@ -195,7 +195,7 @@ fn unit_a_file_that_is_missing_is_named() {
 
 #[cfg(unix)]
 #[test]
-fn unit_a_tool_that_hangs_is_stopped() {
+fn a_tool_that_hangs_is_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("yosys");
     std::fs::write(&program, "#!/bin/sh\n[ \"$2\" = -V ] && exit 0\nexec sleep 60\n").unwrap();

@@ -264,7 +264,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_what_is_struck_off_is_not_listed_any_more() {
+    fn what_is_struck_off_is_not_listed_any_more() {
         let paths = || list().leftovers.values().cloned().collect::<Vec<_>>();
         let leftover = Leftover::Tree(PathBuf::from("/nowhere/a folder of this test"));
         let make = || Ok::<_, io::Error>(((), vec![leftover.clone()]));
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_leftover_is_removed_as_its_kind_says() {
+    fn a_leftover_is_removed_as_its_kind_says() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         fs::create_dir_all(path("tree/inner")).unwrap();

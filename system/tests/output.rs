@@ -34,7 +34,7 @@ fn claim(force: bool, path: &Path) -> Result<(), OutputError> {
 }
 
 #[test]
-fn unit_a_machine_file_is_replaced_by_a_machine_file_alone() {
+fn a_machine_file_is_replaced_by_a_machine_file_alone() {
     let scratch = Scratch::new();
     let path = scratch.path("mill.toml");
     write_text(&path, "name = 1\n").unwrap();
@@ -49,7 +49,7 @@ fn unit_a_machine_file_is_replaced_by_a_machine_file_alone() {
 }
 
 #[test]
-fn unit_a_file_of_posicast_is_known_as_long_as_nobody_changes_it() {
+fn a_file_of_posicast_is_known_as_long_as_nobody_changes_it() {
     let scratch = Scratch::new();
     for text in [
         "<svg/>\n",
@@ -85,7 +85,7 @@ fn unit_a_file_of_posicast_is_known_as_long_as_nobody_changes_it() {
 }
 
 #[test]
-fn unit_a_long_file_is_sealed_to_its_end() {
+fn a_long_file_is_sealed_to_its_end() {
     let scratch = Scratch::new();
     let path = scratch.path("long");
     let mut draft = Draft::new(&path).unwrap();
@@ -103,7 +103,7 @@ fn unit_a_long_file_is_sealed_to_its_end() {
 }
 
 #[test]
-fn unit_a_draft_that_is_dropped_leaves_nothing() {
+fn a_draft_that_is_dropped_leaves_nothing() {
     let scratch = Scratch::new();
     let path = scratch.file("file", "mine");
     let mut draft = Draft::new(&path).unwrap();
@@ -115,7 +115,7 @@ fn unit_a_draft_that_is_dropped_leaves_nothing() {
 
 #[cfg(unix)]
 #[test]
-fn unit_an_input_is_never_replaced_under_whatever_name() {
+fn an_input_is_never_replaced_under_whatever_name() {
     let scratch = Scratch::new();
     let input = scratch.path("machine.toml");
     // Even a file of posicast's own is an input here.
@@ -148,7 +148,7 @@ fn unit_an_input_is_never_replaced_under_whatever_name() {
 }
 
 #[test]
-fn unit_what_is_no_place_for_a_file_is_told() {
+fn what_is_no_place_for_a_file_is_told() {
     let scratch = Scratch::new();
     assert!(matches!(claim(true, scratch.0.path()), Err(OutputError::Folder { .. })));
     assert!(matches!(
@@ -171,7 +171,7 @@ fn unit_what_is_no_place_for_a_file_is_told() {
 
 #[cfg(unix)]
 #[test]
-fn unit_a_link_stays_and_the_file_behind_it_is_written() {
+fn a_link_stays_and_the_file_behind_it_is_written() {
     let scratch = Scratch::new();
     std::os::unix::fs::symlink("behind", scratch.path("link")).unwrap();
     for text in ["one\n", "two\n"] {
@@ -185,7 +185,7 @@ fn unit_a_link_stays_and_the_file_behind_it_is_written() {
 
 #[cfg(unix)]
 #[test]
-fn unit_a_device_or_a_pipe_is_written_to_and_stays() {
+fn a_device_or_a_pipe_is_written_to_and_stays() {
     let null = Path::new("/dev/null");
     claim(false, null).unwrap();
     write_text(null, "gone\n").unwrap();

@@ -208,7 +208,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_initial_values_go_and_nothing_else() {
+    fn initial_values_go_and_nothing_else() {
         let modules = posicast_hdl::axis::emit("").unwrap();
         let before: usize = modules
             .iter()

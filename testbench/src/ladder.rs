@@ -135,7 +135,7 @@ mod tests {
                           | **all** | | **1007** | |\n\n| what | else |\n|---|---|\n| c | 5 |\n";
 
     #[test]
-    fn unit_numbers_are_summed_per_block() {
+    fn numbers_are_summed_per_block() {
         let found = rows(OUTPUT, &[("properties", ""), ("covers", "covers")]);
         let rung = Rung::new("proofs", &["", "covers"], &found, true, Duration::from_secs(3));
         let cells = [("a", "7, 3 covers"), ("b", "1000, 0 covers")];
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_rung_without_rows_does_not_hold() {
+    fn a_rung_without_rows_does_not_hold() {
         let nothing = rows("| block | clocks |\n|---|---|\n", &[("clocks", "")]);
         assert!(!Rung::new("empty", &[""], &nothing, true, Duration::ZERO).holds);
         assert!(rows(OUTPUT, &[("absent", "")]).is_empty());

@@ -76,7 +76,7 @@ mod tests {
     };
 
     #[test]
-    fn unit_only_what_is_between_the_marks_is_renewed() {
+    fn only_what_is_between_the_marks_is_renewed() {
         let page = "before\n<!-- here -->\nold\n<!-- to here -->\nafter\n";
         let once = MARKS
             .renewed(page, |old| old.replace("old", "new").trim().to_owned() + "\n")

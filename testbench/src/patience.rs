@@ -89,7 +89,7 @@ mod tests {
     use std::sync::mpsc;
 
     #[test]
-    fn unit_only_a_call_that_takes_too_long_expires() {
+    fn only_a_call_that_takes_too_long_expires() {
         let (said, heard) = mpsc::channel();
         let limit = Duration::from_millis(60);
         let patience = Patience::new(limit, move || said.send(()).unwrap());

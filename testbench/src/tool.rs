@@ -205,7 +205,7 @@ mod tests {
     };
 
     #[test]
-    fn unit_a_missing_program_is_told_from_a_failing_one() {
+    fn a_missing_program_is_told_from_a_failing_one() {
         let missing = NOTHING.run(&mut NOTHING.command(), "testing").unwrap_err();
         assert!(missing.is_missing_tool(), "{missing}");
         assert!(missing.to_string().contains("Nothing helps"));
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_program_that_another_one_lacks_is_missing() {
+    fn a_program_that_another_one_lacks_is_missing() {
         for said in [
             "make: g++: No such file or directory\nmake: *** [Vdevice.mk:60: a.o] Error 127",
             "/bin/sh: 1: g++: not found",
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_program_without_end_is_stopped() {
+    fn a_program_without_end_is_stopped() {
         let run =
             |words: &[&str], limit| NOTHING.run_within(Command::new("sh").arg("-c").args(words), "testing", limit);
         let soon = Duration::from_millis(50);

@@ -27,7 +27,7 @@ fn lockstep_a_million_random_clocks_of_a_full_table() {
 
 /// The scenes do so on any seed and for every number of entries. The model runs beside itself, so this tests the stimuli alone.
 #[test]
-fn unit_the_scenes_reach_everything_on_any_seed() {
+fn the_scenes_reach_everything_on_any_seed() {
     for (entries, spacing_bits) in [(2, 4), (9, 6), (256, 12)] {
         let config = ErrorTableBlock::of_size(entries, spacing_bits).unwrap();
         let block = ErrorTableBlock::new(config, "", "alone");
@@ -46,7 +46,7 @@ fn unit_the_scenes_reach_everything_on_any_seed() {
 
 /// What `docs/error_table.md` says of positions that are far from the table: its ends hold up to where a place comes round.
 #[test]
-fn unit_the_ends_of_a_table_hold_until_the_position_comes_round() {
+fn the_ends_of_a_table_hold_until_the_position_comes_round() {
     let config = ErrorTableBlock::of_size(9, 6).unwrap();
     let (first, last) = (config.entries()[0], config.entries()[8]);
     assert!(first != last && config.format().first_counts == -100);
@@ -83,7 +83,7 @@ fn unit_the_ends_of_a_table_hold_until_the_position_comes_round() {
 
 /// Neighbours that may differ by anything: no comparison is constant.
 #[test]
-fn unit_the_widest_spacing_is_lint_clean() {
+fn the_widest_spacing_is_lint_clean() {
     let config = ErrorTableBlock::of_size(4, 20).unwrap();
     let block = ErrorTableBlock::new(config, "", "4 entries");
     assert_eq!(Sources::write(&block).unwrap().lint(&block).unwrap(), [""; 0]);

@@ -52,7 +52,7 @@ fn assert_says(report: &FaultReport, what: &str) {
 }
 
 #[test]
-fn unit_every_fault_is_handled_as_stated() {
+fn every_fault_is_handled_as_stated() {
     let bed = Bed::new().unwrap();
     let report = run(&bed, 0..ROUNDS * TABLE.len() as u64, SEED, threads()).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
@@ -71,7 +71,7 @@ fn lockstep_faults_with_the_rtl_beside_the_model() {
 }
 
 #[test]
-fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
+fn a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
     // A half bridge pushes in one direction only and cannot do these moves: it is in the test below.
     for mode in [PwmMode::Direction, PwmMode::FullBridge, PwmMode::LockedAntiphase] {
         for (filter_clocks, drive) in [(0, 0.5), (8, 0.6), (16, 0.5)] {
@@ -104,7 +104,7 @@ fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
 const LOST_ENCODER: &str = include_str!("fixtures/lost-encoder.toml");
 
 #[test]
-fn unit_a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
+fn a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
     for mode in [
         PwmMode::Direction,
         PwmMode::HalfBridge,
@@ -157,7 +157,7 @@ fn stuck_lines_stop(machine: &Machine) {
 
 /// Only the supervision of the encoder detects it with a velocity drive; `wrong_sign.rs` tests torque drives.
 #[test]
-fn unit_a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
+fn a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
     let bed = Bed::of(|axis| {
         let limits = axis.limits.as_mut().unwrap();
         (limits.deviation, limits.saturation_s) = (None, 0.0);

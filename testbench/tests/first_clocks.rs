@@ -55,7 +55,7 @@ fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
 }
 
 #[test]
-fn unit_every_pin_is_off_from_power_up_on() {
+fn every_pin_is_off_from_power_up_on() {
     let block = StageBlock::new(&library_sizes().unwrap().stage.unwrap(), "stage").unwrap();
     let modules = block.modules().unwrap();
     assert_eq!(first_on(&block, &modules), None);

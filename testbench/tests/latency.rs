@@ -71,7 +71,7 @@ fn latency(clocks: u64) -> [u64; 3] {
 }
 
 #[test]
-fn unit_a_start_moves_the_command_in_the_third_tick_and_the_pins_a_period_of_the_pwm_later() {
+fn a_start_moves_the_command_in_the_third_tick_and_the_pins_a_period_of_the_pwm_later() {
     for tenth in 0..10 {
         let into_tick = tenth * TICK_CLOCKS / 10 + 100;
         let to_third_tick = 3 * TICK_CLOCKS - into_tick;

@@ -96,7 +96,7 @@ fn reaches_everything(line: &str, clocks: u64) {
 }
 
 #[test]
-fn unit_a_driver_at_the_serial_line_moves_every_axis_and_loads_tables() {
+fn a_driver_at_the_serial_line_moves_every_axis_and_loads_tables() {
     reaches_everything(UART, 300_000);
 }
 

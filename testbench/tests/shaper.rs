@@ -203,7 +203,7 @@ fn lockstep_every_directed_case() {
 }
 
 #[test]
-fn unit_directed_cases_reach_what_they_are_named_after() {
+fn directed_cases_reach_what_they_are_named_after() {
     let bench = Bench::new(standard());
     let reached = |wanted: &str| {
         let (_, script) = cases().into_iter().find(|(name, _)| *name == wanted).unwrap();

@@ -77,7 +77,7 @@ fn move_both(machine: &Machine, bench: &mut StageBench, counts: i64) -> u64 {
 }
 
 #[test]
-fn unit_a_few_segments_and_one_bit_move_the_stage() {
+fn a_few_segments_and_one_bit_move_the_stage() {
     let machine = machine();
     let mut bench = bench(&machine, false);
     move_both(&machine, &mut bench, 5000);
@@ -301,7 +301,7 @@ fn lockstep_catches_a_preset_that_takes_the_users_position() {
 /// With its default number of clocks, a run of Icarus reaches every flag of every row inside the stage and of the
 /// stage. The model runs beside itself, so this tests the stimuli alone.
 #[test]
-fn unit_the_clocks_of_a_verdict_drive_every_flag() {
+fn the_clocks_of_a_verdict_drive_every_flag() {
     let config = stage(&machine()).config;
     let block = StageBlock::new(&config, "xy_stage_stage").unwrap();
     let mut rows = block.inner().unwrap();
@@ -320,7 +320,7 @@ fn unit_the_clocks_of_a_verdict_drive_every_flag() {
 
 /// A row that is not exercised enough names the missing flags.
 #[test]
-fn unit_a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
+fn a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
     let block = posicast_testbench::blocks::SegmentsBlock::new("few", "alone");
     let mut twin = TwoValued(block.model(1));
     let report = blocks::judge(&block, &mut twin, 100..=100, 1, &mut |_| {}).unwrap();
@@ -343,7 +343,7 @@ fn unit_a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
 
 /// The schedule fits its tick, whatever a host does: no pass is late, and no start finds one running.
 #[test]
-fn unit_no_pass_is_ever_missed() {
+fn no_pass_is_ever_missed() {
     for axes in [1, 4] {
         let config = quick(axes);
         let block = block(axes);
@@ -421,7 +421,7 @@ fn look(bench: &mut StageBench, name: &str) -> u32 {
 }
 
 #[test]
-fn unit_the_first_move_of_the_datasheet_is_what_it_says() {
+fn the_first_move_of_the_datasheet_is_what_it_says() {
     let machine = machine();
     let mut bench = bench(&machine, false);
     let rows = rows("| do | register or field | word | what it does |");
@@ -463,7 +463,7 @@ fn unit_the_first_move_of_the_datasheet_is_what_it_says() {
 }
 
 #[test]
-fn unit_the_datasheet_has_the_pins() {
+fn the_datasheet_has_the_pins() {
     let component = Component::stage(&stage(&machine()).config).unwrap();
     let rows = rows("## Pins\n\n").len();
     assert_eq!(rows, 0, "the table has moved");

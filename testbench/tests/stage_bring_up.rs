@@ -117,7 +117,7 @@ fn self_test(bench: &mut StageBench, duty: i32) -> (u32, u32) {
 }
 
 #[test]
-fn unit_a_self_test_runs_the_pwm_and_nothing_else() {
+fn a_self_test_runs_the_pwm_and_nothing_else() {
     let machine = machine();
     // Locked antiphase, 2500 clocks, dead time 25: the leg's duty is half of the sum of period and duty.
     for (duty, leg_duty) in [(0, 1250), (200, 1350), (-101, 1199)] {
@@ -166,7 +166,7 @@ fn lockstep_a_move_on_the_scale_and_its_trace() {
 }
 
 #[test]
-fn unit_a_watched_scale_stops_what_leaves_it() {
+fn a_watched_scale_stops_what_leaves_it() {
     let mut machine = machine();
     let limits = machine.axes[1].limits.as_mut().unwrap();
     limits.deviation = Some(20e-6);
@@ -188,7 +188,7 @@ fn unit_a_watched_scale_stops_what_leaves_it() {
 }
 
 #[test]
-fn unit_a_test_signal_shakes_the_axis_in_hold() {
+fn a_test_signal_shakes_the_axis_in_hold() {
     let machine = machine();
     let mut bench = bench(&machine, false);
     assert!(bench.switch_on(20_000_000).unwrap());
@@ -211,7 +211,7 @@ fn unit_a_test_signal_shakes_the_axis_in_hold() {
 }
 
 #[test]
-fn unit_the_generator_counts_without_a_machine() {
+fn the_generator_counts_without_a_machine() {
     let machine = machine();
     let mut bench = bench(&machine, false);
     bench.clocks(1000).unwrap();

@@ -51,7 +51,7 @@ fn switch_on(bench: &mut StageBench, axis: &str) {
 const FEEDBACK: [&str; 3] = ["x_encoder", "x_scale_control", "x_generator"];
 
 #[test]
-fn unit_the_feedback_is_not_changed_while_the_drive_is_on() {
+fn the_feedback_is_not_changed_while_the_drive_is_on() {
     let mut bench = bench(false);
     switch_on(&mut bench, "x");
     for register in FEEDBACK {
@@ -85,7 +85,7 @@ fn unit_the_feedback_is_not_changed_while_the_drive_is_on() {
 
 /// The lines of this machine count backwards, and its file says so: the documented bring-up keeps the sign.
 #[test]
-fn unit_a_machine_wired_backwards_moves_by_its_file() {
+fn a_machine_wired_backwards_moves_by_its_file() {
     let mut bench = bench(true);
     switch_on(&mut bench, "x");
     assert_eq!(
@@ -109,7 +109,7 @@ fn unit_a_machine_wired_backwards_moves_by_its_file() {
 
 /// A host enables at once, in direct mode and from there in HOLD: the PWM waits for the time base.
 #[test]
-fn unit_the_pwm_never_runs_out_of_step() {
+fn the_pwm_never_runs_out_of_step() {
     for wait in [50, 700, 1300, 2700, 4800] {
         let mut bench = bench(false);
         bench.clocks(wait).unwrap();
@@ -132,7 +132,7 @@ fn unit_the_pwm_never_runs_out_of_step() {
 
 /// Each index interrupts, and writing a one to the state clears it, like any other interrupt.
 #[test]
-fn unit_an_index_interrupts_once() {
+fn an_index_interrupts_once() {
     const INDEX_SEEN: u32 = 1 << 6;
     let mut bench = bench(false);
     bench.clocks(1000).unwrap();
@@ -159,7 +159,7 @@ fn unit_an_index_interrupts_once() {
 
 /// The pin for an ADC is active for a clock in each period, at the phase of the register.
 #[test]
-fn unit_the_trigger_comes_at_its_phase() {
+fn the_trigger_comes_at_its_phase() {
     let mut bench = bench(false);
     // After two ticks the PWM is in phase.
     bench.clocks(12_000).unwrap();
@@ -205,7 +205,7 @@ fn moved(bench: &mut StageBench, counts: i32) -> u32 {
 }
 
 #[test]
-fn unit_soft_limits_act_before_homing_unless_the_file_says_otherwise() {
+fn soft_limits_act_before_homing_unless_the_file_says_otherwise() {
     for after_homing in [false, true] {
         let mut bench = bench_of(false, &format!("soft_limits_after_homing = {after_homing}"));
         switch_on(&mut bench, "x");

@@ -175,7 +175,7 @@ impl Bed {
 }
 
 #[test]
-fn unit_no_command_runs_away_beyond_the_position_word() {
+fn no_command_runs_away_beyond_the_position_word() {
     let mut bed = Bed::new();
     bed.clocks(1000);
     for register in ["watchdog", "following_error_limit", "soft_limit_minus"] {

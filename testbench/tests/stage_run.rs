@@ -74,7 +74,7 @@ fn golden_the_float_loop_foresees_what_the_stage_does() {
 }
 
 #[test]
-fn unit_a_broken_shaper_rings_more_than_is_allowed() {
+fn a_broken_shaper_rings_more_than_is_allowed() {
     for kind in ["zv", "zvd", "ei"] {
         let machine = machine(&GANTRY.replace("kind = \"ei\"", &format!("kind = \"{kind}\"")));
         let right = stage(&machine).config;
@@ -146,7 +146,7 @@ fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
 }
 
 #[test]
-fn unit_a_loop_that_swings_after_its_commands_is_seen() {
+fn a_loop_that_swings_after_its_commands_is_seen() {
     let (moved, _) = wild_wrist(WRIST, 120.0);
     let trouble = moved.trouble.unwrap().to_string();
     assert!(
@@ -165,7 +165,7 @@ fn unit_a_loop_that_swings_after_its_commands_is_seen() {
 }
 
 #[test]
-fn unit_a_move_of_a_few_counts_is_none() {
+fn a_move_of_a_few_counts_is_none() {
     let coarse = XY.replace("counts_per_unit = 1_000_000", "counts_per_unit = 80");
     let machine = machine(&coarse);
     let run = StageRun::new(&machine, &stage(&machine).config, 1).unwrap();
@@ -196,7 +196,7 @@ fn golden_the_stage_goes_round_a_contour_as_the_notes_say() {
 
 /// The load of the vertical slide rests where the file's error puts it without its table, and at its target with it.
 #[test]
-fn unit_a_homed_axis_rests_where_it_should_by_its_error_table() {
+fn a_homed_axis_rests_where_it_should_by_its_error_table() {
     let text = include_str!("../../examples/vertical-slide.toml");
     let rows = include_str!("../../examples/vertical-slide-z.csv");
     let machine = machine_file::parse_beside("vertical-slide.toml", text, &|_: &str| Ok(rows.to_owned())).unwrap();

@@ -17,7 +17,7 @@ fn missing(heading: &str, rows: impl IntoIterator<Item = String>) -> Vec<String>
 }
 
 #[test]
-fn unit_every_block_has_its_row_of_mutants() {
+fn every_block_has_its_row_of_mutants() {
     let subjects = all().unwrap();
     let row = |block: &str, size: &str| format!("\n| {block} | {size} | ");
     let rows = subjects
@@ -27,7 +27,7 @@ fn unit_every_block_has_its_row_of_mutants() {
 }
 
 #[test]
-fn unit_every_block_but_the_stage_has_its_row_of_netlists() {
+fn every_block_but_the_stage_has_its_row_of_netlists() {
     let blocks = library().unwrap();
     let blocks = blocks.iter().filter(|block| block.name() != "stage");
     let row = |block: &dyn Block| format!("\n| {} | {} | ", block.name(), block.instance());
@@ -36,7 +36,7 @@ fn unit_every_block_but_the_stage_has_its_row_of_netlists() {
 
 /// A proof has a row with its name in it, or a paragraph of its own.
 #[test]
-fn unit_every_proof_is_on_the_page() {
+fn every_proof_is_on_the_page() {
     let table = section("Proofs");
     let tasks = proofs().unwrap();
     let is_there = |name: &str| table.contains(&format!("\n### {name}\n")) || table.contains(&format!("`{name}`"));

@@ -138,7 +138,7 @@ fn of_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: When) -> 
 }
 
 #[test]
-fn unit_a_wrong_sign_trips_in_hold_and_in_a_move() {
+fn a_wrong_sign_trips_in_hold_and_in_a_move() {
     for (drive, text) in [("velocity", VELOCITY), ("torque", TORQUE)] {
         for when in [When::Hold, When::Move, When::InMotion] {
             for following_error in [true, false] {
@@ -156,7 +156,7 @@ fn unit_a_wrong_sign_trips_in_hold_and_in_a_move() {
 }
 
 #[test]
-fn unit_without_both_watches_a_wrong_sign_goes_on_to_the_end_of_the_errors_word() {
+fn without_both_watches_a_wrong_sign_goes_on_to_the_end_of_the_errors_word() {
     for text in [VELOCITY, TORQUE] {
         let found = of_wrong_sign(text, false, 0.0, When::Hold);
         assert_ne!(found.causes & Cause::Range.bit(), 0, "{found:?}");
@@ -165,7 +165,7 @@ fn unit_without_both_watches_a_wrong_sign_goes_on_to_the_end_of_the_errors_word(
 }
 
 #[test]
-fn unit_a_sound_machine_of_torque_drives_does_not_trip_when_it_stops() {
+fn a_sound_machine_of_torque_drives_does_not_trip_when_it_stops() {
     for frequency_factor in [0.8, 1.0, 1.2] {
         for stop_deceleration in [None, Some(16.0)] {
             sound(frequency_factor, stop_deceleration);

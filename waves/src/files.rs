@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_mark_goes_where_the_format_takes_a_comment() {
+    fn the_mark_goes_where_the_format_takes_a_comment() {
         for (text, expected) in [
             (
                 "<?xml version=\"1.0\"?>\n<a/>\n",

@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_one_thing_is_singular() {
+    fn one_thing_is_singular() {
         let text = |count| counted(count, "signal") + ", " + &counted(count, "mismatch");
         assert_eq!(text(0), "0 signals, 0 mismatches");
         assert_eq!(text(1), "1 signal, 1 mismatch");
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_times_have_a_unit_and_the_digits_they_need() {
+    fn times_have_a_unit_and_the_digits_they_need() {
         for (fs, expected) in [
             (0, "0 s"),
             (1, "1 fs"),

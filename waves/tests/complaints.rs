@@ -16,7 +16,7 @@ fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
 }
 
 #[test]
-fn unit_each_small_pair_gets_the_verdict_that_it_deserves() {
+fn each_small_pair_gets_the_verdict_that_it_deserves() {
     let mut options = DiffOptions::default();
     options.add_tolerance("level=0.001abs").unwrap();
     let mut count = 0;
@@ -37,7 +37,7 @@ fn unit_each_small_pair_gets_the_verdict_that_it_deserves() {
 }
 
 #[test]
-fn unit_a_tolerance_for_real_numbers_does_not_hide_a_difference_of_vectors() {
+fn a_tolerance_for_real_numbers_does_not_hide_a_difference_of_vectors() {
     let a = vcd(10, "y", &[1, 2, 3, 4, 5]);
     let b = vcd(10, "y", &[1, 2, 4, 4, 5]).replace("r0.5 r", "r0.5004 r");
     let mut options = DiffOptions::default();
@@ -48,7 +48,7 @@ fn unit_a_tolerance_for_real_numbers_does_not_hide_a_difference_of_vectors() {
 }
 
 #[test]
-fn unit_two_signals_of_one_name_are_not_compared_with_each_other() {
+fn two_signals_of_one_name_are_not_compared_with_each_other() {
     let twice = vcd(10, "y", &[1, 2, 3]).replace("$upscope", "$var wire 1 t y [15:0] $end\n$upscope");
     let twice = twice.replace("#15\n", "#15\n1t\n");
     for raw in [false, true] {
@@ -64,7 +64,7 @@ fn unit_two_signals_of_one_name_are_not_compared_with_each_other() {
 }
 
 #[test]
-fn unit_files_without_a_common_signal_are_not_equal() {
+fn files_without_a_common_signal_are_not_equal() {
     let result = compare(
         &vcd(10, "y", &[1, 2]),
         &vcd(10, "z", &[1, 2]).replace("level", "height"),
@@ -74,7 +74,7 @@ fn unit_files_without_a_common_signal_are_not_equal() {
 }
 
 #[test]
-fn unit_a_clock_that_runs_at_another_rate_or_stands_still_is_not_equal() {
+fn a_clock_that_runs_at_another_rate_or_stands_still_is_not_equal() {
     let same = [7; 10];
     let a = vcd(10, "y", &same);
     for other in [vcd(20, "y", &same[..5]), vcd(5, "y", &[7; 20])] {
@@ -93,7 +93,7 @@ fn unit_a_clock_that_runs_at_another_rate_or_stands_still_is_not_equal() {
 }
 
 #[test]
-fn unit_a_file_that_ends_early_is_not_equal() {
+fn a_file_that_ends_early_is_not_equal() {
     let a = vcd(10, "y", &[7; 10]);
     let b = vcd(10, "y", &[7; 6]);
     for raw in [false, true] {
@@ -107,7 +107,7 @@ fn unit_a_file_that_ends_early_is_not_equal() {
 }
 
 #[test]
-fn unit_a_value_that_is_only_there_between_two_changes_of_the_other_file_is_found() {
+fn a_value_that_is_only_there_between_two_changes_of_the_other_file_is_found() {
     // At #15 and #16 the second file has another value; the first says nothing at these times.
     let a = vcd(0, "y", &[7; 4]);
     let b = vcd(0, "y", &[7; 4]).replace("#20\n", "#15\nb1 \"\n#16\nb111 \"\n#20\n");

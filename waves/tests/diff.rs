@@ -51,7 +51,7 @@ fn options(maps: &[&str], tolerances: &[&str]) -> DiffOptions {
 }
 
 #[test]
-fn unit_registers_compare_the_same_at_and_after_the_edge() {
+fn registers_compare_the_same_at_and_after_the_edge() {
     // A shows the change at the edge, B a nanosecond later; B has another timescale.
     let a = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c b11 y #20 0c #25 1c");
     let b = clocked(
@@ -73,7 +73,7 @@ fn unit_registers_compare_the_same_at_and_after_the_edge() {
 }
 
 #[test]
-fn unit_the_first_difference_and_the_count_are_reported() {
+fn the_first_difference_and_the_count_are_reported() {
     let a = clocked("t", "#0 0c b1 y #5 1c #10 0c #15 1c #20 0c #25 1c #30 0c #35 1c");
     let b = clocked(
         "t",
@@ -102,7 +102,7 @@ fn unit_the_first_difference_and_the_count_are_reported() {
 }
 
 #[test]
-fn unit_unknown_bits_equal_only_themselves() {
+fn unknown_bits_equal_only_themselves() {
     let with = |digit: char| clocked("t", &format!("#0 0c b1{digit} y #5 1c"));
     for a in ['0', '1', 'x', 'z'] {
         for b in ['0', '1', 'x', 'z'] {
@@ -113,7 +113,7 @@ fn unit_unknown_bits_equal_only_themselves() {
 }
 
 #[test]
-fn unit_missing_edges_are_a_difference_of_the_clock() {
+fn missing_edges_are_a_difference_of_the_clock() {
     let a = clocked("t", "#0 0c b1 y #5 1c #10 0c #15 1c #20 0c #25 1c");
     let b = clocked("t", "#0 0c b1 y #5 1c #10 0c");
     for (a, b, swapped) in [(&a, &b, false), (&b, &a, true)] {
@@ -126,7 +126,7 @@ fn unit_missing_edges_are_a_difference_of_the_clock() {
 }
 
 #[test]
-fn unit_signals_without_partner_are_listed_or_differ_on_demand() {
+fn signals_without_partner_are_listed_or_differ_on_demand() {
     let a = clocked("t", "#0 0c b1 y #5 1c");
     let b = a
         .replace("$upscope", "$var wire 2 z z $end $upscope")
@@ -148,7 +148,7 @@ fn unit_signals_without_partner_are_listed_or_differ_on_demand() {
 }
 
 #[test]
-fn unit_nothing_in_common_is_incomparable() {
+fn nothing_in_common_is_incomparable() {
     let a = clocked("t", "#0 0c b1 y #5 1c");
     let only_clock = a.replace(" y [7:0]", " other");
     let no_edge = clocked("t", "#0 0c b1 y");
@@ -168,7 +168,7 @@ fn unit_nothing_in_common_is_incomparable() {
 }
 
 #[test]
-fn unit_a_file_without_a_timescale_is_said_to_be_in_nanoseconds() {
+fn a_file_without_a_timescale_is_said_to_be_in_nanoseconds() {
     let with = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c");
     let without = with.replace("$timescale 1 ns $end\n", "");
     let notes = |a: &str, b: &str| {
@@ -184,7 +184,7 @@ fn unit_a_file_without_a_timescale_is_said_to_be_in_nanoseconds() {
 }
 
 #[test]
-fn unit_filters_that_leave_nothing_are_the_reason() {
+fn filters_that_leave_nothing_are_the_reason() {
     let text = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c");
     for (only, ignore) in [(Some("nowhere"), None), (None, Some("*")), (None, Some("y"))] {
         let options = DiffOptions {
@@ -199,7 +199,7 @@ fn unit_filters_that_leave_nothing_are_the_reason() {
 }
 
 #[test]
-fn unit_without_a_clock_every_change_counts() {
+fn without_a_clock_every_change_counts() {
     let variables = "$scope module t $end $var wire 8 y y $end $var real 64 r r $end $upscope $end";
     let a = text(variables, "#0 b1 y r1.5 r #10 b10 y #20 r2.5 r #30 b0 y");
     let b = text(variables, "#0 b1 y r1.5 r #10 b10 y #21 r2.5 r #30 b0 y");
@@ -219,7 +219,7 @@ fn unit_without_a_clock_every_change_counts() {
 }
 
 #[test]
-fn unit_reals_compare_with_vectors_as_signed_numbers() {
+fn reals_compare_with_vectors_as_signed_numbers() {
     let vector = clocked("rtl", "#0 0c b11111100 y #5 1c b11 y #10 0c #15 1c");
     let real = clocked("float", "#0 0c r-4.25 y #5 1c r3 y #10 0c #15 1c").replace("wire 8 y y [7:0]", "real 64 y y");
     let two = Two::new(&vector, &real);
@@ -236,7 +236,7 @@ fn unit_reals_compare_with_vectors_as_signed_numbers() {
 }
 
 #[test]
-fn unit_widths_extend_with_zeros_or_with_a_tolerance_by_sign() {
+fn widths_extend_with_zeros_or_with_a_tolerance_by_sign() {
     let narrow = clocked("t", "#0 0c b11111111 y #5 1c");
     let wide = |digits: &str| clocked("t", &format!("#0 0c b{digits} y #5 1c")).replace("8 y y [7:0]", "70 y y");
     let (unsigned, signed) = (wide("11111111"), wide(&"1".repeat(70)));
@@ -255,7 +255,7 @@ fn unit_widths_extend_with_zeros_or_with_a_tolerance_by_sign() {
 }
 
 #[test]
-fn unit_clock_options() {
+fn clock_options() {
     let two_clocks =
         clocked("t", "#0 0c 0d b1 y #5 1c #10 0c 1d").replace("$var wire 8", "$var wire 1 d clock $end $var wire 8");
     let two = Two::new(&two_clocks, &two_clocks);
@@ -276,7 +276,7 @@ fn unit_clock_options() {
 }
 
 #[test]
-fn unit_wrong_options_are_errors() {
+fn wrong_options_are_errors() {
     let a = clocked("t", "#0 0c b1 y #5 1c");
     let mut unknown = DiffOptions::default();
     unknown.add_tolerance("nothing=1").unwrap();

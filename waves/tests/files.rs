@@ -32,7 +32,7 @@ fn golden_packed_files_are_what_is_packed_in_them() {
 }
 
 #[test]
-fn unit_several_packed_parts_are_one_file() {
+fn several_packed_parts_are_one_file() {
     let text = std::fs::read(fixture("waves/verilator.vcd")).unwrap();
     let gzip = std::fs::read(fixture("packed/counter.vcd.gz")).unwrap();
     let zstd = std::fs::read(fixture("packed/counter.vcd.zst")).unwrap();
@@ -50,7 +50,7 @@ fn unit_several_packed_parts_are_one_file() {
 }
 
 #[test]
-fn unit_a_packed_file_that_is_cut_off_is_refused_or_compared_up_to_there() {
+fn a_packed_file_that_is_cut_off_is_refused_or_compared_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
     for packed in ["gz", "xz", "zst"] {
         let whole = std::fs::read(fixture(&format!("packed/counter.vcd.{packed}"))).unwrap();
@@ -62,7 +62,7 @@ fn unit_a_packed_file_that_is_cut_off_is_refused_or_compared_up_to_there() {
 }
 
 #[test]
-fn unit_a_vcd_cut_in_a_line_is_refused_with_the_place_or_compared_up_to_there() {
+fn a_vcd_cut_in_a_line_is_refused_with_the_place_or_compared_up_to_there() {
     let whole = fixture("waves/icarus.vcd");
     let text = std::fs::read(&whole).unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -95,7 +95,7 @@ fn unit_a_vcd_cut_in_a_line_is_refused_with_the_place_or_compared_up_to_there() 
 }
 
 #[test]
-fn unit_a_difference_before_the_cut_is_found() {
+fn a_difference_before_the_cut_is_found() {
     let text = std::fs::read_to_string(fixture("waves/icarus.vcd")).unwrap();
     let at = text.rfind("\n#").unwrap();
     let change = text[..at].rfind("\nb").unwrap() + 2;
@@ -135,7 +135,7 @@ fn golden_the_fst_of_a_killed_simulator_is_compared_up_to_where_it_was_cut() {
 }
 
 #[test]
-fn unit_ghw_names_the_remedy() {
+fn ghw_names_the_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.ghw");
     std::fs::write(&path, b"GHDLwave\n\x10\0\0\x01").unwrap();

@@ -183,7 +183,7 @@ fn golden_periods_without_recording_are_those_of_the_vcd() {
 }
 
 #[test]
-fn unit_attributes_of_any_kind_and_length_and_open_scopes_change_nothing() {
+fn attributes_of_any_kind_and_length_and_open_scopes_change_nothing() {
     let long = [b"\xfc\0\0", "long ".repeat(100_000).as_bytes(), b"\0\x05\xfd"].concat();
     let kinds: Vec<u8> = (0..=255u8)
         .flat_map(|kind| [&[252, kind, kind][..], b"what?\0\x81\x01"].concat())
@@ -258,7 +258,7 @@ fn golden_the_states_of_a_port_are_those_of_an_extended_vcd() {
 }
 
 #[test]
-fn unit_values_that_were_written_before_any_time_are_there_though_changes_are_at_the_same_time() {
+fn values_that_were_written_before_any_time_are_there_though_changes_are_at_the_same_time() {
     // As GTKWave's vcd2fst writes the parameters that Icarus dumps before `#0`.
     let mut file = File::one_bit(&[variable(2, "size", 4, 0), variable(16, "later", 4, 0), vec![UP]].concat());
     file.widths = vec![1, 4, 4];
@@ -299,7 +299,7 @@ fn long_hundreds_of_thousands_of_names_are_compared() {
 }
 
 #[test]
-fn unit_damage_and_what_is_not_known_are_told_apart() {
+fn damage_and_what_is_not_known_are_told_apart() {
     let with = |hierarchy: &[u8]| File::one_bit(hierarchy).refused();
     for (message, what) in [
         (
@@ -354,7 +354,7 @@ fn unit_damage_and_what_is_not_known_are_told_apart() {
 }
 
 #[test]
-fn unit_damage_that_both_files_have_is_found() {
+fn damage_that_both_files_have_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let [a, b] = ["a.fst", "b.fst"].map(|name| folder.path().join(name));
     for (chain, problem) in [

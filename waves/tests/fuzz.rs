@@ -41,7 +41,7 @@ fn prop_damaged_recordings_are_survived() {
 }
 
 #[test]
-fn unit_fsts_cut_anywhere_are_errors() {
+fn fsts_cut_anywhere_are_errors() {
     for content in recordings("fst") {
         for end in (0..content.len()).step_by(23) {
             let file = tempfile::NamedTempFile::new().unwrap();

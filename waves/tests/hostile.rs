@@ -26,7 +26,7 @@ fn error(content: &[u8]) -> String {
 }
 
 #[test]
-fn unit_a_file_cut_in_the_middle_of_a_line_is_never_equal_to_the_whole() {
+fn a_file_cut_in_the_middle_of_a_line_is_never_equal_to_the_whole() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, part) = (folder.path().join("whole.vcd"), folder.path().join("part.vcd"));
     std::fs::write(&whole, GOOD).unwrap();
@@ -49,7 +49,7 @@ fn unit_a_file_cut_in_the_middle_of_a_line_is_never_equal_to_the_whole() {
 }
 
 #[test]
-fn unit_the_last_line_needs_no_line_break_but_a_file_that_ends_early_without_one_is_cut_off() {
+fn the_last_line_needs_no_line_break_but_a_file_that_ends_early_without_one_is_cut_off() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, text: &str| {
         let path = folder.path().join(name);
@@ -70,7 +70,7 @@ fn unit_the_last_line_needs_no_line_break_but_a_file_that_ends_early_without_one
 }
 
 #[test]
-fn unit_damage_is_named_with_its_line() {
+fn damage_is_named_with_its_line() {
     let damaged = |from: &str, to: &str| error(GOOD.replacen(from, to, 1).as_bytes());
     for (from, to, line, what) in [
         ("#15", "#5", 20, "time goes back"),
@@ -93,7 +93,7 @@ fn unit_damage_is_named_with_its_line() {
 }
 
 #[test]
-fn unit_control_characters_are_space_and_no_endless_word() {
+fn control_characters_are_space_and_no_endless_word() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let content = GOOD.replacen("#5\n", "$comment \u{1} x\u{b} \0 $end\u{1}\n#5\n", 1);
     std::fs::write(file.path(), content).unwrap();
@@ -101,7 +101,7 @@ fn unit_control_characters_are_space_and_no_endless_word() {
 }
 
 #[test]
-fn unit_what_would_eat_the_memory_is_refused() {
+fn what_would_eat_the_memory_is_refused() {
     let wide = GOOD.replace("wire 8 y y", "wire 4294967295 y y");
     assert!(error(wide.as_bytes()).contains("leave out memories"));
 
@@ -120,7 +120,7 @@ fn unit_what_would_eat_the_memory_is_refused() {
 }
 
 #[test]
-fn unit_a_packed_file_that_is_cut_anywhere_is_read_to_an_end() {
+fn a_packed_file_that_is_cut_anywhere_is_read_to_an_end() {
     let packed = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/packed");
     let folder = tempfile::tempdir().unwrap();
     for name in ["counter.vcd.gz", "counter.vcd.xz", "counter.vcd.zst"] {
@@ -152,7 +152,7 @@ fn packed_as_a_whole(plain: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn unit_lengths_that_an_fst_cannot_have_are_refused_before_memory_is_reserved() {
+fn lengths_that_an_fst_cannot_have_are_refused_before_memory_is_reserved() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("killed.fst");
@@ -199,7 +199,7 @@ fn unit_lengths_that_an_fst_cannot_have_are_refused_before_memory_is_reserved() 
 }
 
 #[test]
-fn unit_folders_and_missing_files_are_named() {
+fn folders_and_missing_files_are_named() {
     let folder = tempfile::tempdir().unwrap();
     for path in [folder.path().to_owned(), folder.path().join("absent.vcd")] {
         let error = compare(&path).unwrap_err();

@@ -38,7 +38,7 @@ fn with(set: impl FnOnce(&mut DiffOptions)) -> DiffOptions {
 }
 
 #[test]
-fn unit_each_side_starts_behind_its_own_reset() {
+fn each_side_starts_behind_its_own_reset() {
     let a = clocked(&["0", "1", "10", "11"], 1);
     let b = clocked(&["111", "110", "101", "1", "10", "11"], 3);
     let reset = with(|o| o.set_reset("rst").unwrap());
@@ -57,7 +57,7 @@ fn unit_each_side_starts_behind_its_own_reset() {
 }
 
 #[test]
-fn unit_the_falling_edge_samples_on_demand() {
+fn the_falling_edge_samples_on_demand() {
     let a = clocked(&["0", "1", "10"], 0);
     // The byte changes at the rising edge: at the falling one both agree, at the rising one B is ahead.
     let b = a
@@ -69,7 +69,7 @@ fn unit_the_falling_edge_samples_on_demand() {
 }
 
 #[test]
-fn unit_start_and_end_bound_what_is_compared() {
+fn start_and_end_bound_what_is_compared() {
     let a = clocked(&["0", "1", "10", "11"], 0);
     let b = clocked(&["1", "1", "10", "0"], 0);
     let ns = 1_000_000;
@@ -87,7 +87,7 @@ fn unit_start_and_end_bound_what_is_compared() {
 }
 
 #[test]
-fn unit_a_latency_compares_a_later_sample() {
+fn a_latency_compares_a_later_sample() {
     let a = clocked(&["1", "10", "11", "100", "101", "110"], 0);
     let b = clocked(&["0", "0", "1", "10", "11", "100"], 0);
     let latency = |text: &str| with(|o| o.add_latency(text).unwrap());
@@ -108,7 +108,7 @@ fn unit_a_latency_compares_a_later_sample() {
 }
 
 #[test]
-fn unit_raw_with_time_tolerance_and_glitch_filter() {
+fn raw_with_time_tolerance_and_glitch_filter() {
     let bit = |changes: &str| {
         format!("$timescale 1 ns $end $var wire 1 y y $end $enddefinitions $end #0 0y {changes} #100 0y\n")
     };
@@ -146,7 +146,7 @@ fn unit_raw_with_time_tolerance_and_glitch_filter() {
 }
 
 #[test]
-fn unit_unknown_bits_by_policy_and_in_the_report() {
+fn unknown_bits_by_policy_and_in_the_report() {
     let (a, b) = (clocked(&["1x01", "z0", "1"], 0), clocked(&["1101", "0", "1"], 0));
     for (policy, expected) in [
         (UnknownPolicy::Strict, DiffVerdict::Different),
@@ -165,7 +165,7 @@ fn unit_unknown_bits_by_policy_and_in_the_report() {
 }
 
 #[test]
-fn unit_views_read_vectors_as_numbers_with_a_fraction() {
+fn views_read_vectors_as_numbers_with_a_fraction() {
     let vector = clocked(&["11111000", "100"], 0);
     let real = clocked(&["0", "0"], 0)
         .replace("wire 8 y y", "real 64 y y")
@@ -206,7 +206,7 @@ fn unit_views_read_vectors_as_numbers_with_a_fraction() {
 }
 
 #[test]
-fn unit_roots_filters_and_patterns_choose_signals() {
+fn roots_filters_and_patterns_choose_signals() {
     let a = clocked(&["0", "1"], 0);
     let b = a
         .replace("module t", "module tb $end $scope module u_t")
@@ -235,7 +235,7 @@ fn unit_roots_filters_and_patterns_choose_signals() {
 }
 
 #[test]
-fn unit_text_is_compared_as_text() {
+fn text_is_compared_as_text() {
     let text = |word: &str| {
         format!(
             "$var string 1 s state $end $var event 1 e e $end $enddefinitions $end #0 sIDLE s #5 s{word} s 1e #9 sIDLE s\n"
@@ -265,7 +265,7 @@ fn unit_text_is_compared_as_text() {
 }
 
 #[test]
-fn unit_the_context_shows_the_last_equal_sample_and_what_follows() {
+fn the_context_shows_the_last_equal_sample_and_what_follows() {
     let a = clocked(&["0", "1", "10", "11", "100", "101"], 0);
     let b = clocked(&["0", "1", "110", "11", "100", "101"], 0);
     let result = compare(&a, &b, &DiffOptions::default()).unwrap();
@@ -292,7 +292,7 @@ fn unit_the_context_shows_the_last_equal_sample_and_what_follows() {
 }
 
 #[test]
-fn unit_a_difference_is_shown_in_files_that_open_there() {
+fn a_difference_is_shown_in_files_that_open_there() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     std::fs::write(at("a.vcd"), clocked(&["0", "1", "10", "11", "100"], 0)).unwrap();

@@ -90,7 +90,7 @@ fn golden_what_is_not_recorded_is_not_compared() {
 }
 
 #[test]
-fn unit_an_edge_that_one_file_lacks_before_a_pause_counts_the_same_in_both_orders() {
+fn an_edge_that_one_file_lacks_before_a_pause_counts_the_same_in_both_orders() {
     let whole = fixture("icarus_dumpoff.vcd");
     let content = std::fs::read_to_string(&whole).unwrap();
     // From 1 over x to 1 is no rising edge.

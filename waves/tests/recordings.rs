@@ -483,7 +483,7 @@ fn golden_what_producers_write_is_read() {
 }
 
 #[test]
-fn unit_a_file_of_first_values_alone_needs_no_end_of_dumpvars() {
+fn a_file_of_first_values_alone_needs_no_end_of_dumpvars() {
     let file = |values: &str| {
         vcd(
             "$var wire 1 ! a $end\n$var wire 4 # b $end",
@@ -503,7 +503,7 @@ fn unit_a_file_of_first_values_alone_needs_no_end_of_dumpvars() {
 }
 
 #[test]
-fn unit_a_file_without_signals_or_changes_is_said_to_have_none() {
+fn a_file_without_signals_or_changes_is_said_to_have_none() {
     for (text, reason) in [
         (
             "$timescale 1ns $end\n$enddefinitions $end\n#0\n".to_owned(),

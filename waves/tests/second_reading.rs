@@ -68,7 +68,7 @@ fn last(values: &[(u64, String)], time: u64) -> Option<&str> {
 }
 
 #[test]
-fn unit_a_merged_file_has_text_and_vectors_that_were_put_together() {
+fn a_merged_file_has_text_and_vectors_that_were_put_together() {
     let whole = vcd(
         "$var wire 4 ! v [3:0] $end\n$var string 1 s s $end\n$var wire 1 e en $end",
         "#0\nb0110 !\nsidle s\n0e\n#5\nb1110 !\n1e\n#7\nsrun s\n#9\n0e",
@@ -125,7 +125,7 @@ fn unit_a_merged_file_has_text_and_vectors_that_were_put_together() {
 }
 
 #[test]
-fn unit_some_signals_are_compared_and_shown_as_all_are() {
+fn some_signals_are_compared_and_shown_as_all_are() {
     // The signals that are left out come first, and have values of any kind.
     let others =
         "$var wire 4 0 x0 [3:0] $end\n$var real 64 1 x1 $end\n$var string 1 2 x2 $end\n$var event 1 3 x3 $end\n";
@@ -169,7 +169,7 @@ fn unit_some_signals_are_compared_and_shown_as_all_are() {
 }
 
 #[test]
-fn unit_a_merged_file_ends_where_the_comparison_ended() {
+fn a_merged_file_ends_where_the_comparison_ended() {
     let variables = "$var wire 4 ! v $end";
     let a = vcd(variables, "#0\nb0001 !\n#5\nb0010 !\n#9\nb0011 !\n#11");
     // Without its line break, the last line counts.
@@ -283,7 +283,7 @@ fn clocked(changes: &[(u64, &str)]) -> String {
 }
 
 #[test]
-fn unit_what_no_sample_sees_is_counted_by_signal() {
+fn what_no_sample_sees_is_counted_by_signal() {
     // By hand: the values that others replace before the next edge, of both files.
     for (a, b, changes, signals) in [
         (&[(7, "1y")][..], &[(7, "1y")][..], 0, &[][..]),
@@ -326,7 +326,7 @@ fn unit_what_no_sample_sees_is_counted_by_signal() {
 }
 
 #[test]
-fn unit_what_comes_after_the_last_edge_is_named_and_so_is_what_differs_there() {
+fn what_comes_after_the_last_edge_is_named_and_so_is_what_differs_there() {
     let files = Files::new(&clocked(&[(36, "1y"), (37, "b1 w")]), &clocked(&[(37, "b1 w")]));
     let comparison = files.compare(&DiffOptions::default());
     assert_eq!(comparison.result, DiffVerdict::Equal, "{comparison}");
@@ -340,7 +340,7 @@ fn unit_what_comes_after_the_last_edge_is_named_and_so_is_what_differs_there() {
 }
 
 #[test]
-fn unit_without_a_clock_what_is_replaced_at_its_own_time_is_counted() {
+fn without_a_clock_what_is_replaced_at_its_own_time_is_counted() {
     let file = |changes: &str| {
         vcd(
             "$var wire 1 y y $end\n$var wire 8 w w $end",

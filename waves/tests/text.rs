@@ -74,7 +74,7 @@ differing signals, the earliest first
 }
 
 #[test]
-fn unit_a_view_shows_the_value_in_its_format() {
+fn a_view_shows_the_value_in_its_format() {
     let file = |rows| vcd("1 ns", 1, &[32, 8, 32], rows, "stage");
     let mut options = DiffOptions::default();
     options.add_view("word0=q23.8").unwrap();
@@ -90,7 +90,7 @@ fn unit_a_view_shows_the_value_in_its_format() {
 }
 
 #[test]
-fn unit_the_text_fits_100_columns() {
+fn the_text_fits_100_columns() {
     let scope = "a_scope_with_a_long_name.of_many_parts_that_go_on.and_on";
     let scopes = scope.replace('.', " $end\n$scope module ");
     // These are times in femtoseconds that need all their digits.
@@ -112,7 +112,7 @@ fn unit_the_text_fits_100_columns() {
 }
 
 #[test]
-fn unit_widths_that_differ_are_named() {
+fn widths_that_differ_are_named() {
     let file = |width| vcd("1 ns", 1, &[width, 8], &[&[7, 3], &[8, 3]], "stage");
     let result = compare(&file(32), &file(33), &DiffOptions::default());
     assert_eq!((result.result, result.exact), (DiffVerdict::Equal, false));
@@ -143,7 +143,7 @@ fn unit_widths_that_differ_are_named() {
 }
 
 #[test]
-fn unit_what_only_one_file_has_is_counted_by_itself() {
+fn what_only_one_file_has_is_counted_by_itself() {
     let file = |widths: &[u32]| vcd("1 ns", 1, widths, &[&[7, 3, 4], &[8, 3, 4]], "stage");
     let options = DiffOptions {
         require_all: true,

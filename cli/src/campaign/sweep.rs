@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_value_is_set_at_its_place_and_nowhere_else() {
+    fn a_value_is_set_at_its_place_and_nowhere_else() {
         for (path, old, new) in [
             ("clock.sample_hz", "sample_hz = 1000", "sample_hz = 7"),
             ("axis.x.shaper.kind", "kind = \"zv\"", "kind = 7"),
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_step_that_is_not_there_is_named() {
+    fn a_step_that_is_not_there_is_named() {
         for (path, what) in [
             ("axis.z.shaper.kind", "there is no `z`"),
             ("axis.x.mode.3.damping", "there is no `3`"),
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_values_are_numbers_words_or_lists() {
+    fn values_are_numbers_words_or_lists() {
         let shown_of = |text: &str| place(text).unwrap().values.iter().map(shown).collect::<Vec<_>>();
         assert_eq!(shown_of("a=zv,zvd"), ["zv", "zvd"]);
         assert_eq!(shown_of("a=1000,2e3"), ["1000", "2e3"]);

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_answers_are_in_the_file_in_its_own_unit() {
+    fn answers_are_in_the_file_in_its_own_unit() {
         let (draft, said) = answered("joint\nshoulder\nrev\n10000\n7.5\n0.02\n");
         let machine = draft.machine().unwrap();
         assert_eq!((machine.name.as_str(), machine.axes.len()), ("shoulder", 1));
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_enter_takes_the_defaults() {
+    fn enter_takes_the_defaults() {
         let (draft, _) = answered(&"\n".repeat(12));
         assert_eq!(
             draft.text(),
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_end_of_the_input_makes_no_file() {
+    fn the_end_of_the_input_makes_no_file() {
         for answers in ["", "\n\n", "gantry\n", "1\n"] {
             let mut questions = Questions::new(answers.as_bytes(), Vec::new());
             assert!(questions.draft(Path::new("mill.toml")).is_err(), "{answers:?}");
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_does_not_fit_is_said_and_asked_again() {
+    fn what_does_not_fit_is_said_and_asked_again() {
         let (draft, said) = answered("lathe\ncrane\nwire\nhoist\nkm\nmm\nmany\n20\n1e9\n0.25\n1.5\n0.02\n");
         for message in [
             "found `lathe`; allowed: printer, gantry, joint, crane",

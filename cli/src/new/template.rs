@@ -190,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_every_template_is_a_machine_file_with_the_name_of_its_file() {
+    fn every_template_is_a_machine_file_with_the_name_of_its_file() {
         for (kind, name) in MachineKind::ALL {
             let draft = Draft::new(kind, Path::new("/a/folder/My-machine.toml"));
             let machine = draft.machine().unwrap();
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_value_is_replaced_where_it_stands_and_nothing_else() {
+    fn a_value_is_replaced_where_it_stands_and_nothing_else() {
         for (kind, name) in MachineKind::ALL {
             let draft = Draft::new(kind, Path::new("machine.toml"));
             let mut machine = draft.machine().unwrap();
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_comments_stay_in_their_column() {
+    fn comments_stay_in_their_column() {
         let draft = Draft::new(MachineKind::Crane, Path::new("crane.toml"));
         let column = |draft: &Draft| {
             let line = draft

@@ -291,7 +291,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_eight_curves_have_eight_colours_and_a_dashed_one_a_shade_that_shows_on_its_neighbour() {
+    fn eight_curves_have_eight_colours_and_a_dashed_one_a_shade_that_shows_on_its_neighbour() {
         let curve = |_| [Curve::new("", Vec::new()), Curve::beside("", Vec::new())];
         let curves: Vec<_> = (0..8).flat_map(curve).collect();
         let mut colours: Vec<_> = looks(&curves).iter().map(|(style, _)| style.color.rgb()).collect();
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_curve_that_lies_exactly_on_another_is_still_seen() {
+    fn a_curve_that_lies_exactly_on_another_is_still_seen() {
         let line = || vec![(0.0, 0.0), (1.0, 1.0)];
         let looks = looks(&[Curve::new("shaped", line()), Curve::under("load", line())]);
         let [on_top, under] = [&looks[0].0, &looks[1].0];
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_curve_is_cut_where_it_leaves_the_range() {
+    fn a_curve_is_cut_where_it_leaves_the_range() {
         let points = [(0.0, -1.0), (1.0, 1.0), (2.0, 3.0), (3.0, 3.0), (4.0, 1.0)];
         let parts = cut(&points, 0.0, 2.0);
         assert_eq!(
@@ -327,18 +327,18 @@ mod tests {
     }
 
     #[test]
-    fn unit_an_axis_label_is_short_and_zero_has_no_sign() {
+    fn an_axis_label_is_short_and_zero_has_no_sign() {
         let labels = [-0.0, 0.1 + 0.2, -1.5, 12000.0].map(axis_label);
         assert_eq!(labels, ["0", "0.3", "-1.5", "12000"]);
     }
 
     #[test]
-    fn unit_empty_and_constant_curves_still_have_a_span() {
+    fn empty_and_constant_curves_still_have_a_span() {
         assert_eq!(span([].into_iter()), (0.0, 1.0));
         assert_eq!(span([f64::NAN, 2.0].into_iter()), (1.5, 2.5));
     }
     #[test]
-    fn unit_a_thinned_curve_keeps_its_ends_and_every_peak() {
+    fn a_thinned_curve_keeps_its_ends_and_every_peak() {
         let wave = |n: usize| (n as f64, if n == 77_777 { 9.0 } else { (n as f64).sin() });
         let points: Vec<_> = (0..100_000).map(wave).collect();
         let thin = thinned(&points, (0.0, 99_999.0));

@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_name_goes_where_there_is_room_and_one_without_room_is_left_out() {
+    fn a_name_goes_where_there_is_room_and_one_without_room_is_left_out() {
         let edges = [0, 200, 0, 200];
         let at = |names: &[(&'static str, (i32, i32))], points: &[(i32, i32)], is_needed: bool| {
             let names = names.iter().map(|&(text, at)| Name { text, at, is_needed });

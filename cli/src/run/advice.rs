@@ -213,7 +213,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_every_check_of_a_run_has_advice() {
+    fn every_check_of_a_run_has_advice() {
         let sources = [include_str!("checks.rs"), include_str!("closed_loop/verdicts.rs")];
         let words = sources.map(|source| source.split_whitespace().collect::<Vec<_>>().join(" "));
         let mut names = 0;

@@ -219,7 +219,7 @@ mod tests {
         #100\n1%\n1\"\n1!\nb1110 #\n#110\n0!\n0\"\n#120\n1!\nb1111 $\n#130\n0!\n0%\n";
 
     #[test]
-    fn unit_the_waves_of_a_sample_are_those_from_its_strobe_on() {
+    fn the_waves_of_a_sample_are_those_from_its_strobe_on() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rtl.vcd");
         std::fs::write(&path, VCD).unwrap();
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_sample_with_the_largest_step_is_the_first_of_equals() {
+    fn the_sample_with_the_largest_step_is_the_first_of_equals() {
         assert_eq!(largest_step(&[0, 0, 5, 9, 4, 4]), 2);
         assert_eq!(largest_step(&[]), 0);
     }

@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_cost_is_the_later_arrival_and_the_gain_the_earlier_rest() {
+    fn the_cost_is_the_later_arrival_and_the_gain_the_earlier_rest() {
         // The ramp begins after sample 5 and is at its end 10 samples later. The envelope of the swing is 4 · 2^(−n/8): its
         // peak of −0.5·√½·4 = 1.41 at n = 12 is followed by 1 at 16, 0.71 at 20, and 0.5, which is in the band, at 24.
         let gain = gain([4.0, 0.0], 100);
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_load_that_was_not_seen_at_rest_for_a_period_has_not_settled() {
+    fn a_load_that_was_not_seen_at_rest_for_a_period_has_not_settled() {
         let gain = gain([4.0, 0.0], 40);
         assert_eq!((gain.settled_unshaped_s, gain.sooner_s), (None, None));
         assert!(gain.settled_s.is_some() && gain.end_unshaped_s > 33e-3, "{gain:?}");

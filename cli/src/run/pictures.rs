@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_said_of_settling_is_what_is_shown() {
+    fn what_is_said_of_settling_is_what_is_shown() {
         // The envelope at the half periods is 7 · 2^(−n/2): 1.24 at 25 ms is the last above 1, and the curve enters the
         // band for good soon after.
         assert_eq!(label_of(60.0), "load: settled at 25.9 ms");

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_text_that_tools_read_differently_is_found_with_its_line() {
+    fn text_that_tools_read_differently_is_found_with_its_line() {
         for (text, what) in [
             ("`ifdef VERILATOR", "`ifdef VERILATOR"),
             ("  `ifndef  SYNTHESIS", "`ifndef SYNTHESIS"),
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_text_that_all_tools_read_alike_is_not_found() {
+    fn text_that_all_tools_read_alike_is_not_found() {
         for text in [
             "`default_nettype none\n`timescale 1ns/1ns",
             "`define WIDTH 8\nwire [`WIDTH-1:0] a;",
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_stood_there_before_is_not_added() {
+    fn what_stood_there_before_is_not_added() {
         let ours = "initial $readmemh(\"a\", b);\n// verilator lint_off WIDTH\n";
         let theirs =
             "// mine\n// verilator lint_off WIDTH\ninitial $readmemh(\"a\", b);\ninitial $readmemh(\"c\", b);\n";

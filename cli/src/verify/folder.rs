@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_changed_delay_is_a_difference_of_the_table_and_named() {
+    fn a_changed_delay_is_a_difference_of_the_table_and_named() {
         let folder = compared(&ROM.replace("25'h0982e5e", "25'h0942e5e"));
         assert!(folder.fails());
         let [difference] = folder.differences.as_slice() else {
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_other_edits_are_told_apart_and_only_verilog_fails_unless_it_is_accepted() {
+    fn other_edits_are_told_apart_and_only_verilog_fails_unless_it_is_accepted() {
         for (from, to, kind) in [
             ("// 0.38", "// three eighths", Kind::Comment),
             ("    words[1]", "\twords[1]", Kind::Comment),
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_text_that_depends_on_the_tool_fails_even_if_edits_are_accepted() {
+    fn text_that_depends_on_the_tool_fails_even_if_edits_are_accepted() {
         for (to, line) in [
             ("`ifdef VERILATOR\n`endif\nendmodule", 4),
             ("// synthesis translate_off\nendmodule", 4),
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_statement_behind_a_word_is_code() {
+    fn a_statement_behind_a_word_is_code() {
         for to in ["25'h0982e5e; initial words[0] = 25'h0;", "25'h0982e5e + y;"] {
             let folder = compared(&ROM.replace("25'h0982e5e;", to));
             assert!(
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_words_that_are_missing_or_new_fail() {
+    fn words_that_are_missing_or_new_fail() {
         assert!(compared(&ROM.replace("    words[1] = 25'h0982e5e;\n", "")).fails());
         assert!(compared(&ROM.replace("endmodule", "    words[7] = 25'h0000001;\nendmodule")).fails());
     }

@@ -24,7 +24,7 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn unit_every_link_of_the_pages_leads_to_a_file() {
+fn every_link_of_the_pages_leads_to_a_file() {
     let root = root();
     let mut all = pages(&root);
     for folder in ["docs", "docs/tutorial", "docs/examples", "waves"] {
@@ -42,7 +42,7 @@ fn unit_every_link_of_the_pages_leads_to_a_file() {
 }
 
 #[test]
-fn unit_the_book_has_every_page() {
+fn the_book_has_every_page() {
     let docs = root().join("docs");
     let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
     let chapters: Vec<&str> = links(&summary).collect();

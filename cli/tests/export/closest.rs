@@ -33,7 +33,7 @@ fn left(impulses: &[[f64; 2]]) -> f64 {
 /// The figures of Klipper's kinds at its default damping ratio, which its own code gives on a grid of 0.2 Hz: 2hump_ei at 58.4 Hz leaves 4.5 %,
 /// mzv at 38.6 Hz 9.7 %.
 #[test]
-fn unit_the_search_finds_the_best_frequency_of_klippers_kinds() {
+fn the_search_finds_the_best_frequency_of_klippers_kinds() {
     let kinds = [Kind::TwoHumpEi, Kind::Mzv];
     let candidates = kinds.map(|kind| OwnKind {
         name: kind.text(),

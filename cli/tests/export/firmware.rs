@@ -204,7 +204,7 @@ fn cli_fixed_time_motion_says_what_its_samples_leave() {
 }
 
 #[test]
-fn unit_our_klipper_is_klippers_own() {
+fn our_klipper_is_klippers_own() {
     let text = include_str!("klipper.txt");
     let mut compared = 0;
     for line in text.lines().filter(|line| !line.starts_with('#')) {

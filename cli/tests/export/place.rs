@@ -119,7 +119,7 @@ fn cli_a_file_of_its_own_is_written_again_until_somebody_edits_it() {
 }
 
 #[test]
-fn unit_no_command_of_ours_appends_to_a_configuration() {
+fn no_command_of_ours_appends_to_a_configuration() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut pages = rust_sources(&["cli", "identify", "model", "host", "synth"]);
     for folder in ["", "docs", "docs/tutorial", "docs/examples", "scripts"] {

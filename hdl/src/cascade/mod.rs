@@ -113,7 +113,7 @@ mod tests {
     use crate::emit::emit as emit_directly;
 
     #[test]
-    fn unit_a_cascade_comes_out_as_if_its_size_were_compiled() {
+    fn a_cascade_comes_out_as_if_its_size_were_compiled() {
         let kernel: Compiled<CascadeConfig> = cascade!(16, 24, 7, 3);
         let config = CascadeConfig::new(16, vec![3, 100, 7, 1, 2]).unwrap();
         assert_eq!(kernel.sizes, sizes(&config));

@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_text_is_plain_and_paragraphs_are_lines() {
+    fn text_is_plain_and_paragraphs_are_lines() {
         let text = " Adds [`Two`](super::Two) words −\n of [many](x), `a[3:0]`.\n\n - one\n   thing\n - more\n\n ```text\n a ─► b\n ```";
         let expected = [
             "Adds `Two` words - of many, `a[3:0]`.",
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_kernel_has_a_head_in_ascii() {
+    fn every_kernel_has_a_head_in_ascii() {
         assert!(HEADS.len() > 50, "{}", HEADS.len());
         for (name, _) in HEADS {
             let head = head(name);

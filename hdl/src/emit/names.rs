@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_reserved_words_are_found() {
+    fn reserved_words_are_found() {
         for word in [
             "always",
             "bit",
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_names_are_lower_snake_case() {
+    fn names_are_lower_snake_case() {
         assert_eq!(check_name("tap_3"), Ok(()));
         assert_eq!(check_form("small"), Ok(()));
         for bad in ["", "Tap", "3d", "_x", "a$b", "a-b", "größe"] {
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_name_that_says_its_value_is_told_from_one_that_says_more() {
+    fn a_name_that_says_its_value_is_told_from_one_that_says_more() {
         let says = [("NO_CLOCKS", 0), ("NOTHING", 0), ("ONE_TICK", 1), ("CHANNEL_2", 2)];
         assert!(says.iter().all(|(name, value)| says_its_value(name, *value)));
         let more = [
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_constants_are_upper_snake_case() {
+    fn constants_are_upper_snake_case() {
         assert_eq!(constant_name("State$HoldOff"), "STATE_HOLD_OFF");
         assert_eq!(constant_name("one_a"), "ONE_A");
         assert_eq!(constant_name("limit$0"), "LIMIT_0");

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_indices_are_evaluated() {
+    fn indices_are_evaluated() {
         let loops = [("i".to_owned(), 2)];
         let resolved = |text| resolve(text, &loops);
         assert_eq!(resolved("count$d$next").as_deref(), Ok("count$d"));

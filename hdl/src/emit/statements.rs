@@ -249,7 +249,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_comments_lose_their_macro() {
+    fn comments_lose_their_macro() {
         assert_eq!(comment_text("comment! (\"tap table").as_deref(), Some("tap table"));
         assert_eq!(comment_text("comment!(\"a\n   b\")").as_deref(), Some("a b"));
         assert_eq!(comment_text("@module mac").as_deref(), Some("@module mac"));

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_literals_are_sized_and_signed() {
+    fn literals_are_sized_and_signed() {
         let signed = Type {
             width: 16,
             signed: true,
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_values_must_fit() {
+    fn values_must_fit() {
         assert_eq!(Type::bits(64).pattern(u64::MAX.into()), Some(u64::MAX));
         assert_eq!(Type { width: 8, signed: true }.pattern(-128), Some(0x80));
         assert_eq!(Type { width: 8, signed: true }.pattern(128), None);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_masks_never_overflow() {
+    fn masks_never_overflow() {
         assert_eq!(mask(0, 64), u64::MAX);
         assert_eq!(mask(4, 4), 0xf0);
         assert_eq!(mask(64, 1), 0);

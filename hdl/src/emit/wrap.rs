@@ -71,13 +71,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_what_fits_stays() {
+    fn what_fits_stays() {
         let line = format!("    assign a = {};", "b".repeat(80));
         assert_eq!(wrapped(&line), line);
     }
 
     #[test]
-    fn unit_code_breaks_at_its_outermost_operators() {
+    fn code_breaks_at_its_outermost_operators() {
         let name = |letter: &str| letter.repeat(30);
         let line = format!(
             "  assign x = ({} & {}) | ({} & {});",
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_list_breaks_behind_a_comma() {
+    fn a_list_breaks_behind_a_comma() {
         let names = ["a", "b", "c", "d"].map(|letter| letter.repeat(30));
         let line = format!("x <= {{{}}};", names.join(", "));
         let expected = format!("x <= {{{}, {},\n    {}, {}}};", names[0], names[1], names[2], names[3]);
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_comment_breaks_between_words_and_a_table_never() {
+    fn a_comment_breaks_between_words_and_a_table_never() {
         let long = format!("    // {}", ["word"; 40].join(" "));
         let text = wrapped(&long);
         assert!(

@@ -88,7 +88,7 @@ mod tests {
     /// Yosys needs the bare attribute, Quartus the value of `ramstyle`. Without it either builds logic around the
     /// memory for a word that is read in the clock in which it is written, which no block does.
     #[test]
-    fn unit_both_synthesisers_are_told_that_no_word_is_read_while_it_is_written() {
+    fn both_synthesisers_are_told_that_no_word_is_read_while_it_is_written() {
         let Verilog::Custom(text) = Ram::<8, 4>::default().hdl() else {
             panic!("a leaf has Verilog of its own");
         };

@@ -253,7 +253,7 @@ mod tests {
 
     /// Each form of the kernel has one size here that is not among the compiled ones.
     #[test]
-    fn unit_each_form_comes_out_as_if_its_size_were_compiled() {
+    fn each_form_comes_out_as_if_its_size_were_compiled() {
         let direct: [Compiled<ShaperConfig>; 5] = [
             shaper!(16, 6, 6, 0),
             shaper!(18, 13, 7, 1),

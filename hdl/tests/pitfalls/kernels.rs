@@ -303,7 +303,7 @@ fn crosssim_bench_notices_one_wrong_bit() {
 
 /// The rows that change width inside an expression are refused; their `…_local` forms are in the table above.
 #[test]
-fn unit_width_changes_inside_expressions_are_refused() {
+fn width_changes_inside_expressions_are_refused() {
     fn check<K: Kernel>(text: &str) {
         let error = emit_as::<K>("dut").unwrap_err();
         assert_eq!(*error.cause, EmitCause::NeedsLocal(text.to_owned()), "{error}");
@@ -320,7 +320,7 @@ fn unit_width_changes_inside_expressions_are_refused() {
 
 /// P11: the simulation sees the final value of a register's input, Verilog the value so far.
 #[test]
-fn unit_reading_a_register_input_is_refused() {
+fn reading_a_register_input_is_refused() {
     let error = emit_as::<ReadsNext>("dut").unwrap_err();
     assert_eq!(*error.cause, EmitCause::ReadsSubmoduleInput("count.d".to_owned()));
 }

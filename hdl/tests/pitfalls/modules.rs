@@ -230,7 +230,7 @@ fn names(modules: &[Module]) -> Vec<&str> {
 }
 
 #[test]
-fn unit_equal_modules_are_shared_and_named() {
+fn equal_modules_are_shared_and_named() {
     let modules = emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
     let expected = [
         "posicast_counter_by_1",
@@ -259,7 +259,7 @@ fn unit_equal_modules_are_shared_and_named() {
 
 /// A name identifies one content: a difference that the name does not show is refused.
 #[test]
-fn unit_different_modules_of_one_name_are_refused() {
+fn different_modules_of_one_name_are_refused() {
     let error = emit(&Ambiguous::default(), &options("ambiguous", "")).unwrap_err();
     assert_eq!(*error.cause, EmitCause::OtherContent("sized".to_owned()));
     let error = emit(&Unnumbered::default(), &options("unnumbered", "")).unwrap_err();
@@ -270,13 +270,13 @@ fn unit_different_modules_of_one_name_are_refused() {
 }
 
 #[test]
-fn unit_numbers_of_a_name_come_from_its_signals() {
+fn numbers_of_a_name_come_from_its_signals() {
     let modules = emit(&Numbers::default(), &options("top", "")).unwrap();
     assert_eq!(names(&modules), ["numbers_8x256x2_7_reset5_e4_set", "top"]);
 }
 
 #[test]
-fn unit_a_package_takes_each_module_once() {
+fn a_package_takes_each_module_once() {
     let pair = emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
     let mut package = Vec::new();
     add(&mut package, pair.clone()).unwrap();
@@ -292,14 +292,14 @@ fn unit_a_package_takes_each_module_once() {
 }
 
 #[test]
-fn unit_output_is_the_same_each_time() {
+fn output_is_the_same_each_time() {
     let emitted = || emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
     let first = emitted();
     assert!((0..5).all(|_| emitted() == first));
 }
 
 #[test]
-fn unit_header_says_version_purpose_and_parameters() {
+fn header_says_version_purpose_and_parameters() {
     let modules = emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
     let version = env!("CARGO_PKG_VERSION");
     let expected = format!(
@@ -332,7 +332,7 @@ module posicast_pair ("
 
 /// A comment stands above the statement that follows it, whichever construct drives that, and nowhere else.
 #[test]
-fn unit_a_comment_stands_once_above_its_statement() {
+fn a_comment_stands_once_above_its_statement() {
     let text = emit_as::<Commented>("of").unwrap().pop().unwrap().text;
     for (comment, statement) in [
         (
@@ -354,7 +354,7 @@ fn unit_a_comment_stands_once_above_its_statement() {
 
 /// RustHDL wraps the text of long comments, which its own generator then breaks on.
 #[test]
-fn unit_long_comments_are_wrapped_between_words() {
+fn long_comments_are_wrapped_between_words() {
     let text = text_of::<LongComment>();
     let comment = "    // The first of the counters, whose value is inverted before it is added to the other, which is\n    \
                    // inverted too\n";
@@ -362,7 +362,7 @@ fn unit_long_comments_are_wrapped_between_words() {
 }
 
 #[test]
-fn unit_ports_are_told_without_the_clock() {
+fn ports_are_told_without_the_clock() {
     let top = emit_as::<Pair>("x").unwrap().pop().unwrap();
     let port = |name: &str, direction, width| Port {
         name: name.into(),
@@ -382,14 +382,14 @@ fn unit_ports_are_told_without_the_clock() {
 /// A register that is never read is an error; an unread input or bit is named, so that lint knows that it is
 /// intended.
 #[test]
-fn unit_unread_bits_are_named() {
+fn unread_bits_are_named() {
     let text = text_of::<Pair>();
     assert!(text.contains("wire unused = &{1'b0, sum[3:0]};"), "{text}");
     assert_eq!(emit_as::<Unread>("x").unwrap_err().signal, "r");
 }
 
 #[test]
-fn unit_compose_shares_inputs_and_lifts_the_rest() {
+fn compose_shares_inputs_and_lifts_the_rest() {
     let module = emit_as::<Pair>("part").unwrap();
     let part = module.last().unwrap();
     let header = Header {
@@ -423,7 +423,7 @@ fn unit_compose_shares_inputs_and_lifts_the_rest() {
 }
 
 #[test]
-fn unit_compose_refuses_what_does_not_fit() {
+fn compose_refuses_what_does_not_fit() {
     let port = |name: &str, direction, width| Port {
         name: name.into(),
         direction,

@@ -57,7 +57,7 @@ kernel!(WriteAfterReadInElse { a: Bits<8> => y: Bits<8> } { t: Signal<Local, Bit
 });
 
 #[test]
-fn unit_order_and_completeness() {
+fn order_and_completeness() {
     refused::<LatchLocal>("t", EmitCause::Latch);
     refused::<LatchOutput>("y", EmitCause::Latch);
     refused::<ReadFirst>("t", EmitCause::ReadBeforeAssigned("t".into()));
@@ -94,7 +94,7 @@ kernel!(GatedClock { rst: Bit, a: Bits<4> => y: Bits<8> } { ram: Ram16x8 = Ram16
 });
 
 #[test]
-fn unit_registers() {
+fn registers() {
     refused::<GatedClock>("ram.clk", EmitCause::ClockWiring);
     refused::<NoClock>(
         "r",
@@ -181,7 +181,7 @@ kernel!(ConstantArithmeticIndex { a: Bits<16> => y: Bit } { k: Constant<Bits<4>>
     #[hdl_gen] fn update(&mut self) { self.y.next = self.a.val().get_bits::<1>((self.k.val() + 1).index()).any(); });
 
 #[test]
-fn unit_expressions() {
+fn expressions() {
     refused::<ProductUnderCast>("y", EmitCause::NeedsLocal("a * b".into()));
     unsupported::<ConstantArithmeticIndex>("a slice at an offset that is a signal");
     let index = |text: &str| EmitCause::ArrayIndex(text.to_owned());
@@ -290,7 +290,7 @@ fn unit_leaves() {
 }
 
 #[test]
-fn unit_message_names_block_signal_and_remedy() {
+fn message_names_block_signal_and_remedy() {
     assert_eq!(
         emit_as::<LatchLocal>("x").unwrap_err().to_string(),
         "block `dut`, signal `t`: it is not assigned on every path, which makes a latch; give it a default before the first `if`"

@@ -54,7 +54,7 @@ fn crosssim_shaper_equals_its_model() {
 }
 
 #[test]
-fn unit_shaper_comes_out_the_same_twice() {
+fn shaper_comes_out_the_same_twice() {
     let config = config(32, 9, 62);
     let emitted = || posicast_hdl::shaper::emit(&config, "xy_stage_x").unwrap();
     assert_eq!(emitted(), emitted());

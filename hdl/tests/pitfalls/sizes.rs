@@ -104,7 +104,7 @@ fn refused(result: Result<Vec<Module>, EmitError>, signal: &str, cause: EmitCaus
 }
 
 #[test]
-fn unit_a_size_that_is_not_compiled_comes_out_as_if_it_were() {
+fn a_size_that_is_not_compiled_comes_out_as_if_it_were() {
     let samples = |wanted: &[u32]| widths!(wanted; [12, 9, 21, 7] [11, 12, 23, 10] [10, 4, 14, 2]);
     assert_eq!(samples(&[12, 9]), direct::<12, 9, 21, 7>());
     assert_eq!(samples(&[10, 4]), direct::<10, 4, 14, 2>());
@@ -113,7 +113,7 @@ fn unit_a_size_that_is_not_compiled_comes_out_as_if_it_were() {
 }
 
 #[test]
-fn unit_a_width_that_is_no_sum_of_sizes_is_refused_at_its_signal() {
+fn a_width_that_is_no_sum_of_sizes_is_refused_at_its_signal() {
     // The width is A + B in two of three samples, and one more in the third.
     let result = widths!(&[9, 9]; [12, 9, 21, 7] [11, 12, 23, 10] [10, 4, 15, 2]);
     refused(result, "sum", EmitCause::SizeNumber("21, 23, 15".to_owned()));
@@ -129,7 +129,7 @@ fn unit_a_width_that_is_no_sum_of_sizes_is_refused_at_its_signal() {
 }
 
 #[test]
-fn unit_a_value_that_depends_on_the_size_is_refused() {
+fn a_value_that_depends_on_the_size_is_refused() {
     let with = |mask, shift, reset| {
         let values = |of: usize| Values {
             mask: [VALUES.mask, VALUES.mask, mask][of],
@@ -157,7 +157,7 @@ fn unit_a_value_that_depends_on_the_size_is_refused() {
 }
 
 #[test]
-fn unit_a_value_that_the_wanted_width_does_not_hold_is_refused() {
+fn a_value_that_the_wanted_width_does_not_hold_is_refused() {
     let values = Values {
         mask: 1 << 13,
         ..VALUES
@@ -197,7 +197,7 @@ impl<const A: usize, const C: usize> Logic for Inputs<A, C> {
 }
 
 #[test]
-fn unit_forms_that_differ_are_refused() {
+fn forms_that_differ_are_refused() {
     let blocks: [(&[u32], &dyn Block); 2] = [(&[8], &Inputs::<8, 2>::default()), (&[9], &Inputs::<9, 3>::default())];
     let differs = |what: &str| EmitCause::SizesDiffer(what.to_owned());
     refused(emit_sized(&blocks, &[7], &options()), "-", differs("list of signals"));

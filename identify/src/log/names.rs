@@ -437,7 +437,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_names_of_the_field_are_understood() {
+    fn names_of_the_field_are_understood() {
         let g = Some(GRAVITY);
         let cases = [
             ("#time", Meaning::Time, None),

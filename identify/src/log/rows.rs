@@ -160,7 +160,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn unit_numbers_are_those_of_the_standard_library(digits in 0u64..u64::MAX, places in 0usize..20, sign in "[-+]?") {
+        fn numbers_are_those_of_the_standard_library(digits in 0u64..u64::MAX, places in 0usize..20, sign in "[-+]?") {
             let text = format!("{sign}{digits:0width$}", width = places + 1);
             let (whole, part) = text.split_at(text.len() - places);
             let text = format!("{whole}.{part}");
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_other_numbers_are_those_of_the_general_reader() {
+    fn other_numbers_are_those_of_the_general_reader() {
         for text in [
             "", "-", ".", "-.5", "5.", "1e3", "nan", "inf", "1.2.3", "+4", "0,5", " 7 ", "1_0", "-0",
         ] {
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_plain_rows_end_before_the_first_line_that_is_not() {
+    fn plain_rows_end_before_the_first_line_that_is_not() {
         for (rest, expected) in [
             ("3,x,0\n", 3),
             ("3,0\n", 2),
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_two_threads_read_what_one_does() {
+    fn two_threads_read_what_one_does() {
         let rows = |broken: usize| -> String {
             (0..60_000)
                 .map(|n| {

@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_separators_are_those_of_the_rows_whatever_remarks_contain() {
+    fn separators_are_those_of_the_rows_whatever_remarks_contain() {
         let cases: [(&str, u8); 7] = [
             ("time,x\n0,1\n1,2\n", b','),
             (";Title, logger\n;Headers, time,Ax\n0.003,799\n0.013,805\n", b','),
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_times_of_day_and_what_lines_say() {
+    fn times_of_day_and_what_lines_say() {
         assert_eq!(time_of_day(b"2026-01-31 12:00:01.250"), Some(43_201.25));
         assert_eq!(time_of_day(b"2026-01-31T00:00:01,5Z"), Some(1.5));
         assert_eq!(time_of_day(b"01:02.5"), Some(62.5));

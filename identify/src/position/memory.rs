@@ -201,7 +201,7 @@ mod tests {
     use crate::synthetic::Noise;
 
     #[test]
-    fn unit_the_memory_of_noise_is_found_and_taken_away() {
+    fn the_memory_of_noise_is_found_and_taken_away() {
         let mut source = Noise::new(1);
         let mut noise = vec![0.0, 0.0];
         for k in 2..4000 {

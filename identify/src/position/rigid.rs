@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_ring_begins_where_it_is_struck() {
+    fn a_ring_begins_where_it_is_struck() {
         let ring = |n: usize| (-0.01 * n as f64).exp() * (0.2 * n as f64).cos();
         let from_the_first: Vec<f64> = (0..500).map(ring).collect();
         assert_eq!(onset(&from_the_first), 0);

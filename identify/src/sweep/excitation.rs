@@ -366,7 +366,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_firmwares_sweep_rises_by_its_rate() {
+    fn the_firmwares_sweep_rises_by_its_rate() {
         let sweep = Sweep::default();
         let excitation = SweptAcceleration::new(&sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
         // The duration is 130 Hz at 1 Hz/s, plus the last period.
@@ -429,7 +429,7 @@ mod tests {
     ];
 
     #[test]
-    fn unit_sweep_and_square_wave_are_those_of_klippers_generator() {
+    fn sweep_and_square_wave_are_those_of_klippers_generator() {
         let sweep = Sweep {
             end_hz: 6.5,
             ..Sweep::default()
@@ -456,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_means_are_the_integral_of_the_samples() {
+    fn means_are_the_integral_of_the_samples() {
         let sweep = Sweep {
             end_hz: 20.0,
             ..Sweep::default()

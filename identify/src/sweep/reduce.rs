@@ -221,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_filter_passes_its_band_and_stops_what_would_alias() {
+    fn the_filter_passes_its_band_and_stops_what_would_alias() {
         for factor in [2, 4, 7] {
             let filter = Filter::new(factor);
             let gain = |cycles: f64| -> f64 {
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_log_and_excitation_pass_the_same_filter() {
+    fn log_and_excitation_pass_the_same_filter() {
         let sweep = Sweep {
             end_hz: 40.0,
             rate_hz_per_s: 10.0,

@@ -215,7 +215,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_truncation_is_toward_zero_on_both_sides() {
+    fn truncation_is_toward_zero_on_both_sides() {
         let config = DividerConfig::new(3).unwrap();
         // 3 · 2^16 / 7 = 28086.857…
         assert_eq!(config.divide(1, 7), (28086, false));
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_no_time_is_one_tick() {
+    fn no_time_is_one_tick() {
         for tick in [1, 5000, 131_071] {
             let config = DividerConfig::new(tick).unwrap();
             assert_eq!(config.divide(-7, 0), (-7 << 16, false));
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_ends_saturate() {
+    fn the_ends_saturate() {
         let config = DividerConfig::new(131_071).unwrap();
         assert_eq!(config.divide(-131_072, 1), (-QUOTIENT_MAX, true));
         assert_eq!(config.divide(131_071, 1), (QUOTIENT_MAX, true));
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_ticks_that_do_not_fit_are_named() {
+    fn ticks_that_do_not_fit_are_named() {
         for found in [0, 131_072, u64::MAX] {
             assert_eq!(DividerConfig::new(found), Err(DividerConfigError::TickClocks(found)));
         }

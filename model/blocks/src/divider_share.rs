@@ -152,7 +152,7 @@ mod tests {
     use crate::divider::{Divider, DividerConfig, Inputs};
 
     #[test]
-    fn unit_every_channel_gets_its_own_quotient_in_its_own_clock() {
+    fn every_channel_gets_its_own_quotient_in_its_own_clock() {
         let config = DividerConfig::new(5000).unwrap();
         let operands = [(3i32, 7500u32), (-200, 4999), (1, 0), (0, 12)];
         for channels in 1..=operands.len() {

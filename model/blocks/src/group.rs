@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_all_start_or_none() {
+    fn all_start_or_none() {
         for wanted in 0..16u64 {
             for can in 0..8u64 {
                 let can_start = [can & 1, can >> 1 & 1, can >> 2 & 1];
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_stop_reaches_the_others_and_an_emergency_all() {
+    fn a_stop_reaches_the_others_and_an_emergency_all() {
         assert_eq!(
             after(2, &[0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0]),
             [0, 0, 0, 1, 0, 0, 0, 0]
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_feed_hold_waits_until_all_its_axes_rest() {
+    fn a_feed_hold_waits_until_all_its_axes_rest() {
         for wanted in 0..8u64 {
             for resting in 0..8u64 {
                 let bits = |word: u64| [word & 1, word >> 1 & 1, word >> 2 & 1];

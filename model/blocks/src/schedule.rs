@@ -133,7 +133,7 @@ mod tests {
     use crate::ClockedBlock;
 
     #[test]
-    fn unit_control_comes_so_many_clocks_after_each_tick_and_not_without() {
+    fn control_comes_so_many_clocks_after_each_tick_and_not_without() {
         for clocks in [2, 3, 50] {
             let mut schedule = Schedule::new(&ScheduleConfig::new(clocks).unwrap());
             for clock in 0..500 {

@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_was_written_is_read_back() {
+    fn what_was_written_is_read_back() {
         let machine = Settings(std::array::from_fn(|row| MACHINE + row as u32));
         let mut banks = SettingBanks::new(&machine);
         let mut clock = 0;
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_read_waits_for_the_controller_and_for_a_write() {
+    fn a_read_waits_for_the_controller_and_for_a_write() {
         let mut banks = SettingBanks::new(&Settings(std::array::from_fn(|row| MACHINE + row as u32)));
         let read = Inputs {
             setting_read: true,

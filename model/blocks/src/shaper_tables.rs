@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_written_is_read() {
+    fn what_is_written_is_read() {
         let tables = ShaperTables {
             sample_hz: 1000.0,
             axes: vec![axis(), AxisShaperTables { modulo: true, ..axis() }],
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_wrong_is_named() {
+    fn what_is_wrong_is_named() {
         let said = |change: &dyn Fn(&mut AxisShaperTables)| {
             let mut axis = axis();
             change(&mut axis);

@@ -128,7 +128,7 @@ mod tests {
     use crate::ClockedBlock;
 
     #[test]
-    fn unit_ticks_come_at_their_distance_and_count() {
+    fn ticks_come_at_their_distance_and_count() {
         let mut time_base = TimeBase::new(&DividerConfig::new(7).unwrap());
         for clock in 0..100u64 {
             let mut outputs = [0; 5];

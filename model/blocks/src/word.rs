@@ -109,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_rounds_half_up() {
+    fn rounds_half_up() {
         let format = WordFormat::new(16, 2).unwrap();
         let words = [-0.375, -0.25, -0.125, 0.0, 0.1249, 0.125, 0.375].map(|counts| format.to_word(counts).unwrap());
         assert_eq!(words, [-1, -1, 0, 0, 0, 1, 2]);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_word_of_16_bits_comes_back() {
+    fn every_word_of_16_bits_comes_back() {
         let format = WordFormat::new(16, 8).unwrap();
         for word in -32768..=32767 {
             assert_eq!(format.to_word(format.to_counts(word)).unwrap(), word);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_ends_and_what_lies_beyond() {
+    fn the_ends_and_what_lies_beyond() {
         let format = WordFormat::new(32, 31).unwrap();
         assert_eq!(format.to_word(-1.0).unwrap(), -(1 << 31));
         for beyond in [

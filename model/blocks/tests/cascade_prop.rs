@@ -100,7 +100,7 @@ fn idle(cascade: &mut Cascade, clocks: u32) {
 }
 
 #[test]
-fn unit_a_strobe_in_a_pass_is_lost_and_flagged() {
+fn a_strobe_in_a_pass_is_lost_and_flagged() {
     let config = CascadeConfig::new(16, vec![1, 1]).unwrap();
     let mut cascade = Cascade::new(&config, 1);
     let strobe = |x| Inputs {

@@ -141,7 +141,7 @@ proptest! {
 }
 
 #[test]
-fn unit_a_part_that_says_something_wrong_is_found() {
+fn a_part_that_says_something_wrong_is_found() {
     let wrong = [
         (1, "no pass"),
         (2, "one more"),
@@ -168,7 +168,7 @@ fn unit_a_part_that_says_something_wrong_is_found() {
 }
 
 #[test]
-fn unit_a_wait_is_one_call() {
+fn a_wait_is_one_call() {
     // With no bus access and no pin that moves, the block advances from tick to tick.
     let counter = Component::pulse_counter(DividerConfig::new(5000).unwrap(), 3, false).unwrap();
     let mut fast = counter.model(1);
@@ -182,7 +182,7 @@ fn unit_a_wait_is_one_call() {
 }
 
 #[test]
-fn unit_random_inputs_move_the_axes() {
+fn random_inputs_move_the_axes() {
     let (composition, blocks) = stage(TICK_CLOCKS, |(composition, blocks)| {
         Box::new(Composed::new(composition, blocks))
     });

@@ -76,7 +76,7 @@ impl Bench {
 /// The commit comes at every distance from the boundary of two passes; each pass must use one law and the bank that
 /// belongs to it.
 #[test]
-fn unit_no_pass_mixes_a_law_with_the_settings_of_another() {
+fn no_pass_mixes_a_law_with_the_settings_of_another() {
     let tick = |law: Law, settings: &Settings| {
         let mut controller = posicast_blocks::sliding_mode::TickController::default();
         let motion = TickMotion {
@@ -117,7 +117,7 @@ fn unit_no_pass_mixes_a_law_with_the_settings_of_another() {
 /// The clear comes in any clock of a pass: from the first clock of step 14 on, in which the sum of Σe and e begins,
 /// this e is dropped.
 #[test]
-fn unit_a_clear_of_the_integral_drops_the_sum_under_way_and_no_other() {
+fn a_clear_of_the_integral_drops_the_sum_under_way_and_no_other() {
     let mut settings = settings(0.0);
     settings.set_gain(SettingRow::Integral, Gain::nearest(1.0, SettingRow::Integral).unwrap());
     // Number of the clock in which step 14 of a pass begins; the clock after `start` is 1.

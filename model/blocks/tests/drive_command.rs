@@ -47,7 +47,7 @@ fn duties(clocks: &[Inputs]) -> Vec<i32> {
 }
 
 #[test]
-fn unit_a_kick_lasts_its_ticks() {
+fn a_kick_lasts_its_ticks() {
     let shown = play(&[KICK, TICK, READY, TICK, READY, TICK, READY]);
     let active: Vec<bool> = shown.iter().map(|shown| shown.direct_active).collect();
     assert_eq!(active, [true, true, true, true, true, false, false]);
@@ -60,7 +60,7 @@ fn unit_a_kick_lasts_its_ticks() {
 }
 
 #[test]
-fn unit_a_kick_in_the_last_tick_goes_on() {
+fn a_kick_in_the_last_tick_goes_on() {
     let last = Inputs { tick: true, ..KICK };
     let shown = play(&[KICK, TICK, TICK, last, TICK, TICK, TICK]);
     assert!(
@@ -72,7 +72,7 @@ fn unit_a_kick_in_the_last_tick_goes_on() {
 }
 
 #[test]
-fn unit_it_takes_a_kick_in_ready_with_enable() {
+fn it_takes_a_kick_in_ready_with_enable() {
     let off = Inputs {
         axis_state: SupervisorState::Off as u8,
         ..KICK
@@ -103,7 +103,7 @@ fn unit_it_takes_a_kick_in_ready_with_enable() {
 }
 
 #[test]
-fn unit_a_sign_that_turns_is_nothing_for_a_tick() {
+fn a_sign_that_turns_is_nothing_for_a_tick() {
     let back = Inputs {
         direct_duty: -500,
         direct_hold_ticks: 9,
@@ -117,7 +117,7 @@ fn unit_a_sign_that_turns_is_nothing_for_a_tick() {
 }
 
 #[test]
-fn unit_a_limit_switch_stops_its_direction_between_ticks() {
+fn a_limit_switch_stops_its_direction_between_ticks() {
     let on_plus = Inputs {
         limit_plus_ok: false,
         ..READY
@@ -131,7 +131,7 @@ fn unit_a_limit_switch_stops_its_direction_between_ticks() {
 }
 
 #[test]
-fn unit_the_supervisor_takes_over_without_a_gap_and_without_the_manual_duty() {
+fn the_supervisor_takes_over_without_a_gap_and_without_the_manual_duty() {
     let hold = Inputs {
         axis_state: SupervisorState::Hold as u8,
         axis_pwm_enable: true,
@@ -162,7 +162,7 @@ const TEST: Inputs = Inputs {
 };
 
 #[test]
-fn unit_a_self_test_runs_the_pwm_alone_and_behind_its_mask() {
+fn a_self_test_runs_the_pwm_alone_and_behind_its_mask() {
     let kick = Inputs {
         direct_kick: true,
         ..TEST
@@ -203,7 +203,7 @@ fn unit_a_self_test_runs_the_pwm_alone_and_behind_its_mask() {
 }
 
 #[test]
-fn unit_gates_are_counted_from_valley_to_valley() {
+fn gates_are_counted_from_valley_to_valley() {
     let gates = |gates| Inputs { gates, ..TEST };
     let valley = |gates| Inputs {
         gates,
@@ -241,7 +241,7 @@ fn unit_gates_are_counted_from_valley_to_valley() {
 }
 
 #[test]
-fn unit_18_bits_saturate_to_17() {
+fn words_of_18_bits_saturate_to_17() {
     for (wide, narrow) in [
         (65_535, DUTY_MAX),
         (65_536, DUTY_MAX),

@@ -119,7 +119,7 @@ proptest! {
 }
 
 #[test]
-fn unit_pins_come_through_a_clock_later() {
+fn pins_come_through_a_clock_later() {
     let mut generator = EncoderGenerator::new();
     for pattern in 0..64u8 {
         let pins: [bool; LINES] = std::array::from_fn(|line| pattern >> line & 1 != 0);
@@ -135,7 +135,7 @@ fn unit_pins_come_through_a_clock_later() {
 }
 
 #[test]
-fn unit_an_index_once_in_so_many_counts_both_ways() {
+fn an_index_once_in_so_many_counts_both_ways() {
     // It makes 1000 counts up, then 1000 down, with an index every 40 (43 is reduced to 40): at 0, 40, …, 1000.
     for (rate, index_every, expected) in [(1 << 29, 40, 26), (1 << 29, 43, 26), (1 << 29, 3, 0), (1 << 29, 4, 251)] {
         let mut generator = EncoderGenerator::new();
@@ -154,7 +154,7 @@ fn unit_an_index_once_in_so_many_counts_both_ways() {
 }
 
 #[test]
-fn unit_a_reset_shows_no_step_to_the_counter() {
+fn a_reset_shows_no_step_to_the_counter() {
     let high = Inputs::default().with_pins([true, true, true, false, false, false]);
     for inputs in [high, looped(1 << 30, 0)] {
         for reset_clocks in 1..4 {
@@ -169,7 +169,7 @@ fn unit_a_reset_shows_no_step_to_the_counter() {
 }
 
 #[test]
-fn unit_a_shorter_turn_takes_the_index_back_into_it() {
+fn a_shorter_turn_takes_the_index_back_into_it() {
     let mut generator = EncoderGenerator::new();
     let mut run = |index_every, clocks| {
         let mut seen = 0;

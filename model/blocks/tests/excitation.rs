@@ -91,7 +91,7 @@ proptest! {
 }
 
 #[test]
-fn unit_prbs_bits_last_a_period_and_start_anew() {
+fn prbs_bits_last_a_period_and_start_anew() {
     let mut reference = vec![true; 15];
     while reference.len() < 200 {
         let n = reference.len();
@@ -114,7 +114,7 @@ fn unit_prbs_bits_last_a_period_and_start_anew() {
 }
 
 #[test]
-fn unit_a_chirp_rises_by_its_sweep() {
+fn a_chirp_rises_by_its_sweep() {
     // The frequency rises from one turn in 100 ticks by 1/64 of that per tick: n + n(n − 1)/128 hundredths of a turn
     // after n ticks.
     let chirp = Inputs {
@@ -134,7 +134,7 @@ fn unit_a_chirp_rises_by_its_sweep() {
 }
 
 #[test]
-fn unit_what_turns_too_fast_ends() {
+fn what_turns_too_fast_ends() {
     let fast = Inputs {
         sweep: u16::MAX,
         ..settings(ExcitationKind::Chirp, 1 << 8, 2, 1 << 20)
@@ -158,7 +158,7 @@ fn unit_what_turns_too_fast_ends() {
 }
 
 #[test]
-fn unit_it_starts_once_per_enable_and_never_without_duration() {
+fn it_starts_once_per_enable_and_never_without_duration() {
     let inputs = settings(ExcitationKind::Square, 1 << 8, 4, 3);
     let mut excitation = Excitation::new();
     assert!(
@@ -204,7 +204,7 @@ fn unit_it_starts_once_per_enable_and_never_without_duration() {
 }
 
 #[test]
-fn unit_the_position_stays_at_its_ends_or_wraps() {
+fn the_position_stays_at_its_ends_or_wraps() {
     let inputs = settings(ExcitationKind::Square, 0xffff, 1000, 100);
     for (y_0, stays) in [
         (i32::MAX, i32::MAX),

@@ -39,7 +39,7 @@ fn align(scale: &mut LinearScale, tied: Inputs, motor_position: i32, scale_posit
 }
 
 #[test]
-fn unit_the_deviation_is_in_the_unit_of_the_loop() {
+fn the_deviation_is_in_the_unit_of_the_loop() {
     // 5 motor counts are 2 counts of the scale.
     let on_scale = tied(&ScaleRatio::new(5.0, 2.0).unwrap(), true);
     let watched = tied(&ScaleRatio::for_monitor(5.0, 2.0).unwrap(), false);
@@ -49,7 +49,7 @@ fn unit_the_deviation_is_in_the_unit_of_the_loop() {
 }
 
 #[test]
-fn unit_counters_may_wrap_after_align() {
+fn counters_may_wrap_after_align() {
     let tied = tied(&ScaleRatio::new(1.0, 1.0).unwrap(), true);
     let mut scale = LinearScale::new();
     align(&mut scale, tied, i32::MAX - 5, i32::MIN + 5);
@@ -57,7 +57,7 @@ fn unit_counters_may_wrap_after_align() {
 }
 
 #[test]
-fn unit_an_align_in_a_pass_is_not_lost() {
+fn an_align_in_a_pass_is_not_lost() {
     let tied = tied(&ScaleRatio::new(1.0, 1.0).unwrap(), true);
     for clocks in 0..=PASS_CLOCKS {
         let mut scale = LinearScale::new();
@@ -76,7 +76,7 @@ fn unit_an_align_in_a_pass_is_not_lost() {
 }
 
 #[test]
-fn unit_velocities_are_scaled_in_their_turn() {
+fn velocities_are_scaled_in_their_turn() {
     let tied = tied(&ScaleRatio::new(2.0, 1.0).unwrap(), true);
     let velocity = Inputs {
         velocity_valid: true,
@@ -102,7 +102,7 @@ fn unit_velocities_are_scaled_in_their_turn() {
 }
 
 #[test]
-fn unit_a_metre_of_thirds_shows_what_the_datasheet_says() {
+fn a_metre_of_thirds_shows_what_the_datasheet_says() {
     let ratio = ScaleRatio::new(3.0, 1.0).unwrap();
     let shown = ratio.apply(3_000_000) - 1_000_000;
     let stated = ratio.relative_error() * 1e6;

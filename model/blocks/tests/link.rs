@@ -127,7 +127,7 @@ proptest! {
 }
 
 #[test]
-fn unit_addresses_end_where_the_registers_do() {
+fn addresses_end_where_the_registers_do() {
     let (mut bridge, mut bus) = (LinkBridge::new(REGISTERS), Recorder::default());
     let last = Request::Write {
         address: REGISTERS - 2,
@@ -153,7 +153,7 @@ fn unit_addresses_end_where_the_registers_do() {
 }
 
 #[test]
-fn unit_requests_that_are_none_are_refused_on_both_sides() {
+fn requests_that_are_none_are_refused_on_both_sides() {
     let words = |words: usize| Request::Write {
         address: 0,
         words: vec![5; words],
@@ -185,7 +185,7 @@ fn unit_requests_that_are_none_are_refused_on_both_sides() {
 }
 
 #[test]
-fn unit_a_request_with_the_sequence_number_0_is_executed_each_time() {
+fn a_request_with_the_sequence_number_0_is_executed_each_time() {
     let (mut bridge, mut bus) = (LinkBridge::new(REGISTERS), Recorder::default());
     let frame = Request::Read { address: 4, count: 2 }.encode(0).unwrap();
     for reads in [2, 4] {
@@ -195,7 +195,7 @@ fn unit_a_request_with_the_sequence_number_0_is_executed_each_time() {
 }
 
 #[test]
-fn unit_a_silence_within_a_frame_spoils_it_and_one_between_frames_does_not() {
+fn a_silence_within_a_frame_spoils_it_and_one_between_frames_does_not() {
     let (mut bridge, mut bus) = (LinkBridge::new(REGISTERS), Recorder::default());
     let frame = Request::Write {
         address: 1,
@@ -214,7 +214,7 @@ fn unit_a_silence_within_a_frame_spoils_it_and_one_between_frames_does_not() {
 }
 
 #[test]
-fn unit_the_longest_request_fits_and_a_byte_more_is_dropped() {
+fn the_longest_request_fits_and_a_byte_more_is_dropped() {
     let mut decoder = FrameDecoder::default();
     let mut ends = |bytes: usize| {
         let encoded = cobs::encode(&vec![9; bytes]).unwrap();

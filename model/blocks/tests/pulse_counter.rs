@@ -104,7 +104,7 @@ fn golden_quadrature() {
 }
 
 #[test]
-fn unit_coarser_counts_are_the_same_there_and_back() {
+fn coarser_counts_are_the_same_there_and_back() {
     for (mode, counts) in [(0, 40), (1, 20), (2, 10)] {
         let mut bench = Bench::new(Inputs {
             mode,
@@ -125,7 +125,7 @@ fn unit_coarser_counts_are_the_same_there_and_back() {
 }
 
 #[test]
-fn unit_levels_at_reset_are_no_steps() {
+fn levels_at_reset_are_no_steps() {
     for (a, b) in STATES {
         let mut counter = PulseCounter::new();
         let inputs = Inputs {
@@ -142,7 +142,7 @@ fn unit_levels_at_reset_are_no_steps() {
 }
 
 #[test]
-fn unit_a_pulse_of_filter_clocks_is_ignored_and_one_more_is_not() {
+fn a_pulse_of_filter_clocks_is_ignored_and_one_more_is_not() {
     for filter_clocks in [0, 1, 8, 63] {
         for (more, count) in [(0, 0), (1, 1)] {
             let mut inputs = Inputs {
@@ -164,7 +164,7 @@ fn unit_a_pulse_of_filter_clocks_is_ignored_and_one_more_is_not() {
 }
 
 #[test]
-fn unit_the_index_latches_the_count_after_the_step_of_its_clock_and_presets_the_origin() {
+fn the_index_latches_the_count_after_the_step_of_its_clock_and_presets_the_origin() {
     let mut bench = Bench::new(Inputs {
         filter_clocks: 2,
         index_presets: true,
@@ -191,7 +191,7 @@ fn unit_the_index_latches_the_count_after_the_step_of_its_clock_and_presets_the_
 }
 
 #[test]
-fn unit_a_pair_that_stays_equal_is_flagged_and_counts_nothing() {
+fn a_pair_that_stays_equal_is_flagged_and_counts_nothing() {
     let mut inputs = Inputs {
         differential: true,
         filter_clocks: 3,
@@ -214,7 +214,7 @@ fn unit_a_pair_that_stays_equal_is_flagged_and_counts_nothing() {
 }
 
 #[test]
-fn unit_a_reversal_gives_zero_then_the_new_speed() {
+fn a_reversal_gives_zero_then_the_new_speed() {
     let mut bench = Bench::new(Inputs::default());
     (0..20).for_each(|_| bench.turn(true, 50));
     assert_eq!(bench.velocity(), exact(50, true));
@@ -228,7 +228,7 @@ fn unit_a_reversal_gives_zero_then_the_new_speed() {
 }
 
 #[test]
-fn unit_at_standstill_the_velocity_falls_with_the_time_and_ends_at_zero() {
+fn at_standstill_the_velocity_falls_with_the_time_and_ends_at_zero() {
     let mut bench = Bench::new(Inputs::default());
     (0..40).for_each(|_| bench.turn(false, 50));
     let mut last = i64::from(bench.velocity());
@@ -251,7 +251,7 @@ fn unit_at_standstill_the_velocity_falls_with_the_time_and_ends_at_zero() {
 }
 
 #[test]
-fn unit_a_tick_without_answer_is_flagged() {
+fn a_tick_without_answer_is_flagged() {
     let mut counter = PulseCounter::new();
     let tick = Inputs {
         tick: true,

@@ -202,7 +202,7 @@ proptest! {
 }
 
 #[test]
-fn unit_the_width_is_duty_less_dead_time_down_to_none_and_up_to_full() {
+fn the_width_is_duty_less_dead_time_down_to_none_and_up_to_full() {
     let timing = Timing {
         period: 100,
         dead_time: 4,
@@ -224,7 +224,7 @@ fn unit_the_width_is_duty_less_dead_time_down_to_none_and_up_to_full() {
 }
 
 #[test]
-fn unit_locked_antiphase_is_balanced_at_zero() {
+fn locked_antiphase_is_balanced_at_zero() {
     let timing = Timing {
         period: 100,
         dead_time: 4,
@@ -243,7 +243,7 @@ fn unit_locked_antiphase_is_balanced_at_zero() {
 }
 
 #[test]
-fn unit_the_floor_holds_and_running_refuses() {
+fn the_floor_holds_and_running_refuses() {
     let timing = Timing {
         period: 100,
         dead_time: 3,
@@ -266,7 +266,7 @@ fn unit_the_floor_holds_and_running_refuses() {
 /// With 2 · (dead time + minimum pulse) both sides last the minimum and no longer, so that a leg that is late stays
 /// late.
 #[test]
-fn unit_a_period_without_slack_is_not_started() {
+fn a_period_without_slack_is_not_started() {
     let with_period = |period| {
         let inputs = healthy(&Timing {
             period,
@@ -292,7 +292,7 @@ fn unit_a_period_without_slack_is_not_started() {
 
 /// With a clock more, a leg that starts late is in phase again after as many periods as it was late by clocks.
 #[test]
-fn unit_a_leg_that_starts_late_catches_up() {
+fn a_leg_that_starts_late_catches_up() {
     let timing = Timing {
         period: 71,
         dead_time: 20,
@@ -316,7 +316,7 @@ fn unit_a_leg_that_starts_late_catches_up() {
 }
 
 #[test]
-fn unit_a_hungry_watchdog_trips_after_so_many_valleys() {
+fn a_hungry_watchdog_trips_after_so_many_valleys() {
     let timing = Timing {
         period: 100,
         dead_time: 3,
@@ -334,7 +334,7 @@ fn unit_a_hungry_watchdog_trips_after_so_many_valleys() {
 }
 
 #[test]
-fn unit_the_time_base_sets_the_phase_while_off() {
+fn the_time_base_sets_the_phase_while_off() {
     let timing = Timing {
         period: 100,
         dead_time: 3,
@@ -380,7 +380,7 @@ fn first_start(config: &PwmConfig, inputs: &Inputs, tick_clocks: u64) -> (Option
 }
 
 #[test]
-fn unit_on_a_time_base_it_does_not_start_before_it_is_in_phase() {
+fn on_a_time_base_it_does_not_start_before_it_is_in_phase() {
     let timing = Timing {
         period: 100,
         dead_time: 3,
@@ -405,7 +405,7 @@ fn unit_on_a_time_base_it_does_not_start_before_it_is_in_phase() {
 
 /// Another period, set while it is off: the PWM is in phase by chance only, and waits for the next `sync`.
 #[test]
-fn unit_with_another_period_it_waits_for_the_time_base_again() {
+fn with_another_period_it_waits_for_the_time_base_again() {
     for config in [config(), config().on_time_base()] {
         let mut pwm = Pwm::new(&config);
         let mut inputs = Inputs {
@@ -434,7 +434,7 @@ fn unit_with_another_period_it_waits_for_the_time_base_again() {
 }
 
 #[test]
-fn unit_a_mask_takes_the_pins_and_nothing_else() {
+fn a_mask_takes_the_pins_and_nothing_else() {
     let timing = Timing {
         period: 100,
         dead_time: 3,

@@ -318,7 +318,7 @@ proptest! {
 }
 
 #[test]
-fn unit_what_is_wrong_is_found() {
+fn what_is_wrong_is_found() {
     let wrong: [(&str, &[&str]); 4] = [
         (
             "one more",

@@ -60,7 +60,7 @@ fn fields<'a>(description: &'a mut Description, register: &str) -> &'a mut Vec<F
 }
 
 #[test]
-fn unit_descriptions_that_do_not_hold_together_are_refused() {
+fn descriptions_that_do_not_hold_together_are_refused() {
     assert!(RegisterMap::new(description()).is_ok());
     let words = |words| Access::Words {
         strobe: "entry_write".to_owned(),
@@ -118,7 +118,7 @@ fn unit_descriptions_that_do_not_hold_together_are_refused() {
 }
 
 #[test]
-fn unit_extreme_numbers_in_a_description_are_refused() {
+fn extreme_numbers_in_a_description_are_refused() {
     for value in [33, 1 << 31, u32::MAX] {
         refused(|d| fields(d, "gain")[0].low = value);
         refused(|d| fields(d, "gain")[0].width = value);
@@ -128,7 +128,7 @@ fn unit_extreme_numbers_in_a_description_are_refused() {
 }
 
 #[test]
-fn unit_maps_of_the_components_hold_together() {
+fn maps_of_the_components_hold_together() {
     let divider = DividerConfig::new(131_071).unwrap();
     assert!(RegisterMap::new(maps::pulse_counter(&divider, 63, false)).is_ok());
     assert!(RegisterMap::new(maps::sliding_mode(2, true)).is_ok());
@@ -150,7 +150,7 @@ fn composed(parts: [Part; 2], outputs: &[&str]) -> Result<Composition, Compositi
 }
 
 #[test]
-fn unit_parts_that_make_no_whole_are_refused() {
+fn parts_that_make_no_whole_are_refused() {
     let [first, second] = parts();
     let both = |first: Part, second: Part| composed([first, second], &["quotient"]);
     assert!(both(first.clone(), second.clone()).is_ok());

@@ -262,7 +262,7 @@ proptest! {
 }
 
 #[test]
-fn unit_a_handover_takes_two_passes_and_refuses_what_comes_in_it() {
+fn a_handover_takes_two_passes_and_refuses_what_comes_in_it() {
     let half = |delay_samples| Tap {
         delay_samples,
         coefficient: 1 << (FRACTION - 1),
@@ -310,7 +310,7 @@ fn unit_a_handover_takes_two_passes_and_refuses_what_comes_in_it() {
 }
 
 #[test]
-fn unit_what_no_shaper_for_motion_can_be_is_named() {
+fn what_no_shaper_for_motion_can_be_is_named() {
     let bypass = || TapTable::bypass(FRACTION).unwrap();
     let motion = |channels| ShaperMotion {
         channels,

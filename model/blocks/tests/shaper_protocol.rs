@@ -76,14 +76,14 @@ fn sample(shaper: &mut Shaper, x: i64) -> i64 {
 }
 
 #[test]
-fn unit_history_before_the_start_is_the_start_value() {
+fn history_before_the_start_is_the_start_value() {
     let mut shaper = shaper();
     clock(&mut shaper, start(100));
     assert_eq!([200; 6].map(|x| sample(&mut shaper, x)), [150, 150, 150, 150, 200, 200]);
 }
 
 #[test]
-fn unit_a_start_sets_y_without_valid_and_cuts_off_a_pass() {
+fn a_start_sets_y_without_valid_and_cuts_off_a_pass() {
     let mut shaper = shaper();
     sample(&mut shaper, 1000);
     clock(&mut shaper, strobe(5000));
@@ -95,7 +95,7 @@ fn unit_a_start_sets_y_without_valid_and_cuts_off_a_pass() {
 }
 
 #[test]
-fn unit_start_and_strobe_together_start_first() {
+fn start_and_strobe_together_start_first() {
     let mut shaper = shaper();
     clock(&mut shaper, strobe(5000));
     let shown = clock(
@@ -118,7 +118,7 @@ fn unit_start_and_strobe_together_start_first() {
 }
 
 #[test]
-fn unit_an_early_strobe_drops_the_pass_but_not_the_sample() {
+fn an_early_strobe_drops_the_pass_but_not_the_sample() {
     let mut shaper = shaper();
     sample(&mut shaper, 100);
     clock(&mut shaper, strobe(200));
@@ -169,7 +169,7 @@ fn read(shaper: &mut Shaper, bank: u8, index: u16) -> (i32, u16) {
 }
 
 #[test]
-fn unit_taps_of_all_banks_are_read_back() {
+fn taps_of_all_banks_are_read_back() {
     let mut shaper = shaper();
     clock(&mut shaper, write(2, 0, 2 * ONE - 1, 0));
     clock(&mut shaper, write(2, 1, 1 - ONE, 62));
@@ -205,7 +205,7 @@ fn unit_taps_of_all_banks_are_read_back() {
 }
 
 #[test]
-fn unit_a_read_waits_for_a_pass_and_for_a_write_and_changes_neither() {
+fn a_read_waits_for_a_pass_and_for_a_write_and_changes_neither() {
     let mut shaper = shaper();
     let read = Inputs {
         tap_read: true,
@@ -241,7 +241,7 @@ fn unit_a_read_waits_for_a_pass_and_for_a_write_and_changes_neither() {
 }
 
 #[test]
-fn unit_a_flag_that_is_set_and_cleared_at_once_is_set() {
+fn a_flag_that_is_set_and_cleared_at_once_is_set() {
     let mut shaper = shaper();
     clock(&mut shaper, strobe(1));
     let shown = clock(
@@ -263,7 +263,7 @@ fn unit_a_flag_that_is_set_and_cleared_at_once_is_set() {
 }
 
 #[test]
-fn unit_a_loaded_table_is_active_from_the_next_strobe_on() {
+fn a_loaded_table_is_active_from_the_next_strobe_on() {
     let mut shaper = shaper();
     clock(&mut shaper, start(100));
     clock(&mut shaper, write(1, 0, 2 * ONE - 1, 0));
@@ -285,7 +285,7 @@ fn unit_a_loaded_table_is_active_from_the_next_strobe_on() {
 }
 
 #[test]
-fn unit_a_swap_in_the_clock_of_a_strobe_waits_for_the_next() {
+fn a_swap_in_the_clock_of_a_strobe_waits_for_the_next() {
     let mut shaper = shaper();
     clock(&mut shaper, write(2, 0, ONE, 0));
     let shown = clock(
@@ -302,7 +302,7 @@ fn unit_a_swap_in_the_clock_of_a_strobe_waits_for_the_next() {
 }
 
 #[test]
-fn unit_writes_that_are_refused() {
+fn writes_that_are_refused() {
     let bypass = write(1, 0, ONE, 0);
     let refused: [(&str, Vec<Inputs>); 7] = [
         ("bank 0", vec![write(0, 0, ONE, 0)]),
@@ -343,7 +343,7 @@ fn unit_writes_that_are_refused() {
 }
 
 #[test]
-fn unit_a_refused_write_changes_nothing() {
+fn a_refused_write_changes_nothing() {
     let mut shaper = shaper();
     clock(&mut shaper, write(1, 0, ONE, 0));
     for refused in [
@@ -359,7 +359,7 @@ fn unit_a_refused_write_changes_nothing() {
 }
 
 #[test]
-fn unit_index_0_begins_a_table_anew() {
+fn index_0_begins_a_table_anew() {
     let mut shaper = shaper();
     clock(&mut shaper, write(2, 0, 12345, 9));
     clock(&mut shaper, write(2, 1, -5, 3));
@@ -369,7 +369,7 @@ fn unit_index_0_begins_a_table_anew() {
 }
 
 #[test]
-fn unit_swaps_that_are_refused() {
+fn swaps_that_are_refused() {
     let mut shaper = shaper();
     for (bank, what) in [(1, "nothing loaded"), (2, "nothing loaded"), (3, "no bank")] {
         assert!(clock(&mut shaper, swap(bank)).refused, "bank {bank}: {what}");
@@ -389,7 +389,7 @@ fn unit_swaps_that_are_refused() {
 }
 
 #[test]
-fn unit_a_full_table_takes_no_more() {
+fn a_full_table_takes_no_more() {
     let mut shaper = shaper();
     for index in 0..64 {
         assert!(
@@ -404,7 +404,7 @@ fn unit_a_full_table_takes_no_more() {
 }
 
 #[test]
-fn unit_reset_forgets_all_but_not_during_it() {
+fn reset_forgets_all_but_not_during_it() {
     let mut shaper = shaper();
     clock(&mut shaper, write(1, 0, ONE, 0));
     clock(&mut shaper, strobe(9999));
@@ -422,14 +422,14 @@ fn unit_reset_forgets_all_but_not_during_it() {
 }
 
 #[test]
-fn unit_words_wrap_to_the_width_of_the_port() {
+fn words_wrap_to_the_width_of_the_port() {
     let mut shaper = shaper();
     assert_eq!(clock(&mut shaper, start(0x1_8000)).y, -0x8000);
     assert_eq!(clock(&mut shaper, start(i64::MAX)).y, -1);
 }
 
 #[test]
-fn unit_raw_ports_are_the_typed_ones() {
+fn raw_ports_are_the_typed_ones() {
     let mut typed = shaper();
     let mut raw = shaper();
     let config = typed.config().clone();
@@ -459,7 +459,7 @@ fn unit_raw_ports_are_the_typed_ones() {
 }
 
 #[test]
-fn unit_the_fast_path_refuses_what_the_hardware_cannot_hold() {
+fn the_fast_path_refuses_what_the_hardware_cannot_hold() {
     let config = ShaperConfig::new(16, table(&[(0, ONE)])).unwrap();
     let mut fast = SampleShaper::new(&config);
     assert!(matches!(fast.swap(&table(&[(63, ONE)])), Err(LoadError::Size(_))));

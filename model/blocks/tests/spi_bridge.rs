@@ -177,7 +177,7 @@ fn prop_the_model_of_bytes_and_the_model_of_clocks_agree() {
 
 /// Bits that are lost or invented shift the bytes up to the end of the selection: nothing is written, and the next selection is whole.
 #[test]
-fn unit_bits_that_are_lost_or_invented_shift_nothing_beyond_the_selection() {
+fn bits_that_are_lost_or_invented_shift_nothing_beyond_the_selection() {
     for count in [1, 7, 9, 15] {
         let mut bench = Bench::new(4);
         let frame = write(7).encode(1).unwrap();
@@ -204,7 +204,7 @@ fn unit_bits_that_are_lost_or_invented_shift_nothing_beyond_the_selection() {
 /// A byte of the reply that was not begun is there in the next selection; one that was begun is lost, and a repetition of the
 /// request gets the whole reply without a second write.
 #[test]
-fn unit_a_selection_that_ends_within_a_byte_loses_that_byte_of_the_reply() {
+fn a_selection_that_ends_within_a_byte_loses_that_byte_of_the_reply() {
     for (bits, lost) in [(0, false), (1, true), (7, true)] {
         let mut bench = Bench::new(4);
         let frame = write(7).encode(1).unwrap();
@@ -229,7 +229,7 @@ fn unit_a_selection_that_ends_within_a_byte_loses_that_byte_of_the_reply() {
 
 /// Half a period of four clocks is enough for the line to the host, three are not.
 #[test]
-fn unit_the_fastest_clock_of_the_host_is_an_eighth() {
+fn the_fastest_clock_of_the_host_is_an_eighth() {
     for (half, right) in [(4, true), (3, false)] {
         let mut bench = Bench::new(half);
         bench.transfer(&write(7).encode(1).unwrap());
@@ -244,7 +244,7 @@ fn unit_the_fastest_clock_of_the_host_is_an_eighth() {
 
 /// The time-out is that of the configuration: 2 ms are 100,000 clocks.
 #[test]
-fn unit_a_pause_within_a_frame_drops_it_after_the_time_out() {
+fn a_pause_within_a_frame_drops_it_after_the_time_out() {
     for (clocks, answered) in [(99_000, true), (101_000, false)] {
         let mut bench = Bench::new(4);
         let frame = write(5).encode(1).unwrap();
@@ -261,7 +261,7 @@ fn unit_a_pause_within_a_frame_drops_it_after_the_time_out() {
 /// The figures of `docs/hosts.md`, for a write of one word at an eighth of the clock: from the selection to the bus, and to the
 /// end of the selection in which the reply's last byte came.
 #[test]
-fn unit_clocks_from_the_selection_for_a_write_to_the_bus_and_to_the_end_of_the_reply() {
+fn clocks_from_the_selection_for_a_write_to_the_bus_and_to_the_end_of_the_reply() {
     let mut bench = Bench::new(4);
     bench.waits = 0;
     let begin = bench.clocks;

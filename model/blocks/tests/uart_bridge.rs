@@ -158,7 +158,7 @@ fn prop_the_model_of_bytes_and_the_model_of_clocks_agree() {
 
 /// The time-out is that of the configuration: 2 ms are 6000 bits of 16.67 clocks.
 #[test]
-fn unit_a_pause_within_a_frame_drops_it_after_the_time_out() {
+fn a_pause_within_a_frame_drops_it_after_the_time_out() {
     for (clocks, answered) in [(99_000, true), (101_000, false)] {
         let mut bench = Bench::new(50_000_000, 3_000_000);
         let frame = Request::Write {
@@ -185,7 +185,7 @@ fn unit_a_pause_within_a_frame_drops_it_after_the_time_out() {
 
 /// The clocks of the datasheet: from `busy` to the access of each word, with registers that do not wait.
 #[test]
-fn unit_clocks_from_the_end_of_a_request_to_its_accesses() {
+fn clocks_from_the_end_of_a_request_to_its_accesses() {
     let words = |count: u32| vec![0x0101_0101; count as usize];
     let list = |count: u32| (0..count as u16).collect::<Vec<u16>>();
     for (request, first, each) in [
@@ -227,7 +227,7 @@ fn unit_clocks_from_the_end_of_a_request_to_its_accesses() {
 /// The figures of `docs/hosts.md`, for a write of one word at 3,000,000 baud: from its first bit to the bus, and to the stop bit
 /// of the reply. The host's bits are those of the bridge or 2 % longer.
 #[test]
-fn unit_clocks_from_the_first_bit_of_a_write_to_the_bus_and_to_the_end_of_the_reply() {
+fn clocks_from_the_first_bit_of_a_write_to_the_bus_and_to_the_end_of_the_reply() {
     let mut bench = Bench::new(50_000_000, 3_000_000);
     bench.waits = 0;
     bench.idle();

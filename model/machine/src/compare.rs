@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_built_kind_is_tried_once_and_the_files_own_is_marked() {
+    fn every_built_kind_is_tried_once_and_the_files_own_is_marked() {
         let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
         let mut names: Vec<&str> = found.candidates.iter().map(|c| c.kind.as_str()).collect();
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_pareto_means_beaten_by_none() {
+    fn pareto_means_beaten_by_none() {
         let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
         // No kind is shorter than `none`; among those without negative impulses, none has fewer taps than zv and more
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_beaten_in_one_cost_and_better_in_none_is_not_marked() {
+    fn what_is_beaten_in_one_cost_and_better_in_none_is_not_marked() {
         let with = |duration_s, worst_residual, taps| Candidate {
             kind: String::new(),
             in_file: false,
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_optimal_keeps_the_tolerance_of_the_band_and_is_the_shortest_that_does() {
+    fn optimal_keeps_the_tolerance_of_the_band_and_is_the_shortest_that_does() {
         for (band, tolerance) in [(0.1, "0.05"), (0.2, "0.05"), (0.05, "0.02")] {
             let machine = machine(&format!("[axis.shaper]\nkind = \"zvd\"\ntolerance = {tolerance}"), MODE);
             let found = compare(&machine, band).remove(0);
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_an_optimal_of_the_file_is_a_row_of_its_own() {
+    fn an_optimal_of_the_file_is_a_row_of_its_own() {
         let machine = machine("[axis.shaper]\nkind = \"optimal\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
         let rows: Vec<&Candidate> = found.candidates.iter().filter(|c| c.kind == "optimal").collect();
@@ -412,14 +412,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_wider_band_is_worse() {
+    fn a_wider_band_is_worse() {
         let machine = machine("[axis.shaper]\nkind = \"ei\"\ntolerance = 0.02", MODE);
         let worst = |band| find(&compare(&machine, band)[0], "ei").worst_residual;
         assert!(worst(0.01) < 0.021 && worst(0.1) < worst(0.2) && worst(0.2) < worst(0.5));
     }
 
     #[test]
-    fn unit_no_smooth_kind_leaves_less_than_the_least_at_its_duration() {
+    fn no_smooth_kind_leaves_less_than_the_least_at_its_duration() {
         let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
         for candidate in &found.candidates {
@@ -435,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_kind_that_does_not_exist_has_its_reason() {
+    fn a_kind_that_does_not_exist_has_its_reason() {
         // No shaper has a tolerance of 5 % at this damping.
         let machine = machine(
             "[axis.shaper]\nkind = \"zv\"",
@@ -447,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_shapers_per_mode_and_axes_without_modes() {
+    fn shapers_per_mode_and_axes_without_modes() {
         let modes =
             format!("{MODE}shaper = \"zv\"\n[[axis.mode]]\nfrequency_hz = 90\ndamping = 0.01\nshaper = \"zvd\"\n");
         let found = compare(&machine("", &modes), 0.1).remove(0);

@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_rigid_adds_nothing() {
+    fn what_is_rigid_adds_nothing() {
         let [x, _] = axes();
         let rigid = ScrewDrive {
             coupling_stiffness: f64::INFINITY,

@@ -168,7 +168,7 @@ mod tests {
     const KINDS: [&str; 7] = ["zv", "zvd", "zvdd", "ei", "two-hump-ei", "zvd-ei", "vibrationless"];
 
     #[test]
-    fn unit_kinds_are_found_behind_typing_errors() {
+    fn kinds_are_found_behind_typing_errors() {
         for (found, meant) in [
             ("zdv", "zvd"),
             ("ZVD", "zvd"),
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_keys_are_found_behind_typing_errors_parts_and_words_of_the_trade() {
+    fn keys_are_found_behind_typing_errors_parts_and_words_of_the_trade() {
         let keys = ["frequency_hz", "damping", "shaper", "velocity", "sample_hz"];
         for (found, meant) in [
             ("dampng", "damping"),
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_short_words_are_not_guessed_and_equally_near_ones_are_all_named() {
+    fn short_words_are_not_guessed_and_equally_near_ones_are_all_named() {
         assert_eq!(nearest("MM", &["m", "mm", "um"]), ["mm"]);
         assert_eq!(nearest("millimeter", &["m", "mm", "um"]), ["mm"]);
         assert!(nearest("cm", &["m", "mm", "um"]).is_empty());
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_an_exchange_of_two_letters_is_one_change() {
+    fn an_exchange_of_two_letters_is_one_change() {
         let edits = |from: &str, to: &str| edits(&letters(from), &letters(to));
         assert_eq!(edits("kitten", "sitting"), 3);
         assert_eq!(edits("zdv", "zvd"), 1);

@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_figure_of_the_file_becomes_the_si_figure_that_an_engineer_would_write() {
+    fn a_figure_of_the_file_becomes_the_si_figure_that_an_engineer_would_write() {
         for (unit, figure, si) in [
             (AxisUnit::Metre, 0.25, 0.25),
             (AxisUnit::Millimetre, 0.1, 1e-4),
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_figures_are_shown_in_the_unit_of_their_size() {
+    fn figures_are_shown_in_the_unit_of_their_size() {
         for (unit, figure, text) in [
             (AxisUnit::Metre, 1.384e-6, "1.38 µm"),
             (AxisUnit::Millimetre, 1.384e-6, "1.38 µm"),
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_figures_side_by_side_have_the_unit_of_the_largest() {
+    fn figures_side_by_side_have_the_unit_of_the_largest() {
         let texts = AxisUnit::Metre.show_all([0.18e-6, 0.0203e-6, f64::NAN, 0.0, 4.04e-10, 11.42e-6]);
         assert_eq!(
             texts,
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_figures_of_the_file_are_shown_as_they_stand_there() {
+    fn figures_of_the_file_are_shown_as_they_stand_there() {
         for (unit, figure, text) in [
             (AxisUnit::Metre, 0.0001, "0.0001 m"),
             (AxisUnit::Millimetre, 0.3, "300 mm"),
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_unit_has_a_name_of_its_own() {
+    fn every_unit_has_a_name_of_its_own() {
         for (index, (unit, name)) in AxisUnit::ALL.iter().enumerate() {
             assert_eq!(unit.name(), *name);
             assert!(AxisUnit::ALL[..index].iter().all(|(_, other)| other != name));

@@ -98,7 +98,7 @@ fn golden_the_error_of_a_circle_is_half_of_what_the_delays_differ_by() {
 /// Equal delays gain more than any kind; a machine that deviates by 20 % in the worse direction leaves more error
 /// than the nominal one.
 #[test]
-fn unit_kinds_are_compared_with_own_and_with_equal_delays() {
+fn kinds_are_compared_with_own_and_with_equal_delays() {
     let circle = shapes::circle(0.01, 0.1).unwrap();
     let rows = compared(&stage("zvd", false), &circle);
     let kinds: Vec<(&str, bool, bool)> = rows
@@ -123,7 +123,7 @@ fn unit_kinds_are_compared_with_own_and_with_equal_delays() {
 }
 
 #[test]
-fn unit_lengths_places_and_directions_of_a_square_and_a_circle() {
+fn lengths_places_and_directions_of_a_square_and_a_circle() {
     let square = *contour(&shapes::square(0.02, 0.1).unwrap()).survey();
     assert!((square.length - 0.08).abs() < 1e-15);
     assert_eq!((square.stops, square.extent), (3, [[0.0, 0.02], [0.0, 0.02]]));
@@ -135,7 +135,7 @@ fn unit_lengths_places_and_directions_of_a_square_and_a_circle() {
 }
 
 #[test]
-fn unit_points_are_read_in_the_units_of_the_axes() {
+fn points_are_read_in_the_units_of_the_axes() {
     let millimetres = AxisUnit::Millimetre;
     let read = |text: &str, units: [AxisUnit; 2]| {
         let lines = shapes::Points::new(Box::new(text.as_bytes()), units, 0.1).unwrap();
@@ -182,7 +182,7 @@ fn unit_points_are_read_in_the_units_of_the_axes() {
 }
 
 #[test]
-fn unit_a_path_beyond_the_travel_is_refused() {
+fn a_path_beyond_the_travel_is_refused() {
     let machine = stage("zv", false);
     let error = contour(&shapes::circle(0.06, 0.1).unwrap())
         .survey()

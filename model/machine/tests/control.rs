@@ -64,7 +64,7 @@ fn golden_the_gains_of_the_notes() {
 }
 
 #[test]
-fn unit_each_condition_of_the_notes_warns() {
+fn each_condition_of_the_notes_warns() {
     let warnings = |controller: &str| derive(TORQUE, controller).unwrap().warnings;
     let sliding = |c: f64, k: f64, epsilon: f64, boundary: f64| {
         warnings(&format!(
@@ -112,7 +112,7 @@ fn unit_each_condition_of_the_notes_warns() {
 }
 
 #[test]
-fn unit_defaults_keep_the_gain_check() {
+fn defaults_keep_the_gain_check() {
     for drive in [TORQUE, VELOCITY] {
         for kind in ["pd", "pid"] {
             let derived = derive(drive, &format!("kind = \"{kind}\"")).unwrap();
@@ -122,7 +122,7 @@ fn unit_defaults_keep_the_gain_check() {
 }
 
 #[test]
-fn unit_what_is_missing_is_named() {
+fn what_is_missing_is_named() {
     let open = VELOCITY.replace("bandwidth_hz = 200.0\n", "");
     assert!(matches!(derive(&open, SLIDING), Err(ControlError::Bandwidth { .. })));
     let machine = machine(TORQUE, SLIDING);
@@ -150,7 +150,7 @@ fn unit_what_is_missing_is_named() {
 }
 
 #[test]
-fn unit_the_number_to_blame_for_a_gain_is_named() {
+fn the_number_to_blame_for_a_gain_is_named() {
     let key = |drive: &str, controller: &str| derive(drive, controller).unwrap_err().key();
     let tiny = |text: &str, key: &str| {
         let line = text.lines().find(|line| line.starts_with(&format!("{key} ="))).unwrap();
@@ -284,7 +284,7 @@ fn jump(time_s: f64) -> [f64; 3] {
 }
 
 #[test]
-fn unit_every_law_follows_a_sine_with_a_torque_drive() {
+fn every_law_follows_a_sine_with_a_torque_drive() {
     for (controller, law, allowed) in [
         (SLIDING, Law::SlidingMode, 1e-6),
         ("kind = \"pd\"", Law::Pd, 0.6e-6),
@@ -296,7 +296,7 @@ fn unit_every_law_follows_a_sine_with_a_torque_drive() {
 }
 
 #[test]
-fn unit_every_law_follows_a_sine_with_a_velocity_drive() {
+fn every_law_follows_a_sine_with_a_velocity_drive() {
     let gentle = "kind = \"sliding-mode\"\nc = 100.0\nk = 50.0\nepsilon = 4.0\nboundary = 0.05\n";
     for (controller, law, allowed) in [
         (gentle, Law::SlidingMode, 12e-6),
@@ -309,7 +309,7 @@ fn unit_every_law_follows_a_sine_with_a_velocity_drive() {
 }
 
 #[test]
-fn unit_a_jump_that_saturates_the_command_settles() {
+fn a_jump_that_saturates_the_command_settles() {
     for (controller, law, allowed) in [
         (SLIDING, Law::SlidingMode, 1e-6),
         ("kind = \"pd\"", Law::Pd, 1e-6),
@@ -321,7 +321,7 @@ fn unit_a_jump_that_saturates_the_command_settles() {
 }
 
 #[test]
-fn unit_a_change_of_law_does_not_kick() {
+fn a_change_of_law_does_not_kick() {
     let pid = "kind = \"pid\"";
     let steady = follow(TORQUE, pid, |_| Law::Pid, 10_000, sine).1;
     let changing = |tick: usize| match tick / 700 % 3 {

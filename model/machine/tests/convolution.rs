@@ -17,7 +17,7 @@ fn robot(first: &str, second: &str) -> (AxisSection, ConvolutionFigures) {
 }
 
 #[test]
-fn unit_negative_hybrids_are_warned_of_with_their_gain() {
+fn negative_hybrids_are_warned_of_with_their_gain() {
     let (_, figures) = robot("shaper = \"ps-zv\"", "shaper = \"ps-ei\"");
     assert!((figures.peak_command - 5.0).abs() < 1e-12);
     let gains: Vec<_> = figures.cross_gains.iter().map(|g| (g.shaper, g.at)).collect();
@@ -41,7 +41,7 @@ fn unit_negative_hybrids_are_warned_of_with_their_gain() {
 }
 
 #[test]
-fn unit_the_remedy_of_the_warning_works() {
+fn the_remedy_of_the_warning_works() {
     let (axis, figures) = robot("shaper = \"ps-zv\"", "shaper = \"ps-ei\"\ntolerance = 0.0146");
     let residual = residual_vibration(
         design_axis(axis.shaped(), 10_000.0).unwrap().impulses.impulses(),
@@ -53,7 +53,7 @@ fn unit_the_remedy_of_the_warning_works() {
 }
 
 #[test]
-fn unit_positive_hybrids_and_one_negative_shaper_raise_no_warning() {
+fn positive_hybrids_and_one_negative_shaper_raise_no_warning() {
     for (first, second) in [("zvd", "ei"), ("ei", "zv"), ("mzv", "two-hump-ei"), ("zv-ei", "zvd")] {
         let [first, second] = [first, second].map(|kind| format!("shaper = \"{kind}\""));
         let (_, figures) = robot(&first, &second);
@@ -68,7 +68,7 @@ fn unit_positive_hybrids_and_one_negative_shaper_raise_no_warning() {
 }
 
 #[test]
-fn unit_kinds_for_the_whole_axis_have_no_cross_gains() {
+fn kinds_for_the_whole_axis_have_no_cross_gains() {
     let machine = machine(10_000, "modal", "kind = \"none\"", &[(10.0, 0.1, ""), (30.0, 0.1, "")]);
     let axis = &machine.axes[0];
     let figures = convolution_figures(axis.shaped(), &design_axis(axis.shaped(), 10_000.0).unwrap());

@@ -40,7 +40,7 @@ fn golden_ninety_chords_take_the_time_of_the_circle() {
 }
 
 #[test]
-fn unit_facets_take_the_time_of_their_circle_whatever_their_number() {
+fn facets_take_the_time_of_their_circle_whatever_their_number() {
     for (radius, speed) in [(0.04, 0.06), (0.01, 0.1), (0.1, 0.15), (0.004, 0.15)] {
         let circle = survey(&shapes::circle(radius, speed).unwrap(), &CornerRules::default());
         for chords in [30, 36, 60, 90, 180, 360, 720, 3600, 36000] {
@@ -71,7 +71,7 @@ fn unit_facets_take_the_time_of_their_circle_whatever_their_number() {
 
 /// Points on a line, points that repeat, and points so close that rounding makes their direction, do not slow it down.
 #[test]
-fn unit_points_on_a_line_cost_nothing() {
+fn points_on_a_line_cost_nothing() {
     let whole = polyline(&[[0.0, 0.0], [0.1, 0.05]], 0.06);
     for (step, noise) in [(1e-2, 0.0), (1e-4, 0.0), (3e-6, 1e-6), (1e-3, 1e-6), (1e-5, 1e-6)] {
         let count = (0.1 / step) as u32;
@@ -99,7 +99,7 @@ fn unit_points_on_a_line_cost_nothing() {
 }
 
 #[test]
-fn unit_a_reversal_and_a_sharp_corner_are_stops() {
+fn a_reversal_and_a_sharp_corner_are_stops() {
     let there_and_back = polyline(&[[0.0, 0.0], [0.05, 0.0], [0.0, 0.0]], 0.06);
     let there = polyline(&[[0.0, 0.0], [0.05, 0.0]], 0.06);
     assert_eq!(there_and_back.stops, 1);
@@ -150,7 +150,7 @@ fn golden_corners_have_the_speed_of_junction_deviation() {
 
 /// A feed that changes on the way is a ramp and no stop; a rapid ends at rest.
 #[test]
-fn unit_a_feed_changes_without_a_stop() {
+fn a_feed_changes_without_a_stop() {
     let rules = CornerRules::default();
     let of = |text: &str| survey(&gcode::strokes(text).unwrap(), &rules);
     let slower = of("G1 X50 F3000\nX100 F600\n");
@@ -163,7 +163,7 @@ fn unit_a_feed_changes_without_a_stop() {
 
 /// A path that does not stop is planned piece by piece, and takes the same time as in one piece.
 #[test]
-fn unit_a_path_without_a_stop_may_have_any_length() {
+fn a_path_without_a_stop_may_have_any_length() {
     let turns = 20;
     let circle = survey(&shapes::circle(0.04, 0.06).unwrap(), &CornerRules::default());
     let one = ring(0.04, 1000, 1e-9);
@@ -179,7 +179,7 @@ fn unit_a_path_without_a_stop_may_have_any_length() {
 
 /// Wherever it is, the command stays below the feed and keeps acceleration and jerk along the path.
 #[test]
-fn unit_the_command_keeps_its_limits_on_paths_with_bends_of_all_sizes() {
+fn the_command_keeps_its_limits_on_paths_with_bends_of_all_sizes() {
     let mut state = 12345u64;
     let mut random = || {
         state = state

@@ -145,7 +145,7 @@ fn golden_figures_of_the_notes() {
 }
 
 #[test]
-fn unit_masses_that_nothing_holds_have_no_mode_of_that() {
+fn masses_that_nothing_holds_have_no_mode_of_that() {
     let modes = stage(TUNED).modes();
     assert_eq!(modes.len(), 1, "{modes:?}");
     let free = stage(TUNED).free_mode();
@@ -157,7 +157,7 @@ fn unit_masses_that_nothing_holds_have_no_mode_of_that() {
 }
 
 #[test]
-fn unit_steps_come_to_the_exact_motion() {
+fn steps_come_to_the_exact_motion() {
     // This friction is too small to matter, so that the steps are those of Runge and Kutta.
     let almost_none = Friction {
         stribeck: Stribeck {
@@ -184,7 +184,7 @@ fn unit_steps_come_to_the_exact_motion() {
 }
 
 #[test]
-fn unit_limits_cut_current_and_voltage() {
+fn limits_cut_current_and_voltage() {
     // 3 A are limited to 1 A: the masses gain what that gives them.
     let limited = DriveTrain {
         current_limit_a: 1.0,
@@ -230,7 +230,7 @@ fn guided(contact: Contact, rest_velocity: f64) -> DriveTrain {
 }
 
 #[test]
-fn unit_stick_slip_holds_below_the_breakaway_force_and_smooth_friction_creeps() {
+fn stick_slip_holds_below_the_breakaway_force_and_smooth_friction_creeps() {
     let hold = |contact, force: f64| {
         let train = guided(contact, 1e-4);
         let mut plant = DriveTrainPlant::new(train, 1e-4);
@@ -250,7 +250,7 @@ fn unit_stick_slip_holds_below_the_breakaway_force_and_smooth_friction_creeps() 
 }
 
 #[test]
-fn unit_a_slow_motor_pulls_the_table_in_jerks() {
+fn a_slow_motor_pulls_the_table_in_jerks() {
     // With a soft screw, at 1 mm/s, the table sticks until the spring has 60 N, slides, and sticks again.
     let slow = DriveTrain {
         stiffness: 1e5,
@@ -281,7 +281,7 @@ fn unit_a_slow_motor_pulls_the_table_in_jerks() {
 }
 
 #[test]
-fn unit_friction_takes_out_what_it_should() {
+fn friction_takes_out_what_it_should() {
     // Coasting from 0.1 m/s under Coulomb friction alone ends after v²/2a of the whole mass.
     for contact in [Contact::Smooth, Contact::StickSlip] {
         let coulomb = Stribeck {
@@ -313,7 +313,7 @@ fn unit_friction_takes_out_what_it_should() {
 }
 
 #[test]
-fn unit_the_step_is_short_beside_friction_and_poles() {
+fn the_step_is_short_beside_friction_and_poles() {
     assert_eq!(DriveTrainPlant::new(stage(TUNED), 1e-4).step_s(), 1e-4 / 5.0);
     // The expected value is 2 · 1e-6 · 50 / 60 s.
     let steep = guided(Contact::Smooth, 1e-6);

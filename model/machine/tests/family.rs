@@ -167,7 +167,7 @@ fn ringing(family: &TableFamily, from: usize, change: usize, end: usize, mode: &
 
 /// A bound that is never approached says little: over the phases of the change, the largest ringing is close to it.
 #[test]
-fn unit_the_bound_of_a_handover_is_nearly_reached() {
+fn the_bound_of_a_handover_is_nearly_reached() {
     let points = ["[[0.0, 60.0, 0.0], [1.0, 30.0, 0.0]]".to_owned()];
     let machine = machine("kind = \"zv\"", "", &points);
     let family = family(&machine);
@@ -182,7 +182,7 @@ fn unit_the_bound_of_a_handover_is_nearly_reached() {
 }
 
 #[test]
-fn unit_values_that_leave_a_gap_are_refused_with_those_that_do_not() {
+fn values_that_leave_a_gap_are_refused_with_those_that_do_not() {
     let points = ["[[0.0, 60.0, 0.05], [5.0, 40.0, 0.04]]".to_owned()];
     let refused = machine("kind = \"zv\"", "[axis.family]\nvalues = [0.0, 5.0]", &points);
     let error = design_machine(&refused).unwrap_err().to_string();
@@ -197,7 +197,7 @@ fn unit_values_that_leave_a_gap_are_refused_with_those_that_do_not() {
 }
 
 #[test]
-fn unit_a_family_beyond_the_tables_of_a_driver_is_refused() {
+fn a_family_beyond_the_tables_of_a_driver_is_refused() {
     let points = ["[[0.0, 60.0, 0.0], [5.0, 20.0, 0.0]]".to_owned()];
     let machine = machine("kind = \"zv\"\ntolerance = 0.001", "", &points);
     let error = design_machine(&machine).unwrap_err().to_string();
@@ -205,7 +205,7 @@ fn unit_a_family_beyond_the_tables_of_a_driver_is_refused() {
 }
 
 #[test]
-fn unit_files_that_contradict_themselves_are_refused() {
+fn files_that_contradict_themselves_are_refused() {
     let mode = |keys: &str| format!("[[axis.mode]]\n{keys}\n");
     let refused = |shaper: &str, rest: &str| {
         let text = text(&format!("kind = \"{shaper}\""), rest, &[]);
@@ -311,7 +311,7 @@ fn unit_files_that_contradict_themselves_are_refused() {
 /// For slight damping the humps of a two-hump EI exceed the tolerance by a few thousandths, and a table covers less than its neighbour
 /// without damping.
 #[test]
-fn unit_tables_of_very_different_reach_still_overlap() {
+fn tables_of_very_different_reach_still_overlap() {
     for damping in [0.01, 0.02, 0.03, 0.0404] {
         let points = [format!(
             "[[-1.0, 20.6, {damping}], [0.2, 35.45, 0.0], [3.0, 50.3, 0.0]]"

@@ -31,7 +31,7 @@ fn refusal(text: &str) -> String {
 }
 
 #[test]
-fn unit_a_program_is_read_as_its_lines_and_arcs() {
+fn a_program_is_read_as_its_lines_and_arcs() {
     let strokes = program(
         "%\n(a part)\nG21 G90 G17\nG0 X10 Y0\nG1 X20 F600 ; on\nY10\nG3 X10 Y20 I-10 J0\nG2 X0 Y10 R10\nG91\nG1 X-1.23456789\nG4 P1\nG20 X0.1\nM30\nX5",
     );
@@ -76,7 +76,7 @@ fn unit_a_program_is_read_as_its_lines_and_arcs() {
 }
 
 #[test]
-fn unit_arcs_by_centre_radius_and_turns() {
+fn arcs_by_centre_radius_and_turns() {
     let sweep = |text: &str| match program(text)[0].shape {
         Shape::Arc { sweep, .. } => sweep,
         line => panic!("{line:?}"),
@@ -240,7 +240,7 @@ G33
 /// A program with each of these lines is that without it: the place, the unit and the feed of the next move are the
 /// same.
 #[test]
-fn unit_lines_that_move_neither_x_nor_y_are_ignored_in_all_dialects() {
+fn lines_that_move_neither_x_nor_y_are_ignored_in_all_dialects() {
     for line in NO_MOVE.lines() {
         for end in ["\n", "\r\n"] {
             // G1 and G21 again: some lines are other motions.
@@ -259,7 +259,7 @@ fn unit_lines_that_move_neither_x_nor_y_are_ignored_in_all_dialects() {
 }
 
 #[test]
-fn unit_what_moves_x_or_y_and_is_not_understood_is_refused_at_its_line() {
+fn what_moves_x_or_y_and_is_not_understood_is_refused_at_its_line() {
     for (text, found) in [
         ("X5", "a place before the first"),
         ("G1 X5", "G1 without a feed"),
@@ -349,7 +349,7 @@ fn unit_what_moves_x_or_y_and_is_not_understood_is_refused_at_its_line() {
 }
 
 #[test]
-fn unit_origins_units_and_relative_moves() {
+fn origins_units_and_relative_moves() {
     for (text, expected) in [
         ("G92 X10 Y5\nG1 X20 Y5 F60", vec![[10.0, 0.0]]),
         (
@@ -377,7 +377,7 @@ fn unit_origins_units_and_relative_moves() {
 }
 
 #[test]
-fn unit_the_feed_counts_in_three_axes() {
+fn the_feed_counts_in_three_axes() {
     let speed = |text: &str| program(text).last().unwrap().speed;
     // A ramp of 3 by 4 at 5 mm/s goes 3 mm/s in the plane.
     assert!((speed("G1 X3 Z4 F300") - 3e-3).abs() < 1e-12);
@@ -401,7 +401,7 @@ fn unit_the_feed_counts_in_three_axes() {
 
 /// In a print, moves without E are travels, and G0 has the speed F.
 #[test]
-fn unit_travels_of_a_print_count_as_rapids() {
+fn travels_of_a_print_count_as_rapids() {
     let strokes = program("G0 X10 Y10 F6000\nG1 X40 E1 F3000\nG1 X50 Y50 F9000\nG1 Y60 E1 F3000");
     let rapids: Vec<bool> = strokes.iter().map(|stroke| stroke.rapid).collect();
     assert_eq!(rapids, [true, false, true, false]);
@@ -412,7 +412,7 @@ fn unit_travels_of_a_print_count_as_rapids() {
 }
 
 #[test]
-fn unit_a_line_of_any_length_is_read() {
+fn a_line_of_any_length_is_read() {
     let long = format!(
         "EXCLUDE_OBJECT_DEFINE POLYGON={}\nG1 X5 F60\n",
         "[1,2],".repeat(100_000)

@@ -196,7 +196,7 @@ fn golden_half_sums_gain_residual_and_dynamic_coefficient() {
 }
 
 #[test]
-fn unit_a_start_shorter_than_its_filter_is_named_and_swings_most_after_its_end() {
+fn a_start_shorter_than_its_filter_is_named_and_swings_most_after_its_end() {
     let short = StartControl::new(0.1, &[]).unwrap().figures(1.0);
     close(short.dynamic_coefficient, 2.0 * 0.05f64.sin(), 1e-15, "a push");
     let start = |length: f64| StartControl::new(length, &[1.0, 2.0]).unwrap().check_length();

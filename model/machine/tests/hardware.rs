@@ -12,7 +12,7 @@ fn machine(text: &str) -> Machine {
 }
 
 #[test]
-fn unit_an_axis_has_the_gains_and_the_lag_of_its_stage() {
+fn an_axis_has_the_gains_and_the_lag_of_its_stage() {
     let machine = machine(STAGE);
     let hardware = Hardware::of(&machine, &design_machine(&machine).unwrap()).unwrap();
     let stage = hardware.stage().unwrap().unwrap();
@@ -34,7 +34,7 @@ fn unit_an_axis_has_the_gains_and_the_lag_of_its_stage() {
 }
 
 #[test]
-fn unit_a_machine_whose_tick_is_too_short_can_still_be_looked_at() {
+fn a_machine_whose_tick_is_too_short_can_still_be_looked_at() {
     let text = STAGE
         .replace("sample_hz = 10_000", "sample_hz = 100_000")
         .replace("frequency_hz = 20_000", "frequency_hz = 100_000");
@@ -48,7 +48,7 @@ fn unit_a_machine_whose_tick_is_too_short_can_still_be_looked_at() {
 }
 
 #[test]
-fn unit_shapers_that_do_not_suit_a_stage_are_a_reason_and_no_error() {
+fn shapers_that_do_not_suit_a_stage_are_a_reason_and_no_error() {
     // 16 bits cannot hold a travel of a hundred millimetres, so the file must not name one.
     let lines = STAGE.lines().filter(|line| !line.trim_start().starts_with("travel"));
     let text = lines.collect::<Vec<_>>().join("\n") + "\n[fixed_point]\ncommand_bits = 16\n";

@@ -92,7 +92,7 @@ fn golden_extra_delay_is_for_every_axis() {
 }
 
 #[test]
-fn unit_without_stage_nothing_is_added() {
+fn without_stage_nothing_is_added() {
     let design = design_machine(&machine("modal", &XY, "")).unwrap();
     assert!(design.stage.is_none());
     assert!(design.axes.iter().all(|axis| axis.delay.added_samples == 0.0));
@@ -103,7 +103,7 @@ fn unit_without_stage_nothing_is_added() {
 }
 
 #[test]
-fn unit_the_contour_speed_is_the_smallest_velocity_limit_where_the_file_does_not_say() {
+fn the_contour_speed_is_the_smallest_velocity_limit_where_the_file_does_not_say() {
     let mut machine = machine("modal", &XY, "[axis.limits]\nvelocity = 0.5\n[stage]\n");
     machine.axes[0].limits = machine.axes[1].limits;
     machine.axes[0].limits.as_mut().unwrap().velocity = Some(0.2);
@@ -114,7 +114,7 @@ fn unit_the_contour_speed_is_the_smallest_velocity_limit_where_the_file_does_not
 }
 
 #[test]
-fn unit_an_axis_without_modes_gets_the_lag_of_the_others() {
+fn an_axis_without_modes_gets_the_lag_of_the_others() {
     let text = "name = \"laser\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
                 counts_per_unit = 1000\n[axis.shaper]\nkind = \"zv\"\n[[axis.mode]]\nfrequency_hz = 40.0\ndamping = 0.1\n\
                 [[axis]]\nname = \"laser\"\ncounts_per_unit = 1\n[axis.shaper]\nkind = \"none\"\n[stage]\n";
@@ -127,7 +127,7 @@ fn unit_an_axis_without_modes_gets_the_lag_of_the_others() {
 }
 
 #[test]
-fn unit_a_loop_that_holds_the_load_has_no_lag_of_modes() {
+fn a_loop_that_holds_the_load_has_no_lag_of_modes() {
     let text = include_str!("../../../examples/xy-stage-torque.toml");
     let torque = machine_file::parse("m.toml", text).unwrap();
     assert_eq!(mode_lag_s(&torque.axes[0]), 0.0);
@@ -153,7 +153,7 @@ fn unit_a_loop_that_holds_the_load_has_no_lag_of_modes() {
 }
 
 #[test]
-fn unit_a_delay_beyond_the_ring_is_an_error_that_names_the_slowest_axis() {
+fn a_delay_beyond_the_ring_is_an_error_that_names_the_slowest_axis() {
     // The largest delay that the file may ask for fits at 10 kHz.
     design_machine(&machine("modal", &XY, "[stage]\nextra_delay_s = 1.0\n")).unwrap();
     let mut late = machine("modal", &XY, "[stage]\n");

@@ -46,7 +46,7 @@ fn largest_on_grid(tables: &AxisTables, sample_hz: f64, band: &ModeBand) -> f64 
 }
 
 #[test]
-fn unit_the_integer_table_is_certified_over_the_bands() {
+fn the_integer_table_is_certified_over_the_bands() {
     for (shaper, modes) in [
         (OPTIMAL, ONE_BAND),
         (OPTIMAL, TWO_BANDS),
@@ -78,7 +78,7 @@ fn unit_the_integer_table_is_certified_over_the_bands() {
 }
 
 #[test]
-fn unit_the_plant_at_the_corners_keeps_the_certified_residual() {
+fn the_plant_at_the_corners_keeps_the_certified_residual() {
     let machine = machine(1000, "modal", OPTIMAL, TWO_BANDS);
     let (design, tables) = designed(&machine);
     let certificate = certify_axis(&machine.axes[0], &tables, design.sample_hz);
@@ -95,7 +95,7 @@ fn unit_the_plant_at_the_corners_keeps_the_certified_residual() {
 }
 
 #[test]
-fn unit_a_proof_that_was_tampered_with_is_refused() {
+fn a_proof_that_was_tampered_with_is_refused() {
     let machine = machine(1000, "modal", OPTIMAL, ONE_BAND);
     let (_, tables) = designed(&machine);
     let Findings::Optimal(found) = &tables.design.findings else {
@@ -166,7 +166,7 @@ fn golden_an_insensitivity_of_two_periods_has_the_multi_ei_amplitudes() {
 }
 
 #[test]
-fn unit_a_bound_with_a_stage_holds_with_the_folded_delay() {
+fn a_bound_with_a_stage_holds_with_the_folded_delay() {
     let text = "name = \"two\"\n[clock]\nfrequency_hz = 1_000_000\nsample_hz = 1_000\n[stage]\nextra_delay_s = 0.0\n\
                 [[axis]]\nname = \"x\"\ncounts_per_unit = 1e5\n[axis.shaper]\nkind = \"optimal\"\n[[axis.mode]]\nfrequency_hz = 25\n\
                 damping = 0.02\nfrequency_band = 0.1\n\
@@ -194,7 +194,7 @@ fn two_axes(arrive_together: bool) -> Machine {
 }
 
 #[test]
-fn unit_axes_that_arrive_together_have_one_delay_without_padding() {
+fn axes_that_arrive_together_have_one_delay_without_padding() {
     let machine = two_axes(true);
     let design = design_machine(&machine).unwrap();
     let together = design.together.as_ref().unwrap();
@@ -230,7 +230,7 @@ fn unit_axes_that_arrive_together_have_one_delay_without_padding() {
 }
 
 #[test]
-fn unit_a_delay_bound_holds_for_any_weights_and_for_the_shaper_itself() {
+fn a_delay_bound_holds_for_any_weights_and_for_the_shaper_itself() {
     let machine = two_axes(true);
     let design = design_machine(&machine).unwrap();
     let together = design.together.unwrap();
@@ -256,7 +256,7 @@ fn unit_a_delay_bound_holds_for_any_weights_and_for_the_shaper_itself() {
 }
 
 #[test]
-fn unit_what_cannot_be_is_blamed_on_its_key_with_a_remedy() {
+fn what_cannot_be_is_blamed_on_its_key_with_a_remedy() {
     let blamed = |shaper: &str, modes: &[(f64, f64, &str)]| {
         let machine = machine(1000, "modal", shaper, modes);
         let error = design_machine(&machine).unwrap_err();
@@ -286,7 +286,7 @@ fn unit_what_cannot_be_is_blamed_on_its_key_with_a_remedy() {
 }
 
 #[test]
-fn unit_a_mode_without_bands_is_a_point() {
+fn a_mode_without_bands_is_a_point() {
     let machine = machine(
         1000,
         "modal",

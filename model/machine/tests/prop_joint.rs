@@ -213,7 +213,7 @@ proptest! {
 }
 
 #[test]
-fn unit_three_impulses_for_a_far_multiple_are_refused_at_once() {
+fn three_impulses_for_a_far_multiple_are_refused_at_once() {
     let participants = [1e-9, 1e9].map(|hz| Participant {
         mode: mode(hz, 0.5),
         participation: 1.0,
@@ -232,7 +232,7 @@ fn unit_three_impulses_for_a_far_multiple_are_refused_at_once() {
 }
 
 #[test]
-fn unit_a_single_mode_gets_the_shaper_of_its_own_kind() {
+fn a_single_mode_gets_the_shaper_of_its_own_kind() {
     let quarter = 0.25f64.acos() / std::f64::consts::TAU;
     let found = simultaneous::design(&[(mode(1.0, 0.0), Constraint::Zv)], Amplitudes::PartialSum).unwrap();
     let times: Vec<f64> = found.impulses.impulses().iter().map(|i| i.time_s).collect();
@@ -243,7 +243,7 @@ fn unit_a_single_mode_gets_the_shaper_of_its_own_kind() {
 }
 
 #[test]
-fn unit_the_band_of_vibrationless_grows_with_the_bound() {
+fn the_band_of_vibrationless_grows_with_the_bound() {
     for order in 2..=ORDER_MAX {
         let largest = EPSILON_MAX[order as usize - 1];
         let bounds = (0..=16).map(|k| largest * (0.004f64 / largest).powf(1.0 - f64::from(k) / 16.0));
@@ -267,7 +267,7 @@ fn unit_the_band_of_vibrationless_grows_with_the_bound() {
 }
 
 #[test]
-fn unit_each_refusal_names_the_axis_the_kind_and_the_way_out() {
+fn each_refusal_names_the_axis_the_kind_and_the_way_out() {
     let refused = |shaper: &str, modes: &[(f64, f64, &str)]| {
         design_machine(&machine(10_000, "modal", shaper, modes))
             .unwrap_err()
@@ -320,7 +320,7 @@ fn unit_each_refusal_names_the_axis_the_kind_and_the_way_out() {
 }
 
 #[test]
-fn unit_a_tolerance_of_the_ratios_takes_measured_frequencies() {
+fn a_tolerance_of_the_ratios_takes_measured_frequencies() {
     let modes = [(10.02, 0.01, ""), (29.9, 0.02, "")];
     let design = |tolerance: f64| {
         let shaper = format!("kind = \"antisymmetric\"\nratio_tolerance = {tolerance:?}");

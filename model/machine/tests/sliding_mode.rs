@@ -275,7 +275,7 @@ proptest! {
 }
 
 #[test]
-fn unit_at_rest_on_the_reference_nothing_is_commanded() {
+fn at_rest_on_the_reference_nothing_is_commanded() {
     // sgn(0) = 0: neither the boundary layer nor the Coulomb term, however steep, gives a command.
     let mut settings = Settings::default();
     for row in SettingRow::ALL {
@@ -292,7 +292,7 @@ fn unit_at_rest_on_the_reference_nothing_is_commanded() {
 }
 
 #[test]
-fn unit_the_integral_freezes_against_the_limit_and_survives_a_change_of_law() {
+fn the_integral_freezes_against_the_limit_and_survives_a_change_of_law() {
     let gains = Gains::default().with(&[
         (SettingRow::Integral, 0.01),
         (SettingRow::Feedback, 1.0),

@@ -7,7 +7,7 @@ use posicast_shaper::design::kind::ShaperKind;
 use posicast_shaper::digitise::TAPS_MAX;
 
 #[test]
-fn unit_the_integer_table_of_a_smooth_kind_suppresses_its_mode() {
+fn the_integer_table_of_a_smooth_kind_suppresses_its_mode() {
     for (kind, promised) in [
         ("smooth_zv", 0.0),
         ("smooth_mzv", 0.0),
@@ -34,7 +34,7 @@ fn unit_the_integer_table_of_a_smooth_kind_suppresses_its_mode() {
 }
 
 #[test]
-fn unit_kernels_of_several_modes_are_convolved_on_one_grid() {
+fn kernels_of_several_modes_are_convolved_on_one_grid() {
     let modes = [(22.0, 0.02, ""), (57.0, 0.03, "")];
     let machine = machine(10_000, "modal", "kind = \"smooth_zvd\"", &modes);
     let design = design_machine(&machine).unwrap();
@@ -54,7 +54,7 @@ fn unit_kernels_of_several_modes_are_convolved_on_one_grid() {
 }
 
 #[test]
-fn unit_a_mode_may_have_a_smooth_kind_beside_an_impulse_shaper() {
+fn a_mode_may_have_a_smooth_kind_beside_an_impulse_shaper() {
     let modes = [(60.0, 0.02, "shaper = \"smooth_zv\""), (170.0, 0.03, "shaper = \"zv\"")];
     let machine = machine(5000, "modal", "kind = \"zv\"", &modes);
     let design = design_machine(&machine).unwrap();
@@ -67,7 +67,7 @@ fn unit_a_mode_may_have_a_smooth_kind_beside_an_impulse_shaper() {
 }
 
 #[test]
-fn unit_every_smooth_kind_has_its_word() {
+fn every_smooth_kind_has_its_word() {
     let smooth: Vec<&str> = ShaperKind::ALL
         .iter()
         .filter(|(kind, _)| kind.is_smooth())

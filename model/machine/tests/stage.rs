@@ -18,7 +18,7 @@ fn stage(tables: &str) -> (StageConfig, Component) {
 }
 
 #[test]
-fn unit_scale_and_trace_are_on_the_axis_that_has_them() {
+fn scale_and_trace_are_on_the_axis_that_has_them() {
     let scale = |usage| format!("[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"{usage}\"");
     let trace = "[axis.trace]\nsamples = 256\n".to_owned();
     for tables in [
@@ -38,7 +38,7 @@ fn unit_scale_and_trace_are_on_the_axis_that_has_them() {
 }
 
 #[test]
-fn unit_the_example_makes_a_stage() {
+fn the_example_makes_a_stage() {
     let (config, component) = stage("");
     assert_eq!(component.map().words(), 3 * 256);
     let pins = component.composition().ports().iter();

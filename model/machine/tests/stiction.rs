@@ -69,7 +69,7 @@ fn drive(plant: &mut AxisPlant, share: f64, periods: u32) {
 }
 
 #[test]
-fn unit_without_friction_it_is_the_mode_of_both_masses() {
+fn without_friction_it_is_the_mode_of_both_masses() {
     let machines = [machine("breakaway = 0", ""), machine("", "")];
     let mut plants = machines.each_ref().map(plant);
     for (share, periods) in [(0.5, 200), (-0.8, 100), (0.1, 400)] {
@@ -83,7 +83,7 @@ fn unit_without_friction_it_is_the_mode_of_both_masses() {
 }
 
 #[test]
-fn unit_it_stays_below_the_breakaway_force_and_leaves_above() {
+fn it_stays_below_the_breakaway_force_and_leaves_above() {
     let friction = "coulomb = 40.0\nviscous = 200.0";
     // 50 N of 1425 N, applied slowly.
     for (newton, moves) in [(50.0, false), (70.0, true)] {
@@ -98,7 +98,7 @@ fn unit_it_stays_below_the_breakaway_force_and_leaves_above() {
 }
 
 #[test]
-fn unit_off_it_coasts_and_the_brake_holds_it() {
+fn off_it_coasts_and_the_brake_holds_it() {
     let mut plant = plant(&machine("breakaway = 60", "coulomb = 40.0"));
     drive(&mut plant, 0.5, 400);
     let moving = plant.motion();

@@ -64,7 +64,7 @@ const LEFT_OUT: Supervision = Supervision {
 };
 
 #[test]
-fn unit_a_key_left_out_gives_its_documented_word() {
+fn a_key_left_out_gives_its_documented_word() {
     assert_eq!(with(""), Ok(LEFT_OUT));
     let mut without = machine("", TORQUE, "");
     without.axes[0].limits = None;
@@ -137,7 +137,7 @@ fn golden_words_worked_out_by_hand() {
 }
 
 #[test]
-fn unit_what_does_not_fit_names_its_key_and_the_range() {
+fn what_does_not_fit_names_its_key_and_the_range() {
     let refused = |limits: &str, key: &str, message: &str| {
         let error = with(limits).unwrap_err();
         assert_eq!((error.key(), error.to_string().as_str()), (key, message), "{limits}");
@@ -216,7 +216,7 @@ fn unit_what_does_not_fit_names_its_key_and_the_range() {
 }
 
 #[test]
-fn unit_a_travel_beyond_the_command_is_refused_where_the_machine_has_a_wider_word() {
+fn a_travel_beyond_the_command_is_refused_where_the_machine_has_a_wider_word() {
     let mut wide = machine("", TORQUE, "travel = [0.0, 1.0]");
     wide.axes[0].limits.as_mut().unwrap().travel = Some([0.0, 8.4]);
     let error = of(&wide).unwrap_err();
@@ -225,7 +225,7 @@ fn unit_a_travel_beyond_the_command_is_refused_where_the_machine_has_a_wider_wor
 }
 
 #[test]
-fn unit_limits_of_moves_in_ticks() {
+fn limits_of_moves_in_ticks() {
     let limits = |limits: &str| {
         let machine = machine("", TORQUE, limits);
         TickLimits::of_axis(&machine.axes[0], &machine.clock)
@@ -238,7 +238,7 @@ fn unit_limits_of_moves_in_ticks() {
 }
 
 #[test]
-fn unit_a_travel_fits_wherever_the_axis_stands_at_reset() {
+fn a_travel_fits_wherever_the_axis_stands_at_reset() {
     // The count is 0 there, perhaps at one end: a scale of 12.5 nm has 8 million counts on either side of the middle.
     let mut fine = machine("", TORQUE, "travel = [-0.1, 0.1]");
     let scale = fine.axes[0].scale.as_mut().unwrap();
@@ -330,7 +330,7 @@ proptest! {
 }
 
 #[test]
-fn unit_a_wrong_sign_is_watched_where_a_sound_axis_stops_sooner() {
+fn a_wrong_sign_is_watched_where_a_sound_axis_stops_sooner() {
     // Half of 3 A give 11.085 m/s²: 0.25 m/s take 22.55 ms, and a fifth more 27.06 ms.
     let of = |drive, limits: &str| lost_sign(&machine("", drive, limits).axes[0]);
     let velocity = "velocity = 0.25\n";

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_one_mode_has_its_step_response() {
+    fn one_mode_has_its_step_response() {
         let mode = Mode {
             frequency_hz: 2.0,
             damping: 0.1,

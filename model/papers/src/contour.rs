@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_follower_starts_at_rest_and_solves_its_differential_equation() {
+    fn a_follower_starts_at_rest_and_solves_its_differential_equation() {
         let mode = Mode {
             frequency_hz: 20.0,
             damping: 0.1,

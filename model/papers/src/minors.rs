@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_solvable_system_has_equal_divisors() {
+    fn a_solvable_system_has_equal_divisors() {
         // v1 + v2 = 3 with v2 + v3 = 5 has integer solutions; 2 v1 = 1 with v2 + v3 = 5 has none.
         let equation = |unknowns, right| Equation { unknowns, right };
         let solvable = [equation([1, 1, 0], 3), equation([0, 1, 1], 5)];

@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_printed_digits_decide_what_is_equal() {
+    fn printed_digits_decide_what_is_equal() {
         assert!(holds(Rule::Rounded, "0.1997", 0.199_749_9) && !holds(Rule::Rounded, "0.1997", 0.199_75 + 1e-9));
         assert!(holds(Rule::Rounded, "39.05", 39.045) && holds(Rule::Rounded, "-1.5", -1.549));
         assert!(holds(Rule::Rounded, "1.3029e6", 1.302_88e6) && !holds(Rule::Rounded, "1.3029e6", 1.302_98e6));
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_changed_number_flips_its_row() {
+    fn a_changed_number_flips_its_row() {
         let verdicts = |computed: f64| {
             let mut sheet = Sheet::default();
             sheet.equal("agrees", "0.1997", computed);
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_difference_is_the_largest_of_the_row() {
+    fn the_difference_is_the_largest_of_the_row() {
         let mut sheet = Sheet::default();
         sheet.equal("two", ["1.0", "2.0"], [1.01, 1.98]);
         let difference = sheet.into_rows()[0].difference().unwrap();

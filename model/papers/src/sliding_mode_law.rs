@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_elimination_is_the_algebra() {
+    fn the_elimination_is_the_algebra() {
         let (inductance, resistance) = WINDING;
         let one = |state: State| bracket(&state, DAMPING);
         let of_acceleration = one(State {

@@ -47,7 +47,7 @@ fn golden_verdicts_of_xy_stage() {
 }
 
 #[test]
-fn unit_every_row_is_told_from_the_others_and_every_departure_has_its_reason() {
+fn every_row_is_told_from_the_others_and_every_departure_has_its_reason() {
     for paper in Paper::ALL {
         let rows = paper.reproduce().unwrap();
         for (index, row) in rows.iter().enumerate() {
@@ -68,7 +68,7 @@ fn unit_every_row_is_told_from_the_others_and_every_departure_has_its_reason() {
 }
 
 #[test]
-fn unit_the_figures_have_finite_points() {
+fn the_figures_have_finite_points() {
     for paper in Paper::ALL {
         let figures = paper.figures().unwrap();
         assert!(!figures.is_empty());

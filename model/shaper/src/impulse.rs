@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_each_broken_rule_has_its_error() {
+    fn each_broken_rule_has_its_error() {
         assert_eq!(sequence(&[]), Err(ImpulseError::Empty));
         assert_eq!(sequence(&[(0.1, 1.0)]), Err(ImpulseError::FirstTime(0.1)));
         assert_eq!(sequence(&[(0.0, 0.9), (1.0, 0.2)]), Err(ImpulseError::Sum(1.1)));
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_convolution_sorts_and_merges_coincident_times() {
+    fn convolution_sorts_and_merges_coincident_times() {
         let third = 1.0 / 3.0;
         let a = sequence(&[(0.0, 0.5), (third, 0.5)]).unwrap();
         let b = sequence(&[(0.0, 0.5), (2.0 * third, 0.25), (1.0, 0.25)]).unwrap();
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_figures_of_a_sequence() {
+    fn figures_of_a_sequence() {
         let ps = sequence(&[(0.0, 1.0), (0.2, -2.0), (0.3, 2.0)]).unwrap();
         assert_eq!(ps.partial_sums(), PartialSums { min: -1.0, max: 1.0 });
         assert_eq!(ps.duration_s(), 0.3);

@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_times_are_shown_in_the_unit_of_their_size() {
+    fn times_are_shown_in_the_unit_of_their_size() {
         for (time_s, text) in [
             (152.4e-6, "152 µs"),
             (1.354e-3, "1.35 ms"),
@@ -123,13 +123,13 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_number_has_the_digits_that_it_deserves() {
+    fn a_number_has_the_digits_that_it_deserves() {
         let texts = [0.18, 131.117, 1234.5, -0.004_567, 10.0, 0.0].map(|value| trimmed(value, 3));
         assert_eq!(texts, ["0.18", "131", "1230", "-0.00457", "10", "0"]);
     }
 
     #[test]
-    fn unit_numbers_of_messages_are_short_and_grammatical() {
+    fn numbers_of_messages_are_short_and_grammatical() {
         for (value, text) in [
             (131.117_015_808_451, "131.117"),
             (50e6, "50000000"),

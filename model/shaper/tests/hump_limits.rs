@@ -24,7 +24,7 @@ fn limits(kind: ShaperKind, damping: f64, tolerance: f64) -> (f64, f64) {
 }
 
 #[test]
-fn unit_where_the_branch_folds_one_damping_divides_designs_from_errors() {
+fn where_the_branch_folds_one_damping_divides_designs_from_errors() {
     // From about 0.283 on, the solution that starts at the undamped shaper folds at 0.133; another one continues
     // above it.
     for tolerance in [0.28, 0.2825, 0.284, 0.2856, 0.2872, 0.288] {
@@ -44,7 +44,7 @@ fn unit_where_the_branch_folds_one_damping_divides_designs_from_errors() {
 }
 
 #[test]
-fn unit_the_largest_tolerance_divides_designs_from_errors() {
+fn the_largest_tolerance_divides_designs_from_errors() {
     for (kind, damping, expected) in [
         (ShaperKind::Ei, 0.781, 0.0200),
         (ShaperKind::TwoHumpEi, 0.863, 2.59e-5),

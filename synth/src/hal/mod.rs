@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_axes_keep_their_letter_where_it_is_one() {
+    fn axes_keep_their_letter_where_it_is_one() {
         let axes = [
             axis("table", false),
             axis("x", false),

@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_pll_makes_its_clock_exactly_and_within_the_limits() {
+    fn every_pll_makes_its_clock_exactly_and_within_the_limits() {
         let mut found = 0;
         for clock_hz in [
             10_000_000,

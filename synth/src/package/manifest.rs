@@ -251,7 +251,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_hash_is_sha256() {
+    fn the_hash_is_sha256() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("a"), "abc").unwrap();
         // FIPS 180-2, appendix B.1
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_an_unfinished_manifest_accepts_every_generation() {
+    fn an_unfinished_manifest_accepts_every_generation() {
         let files = |hash: &str| BTreeMap::from([("a".to_owned(), hash.to_owned())]);
         let generation = |hash: &str| Manifest::new("m", files(hash), BTreeSet::new());
         let twice = generation("3").replacing(&generation("2").replacing(&generation("1")));

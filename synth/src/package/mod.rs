@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_run_that_fails_between_two_renames_is_completed_by_the_next() {
+    fn a_run_that_fails_between_two_renames_is_completed_by_the_next() {
         for first_run in [true, false] {
             let folder = tempfile::tempdir().unwrap();
             let root = folder.path();

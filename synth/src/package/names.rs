@@ -33,7 +33,7 @@ mod tests {
     use std::path::{Component, Path};
 
     #[test]
-    fn unit_paths_that_leave_the_folder_are_refused() {
+    fn paths_that_leave_the_folder_are_refused() {
         let bad = [
             "",
             "/etc/passwd",
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_plain_paths_are_accepted() {
+    fn plain_paths_are_accepted() {
         for path in [
             "machine.toml",
             "rtl/xy_stage.v",

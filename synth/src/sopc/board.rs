@@ -174,7 +174,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn unit_names_are_read_back_and_unknown_ones_get_the_list() {
+    fn names_are_read_back_and_unknown_ones_get_the_list() {
         for board in Board::ALL {
             assert_eq!(board.name().parse(), Ok(board));
         }
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_no_pin_of_a_board_is_named_twice() {
+    fn no_pin_of_a_board_is_named_twice() {
         for board in Board::ALL {
             let facts = board.facts();
             let others = [facts.clock_pin, facts.reset_pin.0];

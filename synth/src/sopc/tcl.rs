@@ -25,7 +25,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn unit_a_word_is_bare_braced_or_quoted() {
+    fn a_word_is_bare_braced_or_quoted() {
         assert_eq!(word("xy_stage.v"), "xy_stage.v");
         assert_eq!(word(""), "{}");
         assert_eq!(word("of $x [y]"), "{of $x [y]}");

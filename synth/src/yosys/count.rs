@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_six_input_luts_fill_a_module() {
+    fn six_input_luts_fill_a_module() {
         let alm = |kind| serde_json::json!({"type": kind});
         let cells = serde_json::json!({
             "a": alm("MISTRAL_ALUT6"), "b": alm("MISTRAL_ALUT2"), "c": alm("MISTRAL_ALUT5"), "d": alm("MISTRAL_ALUT_ARITH"),
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_products_are_split_to_the_device() {
+    fn products_are_split_to_the_device() {
         for (a, b, le, alm) in [
             (18, 18, 1, 1),
             (16, 9, 1, 1),
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_memories_with_many_readers_are_copied() {
+    fn memories_with_many_readers_are_copied() {
         let memory = |reads: u64| {
             let sizes = serde_json::json!({"SIZE": "1000000", "WIDTH": 18, "RD_PORTS": reads, "WR_PORTS": 1});
             serde_json::json!({"ram": {"type": "posicast_memory", "parameters": sizes}})
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_cannot_be_counted_is_an_error() {
+    fn what_cannot_be_counted_is_an_error() {
         let error = one(serde_json::json!({"u": {"type": "$_DLATCH_P_"}}), Family::Cyclone2).unwrap_err();
         assert!(error.contains("$_DLATCH_P_"), "{error}");
         let error = one(serde_json::json!({"u": {"type": "posicast_memory"}}), Family::Cyclone2).unwrap_err();

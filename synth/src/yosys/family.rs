@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_names_are_read_back() {
+    fn names_are_read_back() {
         for family in Family::ALL {
             assert_eq!(family.name().parse(), Ok(family));
         }
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_memory_is_whole_blocks() {
+    fn memory_is_whole_blocks() {
         let block_bits = |family| match family {
             Family::Cyclone2 => 4_608,
             Family::Cyclone5 => 10_240,

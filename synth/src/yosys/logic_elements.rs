@@ -79,13 +79,13 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_flip_flop_shares_its_lut_once() {
+    fn a_flip_flop_shares_its_lut_once() {
         let three = serde_json::json!([flip_flop(5.into()), flip_flop(5.into()), flip_flop("0".into())]);
         assert_eq!(of(serde_json::json!([lut(3, "datac")]), three), (3, 3));
     }
 
     #[test]
-    fn unit_a_lut_of_three_inputs_gives_room_to_a_stranger() {
+    fn a_lut_of_three_inputs_gives_room_to_a_stranger() {
         let stranger = || serde_json::json!([flip_flop(7.into())]);
         assert_eq!(of(serde_json::json!([lut(3, "datac")]), stranger()), (1, 2));
         assert_eq!(of(serde_json::json!([lut(4, "datac")]), stranger()), (2, 2));

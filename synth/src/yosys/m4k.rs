@@ -14,7 +14,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_shape_decides() {
+    fn the_shape_decides() {
         // These were counted by hand in the datasheets of shaper and cascade.
         let counted = [
             (128, 32, 1),

@@ -118,19 +118,19 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_multiplier_takes_its_operands_and_its_product() {
+    fn a_multiplier_takes_its_operands_and_its_product() {
         assert_eq!(found(|_| ()), ["a_0", "a_1", "b", "p_0", "p_1"]);
     }
 
     #[test]
-    fn unit_a_word_with_another_reader_stays_outside() {
+    fn a_word_with_another_reader_stays_outside() {
         let reader = |wire: u64| serde_json::json!({"type": "cycloneive_lcell_comb", "connections": {"dataa": [wire]}});
         assert_eq!(found(|cells| cells["other"] = reader(21)), ["b", "p_0", "p_1"]);
         assert_eq!(found(|cells| cells["other"] = reader(31)), ["a_0", "a_1", "b"]);
     }
 
     #[test]
-    fn unit_a_register_with_a_clear_stays_outside() {
+    fn a_register_with_a_clear_stays_outside() {
         assert_eq!(
             found(|cells| cells["a_0"]["connections"]["sclr"] = serde_json::json!([3])),
             ["b", "p_0", "p_1"]
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_two_enables_are_one_too_many() {
+    fn two_enables_are_one_too_many() {
         assert!(found(|cells| cells["b"]["connections"]["ena"] = serde_json::json!([3])).is_empty());
     }
 }

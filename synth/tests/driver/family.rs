@@ -20,7 +20,7 @@ fn moving_machine() -> Machine {
 }
 
 #[test]
-fn unit_tables_follow_the_position() {
+fn tables_follow_the_position() {
     let machine = moving_machine();
     let family = design_machine(&machine).unwrap().families.remove(0);
     let last = family.choose(family.nominal, 0.09);

@@ -255,7 +255,7 @@ fn prop_a_stream_meets_its_points_and_a_cubic_does_not_jump() {
 }
 
 #[test]
-fn unit_points_that_no_entry_reaches_are_refused() {
+fn points_that_no_entry_reaches_are_refused() {
     // Refused are no ticks and too many, and points that need a larger velocity or acceleration than the words hold.
     // Across the end of the position's word, a point is near.
     let input = "p 0 0 0 0\np 0 0 257 0\np 2000000000 0 1 0\np 0 2147483647 2 2\n0 -2147482648\np 2147482647 0 2 0\n";
@@ -265,7 +265,7 @@ fn unit_points_that_no_entry_reaches_are_refused() {
 }
 
 #[test]
-fn unit_limits_that_are_none_are_refused() {
+fn limits_that_are_none_are_refused() {
     let input = "m 0 256 0 1 1\nm 0 256 1 -1 1\nm 0 256 1 1 0\nm 5 5 1 1 1\n";
     let found = answers(&Driver::write(), input);
     assert_eq!(found, [[3, 0], [3, 0], [3, 0], [0, 0]]);

@@ -36,7 +36,7 @@ fn compile(command: &mut Command, driver: &Driver, files: &[PathBuf]) {
 }
 
 #[test]
-fn unit_the_core_needs_no_library_and_no_operating_system() {
+fn the_core_needs_no_library_and_no_operating_system() {
     let driver = Driver::of(traced_machine());
     compile(
         Command::new("gcc").args(STRICT).args(["-O2", "-ffreestanding"]),
@@ -53,7 +53,7 @@ fn unit_the_core_needs_no_library_and_no_operating_system() {
 }
 
 #[test]
-fn unit_headers_compile_alone_in_c_and_in_cpp() {
+fn headers_compile_alone_in_c_and_in_cpp() {
     let driver = Driver::of(traced_machine());
     for entry in std::fs::read_dir(driver.path().join("inc")).unwrap() {
         let header = entry.unwrap().path();
@@ -65,7 +65,7 @@ fn unit_headers_compile_alone_in_c_and_in_cpp() {
 }
 
 #[test]
-fn unit_the_variant_for_linux_builds_and_refuses_what_is_no_device() {
+fn the_variant_for_linux_builds_and_refuses_what_is_no_device() {
     let driver = Driver::write();
     let linux = driver.path().join("linux");
     run(Command::new("make").arg("-C").arg(&linux));
@@ -88,7 +88,7 @@ fn unit_the_variant_for_linux_builds_and_refuses_what_is_no_device() {
 }
 
 #[test]
-fn unit_the_overlay_is_one() {
+fn the_overlay_is_one() {
     let driver = Driver::write();
     let overlay = driver.path().join("linux/xy_stage.dtso");
     run(Command::new("dtc")
@@ -98,7 +98,7 @@ fn unit_the_overlay_is_one() {
 
 /// The program without an operating system builds as its Makefile says.
 #[test]
-fn unit_the_bare_metal_program_builds() {
+fn the_bare_metal_program_builds() {
     let driver = Driver::of(traced_machine());
     let folder = driver.path().join("bare_metal");
     run(Command::new("make").arg("-C").arg(&folder));
@@ -138,7 +138,7 @@ fn lockstep_the_bare_metal_program_moves_every_axis() {
 
 /// `alt_sys_init` and an interrupt, with headers that replace those of the HAL.
 #[test]
-fn unit_the_hal_finds_the_stage_and_takes_its_interrupt() {
+fn the_hal_finds_the_stage_and_takes_its_interrupt() {
     let driver = Driver::write();
     let hal = driver.path().join("HAL");
     let includes = [hal.join("inc"), beside("hal")].map(|folder| format!("-I{}", folder.display()));
@@ -149,7 +149,7 @@ fn unit_the_hal_finds_the_stage_and_takes_its_interrupt() {
 
 /// `_sw.tcl` in a Tcl that knows its two commands: every file that it names exists, and every C file is named.
 #[test]
-fn unit_the_bsp_finds_every_file() {
+fn the_bsp_finds_every_file() {
     let driver = Driver::of(traced_machine());
     let script = driver.path().join("check.tcl");
     std::fs::write(
@@ -210,7 +210,7 @@ fn a_program_moves_the_stage_and_handles_a_fault(with_verilog: bool) {
 /// Streams a circle with a point per millisecond, three points ahead; once the program is late, and once it does not
 /// return.
 #[test]
-fn unit_a_stream_is_worth_its_bus() {
+fn a_stream_is_worth_its_bus() {
     let driver = Driver::write();
     let mut bridge = Bridge::new(&driver, "stream.c", false);
     let said = bridge.talk(&[]);
@@ -241,7 +241,7 @@ fn unit_a_stream_is_worth_its_bus() {
 }
 
 #[test]
-fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
+fn tables_are_loaded_and_the_pwm_tests_itself() {
     let driver = Driver::write();
     let mut bridge = Bridge::new(&driver, "scenario.c", false);
     let said = bridge.talk(&["tables"]);
@@ -257,7 +257,7 @@ fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
 }
 
 #[test]
-fn unit_settings_change_between_two_ticks() {
+fn settings_change_between_two_ticks() {
     let driver = Driver::write();
     let mut bridge = Bridge::new(&driver, "scenario.c", false);
     let said = bridge.talk(&["settings"]);
@@ -273,7 +273,7 @@ fn unit_settings_change_between_two_ticks() {
 
 /// The home switch is pressed from 30 counts on; the index comes before it.
 #[test]
-fn unit_an_axis_is_homed_and_looked_at() {
+fn an_axis_is_homed_and_looked_at() {
     let driver = Driver::of(traced_machine());
     let mut bridge = Bridge::new(&driver, "bring_up.c", false);
     let said = bridge.talk_beside(&[], |bench| {
@@ -317,7 +317,7 @@ fn opened(machine: Machine, changed: Option<(&str, u32)>) -> BTreeMap<String, i6
 }
 
 #[test]
-fn unit_a_stage_of_another_machine_file_is_refused_with_both_values() {
+fn a_stage_of_another_machine_file_is_refused_with_both_values() {
     let text = include_str!("../../../examples/xy-stage.toml").to_owned() + "[link]\nbaud = 3_000_000\n";
     let linked = || machine_file::parse("xy-stage.toml", &text).unwrap();
     let crc = linked().link.unwrap().machine_crc;
@@ -352,7 +352,7 @@ fn unit_a_stage_of_another_machine_file_is_refused_with_both_values() {
 }
 
 #[test]
-fn unit_the_driver_does_not_hang_where_nothing_answers() {
+fn the_driver_does_not_hang_where_nothing_answers() {
     let driver = Driver::write();
     let program = driver.program("absent", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("scenario.c")]);
     bridge::talk(&program, &["absent"], &mut |_| Some(0));

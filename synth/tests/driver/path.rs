@@ -9,7 +9,7 @@ fn hal(name: &str) -> PathBuf {
 }
 
 #[test]
-fn unit_a_path_keeps_its_points_while_the_clocks_differ() {
+fn a_path_keeps_its_points_while_the_clocks_differ() {
     let driver = Driver::write();
     let folder = hal("");
     let options = ["-I", folder.to_str().unwrap(), "-Wl,--no-as-needed", "-lm"];

@@ -266,7 +266,7 @@ fn prop_writes_through_a_bad_network_are_done_once_and_in_order() {
 }
 
 #[test]
-fn unit_one_host_at_a_time() {
+fn one_host_at_a_time() {
     let driver = driver();
     let program = server(&driver);
     let options = LinkOptions::default();
@@ -296,7 +296,7 @@ fn unit_one_host_at_a_time() {
 
 /// The stage and its machine behind the server, and a network with faults before it.
 #[test]
-fn unit_a_host_in_the_network_moves_the_machine() {
+fn a_host_in_the_network_moves_the_machine() {
     let driver = driver();
     let program = server(&driver);
     let machine = driver.machine.clone();

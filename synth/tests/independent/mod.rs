@@ -107,7 +107,7 @@ fn fields(map: &RegisterMap, array: fn(&str, u32) -> String) -> Vec<String> {
 }
 
 #[test]
-fn unit_systemrdl_compiler_reads_what_the_map_says() {
+fn systemrdl_compiler_reads_what_the_map_says() {
     let folder = tempfile::tempdir().unwrap();
     for (top, component) in [("xy_stage_stage", stage()), ("xy_stage_x_pwm_avalon", pwm())] {
         let [rdl, _] = documents(&folder, top, component.map());
@@ -118,7 +118,7 @@ fn unit_systemrdl_compiler_reads_what_the_map_says() {
 }
 
 #[test]
-fn unit_the_svd_is_valid_and_reads_as_the_map() {
+fn the_svd_is_valid_and_reads_as_the_map() {
     let folder = tempfile::tempdir().unwrap();
     for (top, component) in [("xy_stage_stage", stage()), ("xy_stage_x_pwm_avalon", pwm())] {
         let [_, svd] = documents(&folder, top, component.map());
@@ -129,7 +129,7 @@ fn unit_the_svd_is_valid_and_reads_as_the_map() {
 }
 
 #[test]
-fn unit_fusesoc_runs_lint_and_sim() {
+fn fusesoc_runs_lint_and_sim() {
     let folder = tempfile::tempdir().unwrap();
     let component = stage();
     let block = ComponentBlock::new(component.clone(), "xy_stage_stage", "x, y");

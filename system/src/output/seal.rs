@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_seal_goes_where_the_format_takes_a_comment() {
+    fn the_seal_goes_where_the_format_takes_a_comment() {
         let xml = with_blank("<?xml version=\"1.0\"?>\n<a/>\n");
         assert!(
             xml.starts_with("<?xml version=\"1.0\"?>\n<!-- written by posicast ") && xml.ends_with(" -->\n<a/>\n"),
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_only_a_whole_seal_is_found() {
+    fn only_a_whole_seal_is_found() {
         let seal = blank();
         let at = place(seal.as_bytes()).unwrap();
         assert_eq!(&seal[at..], "0".repeat(DIGITS));

@@ -72,7 +72,7 @@ mod tests {
     use std::os::unix::fs::symlink;
 
     #[test]
-    fn unit_a_name_leads_to_a_file_a_stream_or_the_standard_output() {
+    fn a_name_leads_to_a_file_a_stream_or_the_standard_output() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("file"), "").unwrap();

@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_flag_that_stays_at_a_level_is_missing_unless_it_cannot_change() {
+    fn a_flag_that_stays_at_a_level_is_missing_unless_it_cannot_change() {
         let clocks = [[1, 0, 0x81], [1, 0, 0x80]];
         assert_eq!(names(watched(&[], &clocks).missing()), ["`high` = 0", "`low` = 1"]);
         let fixed = [("high".to_owned(), "tied")];
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_bits_of_words_are_named_in_ranges() {
+    fn bits_of_words_are_named_in_ranges() {
         assert_eq!(
             names(watched(&[], &[[0, 0, 0x81], [0, 0, 0x80]]).unchanged()),
             ["word[7:1]"]

@@ -238,7 +238,7 @@ mod tests {
 
     /// Each row makes blocks with its name, for every rung, except components and stages, which have their own names.
     #[test]
-    fn unit_a_row_is_of_one_block() {
+    fn a_row_is_of_one_block() {
         let sizes = library_sizes().unwrap();
         for row in REGISTRY.iter().filter(|row| !matches!(row.name, "component" | "stage")) {
             let mut benches = (row.benches)(&sizes).unwrap();

@@ -233,7 +233,7 @@ mod tests {
     const SHORT: &str = "a = 300;\nb = 1;\nc = d;\na = 5000;\n";
 
     #[test]
-    fn unit_constants_are_exchanged_and_edits_stay() {
+    fn constants_are_exchanged_and_edits_stay() {
         assert_eq!(exchanged(EMITTED, EMITTED, SHORT), SHORT);
         let edited = EMITTED.replace("c = d;", "c = e;");
         assert_eq!(exchanged(&edited, EMITTED, SHORT), SHORT.replace("c = d;", "c = e;"));
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_another_module_is_taken_whole() {
+    fn another_module_is_taken_whole() {
         assert_eq!(exchanged(EMITTED, EMITTED, "z;\n"), "z;\n");
         assert_eq!(exchanged("edited\n", EMITTED, EMITTED), "edited\n");
     }

@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_patterns_fit_as_they_say() {
+    fn patterns_fit_as_they_say() {
         for (pattern, text, fit) in [
             ("*", "", true),
             ("a*c", "abcbc", true),
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_bits_are_a_list() {
+    fn bits_are_a_list() {
         let rows = parse("b | m | toggle | *count[0,4,24-31] | slow").unwrap();
         let hole = |what: &str| Hole {
             module: "m".to_owned(),
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_rows_are_read_and_others_refused() {
+    fn rows_are_read_and_others_refused() {
         let rows = parse("# a comment\n\nb * | m | line | if (a | b) | tied | \n").unwrap_err();
         assert!(rows.to_string().contains("holes.txt:3"), "{rows}");
         let rows = parse("b * | m | line | if (a | b) | tied low").unwrap();

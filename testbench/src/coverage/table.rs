@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_row_is_renewed_and_the_others_stay() {
+    fn a_row_is_renewed_and_the_others_stay() {
         let subjects = super::super::subjects().unwrap();
         let row = |index: usize, what: &str| {
             let block = &subjects[index];
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_only_all_is_all() {
+    fn only_all_is_all() {
         let share = Share {
             reached: 1999,
             all: 2000,

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_peeks_are_found_with_their_widths() {
+    fn peeks_are_found_with_their_widths() {
         let text = "    (* peek = \"u_leg.timer\" *)  input wire [9:0] leg_timer,\n    input wire clk,\n\
                     (* peek = \"wanted\" *) input wire       wanted\n";
         let found = peeks(text);

@@ -325,7 +325,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_output_and_frame_are_read() {
+    fn output_and_frame_are_read() {
         let said = "Output 2 of miter \"asserts\" was asserted in frame 12.  Time =     0.63 sec\n\
                     No output asserted in 8 frames.\n";
         assert_eq!(asserted(said).collect::<Vec<_>>(), [(2, 12)]);

@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_lines_of_yosys_are_read() {
+    fn lines_of_yosys_are_read() {
         let line = "mutate -ctrl mutsel 16 2 -mode const1 -module velocity -cell $procmux$2533 -port Y -portbit 6 \
                     -wire borrow -wirebit 6 -src velocity.v:42.24-42.30 -src velocity.v:164.13-164.33";
         let mutant = Mutant::parse(line).unwrap();

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_table_is_read_as_it_was_written() {
+    fn a_table_is_read_as_it_was_written() {
         let rows = [row("a", &["inv at Y[1] of $and$a.v:3$7 in a, a.v:3"]), row("b", &[])];
         let text = table(&rows);
         assert!(
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_only_the_same_mutant_of_the_same_block_is_listed() {
+    fn only_the_same_mutant_of_the_same_block_is_listed() {
         let text = table(&[row("a", &["inv at Y[1]"]), row("b", &[])]);
         assert_eq!(unlisted(&text, &[row("a", &["inv at Y[1]"])]), [""; 0]);
         let others = [row("a", &["inv at Y[10]", "inv at Y"]), row("b", &["inv at Y[1]"])];

@@ -416,7 +416,7 @@ mod tests {
 
     /// Every input of every block of both axes is in the list, and every mutant is in the text.
     #[test]
-    fn unit_the_list_has_every_constant_and_wire_of_the_description() {
+    fn the_list_has_every_constant_and_wire_of_the_description() {
         let config = crate::blocks::library_sizes().unwrap().stage.unwrap();
         let block = StageBlock::new(&config, "stage").unwrap();
         let mutants = list(&block, 1);

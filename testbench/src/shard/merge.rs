@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_results_do_not_depend_on_the_number_of_shards() {
+    fn the_results_do_not_depend_on_the_number_of_shards() {
         let whole = merge(shards(1)).unwrap();
         for of in [2, 3, 10, 12] {
             let mut parts = shards(of);
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_not_each_shard_of_one_campaign_once_is_named() {
+    fn what_is_not_each_shard_of_one_campaign_once_is_named() {
         let said = |documents| merge(documents).unwrap_err().to_string();
         let mut lost = shards(3);
         lost.remove(1);

@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_shards_of_a_campaign_do_each_unit_once() {
+    fn the_shards_of_a_campaign_do_each_unit_once() {
         for of in [1, 2, 3, 7, 40] {
             let mut done: Vec<u64> = (1..=of).flat_map(|number| Shard { number, of }.units(23)).collect();
             done.sort_unstable();
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_shards_are_written_as_fractions() {
+    fn shards_are_written_as_fractions() {
         assert_eq!("3/40".parse(), Ok(Shard { number: 3, of: 40 }));
         assert_eq!(Shard { number: 3, of: 40 }.to_string(), "3/40");
         for wrong in ["", "3", "0/4", "5/4", "-1/4", "1/x", "1/99999999999999999999"] {

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_gate_may_follow_the_enable_by_one_clock() {
+    fn a_gate_may_follow_the_enable_by_one_clock() {
         let text = include_str!("../../../examples/xy-stage.toml");
         let machine = posicast_machine::machine_file::parse("xy-stage.toml", text).unwrap();
         let plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default()).unwrap();

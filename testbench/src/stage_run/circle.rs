@@ -346,7 +346,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_directions_go_on_and_distances_are_along_the_radius() {
+    fn directions_go_on_and_distances_are_along_the_radius() {
         let quarter = |turn: f64| {
             let (y, x) = (turn * std::f64::consts::FRAC_PI_2).sin_cos();
             (2.1 * x, 2.1 * y)

@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_ringing_counts_from_the_end_of_the_command_and_about_the_place_of_rest() {
+    fn ringing_counts_from_the_end_of_the_command_and_about_the_place_of_rest() {
         let mut samples = vec![sample(1.0, 4.0, 0.5), sample(2.0, 0.0, 1.9), sample(4.0, 0.0, 2.3)];
         samples.extend([1.8, 2.1, 2.1].map(|load| sample(4.0, 0.0, load)));
         let figures = of_move(&samples, 2.0);

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_compiler_is_the_one_that_the_makefile_names() {
+    fn the_compiler_is_the_one_that_the_makefile_names() {
         let makefile = "AR = ar\nCXX = clang++ -stdlib=libc++\nLINK = g++\nCXXFLAGS += -O\n";
         assert_eq!(in_makefile(makefile), Some("clang++"));
         assert_eq!(in_makefile("CXX ?= c++\n"), Some("c++"));

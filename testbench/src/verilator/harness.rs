@@ -248,7 +248,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_ports_are_read_from_the_header_with_their_verilog_names() {
+    fn ports_are_read_from_the_header_with_their_verilog_names() {
         let header = "  VL_IN8(&clk,0,0);\n VL_OUT16(&a___05Fb,15,0);\n  VL_INW(&wide,99,0,4);\n VL_INOUT8(&z,0,7);\n \
                       VL_IN8(&__SYM__class,0,0);\n CData x;\n VL_ATTR(x)";
         let found: Vec<_> = declared_ports(header)
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_name_that_only_looks_renamed_stays() {
+    fn a_name_that_only_looks_renamed_stays() {
         assert_eq!(verilog_name("x__0"), "x__0");
         assert_eq!(verilog_name("x__0é"), "x__0é");
         assert_eq!(verilog_name("plain_name"), "plain_name");

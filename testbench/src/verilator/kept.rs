@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_only_a_file_that_fits_its_checksum_is_held() {
+    fn only_a_file_that_fits_its_checksum_is_held() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let keep_text = |text: &str| {

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_each_class_is_included_once_and_what_runs_once_is_not_optimised() {
+    fn each_class_is_included_once_and_what_runs_once_is_not_optimised() {
         let names = [
             "Vdevice.cpp",
             "Vdevice__Syms.cpp",

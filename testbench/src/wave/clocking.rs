@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_unit_is_the_coarsest_power_of_1000_that_holds_half_a_period() {
+    fn the_unit_is_the_coarsest_power_of_1000_that_holds_half_a_period() {
         let of = |hz| {
             let clocking = Clocking::new(hz).unwrap();
             (clocking.unit, clocking.edges(1).unwrap())
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_half_period_that_is_not_whole_adds_no_error() {
+    fn a_half_period_that_is_not_whole_adds_no_error() {
         let clocking = Clocking::new(3e6).unwrap();
         assert_eq!(clocking.edges(3_000_000_000).unwrap().0, 1_000_000_000_000_000_000);
         assert_eq!(clocking.before(3).unwrap(), clocking.edges(2).unwrap().1);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_impossible_clocks_are_refused() {
+    fn impossible_clocks_are_refused() {
         for hz in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
             assert!(Clocking::new(hz).is_err(), "{hz}");
         }

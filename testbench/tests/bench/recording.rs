@@ -48,7 +48,7 @@ fn compare(a: &Path, b: &Path, options: &DiffOptions) -> Comparison {
 }
 
 #[test]
-fn unit_a_recorded_move_shows_the_machines_clock_and_true_times() {
+fn a_recorded_move_shows_the_machines_clock_and_true_times() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.vcd");
     let trace = record(&machine(), &path, false);
@@ -90,7 +90,7 @@ fn unit_a_recorded_move_shows_the_machines_clock_and_true_times() {
 }
 
 #[test]
-fn unit_nothing_happens_in_the_clocks_that_are_left_out() {
+fn nothing_happens_in_the_clocks_that_are_left_out() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let top = machine();
@@ -114,7 +114,7 @@ fn unit_nothing_happens_in_the_clocks_that_are_left_out() {
 }
 
 #[test]
-fn unit_a_difference_between_recorded_moves_is_found_wherever_it_is() {
+fn a_difference_between_recorded_moves_is_found_wherever_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let trace = record(&machine(), &at("a.vcd"), false);

@@ -39,7 +39,7 @@ fn crosssim_both_simulators_count_as_the_model_does() {
 }
 
 #[test]
-fn unit_memory_starts_at_random_by_seed_and_keeps_64_bits() {
+fn memory_starts_at_random_by_seed_and_keeps_64_bits() {
     let files = Files::new(MEMORY);
     let ports = memory_ports();
     let source = VerilogSource {
@@ -70,7 +70,7 @@ fn unit_memory_starts_at_random_by_seed_and_keeps_64_bits() {
 }
 
 #[test]
-fn unit_other_ports_are_named() {
+fn other_ports_are_named() {
     let files = Files::new(COUNTER);
     let mut ports = counter_ports();
     ports[2].width = 10;
@@ -108,7 +108,7 @@ fn unit_other_ports_are_named() {
 }
 
 #[test]
-fn unit_broken_and_missing_verilog_is_an_error_with_the_reason() {
+fn broken_and_missing_verilog_is_an_error_with_the_reason() {
     let files = Files::new("module counter(input wire clk);\n  nonsense here\nendmodule\n");
     let source = VerilogSource {
         files: &files.files,
@@ -135,7 +135,7 @@ fn unit_broken_and_missing_verilog_is_an_error_with_the_reason() {
 }
 
 #[test]
-fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
+fn verilog_that_stops_or_never_settles_is_a_step_error() {
     let stops = "module stops(input wire clk, input wire stop, output wire q);
         assign q = 1'b0;
         always @(posedge clk) if (stop) begin $display(\"bye\"); $finish; end
@@ -173,7 +173,7 @@ fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
 }
 
 #[test]
-fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
+fn a_built_simulation_is_reused_and_parallel_builds_meet() {
     let files = Files::new(COUNTER);
     let ports = counter_ports();
     let source = VerilogSource {
@@ -216,7 +216,7 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
 
 /// Half a shared object would end the process with SIGBUS.
 #[test]
-fn unit_a_kept_file_that_was_damaged_is_made_anew() {
+fn a_kept_file_that_was_damaged_is_made_anew() {
     let files = Files::new(COUNTER);
     let ports = counter_ports();
     let source = VerilogSource {

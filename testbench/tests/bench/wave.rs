@@ -79,7 +79,7 @@ const CLOCKS_HZ: [f64; 12] = [
 ];
 
 #[test]
-fn unit_every_file_has_a_unit_of_a_power_of_1000_and_readers_see_the_true_times() {
+fn every_file_has_a_unit_of_a_power_of_1000_and_readers_see_the_true_times() {
     let folder = tempfile::tempdir().unwrap();
     for clock_hz in CLOCKS_HZ {
         let path = folder.path().join("a.vcd");
@@ -115,7 +115,7 @@ fn pixels_per_unit(zoom: f64) -> f64 {
 }
 
 #[test]
-fn unit_sessions_name_times_in_the_unit_of_their_file() {
+fn sessions_name_times_in_the_unit_of_their_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     // These are files of other tools, with the same times in three units; viewers disagree on two of them.
@@ -177,7 +177,7 @@ fn unit_sessions_name_times_in_the_unit_of_their_file() {
 }
 
 #[test]
-fn unit_a_divergence_at_either_end_of_a_file_is_in_view() {
+fn a_divergence_at_either_end_of_a_file_is_in_view() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let rows: Vec<[u64; 1]> = (0..1000).map(|row| [row & 1]).collect();
@@ -214,7 +214,7 @@ fn unit_a_divergence_at_either_end_of_a_file_is_in_view() {
 }
 
 #[test]
-fn unit_a_waveform_that_is_not_finished_leaves_no_file() {
+fn a_waveform_that_is_not_finished_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.vcd");
     let mut recorder = Recorder::create(&path, 50e6, &["t"], &[Signal::bits("y", 4)]).unwrap();
@@ -233,7 +233,7 @@ fn unit_a_waveform_that_is_not_finished_leaves_no_file() {
 }
 
 #[test]
-fn unit_the_merged_view_holds_all_parts_and_their_difference() {
+fn the_merged_view_holds_all_parts_and_their_difference() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let bits = [Signal::bits("y", 8), Signal::bits("valid", 1)];

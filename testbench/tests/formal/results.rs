@@ -53,7 +53,7 @@ fn a_fingerprint_changes_with_verilog_properties_and_engine_but_no_comment() {
 }
 
 #[test]
-fn unit_each_result_has_a_line_of_its_own() {
+fn each_result_has_a_line_of_its_own() {
     let mut lines: Vec<&str> = RESULTS.lines().collect();
     lines.dedup();
     assert!(lines.is_sorted() && lines.len() == RESULTS.lines().count());

@@ -41,7 +41,7 @@ fn component(component: &Component) {
 }
 
 #[test]
-fn unit_the_model_of_a_bank_keeps_its_promises() {
+fn the_model_of_a_bank_keeps_its_promises() {
     let map = everything();
     let mut model = RegisterBank::new(&map);
     assert_eq!(failing(&map, &mut model, RegisterHardware::Still), [""; 0]);

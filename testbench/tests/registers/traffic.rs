@@ -332,7 +332,7 @@ fn prop_traffic_finds_what_is_broken() {
 /// The check of reads alone, without a model, detects a word of another register, a bit outside all fields, and a word
 /// that changes.
 #[test]
-fn unit_reads_that_break_a_promise_are_noticed() {
+fn reads_that_break_a_promise_are_noticed() {
     let map = everything();
     let mode = map.register("mode").unwrap();
     let write = |data: u32, bytes: u64| [0, mode.offset.into(), 0, 1, bytes, data.into()];

@@ -12,7 +12,7 @@ use self::bed::{Bed, modules};
 use self::checks::CHECKS;
 
 #[test]
-fn unit_the_stage_does_what_its_data_sheets_say() {
+fn the_stage_does_what_its_data_sheets_say() {
     let modules = modules();
     for (_, check) in CHECKS {
         check(&mut Bed::new(&modules));

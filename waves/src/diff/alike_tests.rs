@@ -135,7 +135,7 @@ proptest! {
 }
 
 #[test]
-fn unit_stretches_that_are_the_same_are_found() {
+fn stretches_that_are_the_same_are_found() {
     let rows: Vec<Row> = (0..2000u128)
         .map(|at| vec![(2, at), (0, at % 2), (5, at * at)])
         .collect();

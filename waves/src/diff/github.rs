@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_workflow_commands_are_escaped() {
+    fn workflow_commands_are_escaped() {
         assert_eq!(property("a:b,c%\n"), "a%3Ab%2Cc%25%0A");
         assert_eq!(data("a:b,c%\n"), "a:b,c%25%0A");
         assert_eq!(cell("a|b`<c>"), "a\\|b &lt;c>");

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_words_are_numbers_and_codes_are_hexadecimal() {
+    fn words_are_numbers_and_codes_are_hexadecimal() {
         assert_eq!(shown("1", "bits"), "1");
         assert_eq!(shown("101010", "bits"), "0x2a");
         assert_eq!(shown("1111111111111110", "bits"), "-2 (0xfffe)");
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_view_shows_the_value_in_its_format() {
+    fn a_view_shows_the_value_in_its_format() {
         assert_eq!(
             shown("00000000000100101010101101111011", "q23.8"),
             "4779.48046875 (0x0012ab7b)"
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_long_reals_are_powers_of_ten() {
+    fn long_reals_are_powers_of_ten() {
         let of = |number| value(&Shown::Real(number), View::Bits);
         assert_eq!(
             [of(-4.25), of(1e300), of(1e-300), of(0.0)],

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_names_are_escaped() {
+    fn names_are_escaped() {
         assert_eq!(escaped("a<b>&\"\u{1}"), "a&lt;b&gt;&amp;&quot;\u{fffd}");
     }
 }

@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_full_names_come_first() {
+    fn full_names_come_first() {
         assert_eq!(
             partners(&["t.y", "t.x"], &["t.x", "t.z"], &[]),
             [(Some(0), None), (Some(1), Some(0)), (None, Some(1))]
@@ -417,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_tops_are_stripped_when_nothing_else_meets() {
+    fn tops_are_stripped_when_nothing_else_meets() {
         assert_eq!(
             partners(&["model.x.y", "model.clk"], &["TOP.rtl.x.y", "TOP.rtl.clk"], &[]),
             [(Some(0), Some(0)), (Some(1), Some(1))]
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_other_writings_of_one_name_meet_where_there_is_one_candidate() {
+    fn other_writings_of_one_name_meet_where_there_is_one_candidate() {
         assert_eq!(
             partners(&["t.a$step", "t.clk"], &["TOP.t.a__step", "TOP.t.clk"], &[]),
             [(Some(0), Some(0)), (Some(1), Some(1))]
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_maps_name_scopes_signals_and_patterns() {
+    fn maps_name_scopes_signals_and_patterns() {
         assert_eq!(
             partners(
                 &["t.a.y", "t.b.y"],
@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_maps_that_meet_nothing_are_errors() {
+    fn maps_that_meet_nothing_are_errors() {
         for (from, to) in [("nothing", "t.x"), ("t.x", "nothing"), ("no_*", "t.*"), ("t.*", "no_*")] {
             let maps = [(from.to_owned(), to.to_owned())];
             assert!(Matched::new(&names(&["t.x"]), &names(&["t.x"]), &maps, [1; 2]).is_err());

@@ -240,7 +240,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_one_writing_for_all() {
+    fn one_writing_for_all() {
         for written in [
             "dut.a$mem[3]",
             "DUT.a__mem(3)",
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_root_and_filters_choose() {
+    fn a_root_and_filters_choose() {
         let mut declarations = Declarations::default();
         let slot = declarations.add_slot(Kind::Bits(8)).unwrap();
         for (scope, names) in [("tb", ["clk", "y"]), ("dut", ["y", "z"])] {

@@ -258,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_times_have_units() {
+    fn times_have_units() {
         for (text, expected) in [
             ("20ns", 20_000_000),
             ("1.5 us", 1_500_000_000),
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_wrong_texts_are_errors_and_change_nothing() {
+    fn wrong_texts_are_errors_and_change_nothing() {
         let mut options = DiffOptions::default();
         for map in ["", "a", "=b", "a=", "a=b=c", "a*=b", "*a*b*c*d*e*f*g*h*i=b"] {
             assert!(options.add_map(map).is_err(), "{map}");
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_low_active_reset_is_known_by_its_name() {
+    fn a_low_active_reset_is_known_by_its_name() {
         let mut options = DiffOptions::default();
         for (text, active) in [
             ("rst", true),

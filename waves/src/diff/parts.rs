@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_bits_have_the_place_that_the_whole_gives_them() {
+    fn bits_have_the_place_that_the_whole_gives_them() {
         for (whole_range, order) in [((3, 0), [0, 1, 2, 3]), ((0, 3), [3, 2, 1, 0])] {
             let Meeting::ByIndex {
                 whole: true, common, ..
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_negative_and_missing_indices_meet_by_their_number() {
+    fn negative_and_missing_indices_meet_by_their_number() {
         let Meeting::ByIndex {
             whole, common, only, ..
         } = meeting(&single(&[-2, -1]), &whole(0, -3))

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_wildcards_stay_within_a_scope_unless_doubled() {
+    fn wildcards_stay_within_a_scope_unless_doubled() {
         assert!(fits("dut.*_q", "top.dut.count_q"));
         assert!(!fits("dut.*_q", "top.dut.inner.count_q"));
         assert!(fits("dut.**_q", "top.dut.inner.count_q"));
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_a_wildcard_took_goes_into_the_other_name() {
+    fn what_a_wildcard_took_goes_into_the_other_name() {
         let (from, to) = (Pattern::new("*.*_reg").unwrap(), Pattern::new("core.*.q_*").unwrap());
         let captured = from.whole("dut.count_reg").unwrap();
         assert_eq!(to.filled(&captured), "core.dut.q_count");

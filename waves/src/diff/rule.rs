@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_views_and_tolerances_are_read() {
+    fn views_and_tolerances_are_read() {
         assert_eq!(View::parse("q3.16"), Some(View::Signed { fraction: 16 }));
         assert_eq!(View::parse("uq8"), Some(View::Unsigned { fraction: 8 }));
         assert_eq!(Tolerance::parse("2"), Some(Tolerance::Lsb(2.0)));
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_fractions_scale_and_signs_extend() {
+    fn fractions_scale_and_signs_extend() {
         let rule = |view, tolerance| Rule {
             view,
             tolerance,
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_infinity_is_near_nothing_but_itself() {
+    fn infinity_is_near_nothing_but_itself() {
         let near = |a: f64, b: f64| {
             let rule = Rule {
                 tolerance: Some(Tolerance::Relative(0.5)),
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_unknown_bits_by_policy() {
+    fn unknown_bits_by_policy() {
         let [zero, one, x, z] = [[0, 0], [1, 0], [0, 1], [1, 1]];
         for (policy, equal) in [
             (UnknownPolicy::Strict, [true, false, false, false]),

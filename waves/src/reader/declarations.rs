@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_types_ranges_and_texts_of_other_producers_are_read() {
+    fn types_ranges_and_texts_of_other_producers_are_read() {
         let text = "$date $var x$end\n$scope vhdl_architecture a $end\n$var logic 8 ! m [3] [-1:-8] $end $attrbegin $scope $end \
                     $var shortreal 1 # r $end $var port [3:0] <0 d $end $var wire 2 $end e $end $upscope $end\n\
                     $timescale 10\tuS $end $enddefinitions $end\n#0";
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_unusual_is_read_with_a_note() {
+    fn what_is_unusual_is_read_with_a_note() {
         for (text, path, note) in [
             (
                 "$scope module $end $var wire 1 ! a $end $upscope $end $enddefinitions $end ",
@@ -401,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_names_that_are_not_wanted_take_no_memory() {
+    fn names_that_are_not_wanted_take_no_memory() {
         let mut text = "$scope module t $end ".to_owned();
         for at in 0..1000 {
             // The last has the id code of the first.
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_timescales_are_numbers_of_units() {
+    fn timescales_are_numbers_of_units() {
         for (text, fs) in [
             ("1ns", 1_000_000),
             ("100ps", 100_000),

@@ -326,7 +326,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_ranges_leave_the_name_and_indices_stay() {
+    fn ranges_leave_the_name_and_indices_stay() {
         let mut declarations = Declarations::default();
         let byte = declarations.add_slot(Kind::Bits(8)).unwrap();
         let bit = declarations.add_slot(Kind::Bits(1)).unwrap();

@@ -239,7 +239,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_escapes_of_c_are_what_they_stand_for() {
+    fn escapes_of_c_are_what_they_stand_for() {
         for (written, meant) in [
             (r"50\040NS", &b"50 NS"[..]),
             (r"a\\b\tc\x41\0", b"a\\b\tcA\0"),
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_numbers_are_read_as_every_library_prints_them() {
+    fn numbers_are_read_as_every_library_prints_them() {
         for (text, number) in [
             ("1.5", 1.5),
             ("+.5e1", 5.0),

@@ -175,7 +175,7 @@ mod tests {
     use super::simulated;
 
     #[test]
-    fn unit_a_simulation_has_the_moves_of_the_run() {
+    fn a_simulation_has_the_moves_of_the_run() {
         let run = "posicast run machine.toml --move x=0.1 --simulator icarus --cycles 5 --seed 2 --command 'a b.csv'";
         assert_eq!(
             simulated(run),

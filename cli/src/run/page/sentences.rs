@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_outcome_has_its_sentence() {
+    fn every_outcome_has_its_sentence() {
         for (unshaped, shaped, said) in [
             (
                 Some(0.055),

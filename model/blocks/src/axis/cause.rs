@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_all_bits_once_in_their_order() {
+    fn all_bits_once_in_their_order() {
         for (bit, cause) in (0..).zip(Cause::ALL) {
             assert_eq!(cause.bit(), 1 << bit);
         }

@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_clocked_model_follows_the_table_in_every_situation() {
+    fn the_clocked_model_follows_the_table_in_every_situation() {
         for state in SupervisorState::ALL {
             for case in 0..1 << 16 {
                 let (mut registers, mut inputs, conditions) = situation(state, case);

@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_table_is_what_the_branches_say_in_every_case() {
+    fn the_table_is_what_the_branches_say_in_every_case() {
         let mut taken = [0; TRANSITIONS.len()];
         for state in SupervisorState::ALL {
             for bits in 0..1 << Condition::ALL.len() {
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_datasheet_prints_the_table() {
+    fn the_datasheet_prints_the_table() {
         let datasheet = include_str!("../../../../docs/axis.md");
         for row in &TRANSITIONS {
             let line = format!("| {} | {} | {} |", row.from.name(), row.why, row.to.name());

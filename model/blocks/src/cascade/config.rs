@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_smallest_sizes_are_chosen() {
+    fn the_smallest_sizes_are_chosen() {
         for (delay, bits) in [(1, 6), (62, 6), (63, 7), (1022, 10), (1023, 11), (4094, 12)] {
             let config = CascadeConfig::new(32, vec![1, delay]).unwrap();
             assert_eq!(config.ring_address_bits(), bits, "delay {delay}");
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_no_cascade_holds_is_named() {
+    fn what_no_cascade_holds_is_named() {
         let error = |word, delays: Vec<u32>| CascadeConfig::new(word, delays).unwrap_err();
         assert_eq!(error(7, vec![1]), CascadeConfigError::WordBits(7));
         assert_eq!(error(33, vec![1]), CascadeConfigError::WordBits(33));
@@ -175,14 +175,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_equal_delays_give_binomial_taps() {
+    fn equal_delays_give_binomial_taps() {
         let table = CascadeConfig::new(16, vec![7; 3]).unwrap().tap_table(4).unwrap();
         let taps: Vec<(u32, i32)> = table.taps().iter().map(|t| (t.delay_samples, t.coefficient)).collect();
         assert_eq!(taps, [(0, 2), (7, 6), (14, 6), (21, 2)]);
     }
 
     #[test]
-    fn unit_a_table_too_coarse_or_too_fine_is_refused() {
+    fn a_table_too_coarse_or_too_fine_is_refused() {
         let config = CascadeConfig::new(16, vec![7; 3]).unwrap();
         for fraction in [0, 2, 17, 40, u32::MAX] {
             assert_eq!(config.tap_table(fraction), Err(TapTableError::Fraction(fraction)));

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_steepest_slope_is_a_sixteenth() {
+    fn the_steepest_slope_is_a_sixteenth() {
         for unit in [EntryUnit::Fine, EntryUnit::Coarse] {
             for spacing_bits in LEAST_SPACING_BITS..=MOST_SPACING_BITS {
                 let most = format(spacing_bits, unit).most_step();
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_does_not_fit_is_refused() {
+    fn what_does_not_fit_is_refused() {
         let fine = format(10, EntryUnit::Fine);
         let new = |format, entries: &[i32]| ErrorTableConfig::new(format, entries.to_vec());
         assert!(new(fine, &[0, 16384, 0]).is_ok());

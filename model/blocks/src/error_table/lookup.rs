@@ -34,7 +34,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn unit_the_middle_and_the_ends() {
+    fn the_middle_and_the_ends() {
         let entries = [10, 20, -7];
         let at = |place| interpolated(&entries, place, 4);
         assert_eq!([-100, -1, 0, 8, 15, 16].map(at), [10, 10, 10, 15, 19, 20]);

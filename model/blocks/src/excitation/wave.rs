@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_square_is_exactly_the_amplitude() {
+    fn a_square_is_exactly_the_amplitude() {
         for amplitude in [0, 1, 2, 3, 255, 256, 0x7fff, 0x8000, 0xffff] {
             let inputs = Inputs {
                 kind: ExcitationKind::Square,
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_triangle_is_straight_and_odd() {
+    fn the_triangle_is_straight_and_odd() {
         // With 64 · 256 every step is 256, and half of that at the ends.
         let inputs = Inputs {
             kind: ExcitationKind::Chirp,
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_prbs_is_that_of_its_polynomial() {
+    fn the_prbs_is_that_of_its_polynomial() {
         // s(n) = s(n − 15) + s(n − 14) modulo 2, from fifteen ones; ITU-T O.150 has this polynomial.
         let mut reference = vec![true; 15];
         while reference.len() < 32_767 + 15 {

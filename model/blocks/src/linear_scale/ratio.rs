@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_finest_mantissa_is_taken() {
+    fn the_finest_mantissa_is_taken() {
         let third = ScaleRatio::new(3.0, 1.0).unwrap();
         assert_eq!((third.mantissa(), third.shift()), (87381, 18));
         assert!(third.relative_error() < 4e-6);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_ends_of_the_ratio() {
+    fn the_ends_of_the_ratio() {
         assert_eq!(ScaleRatio::new(1.0, 131_071.0).unwrap().shift(), 0);
         assert_eq!(ScaleRatio::new(32_768.0, 1.0).unwrap().mantissa(), 65_536);
         for (motor, scale) in [
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_no_counts_are_named() {
+    fn no_counts_are_named() {
         for found in [0.0, f64::NAN, f64::INFINITY] {
             let error = ScaleRatio::for_monitor(1.0, found).unwrap_err().to_string();
             assert!(
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_rounding_is_half_up_on_both_sides() {
+    fn rounding_is_half_up_on_both_sides() {
         let rounded = [-3, -1, 1, 3].map(|counts| scaled(counts, 1, 1));
         assert_eq!(rounded, [-1, 0, 1, 2]);
         assert_eq!(scaled(i32::MIN, -131_072, 0), 1 << 48);

@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_longest_frame_and_one_byte_more() {
+    fn the_longest_frame_and_one_byte_more() {
         let longest = [7; MOST_BYTES];
         let encoded = encode(&longest).unwrap();
         assert_eq!((encoded.len(), encoded[0]), (MOST_BYTES + 1, 254));
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_not_encoded_is_refused() {
+    fn what_is_not_encoded_is_refused() {
         for wrong in [&[][..], &[0], &[3, 1], &[2, 0], &[1, 3, 5], &[255]] {
             assert_eq!(decode(wrong), None, "{wrong:?}");
         }

@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_bytes_with_their_own_crc_leave_the_residue() {
+    fn bytes_with_their_own_crc_leave_the_residue() {
         for length in 0..50 {
             let mut crc = Crc::default();
             let bytes: Vec<u8> = (0..length).map(|byte: u8| byte.wrapping_mul(91)).collect();

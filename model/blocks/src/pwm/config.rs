@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_floors_that_do_not_fit_are_named() {
+    fn floors_that_do_not_fit_are_named() {
         for found in [0, 1024, u64::MAX] {
             let built = |dead, pulse| PwmConfig::new(ActiveLow::default(), dead, pulse);
             assert_eq!(built(found, 1), Err(PwmConfigError::DeadTime(found)));

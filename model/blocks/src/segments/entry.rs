@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_words_and_back() {
+    fn words_and_back() {
         let point = EntryMotion::Point(Point {
             position: -1,
             velocity: i32::MAX,

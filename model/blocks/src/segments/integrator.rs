@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_segment_is_its_closed_form() {
+    fn a_segment_is_its_closed_form() {
         // n ticks of jerk j from rest: a = n·j, v = j·n(n+1)/2, p = j·n(n+1)(n+2)/6.
         let mut at = Integrator::default();
         let (jerk, n) = (-12_345, 1000i64);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_cubic_is_its_closed_form_and_goes_on_straight() {
+    fn a_cubic_is_its_closed_form_and_goes_on_straight() {
         // p = n·v + a·n(n−1)/2 + j·(n−1)n(n+1)/6 from the present position, whatever the velocity was before.
         let cubic = CubicEntry {
             jerk: -77,
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_does_not_fit_changes_nothing_further() {
+    fn what_does_not_fit_changes_nothing_further() {
         let largest = (1 << (ACCELERATION_BITS - 1)) - 1;
         let mut at = Integrator {
             acceleration: largest,
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_stop_ends_at_rest_on_both_sides() {
+    fn a_stop_ends_at_rest_on_both_sides() {
         for velocity in [10_000_000_007, -10_000_000_007, 3, 0, -(1 << 47)] {
             let mut at = Integrator {
                 velocity,
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_only_a_way_outwards_leaves_the_reach() {
+    fn only_a_way_outwards_leaves_the_reach() {
         let at = |counts: i64, velocity: i64| Integrator {
             position: counts << FRACTION_BITS,
             velocity,
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_ends_are_rounded_without_wrapping() {
+    fn the_ends_are_rounded_without_wrapping() {
         let at = Integrator {
             position: -(1 << 23),
             velocity: (1 << 47) - 1,

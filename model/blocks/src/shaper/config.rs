@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_smallest_sizes_are_chosen() {
+    fn the_smallest_sizes_are_chosen() {
         for (delay, bits) in [(0, 6), (62, 6), (63, 7), (4094, 12), (4095, 13), (16382, 14)] {
             let config = ShaperConfig::new(32, table(1, delay)).unwrap();
             assert_eq!(config.ring_address_bits(), bits, "delay {delay}");
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_no_shaper_holds_is_named() {
+    fn what_no_shaper_holds_is_named() {
         let delay = ShaperConfig::new(24, table(1, 16383)).unwrap_err();
         assert_eq!(
             delay,
@@ -426,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_given_sizes_are_kept_and_checked() {
+    fn given_sizes_are_kept_and_checked() {
         let config = ShaperConfig::of_sizes(20, 13, 7, table(65, 300)).unwrap();
         let sizes = (config.word_bits(), config.ring_address_bits(), config.tap_index_bits());
         assert_eq!(sizes, (20, 13, 7));
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_room_only_grows() {
+    fn room_only_grows() {
         let config = ShaperConfig::new(16, table(17, 100)).unwrap();
         let roomy = config.clone().with_room_for(500, 65).unwrap();
         assert_eq!((roomy.ring_address_bits(), roomy.tap_index_bits()), (9, 7));
@@ -458,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_pass_that_does_not_fit_states_both_clock_counts() {
+    fn a_pass_that_does_not_fit_states_both_clock_counts() {
         let config = ShaperConfig::new(32, table(60, 100)).unwrap();
         let needed = 60 + PASS_OVERHEAD_CLOCKS;
         assert_eq!(config.fits(needed.into()), Ok(()));

@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_rounding_is_half_up_on_both_sides_of_zero() {
+    fn rounding_is_half_up_on_both_sides_of_zero() {
         let rounded = |sum| round_and_saturate(sum, 2, 16).0;
         assert_eq!(
             [-7, -6, -5, -3, -2, -1, 0, 1, 2, 3, 5, 6].map(rounded),
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_saturation_reaches_both_ends_exactly() {
+    fn saturation_reaches_both_ends_exactly() {
         assert_eq!(round_and_saturate(32767 << 4, 4, 16), (32767, false));
         assert_eq!(round_and_saturate((32767 << 4) + 8, 4, 16), (32767, true));
         assert_eq!(round_and_saturate(-(32768 << 4) - 8, 4, 16), (-32768, false));
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_wrap_takes_the_low_bits() {
+    fn wrap_takes_the_low_bits() {
         assert_eq!(wrap(0x8000, 16), -0x8000);
         assert_eq!(wrap(-1, 16), -1);
         assert_eq!(wrap(0x1_0001, 16), 1);

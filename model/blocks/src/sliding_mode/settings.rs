@@ -232,14 +232,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_row_stands_at_its_address() {
+    fn a_row_stands_at_its_address() {
         for (address, row) in SettingRow::ALL.into_iter().enumerate() {
             assert_eq!(row as usize, address);
         }
     }
 
     #[test]
-    fn unit_words_come_back() {
+    fn words_come_back() {
         for mantissa in [-131_072, -1, 0, 1, 131_071] {
             for shift in [0, 1, 30, 31] {
                 let gain = Gain { mantissa, shift };
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_nearest_gain_is_within_half_a_mantissa() {
+    fn the_nearest_gain_is_within_half_a_mantissa() {
         for value in [0.015, -0.005, 4.210_448, 1e-12, -3e-7, 0.0] {
             let gain = Gain::nearest(value, SettingRow::Surface).unwrap();
             let half = 0.5 * f64::exp2(-f64::from(gain.shift()));

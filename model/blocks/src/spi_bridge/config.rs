@@ -89,7 +89,7 @@ mod tests {
 
     /// Computed by hand: 10 ms at 50 MHz are 500,000 clocks, 7812.5 units of 64.
     #[test]
-    fn unit_time_outs_of_usual_clocks() {
+    fn time_outs_of_usual_clocks() {
         for (clock_hz, silence_s, limit, most) in [
             (50_000_000, 0.01, 7813, 6_250_000),
             (100_000_000, 0.5, 781_250, 12_500_000),
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_time_out_out_of_range_is_refused_with_the_range() {
+    fn a_time_out_out_of_range_is_refused_with_the_range() {
         for silence_s in [2.0, 0.00005, f64::NAN] {
             let error = SpiBridgeConfig::new(50_000_000, silence_s, 512)
                 .unwrap_err()

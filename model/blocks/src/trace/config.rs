@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_four_sizes_and_no_other() {
+    fn four_sizes_and_no_other() {
         for (samples, bits) in [(256, 8), (512, 9), (1024, 10), (2048, 11)] {
             assert_eq!(TraceConfig::new(samples).unwrap().address_bits(), bits);
         }
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_rows_share_the_memory() {
+    fn rows_share_the_memory() {
         let config = TraceConfig::new(1024).unwrap();
         assert_eq!([0, 1, 2, 3].map(|code| config.rows(code)), [1024, 512, 256, 256]);
         assert_eq!([0, 1, 2, 3].map(row_clocks), [4, 5, 7, 7]);

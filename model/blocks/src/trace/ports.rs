@@ -103,7 +103,7 @@ mod tests {
     use crate::{Direction, Port};
 
     #[test]
-    fn unit_raw_inputs_are_cut_to_the_widths_of_the_ports_and_come_back() {
+    fn raw_inputs_are_cut_to_the_widths_of_the_ports_and_come_back() {
         let all_ones = Inputs::from_raw(&[u64::MAX; INPUT_PORTS]).to_raw();
         let inputs: Vec<Port> = ports()
             .into_iter()

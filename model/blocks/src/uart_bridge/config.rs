@@ -146,7 +146,7 @@ mod tests {
 
     /// Steps and errors computed by hand: 8 · baud · 65536 / clock.
     #[test]
-    fn unit_baud_rates_of_usual_clocks() {
+    fn baud_rates_of_usual_clocks() {
         for (clock_hz, baud, step, error) in [
             (50_000_000, 115_200, 1208, 3.31e-5),
             (50_000_000, 3_000_000, 31457, -8.9e-6),
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_clock_that_is_too_slow_is_refused_with_what_is_fast_enough() {
+    fn a_clock_that_is_too_slow_is_refused_with_what_is_fast_enough() {
         let text = |clock_hz, baud, silence_s| {
             UartBridgeConfig::new(clock_hz, baud, silence_s, 512)
                 .map(|_| ())

@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_short_curve_is_whole_and_a_long_one_keeps_its_extremes() {
+    fn a_short_curve_is_whole_and_a_long_one_keeps_its_extremes() {
         let mut short = Envelope::new(3);
         (0..5).for_each(|value| short.push(f64::from(value)));
         assert_eq!(

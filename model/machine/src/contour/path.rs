@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_distances_are_positive_to_the_left() {
+    fn distances_are_positive_to_the_left() {
         let mut path = PathWindow::default();
         path.extend(&[Placed {
             begin: 0.0,
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_strokes_behind_are_dropped_and_keep_their_numbers() {
+    fn strokes_behind_are_dropped_and_keep_their_numbers() {
         let mut path = PathWindow::default();
         let line = |k: usize| Placed {
             begin: k as f64,

@@ -231,7 +231,7 @@ mod tests {
 
     /// From rest to rest it is the move of an axis, which is planned otherwise.
     #[test]
-    fn unit_from_rest_to_rest_it_is_the_profile_of_an_axis() {
+    fn from_rest_to_rest_it_is_the_profile_of_an_axis() {
         for length in [1e-7, 1e-3, 0.01, 0.1, 3.0] {
             let ramps = Ramps::new(length, [0.0, 0.0], 0.2, &LIMITS);
             let profile = Profile::new(0.0, length, 0.2, LIMITS.acceleration, LIMITS.jerk).unwrap();

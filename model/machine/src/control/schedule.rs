@@ -128,7 +128,7 @@ mod tests {
     use crate::machine_file::PwmMode;
 
     #[test]
-    fn unit_a_schedule_must_end_before_the_next_tick() {
+    fn a_schedule_must_end_before_the_next_tick() {
         let schedule = ControlSchedule::controlling(38);
         assert_eq!(schedule.clocks(), 4 + 102 + 38 + 517);
         assert_eq!(schedule.fits(662), Ok(()));
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_largest_sample_rate_fits_and_the_next_one_does_not() {
+    fn the_largest_sample_rate_fits_and_the_next_one_does_not() {
         let schedule = ControlSchedule::controlling(38);
         for step in [1, 50, 100, 661, 662, 2500] {
             let clocks = (50e6 / schedule.largest_sample_hz(50e6, step)).round() as u32;
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_schedule_longer_than_a_period_waits_for_a_later_boundary() {
+    fn a_schedule_longer_than_a_period_waits_for_a_later_boundary() {
         let clock = ClockSection {
             frequency_hz: 50e6,
             sample_hz: 50e3,

@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_what_stands_twice_is_found_where_it_stood_first() {
+    fn what_stands_twice_is_found_where_it_stood_first() {
         let text = "name = \"m\"\n# damping = 1\n[a]\ndamping = 1\n[[b]]\ndamping = 2  # here\nx = 1\ndamping = 3\n[[a]] # again\n";
         let at = |line: usize| text.lines().take(line - 1).map(|line| line.len() + 1).sum::<usize>();
         assert_eq!(first_of_its_name(text, at(8)), Some(6));
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_numbers_are_written_as_in_a_machine_file() {
+    fn numbers_are_written_as_in_a_machine_file() {
         for (value, text) in [
             (50e6, "50_000_000"),
             (10e3, "10_000"),
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_number_out_of_range_gets_the_question_that_fits() {
+    fn a_number_out_of_range_gets_the_question_that_fits() {
         let part = NumberRange::closed(0.0, 1.0).open_above();
         assert!(of_number("damping", 5.0, part).starts_with("percent? 5 % is 0.05"));
         assert_eq!(

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_names_are_identifiers_in_every_generated_language() {
+    fn names_are_identifiers_in_every_generated_language() {
         assert!(is_name("xy_stage") && is_name("x") && is_name(&"x".repeat(64)));
         let refused = [
             "",
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_refused_name_is_mended_where_it_can_be() {
+    fn a_refused_name_is_mended_where_it_can_be() {
         assert_eq!(mended("XY-Stage").as_deref(), Some("xy_stage"));
         assert_eq!(mended("2slide").as_deref(), Some("my_2slide"));
         assert_eq!(mended("wire").as_deref(), Some("my_wire"));

@@ -54,7 +54,7 @@ mod tests {
                         [axis.drive]\nmode = \"torque\"\n";
 
     #[test]
-    fn unit_a_key_stands_in_its_line_and_a_missing_one_in_that_of_its_table() {
+    fn a_key_stands_in_its_line_and_a_missing_one_in_that_of_its_table() {
         let line = |axis, key| line_of(TEXT, axis, key);
         assert_eq!(line(0, "clock.sample_hz"), Some(4));
         assert_eq!(line(0, "axis.name"), Some(7));
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_modes_of_an_axis_have_lines_of_their_own() {
+    fn the_modes_of_an_axis_have_lines_of_their_own() {
         let text =
             "[[axis]]\n[[axis.mode]]\ndamping = 0\n[[axis.mode]]\ndamping = 1\n[[axis]]\n[[axis.mode]]\ndamping = 2\n";
         let line = |axis, key| line_of(text, axis, key);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_not_there_has_no_line() {
+    fn what_is_not_there_has_no_line() {
         assert_eq!(line_of(TEXT, 2, "axis.name"), None);
         assert_eq!(line_of(TEXT, 0, "stage.extra_delay_s"), None);
         assert_eq!(line_of("no toml", 0, "name"), None);

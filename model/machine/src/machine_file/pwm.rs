@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_short_times_are_rounded_up_to_clocks() {
+    fn short_times_are_rounded_up_to_clocks() {
         let clock = ClockSection {
             frequency_hz: 50e6,
             sample_hz: 10e3,

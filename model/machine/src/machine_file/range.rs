@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_ends_belong_to_the_range_as_its_text_says() {
+    fn ends_belong_to_the_range_as_its_text_says() {
         let damping = NumberRange::closed(0.0, 1.0).open_above();
         assert_eq!(damping.to_string(), "at least 0, below 1");
         assert!(damping.contains(0.0) && !damping.contains(1.0));

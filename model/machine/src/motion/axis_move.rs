@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_default_move_reaches_the_velocity_where_that_fits() {
+    fn a_default_move_reaches_the_velocity_where_that_fits() {
         let of = |limits: &str| by_default(&machine("m", 1e6, limits));
         // v/a + a/j = 51.25 ms; 12.8 mm.
         assert_eq!(of(STAGE), 0.013);
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_default_move_is_round_in_the_unit_of_the_axis_and_fits_the_word() {
+    fn a_default_move_is_round_in_the_unit_of_the_axis_and_fits_the_word() {
         let in_mm = "velocity = 250.0\nacceleration = 8e3\njerk = 400e3\n";
         assert_eq!(by_default(&machine("mm", 1e3, in_mm)), 0.013);
         let degrees = by_default(&machine(
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_move_that_does_not_fit_says_what_does() {
+    fn a_move_that_does_not_fit_says_what_does() {
         let machine = machine("mm", 1e3, "velocity = 250.0\ntravel = [-100, 50]");
         let axis = &machine.axes[0];
         let new = |distance, speed| AxisMove::new(axis, &machine.fixed_point, distance, speed);
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_move_beyond_the_word_says_how_far_it_may_go() {
+    fn a_move_beyond_the_word_says_how_far_it_may_go() {
         let machine = machine("m", 1e6, "");
         let refused = AxisMove::new(&machine.axes[0], &machine.fixed_point, Some(9.0), None).unwrap_err();
         let text = refused.to_string();

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_boxes_are_the_shortest_within_the_limits() {
+    fn the_boxes_are_the_shortest_within_the_limits() {
         for distance in [1e-6, 1e-4, 2e-3, 0.05, 1.0] {
             for given in [1e-3, 0.02, 0.3] {
                 let found: f64 = least_boxes(distance, LIMITS, given).unwrap().iter().sum();
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_period_as_jerk_time_leaves_nothing_of_an_undamped_mode() {
+    fn a_period_as_jerk_time_leaves_nothing_of_an_undamped_mode() {
         let mode = Mode {
             frequency_hz: 25.0,
             damping: 0.0,
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_boxes_leave_what_impulses_close_together_leave() {
+    fn boxes_leave_what_impulses_close_together_leave() {
         let mode = Mode {
             frequency_hz: 13.0,
             damping: 0.08,

@@ -104,7 +104,7 @@ mod tests {
     use posicast_shaper::impulse::Impulse;
 
     #[test]
-    fn unit_a_shaped_step_peaks_at_its_largest_partial_sum() {
+    fn a_shaped_step_peaks_at_its_largest_partial_sum() {
         let impulses = [(0.0, 1.0), (0.2, -2.0), (0.3, 2.0)].map(|(time_s, amplitude)| Impulse { time_s, amplitude });
         let figures = command_figures(&Trajectory::step(3.0).shaped(&impulses), Quantity::Position);
         assert_eq!((figures.peak, figures.rms), (3.0, 3.0));
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_move_has_the_figures_of_its_samples() {
+    fn a_move_has_the_figures_of_its_samples() {
         let profile = Profile::new(0.0, 0.05, 0.3, 4.0, 90.0).unwrap();
         let shaped = Trajectory::of_profile(&profile)
             .shaped(&[(0.0, 1.0), (0.07, -2.0), (0.1, 2.0)].map(|(time_s, amplitude)| Impulse { time_s, amplitude }));

@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_move_ends_at_rest_on_target_within_its_limits() {
+    fn a_move_ends_at_rest_on_target_within_its_limits() {
         let limits = stage();
         let lsb = (1u64 << FRACTION_BITS) as f64;
         for counts in [1, -1, 7, 500, -5_000, 123_457, 8_000_000] {
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_move_is_as_long_as_its_profile_but_for_whole_ticks() {
+    fn a_move_is_as_long_as_its_profile_but_for_whole_ticks() {
         let entries = plan_move(0, 5_000 << 8, &stage()).unwrap();
         let ticks: u32 = entries.iter().map(|entry| entry.ticks).sum();
         let profile = Profile::new(0.0, 0.005, 0.25, 8.0, 400.0).unwrap();
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_no_distance_no_entries_and_a_tiny_one_is_a_point() {
+    fn no_distance_no_entries_and_a_tiny_one_is_a_point() {
         assert_eq!(plan_move(0, 0, &stage()).unwrap(), []);
         let nearly = plan_move(1, 0, &stage()).unwrap();
         assert!(
@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_to_and_fro_comes_back() {
+    fn to_and_fro_comes_back() {
         let mut at = Integrator::default();
         let entries = plan_to_and_fro(0, 1_000 << 8, 3, &stage()).unwrap();
         play(&mut at, &entries);
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_circle_is_round_and_closes() {
+    fn a_circle_is_round_and_closes() {
         let radius = 5_000.0;
         let [x, y] = plan_circle([0, 0], radius, 2.0, &stage()).unwrap();
         assert_eq!(x.len(), y.len());
@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_does_not_fit_is_said() {
+    fn what_does_not_fit_is_said() {
         let limits = |velocity, acceleration, jerk| TickLimits {
             velocity,
             acceleration,

@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_every_shape_of_profile_keeps_its_limits() {
+    fn every_shape_of_profile_keeps_its_limits() {
         // Each case has distance, velocity, acceleration, jerk, and which of the limits is reached.
         let cases = [
             (1.0, 0.25, 8.0, 400.0, [true, true, true]),
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_two_halves_meet() {
+    fn the_two_halves_meet() {
         for distance in [1e-9, 1e-4, 0.005, 0.02, 1.0, 1e6] {
             let profile = Profile::new(0.0, distance, 0.25, 8.0, 400.0).unwrap();
             let middle_s = profile.duration_s() / 2.0;
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_degenerate_moves() {
+    fn degenerate_moves() {
         let still = Profile::new(0.3, 0.3, 1.0, 1.0, 1.0).unwrap();
         assert_eq!((still.duration_s(), still.position(1.0)), (0.0, 0.3));
         assert_eq!(still.samples(100.0, 0.02).unwrap(), [0.3, 0.3, 0.3]);

@@ -266,7 +266,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_trapezoid_ends_on_its_distance_within_its_limits() {
+    fn trapezoid_ends_on_its_distance_within_its_limits() {
         for (distance, velocity, acceleration) in
             [(0.005, 0.2, 8.0), (-3.0, 0.2, 8.0), (1e-9, 0.2, 8.0), (0.0, 1.0, 1.0)]
         {
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_profile_and_its_trajectory_agree() {
+    fn a_profile_and_its_trajectory_agree() {
         for distance in [0.005, -1.0, 1e-5] {
             let profile = Profile::new(0.25, 0.25 + distance, 0.25, 8.0, 400.0).unwrap();
             let trajectory = Trajectory::of_profile(&profile);
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_shaped_move_ends_where_the_move_ends_for_ever() {
+    fn a_shaped_move_ends_where_the_move_ends_for_ever() {
         let impulses =
             [(0.0, 1.0), (0.031, -2.0), (0.05, 2.0)].map(|(time_s, amplitude)| Impulse { time_s, amplitude });
         let profile = Profile::new(0.0, 0.3, 0.25, 8.0, 400.0).unwrap();

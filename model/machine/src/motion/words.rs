@@ -165,14 +165,14 @@ mod tests {
     use posicast_taps::Tap;
 
     #[test]
-    fn unit_counts_with_fraction_rounded_half_up() {
+    fn counts_with_fraction_rounded_half_up() {
         // 1000 counts per unit, 8 fraction bits: 256000 per unit.
         let words = command_words(&[0.0, 0.001, -0.001, 2.5 / 256_000.0, -2.5 / 256_000.0], 1000.0, 32, 8).unwrap();
         assert_eq!(words, [0, 256, -256, 3, -2]);
     }
 
     #[test]
-    fn unit_the_ends_of_the_word_fit_and_no_more() {
+    fn the_ends_of_the_word_fit_and_no_more() {
         let at = |word: f64, bits| command_words(&[word], 1.0, bits, 0);
         assert_eq!(at(32767.0, 16), Ok(vec![32767]));
         assert_eq!(at(-32768.0, 16), Ok(vec![-32768]));
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_numbers_that_are_none() {
+    fn numbers_that_are_none() {
         for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
             let error = command_words(&[0.0, bad], 1e6, 32, 8).unwrap_err();
             assert!(matches!(error, CommandError::NotFinite { sample: 1, .. }));
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_modulo_axis_turns_on_as_long_as_the_shaper_can_tell() {
+    fn a_modulo_axis_turns_on_as_long_as_the_shaper_can_tell() {
         let words = |step: f64| {
             let positions: Vec<f64> = (0..100).map(|sample| step * f64::from(sample)).collect();
             modulo_words(&positions, 1.0, 24, 8, &halves())

@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_mode_in_kilohertz_is_asked_for() {
+    fn a_mode_in_kilohertz_is_asked_for() {
         let blame = blamed("kind = \"zvd\"", &[(100.0, 0.1), (0.03, 0.1)]);
         assert_eq!((blame.mode, blame.key.as_str()), (Some(1), "axis.mode.frequency_hz"));
         let remedy = blame.remedy.unwrap();
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_mode_that_may_be_as_slow_as_it_is_gets_a_sample_rate_first() {
+    fn a_mode_that_may_be_as_slow_as_it_is_gets_a_sample_rate_first() {
         let blame = blamed("kind = \"zvd\"", &[(0.16, 0.01)]);
         let remedy = blame.remedy.unwrap();
         assert!(
@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_too_many_taps_get_changes_that_fit() {
+    fn too_many_taps_get_changes_that_fit() {
         let modes = [(20.0, 0.1), (31.0, 0.1), (47.0, 0.05)];
         let blame = blamed("kind = \"three-hump-ei\"", &modes);
         assert_eq!(blame.key, "axis.shaper");
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_damping_that_a_kind_does_not_take_is_blamed_on_its_mode() {
+    fn a_damping_that_a_kind_does_not_take_is_blamed_on_its_mode() {
         let blame = blamed("kind = \"ps-zv\"", &[(50.0, 0.1), (80.0, 0.6)]);
         assert_eq!((blame.mode, blame.key.as_str()), (Some(1), "axis.mode.damping"));
     }

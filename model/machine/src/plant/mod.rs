@@ -266,7 +266,7 @@ mod tests {
     };
 
     #[test]
-    fn unit_free_motion_solves_its_differential_equation() {
+    fn free_motion_solves_its_differential_equation() {
         let (omega, decay) = (SLOW.omega(), SLOW.decay());
         let generator = Matrix2::new(0.0, 1.0, -omega * omega, -2.0 * decay);
         assert!((free_motion(&SLOW, 0.0) - Matrix2::identity()).amax() < 1e-15);
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_sampled_plant_is_the_step_response_at_the_samples() {
+    fn sampled_plant_is_the_step_response_at_the_samples() {
         let plant = Plant::new(&[(SLOW, 3.0), (FAST, 1.0)]).unwrap();
         let mut sampled = SampledPlant::new(&plant, 1e-3, 0.0);
         let (mut y, mut time_s) = (0.0, 0.0);
@@ -298,14 +298,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_plant_without_modes_is_rigid() {
+    fn a_plant_without_modes_is_rigid() {
         let plant = Plant::new(&[]).unwrap();
         let mut sampled = SampledPlant::new(&plant, 1e-3, 0.0);
         assert_eq!((sampled.step(1.5), sampled.vibration()), (1.5, 0.0));
     }
 
     #[test]
-    fn unit_participations_need_a_positive_sum() {
+    fn participations_need_a_positive_sum() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(Plant::new(&[(SLOW, bad)]).is_err());
         }

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_unshaped_overshoot_is_the_closed_form() {
+    fn unshaped_overshoot_is_the_closed_form() {
         for damping in [0.0, 0.01, 0.157799, 0.5, 0.9] {
             let figures = step_figures(&plant(&[(7.0, damping, 1.0)]), &UNSHAPED);
             let expected = (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp();
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_measured_residual_is_the_pole_sum() {
+    fn measured_residual_is_the_pole_sum() {
         let plant = plant(&[(5.0, 0.03, 1.0), (13.0, 0.2, 2.0)]);
         let impulses: Vec<Impulse> = [(0.0, 1.0), (0.031, -2.0), (0.05, 2.0)]
             .map(|(time_s, amplitude)| Impulse { time_s, amplitude })
@@ -275,14 +275,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_two_modes_peak_between_samples() {
+    fn two_modes_peak_between_samples() {
         // 1 − ½cos t − ½cos 2t has its maximum at cos t = −1/4: 1 + 1/8 + 7/16.
         let figures = step_figures(&plant(&[(1.0, 0.0, 1.0), (2.0, 0.0, 1.0)]), &UNSHAPED);
         assert!((figures.overshoot - 0.5625).abs() < 1e-12, "{}", figures.overshoot);
     }
 
     #[test]
-    fn unit_step_response_starts_at_zero_and_ends_on_the_step() {
+    fn step_response_starts_at_zero_and_ends_on_the_step() {
         let plant = plant(&[(2.0, 0.3, 1.0)]);
         let curve = step_response(&plant, &UNSHAPED, 10.0, 101);
         assert_eq!(curve.len(), 101);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_ramp_and_move_solve_the_differential_equation() {
+    fn ramp_and_move_solve_the_differential_equation() {
         // y″ + 2σy′ + ω²y = ω²u, checked by central differences on the curve itself.
         let mode = Mode {
             frequency_hz: 5.0,
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_an_undamped_mode_trails_a_ramp_by_its_oscillation() {
+    fn an_undamped_mode_trails_a_ramp_by_its_oscillation() {
         // y = vt − (v/ω) sin ωt
         let figures = response_figures(&plant(&[(2.0, 0.0, 1.0)]), &Trajectory::ramp(3.0));
         let amplitude = 3.0 / (2.0 * std::f64::consts::TAU);
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_residual_displacement_of_a_shaped_move_is_the_unshaped_one_times_the_residual() {
+    fn residual_displacement_of_a_shaped_move_is_the_unshaped_one_times_the_residual() {
         // At an undamped mode: |S| · |amplitude of the unshaped move|, whatever the move.
         let plant = plant(&[(7.0, 0.0, 1.0), (12.0, 0.0, 3.0)]);
         let impulses: Vec<Impulse> = [(0.0, 0.3), (0.06, 0.7)]
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_absurd_plants_end() {
+    fn absurd_plants_end() {
         let modes = [(1e-9, 0.0, 1.0), (1e9, 0.0, 1.0), (1.0, 1.0 - 1e-15, 1.0)];
         let figures = step_figures(&plant(&modes), &UNSHAPED);
         assert!(figures.overshoot.is_finite());

@@ -42,7 +42,7 @@ fn case(from: &str, to: &str, expected: &str) {
 }
 
 #[test]
-fn unit_every_block_yields_its_values() {
+fn every_block_yields_its_values() {
     let machine = right(&with_blocks());
     let axis = &machine.axes[0];
     assert_eq!(
@@ -83,7 +83,7 @@ fn unit_every_block_yields_its_values() {
 }
 
 #[test]
-fn unit_what_is_left_out_has_its_default() {
+fn what_is_left_out_has_its_default() {
     let machine = right(&format!(
         "{SMALL}[axis.encoder]\n[axis.pwm]\nmode = \"direction\"\nfrequency_hz = 10_000\n"
     ));
@@ -107,14 +107,14 @@ fn unit_what_is_left_out_has_its_default() {
 }
 
 #[test]
-fn unit_the_filter_reaches_as_far_as_the_hardware() {
+fn the_filter_reaches_as_far_as_the_hardware() {
     let expected = "m.toml:16: axis.encoder.filter_clocks of axis x: found 64; allowed: a whole number, 0 to 63";
     case("filter_clocks = 8", "filter_clocks = 64", expected);
     right(&with_blocks().replace("filter_clocks = 8", "filter_clocks = 63"));
 }
 
 #[test]
-fn unit_the_pwm_fits_clock_and_sample() {
+fn the_pwm_fits_clock_and_sample() {
     let expected = "m.toml:20: axis.pwm.frequency_hz of axis x: found 25_000; allowed: what divides clock.frequency_hz = \
                     50000000 Hz and is a multiple of clock.sample_hz = 10000 Hz; the nearest is 20000";
     case("= 20_000", "= 25_000", expected);
@@ -137,7 +137,7 @@ fn unit_the_pwm_fits_clock_and_sample() {
 }
 
 #[test]
-fn unit_a_drive_has_the_keys_of_its_mode() {
+fn a_drive_has_the_keys_of_its_mode() {
     let expected = "m.toml:28: axis.drive.current_limit_a of axis x: found a current limit of 3.5 A; allowed: at most \
                     full_scale_a = 3 A";
     case("2.73", "3.5", expected);
@@ -155,7 +155,7 @@ fn unit_a_drive_has_the_keys_of_its_mode() {
 }
 
 #[test]
-fn unit_a_controller_has_the_gains_of_its_kind() {
+fn a_controller_has_the_gains_of_its_kind() {
     let expected = "m.toml:33: axis.controller.boundary of axis x: found no such key; allowed: above 0, at most 1e12";
     case("boundary = 0.05\n", "", expected);
     let gains = "kind = \"sliding-mode\"\nc = 150.0\nk = 50.0\nepsilon = 4.0\nboundary = 0.05\n";
@@ -188,7 +188,7 @@ fn unit_a_controller_has_the_gains_of_its_kind() {
 }
 
 #[test]
-fn unit_blocks_that_need_each_other_say_what_to_add() {
+fn blocks_that_need_each_other_say_what_to_add() {
     let without = |names: &[&str]| {
         let tables = BLOCKS.split("[axis.").skip(1);
         let kept = tables.filter(|table| !names.iter().any(|name| table.starts_with(name)));
@@ -218,7 +218,7 @@ fn unit_blocks_that_need_each_other_say_what_to_add() {
 }
 
 #[test]
-fn unit_a_modulo_axis_wraps_and_has_words_of_18_bits_or_more() {
+fn a_modulo_axis_wraps_and_has_words_of_18_bits_or_more() {
     let modulo = |bits: &str, value: &str| {
         let to = format!("1_000_000\nmodulo = {value}");
         SMALL.replace("1_000_000", &to).replace("32", bits)

@@ -29,7 +29,7 @@ fn built(machine: &Machine) -> StageErrorTable {
 const FILE: &str = "file = \"errors.csv\"";
 
 #[test]
-fn unit_points_become_entries_of_the_hardware() {
+fn points_become_entries_of_the_hardware() {
     // 1 µm per count, 200 mm: 2^10 counts apart are 197 entries; 4 µm more in each 100 mm.
     let csv = "# laser\nposition,error\n-0.1,-0.000004\n0,0\n0.1,0.000004\n";
     let machine = with_table(FILE, csv).unwrap();
@@ -48,7 +48,7 @@ fn unit_points_become_entries_of_the_hardware() {
 }
 
 #[test]
-fn unit_large_errors_are_in_sixteenths_and_feedback_is_measured() {
+fn large_errors_are_in_sixteenths_and_feedback_is_measured() {
     let keys = format!("{FILE}\napply = \"feedback\"");
     let machine = with_table(&keys, "-0.1,0.0006\n0.1,-0.0006").unwrap();
     let of = built(&machine);
@@ -57,7 +57,7 @@ fn unit_large_errors_are_in_sixteenths_and_feedback_is_measured() {
 }
 
 #[test]
-fn unit_a_stage_with_a_table_takes_its_clocks_longer() {
+fn a_stage_with_a_table_takes_its_clocks_longer() {
     let machine = with_table(FILE, "-0.1,0\n0.1,0").unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap())
         .unwrap()
@@ -81,7 +81,7 @@ fn refused(keys: &str, csv: &str, found: &str) {
 }
 
 #[test]
-fn unit_what_is_wrong_with_a_file_is_said_with_its_row() {
+fn what_is_wrong_with_a_file_is_said_with_its_row() {
     for (csv, found) in [
         ("", "errors.csv: no row of numbers"),
         ("position,error\n0,0\n", "errors.csv: one row of numbers"),
@@ -115,7 +115,7 @@ fn unit_what_is_wrong_with_a_file_is_said_with_its_row() {
 }
 
 #[test]
-fn unit_the_file_is_beside_the_machine_file() {
+fn the_file_is_beside_the_machine_file() {
     refused("file = \"none.csv\"", "", "none.csv: cannot be read: no such file");
     for name in ["../errors.csv", "/errors.csv", "errors.txt", ".csv", "a\\\\b.csv"] {
         refused(&format!("file = \"{name}\""), "", "a name that ends in .csv");
@@ -133,7 +133,7 @@ fn unit_the_file_is_beside_the_machine_file() {
 }
 
 #[test]
-fn unit_axes_that_cannot_have_one_say_so() {
+fn axes_that_cannot_have_one_say_so() {
     let good = "-0.1,0\n0.1,0";
     let text = XY_STAGE.replacen(
         "[axis.limits]",

@@ -5,7 +5,7 @@ use crate::machine_file::files::{SMALL, breaks, built_kinds, wrong};
 use posicast_machine::machine_file::ProblemCause;
 
 #[test]
-fn unit_text_that_is_no_toml_names_the_line() {
+fn text_that_is_no_toml_names_the_line() {
     let error = wrong(&SMALL.replace("name = \"x\"", "name = \"x"));
     assert!(matches!(error.problems()[0].cause, ProblemCause::Syntax(_)));
     assert!(
@@ -22,7 +22,7 @@ fn unit_text_that_is_no_toml_names_the_line() {
 }
 
 #[test]
-fn unit_an_empty_file_says_what_a_machine_has() {
+fn an_empty_file_says_what_a_machine_has() {
     for text in ["", "\n\n", "# a comment\n", "\u{feff}"] {
         let expected = "m.toml:1: found an empty file; allowed: a machine with the keys name, [clock] and [[axis]]";
         assert_eq!(wrong(text).to_string(), expected, "{text:?}");
@@ -30,7 +30,7 @@ fn unit_an_empty_file_says_what_a_machine_has() {
 }
 
 #[test]
-fn unit_an_unknown_key_lists_the_allowed_ones_and_suggests_the_nearest() {
+fn an_unknown_key_lists_the_allowed_ones_and_suggests_the_nearest() {
     let error = wrong(&SMALL.replace("damping = 0.1", "damping = 0.1\ndampng = 0.1"));
     assert_eq!(
         error.to_string(),
@@ -47,7 +47,7 @@ fn unit_an_unknown_key_lists_the_allowed_ones_and_suggests_the_nearest() {
 }
 
 #[test]
-fn unit_a_missing_key_names_the_table_and_the_values() {
+fn a_missing_key_names_the_table_and_the_values() {
     let expected = "m.toml:12: axis.mode.damping of axis x, mode 1: found no such key; allowed: at least 0, below 1";
     breaks("damping = 0.1\n", "", expected);
     let expected = "m.toml:2: clock.sample_hz: found no such key; allowed: above 0, at most 1e9 Hz";
@@ -62,7 +62,7 @@ fn unit_a_missing_key_names_the_table_and_the_values() {
 }
 
 #[test]
-fn unit_a_wrong_type_names_both_types() {
+fn a_wrong_type_names_both_types() {
     let expected = "m.toml:14: axis.mode.damping of axis x, mode 1: found the string \"low\"; allowed: a number, at least 0, \
                     below 1";
     breaks("damping = 0.1", "damping = \"low\"", expected);
@@ -82,7 +82,7 @@ fn unit_a_wrong_type_names_both_types() {
 }
 
 #[test]
-fn unit_a_number_out_of_range_names_the_range() {
+fn a_number_out_of_range_names_the_range() {
     let damping = |value| {
         let expected =
             format!("m.toml:14: axis.mode.damping of axis x, mode 1: found {value}; allowed: at least 0, below 1");
@@ -130,7 +130,7 @@ fn unit_a_number_out_of_range_names_the_range() {
 }
 
 #[test]
-fn unit_an_unknown_word_lists_the_words_and_suggests_the_nearest() {
+fn an_unknown_word_lists_the_words_and_suggests_the_nearest() {
     let error = wrong(&SMALL.replace("\"zvd\"", "\"zvf\""));
     let kinds = built_kinds(|_| true);
     let expected = format!("m.toml:11: axis.shaper.kind of axis x: found \"zvf\"; allowed: {kinds}");
@@ -145,7 +145,7 @@ fn unit_an_unknown_word_lists_the_words_and_suggests_the_nearest() {
 }
 
 #[test]
-fn unit_names_that_verilog_cannot_hold_are_refused() {
+fn names_that_verilog_cannot_hold_are_refused() {
     let rule = "[a-z][a-z0-9_]*, at most 64 characters, no Verilog or SystemVerilog keyword, no name of a hardware block, not \
                 beginning with posicast";
     for name in [
@@ -175,7 +175,7 @@ fn unit_names_that_verilog_cannot_hold_are_refused() {
 }
 
 #[test]
-fn unit_axis_names_are_unique_and_axes_at_most_four() {
+fn axis_names_are_unique_and_axes_at_most_four() {
     let axis = &SMALL[SMALL.find("[[axis]]").unwrap()..];
     let twice = format!("{SMALL}{axis}");
     let expected = "m.toml:16: axis.name of axis x: found \"x\", which line 8 already has; allowed: every axis must have a different name";

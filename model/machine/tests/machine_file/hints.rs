@@ -17,7 +17,7 @@ fn remedy(from: &str, to: &str) -> (usize, String) {
 }
 
 #[test]
-fn unit_a_clock_in_megahertz_is_asked_for_at_its_own_line() {
+fn a_clock_in_megahertz_is_asked_for_at_its_own_line() {
     let (line, remedy) = remedy("frequency_hz = 50_000_000", "frequency_hz = 50");
     assert_eq!(line, 3);
     assert_eq!(
@@ -27,7 +27,7 @@ fn unit_a_clock_in_megahertz_is_asked_for_at_its_own_line() {
 }
 
 #[test]
-fn unit_a_sample_rate_in_kilohertz_is_asked_for() {
+fn a_sample_rate_in_kilohertz_is_asked_for() {
     let expected = (
         4,
         "10 kHz? Frequencies are in Hz: write `sample_hz = 10_000`".to_owned(),
@@ -44,13 +44,13 @@ fn unit_a_sample_rate_in_kilohertz_is_asked_for() {
 }
 
 #[test]
-fn unit_a_ratio_above_one_is_asked_for_in_percent() {
+fn a_ratio_above_one_is_asked_for_in_percent() {
     let expected = "percent? 5 % is 0.05; else give `damping` a value in this range";
     assert_eq!(remedy("damping = 0.1", "damping = 5"), (14, expected.to_owned()));
 }
 
 #[test]
-fn unit_misspelt_kinds_families_boards_and_units_get_the_word_that_is_meant() {
+fn misspelt_kinds_families_boards_and_units_get_the_word_that_is_meant() {
     for (word, meant) in [("zdv", "zvd"), ("ZVD", "zvd"), ("two_hump_ei", "two-hump-ei")] {
         assert_eq!(
             remedy("\"zvd\"", &format!("\"{word}\"")).1,
@@ -72,7 +72,7 @@ fn unit_misspelt_kinds_families_boards_and_units_get_the_word_that_is_meant() {
 }
 
 #[test]
-fn unit_a_misspelt_key_or_table_is_the_one_problem_of_the_file() {
+fn a_misspelt_key_or_table_is_the_one_problem_of_the_file() {
     for (from, to, line, meant) in [
         ("[axis.shaper]", "[axis.shapr]", 10, "shaper"),
         ("[[axis.mode]]", "[[axis.mdoe]]", 12, "mode"),
@@ -88,13 +88,13 @@ fn unit_a_misspelt_key_or_table_is_the_one_problem_of_the_file() {
 }
 
 #[test]
-fn unit_a_key_in_the_wrong_table_is_sent_to_its_own() {
+fn a_key_in_the_wrong_table_is_sent_to_its_own() {
     let found = remedy("damping = 0.1", "damping = 0.1\ndead_time_s = 1e-6").1;
     assert_eq!(found, "move it to [axis.pwm], which it belongs to");
 }
 
 #[test]
-fn unit_a_value_of_another_type_is_shown_as_it_should_be() {
+fn a_value_of_another_type_is_shown_as_it_should_be() {
     for (from, to, expected) in [
         (
             "damping = 0.1",
@@ -124,7 +124,7 @@ fn unit_a_value_of_another_type_is_shown_as_it_should_be() {
 }
 
 #[test]
-fn unit_what_is_no_toml_is_quoted_and_mended() {
+fn what_is_no_toml_is_quoted_and_mended() {
     for (from, to, part) in [
         ("\"zvd\"", "zvd", "in quotes"),
         ("50_000_000", "50,000,000", "set apart with `_`"),
@@ -140,7 +140,7 @@ fn unit_what_is_no_toml_is_quoted_and_mended() {
 }
 
 #[test]
-fn unit_each_of_several_remedies_names_its_line() {
+fn each_of_several_remedies_names_its_line() {
     use miette::Diagnostic;
     let text = SMALL
         .replace("\"zvd\"", "\"zdv\"")

@@ -3,7 +3,7 @@
 use crate::machine_file::files::{SMALL, right, wrong};
 
 #[test]
-fn unit_simultaneous_leaves_its_modes_zv_or_zvd() {
+fn simultaneous_leaves_its_modes_zv_or_zvd() {
     let text = |own: &str| {
         SMALL
             .replace("\"zvd\"", "\"simultaneous\"")

@@ -11,7 +11,7 @@ fn case(from: &str, to: &str, expected: &str) {
 }
 
 #[test]
-fn unit_every_key_yields_its_value() {
+fn every_key_yields_its_value() {
     let machine = right(EVERYTHING);
     let axis = &machine.axes[0];
     let expected = LimitsSection {
@@ -52,7 +52,7 @@ fn unit_every_key_yields_its_value() {
 }
 
 #[test]
-fn unit_what_is_left_out_has_its_default() {
+fn what_is_left_out_has_its_default() {
     let machine = right(&format!("{SMALL}[axis.limits]\n"));
     assert_eq!(machine.axes[0].limits, Some(LimitsSection::default()));
     assert_eq!((machine.axes[0].scale, machine.axes[0].trace), (None, None));
@@ -74,7 +74,7 @@ fn unit_what_is_left_out_has_its_default() {
 }
 
 #[test]
-fn unit_values_out_of_range_are_refused_with_their_place() {
+fn values_out_of_range_are_refused_with_their_place() {
     case(
         "\"monitor\"",
         "\"both\"",
@@ -110,7 +110,7 @@ fn unit_values_out_of_range_are_refused_with_their_place() {
 }
 
 #[test]
-fn unit_causes_that_switch_off_are_words_of_a_list() {
+fn causes_that_switch_off_are_words_of_a_list() {
     let off = |list: &str| EVERYTHING.replace("[\"following-error\", \"watchdog\"]", list);
     assert_eq!(right(&off("[]")).axes[0].limits.unwrap().off_causes, ALWAYS_OFF as u16);
     let both = right(&off("[\"schedule\", \"schedule\", \"drive-lost\"]")).axes[0].limits;
@@ -129,7 +129,7 @@ fn unit_causes_that_switch_off_are_words_of_a_list() {
 }
 
 #[test]
-fn unit_the_loop_counts_with_the_counter_that_it_runs_on() {
+fn the_loop_counts_with_the_counter_that_it_runs_on() {
     let counts = |text: &str| right(text).axes[0].loop_counts_per_unit();
     assert_eq!(counts(EVERYTHING), 1e6);
     let position = EVERYTHING.replace("\"monitor\"", "\"position\"");
@@ -144,7 +144,7 @@ fn unit_the_loop_counts_with_the_counter_that_it_runs_on() {
 }
 
 #[test]
-fn unit_what_needs_another_block_says_which() {
+fn what_needs_another_block_says_which() {
     let limits = |key: &str| wrong(&format!("{SMALL}[axis.limits]\n{key}\n"));
     let keys = [
         "stop_deceleration = 1",

@@ -19,7 +19,7 @@ fn remedy(text: &str) -> String {
 }
 
 #[test]
-fn unit_the_keys_and_their_defaults() {
+fn the_keys_and_their_defaults() {
     let link = right(&format!("{XY_STAGE}[link]\nbaud = 3_000_000\n")).link.unwrap();
     assert_eq!((link.line, link.timeout_s), (LinkLine::Uart { baud: 3_000_000 }, 0.01));
     let link = right(&format!("{XY_STAGE}[link]\nbaud = 115_200\ntimeout_s = 0.5\n"))
@@ -53,7 +53,7 @@ fn golden_the_checksum_is_that_of_the_file_and_is_a_register_of_the_stage() {
 const GOLDEN_CRC: u32 = 0x2d89_ae6a;
 
 #[test]
-fn unit_the_checksum_includes_the_files_beside_the_machine_file() {
+fn the_checksum_includes_the_files_beside_the_machine_file() {
     let table = "[axis.error_table]\nfile = \"x.csv\"\n\n";
     let text =
         format!("{XY_STAGE}[link]\nbaud = 3_000_000\n").replacen("[axis.limits]", &format!("{table}[axis.limits]"), 1);
@@ -67,7 +67,7 @@ fn unit_the_checksum_includes_the_files_beside_the_machine_file() {
 }
 
 #[test]
-fn unit_a_baud_rate_that_the_clock_does_not_make_is_refused_with_the_nearest() {
+fn a_baud_rate_that_the_clock_does_not_make_is_refused_with_the_nearest() {
     let slow = XY_STAGE.replace("frequency_hz = 50_000_000", "frequency_hz = 20_000_000");
     let text = format!("{slow}[link]\nbaud = 3_000_000\n");
     refused(
@@ -84,7 +84,7 @@ fn unit_a_baud_rate_that_the_clock_does_not_make_is_refused_with_the_nearest() {
 }
 
 #[test]
-fn unit_values_out_of_range_and_missing_ones_are_refused() {
+fn values_out_of_range_and_missing_ones_are_refused() {
     refused(
         &format!("{XY_STAGE}[link]\nbaud = 9_600\n"),
         "link.baud: found 9_600; allowed: a whole number, 115200 to 3000000",
@@ -98,7 +98,7 @@ fn unit_values_out_of_range_and_missing_ones_are_refused() {
 }
 
 #[test]
-fn unit_a_host_whose_spi_clock_is_too_fast_is_refused_with_the_fastest() {
+fn a_host_whose_spi_clock_is_too_fast_is_refused_with_the_fastest() {
     let text = format!("{XY_STAGE}[link]\nline = \"spi\"\nsck_hz = 10_000_000\n");
     refused(
         &text,
@@ -111,7 +111,7 @@ fn unit_a_host_whose_spi_clock_is_too_fast_is_refused_with_the_fastest() {
 }
 
 #[test]
-fn unit_keys_and_time_outs_that_do_not_suit_the_line_are_refused() {
+fn keys_and_time_outs_that_do_not_suit_the_line_are_refused() {
     for (text, expected) in [
         ("line = \"spi\"\nbaud = 3_000_000", "baud, and line = \"spi\""),
         ("baud = 3_000_000\nsck_hz = 1_000_000", "sck_hz, and line = \"uart\""),
@@ -135,7 +135,7 @@ fn unit_keys_and_time_outs_that_do_not_suit_the_line_are_refused() {
 
 /// Each remedy leads to a file that is accepted.
 #[test]
-fn unit_remedies_for_keys_of_the_other_line() {
+fn remedies_for_keys_of_the_other_line() {
     for (text, expected) in [
         (
             "line = \"spi\"",
@@ -163,7 +163,7 @@ fn unit_remedies_for_keys_of_the_other_line() {
 }
 
 #[test]
-fn unit_a_machine_without_a_stage_has_no_line() {
+fn a_machine_without_a_stage_has_no_line() {
     let shapers = XY_STAGE.split("[axis.encoder]").next().unwrap();
     refused(
         &format!("{shapers}[link]\nbaud = 3_000_000\n"),

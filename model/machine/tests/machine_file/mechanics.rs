@@ -57,7 +57,7 @@ fn golden_the_mode_of_the_xy_stage_follows_from_its_data() {
 }
 
 #[test]
-fn unit_what_is_left_out_is_rigid() {
+fn what_is_left_out_is_rigid() {
     let short = SCREW.lines().filter(|line| {
         !["coupling_", "nut_", "bearing_", "loaded_"]
             .iter()
@@ -73,7 +73,7 @@ fn unit_what_is_left_out_is_rigid() {
 }
 
 #[test]
-fn unit_mechanics_stand_in_the_place_of_modes() {
+fn mechanics_stand_in_the_place_of_modes() {
     let both = format!("{SCREW}[[axis.mode]]\nfrequency_hz = 40.0\ndamping = 0.1\n");
     let error = wrong(&with(&both));
     assert_eq!(error.problems().len(), 1, "{error}");
@@ -86,7 +86,7 @@ fn unit_mechanics_stand_in_the_place_of_modes() {
 }
 
 #[test]
-fn unit_mechanics_that_cannot_be_are_refused_by_their_key() {
+fn mechanics_that_cannot_be_are_refused_by_their_key() {
     let replaced = |from: &str, to: &str| {
         let text = SCREW.replace(from, to);
         assert_ne!(text, SCREW);
@@ -139,7 +139,7 @@ fn unit_mechanics_that_cannot_be_are_refused_by_their_key() {
 }
 
 #[test]
-fn unit_friction_that_sticks_needs_a_drive_that_feels_it() {
+fn friction_that_sticks_needs_a_drive_that_feels_it() {
     let with_drive = |keys: &str, drive: &str| with(&format!("{SCREW}{keys}{TORQUE}{drive}"));
     let drive = "bandwidth_hz = 1000.0\ncoulomb = 40.0\n";
     let machine = right(&with_drive("breakaway = 60\n", drive));

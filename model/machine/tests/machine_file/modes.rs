@@ -9,7 +9,7 @@ fn with(keys: &str) -> String {
 }
 
 #[test]
-fn unit_a_free_mode_is_converted_and_a_held_one_is_not() {
+fn a_free_mode_is_converted_and_a_held_one_is_not() {
     let masses = "motor_mass = 2.0\nload_mass = 6.0\n";
     let free = right(&with(&format!("measured = \"free\"\n{masses}"))).axes[0].modes[0].clone();
     assert_eq!((free.mode.frequency_hz, free.mode.damping), (20.0, 0.05));
@@ -26,7 +26,7 @@ fn unit_a_free_mode_is_converted_and_a_held_one_is_not() {
 }
 
 #[test]
-fn unit_a_free_mode_without_masses_is_refused_where_it_decides_the_shaper() {
+fn a_free_mode_without_masses_is_refused_where_it_decides_the_shaper() {
     let expected = "m.toml:15: axis.mode.measured of axis x, mode 1: found measured = \"free\" without motor_mass and load_mass; \
                     allowed: \"free\" with motor_mass and load_mass, which convert the mode to that of a held motor; else \
                     \"motor_held\"";
@@ -39,14 +39,14 @@ fn unit_a_free_mode_without_masses_is_refused_where_it_decides_the_shaper() {
 }
 
 #[test]
-fn unit_masses_say_what_they_are_for() {
+fn masses_say_what_they_are_for() {
     let expected = "m.toml:15: axis.mode.motor_mass of axis x, mode 1: found a mass without `measured`; allowed: masses with measured = \
                     \"free\", which they convert; without `measured` the mode is taken as it is";
     breaks(DAMPING, &format!("{DAMPING}motor_mass = 1\nload_mass = 1\n"), expected);
 }
 
 #[test]
-fn unit_half_the_sample_rate_is_compared_with_the_held_mode() {
+fn half_the_sample_rate_is_compared_with_the_held_mode() {
     let masses = "measured = \"free\"\nmotor_mass = 1\nload_mass = 3\n";
     right(&with(masses).replace("40.0", "8000"));
     let error = wrong(&with(masses).replace("40.0", "12000"));

@@ -132,7 +132,7 @@ proptest! {
 }
 
 #[test]
-fn unit_deep_nesting_is_refused_and_overflows_no_stack() {
+fn deep_nesting_is_refused_and_overflows_no_stack() {
     for deep in [
         "a = ".to_owned() + &"[".repeat(100_000),
         "[".to_owned() + &"a.".repeat(20_000) + "a]",

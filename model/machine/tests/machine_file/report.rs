@@ -4,7 +4,7 @@ use crate::machine_file::files::{SMALL, wrong};
 use posicast_machine::machine_file::MAX_PROBLEMS;
 
 #[test]
-fn unit_all_problems_of_a_file_are_shown_and_a_flood_is_cut() {
+fn all_problems_of_a_file_are_shown_and_a_flood_is_cut() {
     let text = SMALL.replace("damping = 0.1", "damping = 7").replace("10_000", "-1");
     let keys: Vec<String> = wrong(&text).problems().iter().map(|p| p.key.clone()).collect();
     assert_eq!(keys, ["clock.sample_hz", "axis.mode.damping"]);
@@ -15,7 +15,7 @@ fn unit_all_problems_of_a_file_are_shown_and_a_flood_is_cut() {
 }
 
 #[test]
-fn unit_the_diagnostic_marks_the_place_and_says_what_to_do() {
+fn the_diagnostic_marks_the_place_and_says_what_to_do() {
     use miette::Diagnostic;
     let error = wrong(&SMALL.replace("damping = 0.1", "damping = 7"));
     let label = error.labels().unwrap().next().unwrap();
@@ -34,7 +34,7 @@ fn unit_the_diagnostic_marks_the_place_and_says_what_to_do() {
 }
 
 #[test]
-fn unit_control_characters_of_the_file_do_not_reach_the_terminal() {
+fn control_characters_of_the_file_do_not_reach_the_terminal() {
     let error = wrong(&SMALL.replace("\"slide\"", "\"\"\"a\nb\"\"\""));
     assert!(
         error.to_string().contains("found \"\"\"a\\nb\"\"\"; allowed"),

@@ -3,7 +3,7 @@
 use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
 
 #[test]
-fn unit_the_sample_rate_divides_the_clock_and_the_message_names_the_nearest() {
+fn the_sample_rate_divides_the_clock_and_the_message_names_the_nearest() {
     let case = |sample: &str, nearest: &str| {
         let expected = format!(
             "m.toml:4: clock.sample_hz: found {sample}; allowed: what divides clock.frequency_hz = 50000000 Hz a whole \
@@ -24,7 +24,7 @@ fn unit_the_sample_rate_divides_the_clock_and_the_message_names_the_nearest() {
 }
 
 #[test]
-fn unit_a_mode_at_or_above_half_the_sample_rate_is_refused() {
+fn a_mode_at_or_above_half_the_sample_rate_is_refused() {
     let place = "m.toml:13: axis.mode.frequency_hz of axis x, mode 1";
     for value in ["5000", "5000.1", "1e8"] {
         let expected = format!("{place}: found {value}; allowed: below 5000 Hz, half of clock.sample_hz");
@@ -37,7 +37,7 @@ fn unit_a_mode_at_or_above_half_the_sample_rate_is_refused() {
 }
 
 #[test]
-fn unit_one_of_the_two_frequencies_is_given() {
+fn one_of_the_two_frequencies_is_given() {
     let expected = "m.toml:14: axis.mode.damped_frequency_hz of axis x, mode 1: found both frequency_hz and \
                     damped_frequency_hz; allowed: one of the two";
     breaks(
@@ -51,7 +51,7 @@ fn unit_one_of_the_two_frequencies_is_given() {
 }
 
 #[test]
-fn unit_an_axis_has_modes_and_each_has_a_shaper() {
+fn an_axis_has_modes_and_each_has_a_shaper() {
     let modes = "[[axis.mode]]\nfrequency_hz = 40.0\ndamping = 0.1\n";
     let expected = "m.toml:7: axis.mode of axis x: found an axis without modes; allowed: at least one [[axis.mode]], except \
                     with kind custom or none";
@@ -69,7 +69,7 @@ fn unit_an_axis_has_modes_and_each_has_a_shaper() {
 }
 
 #[test]
-fn unit_a_modes_own_shaper_serves_one_mode() {
+fn a_modes_own_shaper_serves_one_mode() {
     let expected = format!(
         "m.toml:15: axis.mode.shaper of axis x, mode 1: found shaper = \"custom\", which serves an axis and not one mode; \
          allowed: {}",
@@ -85,7 +85,7 @@ fn unit_a_modes_own_shaper_serves_one_mode() {
 }
 
 #[test]
-fn unit_keys_of_other_kinds_are_refused() {
+fn keys_of_other_kinds_are_refused() {
     let expected =
         "m.toml:12: axis.shaper.method of axis x: found method with kind zvd; allowed: method with kind antisymmetric";
     breaks("\"zvd\"", "\"zvd\"\nmethod = \"exact\"", expected);
@@ -103,7 +103,7 @@ fn unit_keys_of_other_kinds_are_refused() {
 }
 
 #[test]
-fn unit_the_impulses_of_custom_start_at_zero_increase_and_sum_to_one() {
+fn the_impulses_of_custom_start_at_zero_increase_and_sum_to_one() {
     let key = "axis.shaper.impulses of axis x";
     let case = |impulses: &str, problem: &str| {
         let to = format!("\"custom\"\nimpulses = {impulses}");
@@ -132,7 +132,7 @@ fn unit_the_impulses_of_custom_start_at_zero_increase_and_sum_to_one() {
 }
 
 #[test]
-fn unit_the_travel_fits_the_position_word_or_the_next_size_is_named() {
+fn the_travel_fits_the_position_word_or_the_next_size_is_named() {
     let limits = |bits: &str, travel: &str| format!("{}[axis.limits]\ntravel = {travel}\n", SMALL.replace("32", bits));
     let place = "m.toml:16: axis.limits.travel of axis x";
     let expected = format!(
@@ -154,7 +154,7 @@ fn unit_the_travel_fits_the_position_word_or_the_next_size_is_named() {
 }
 
 #[test]
-fn unit_a_command_is_positive_or_has_bounds_round_its_end() {
+fn a_command_is_positive_or_has_bounds_round_its_end() {
     let optimal = |more: &str| SMALL.replace("\"zvd\"", &format!("\"optimal\"\n{more}"));
     for right_one in [
         "command = \"positive\"",
@@ -201,7 +201,7 @@ fn unit_a_command_is_positive_or_has_bounds_round_its_end() {
 }
 
 #[test]
-fn unit_axes_that_arrive_together_all_have_optimal_shapers() {
+fn axes_that_arrive_together_all_have_optimal_shapers() {
     let together = |kind: &str| SMALL.replace("\"zvd\"", kind) + "[stage]\narrive_together = true\n";
     assert!(right(&together("\"optimal\"")).stage.unwrap().arrive_together);
     let error = wrong(&together("\"zvd\"")).to_string();
@@ -214,7 +214,7 @@ fn unit_axes_that_arrive_together_all_have_optimal_shapers() {
 }
 
 #[test]
-fn unit_the_bands_of_a_mode_hold_it_and_end_below_half_the_sample_rate() {
+fn the_bands_of_a_mode_hold_it_and_end_below_half_the_sample_rate() {
     let banded = |more: &str| SMALL.replace("damping = 0.1", &format!("damping = 0.1\n{more}"));
     right(&banded("frequency_band = 0.2\ndamping_band = [0.05, 0.1]"));
     let expected = "m.toml:15: axis.mode.damping_band of axis x, mode 1: found [0.2, 0.3]; allowed: [low, high] with the damping of \

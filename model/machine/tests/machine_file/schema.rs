@@ -88,7 +88,7 @@ fn refused(key: &Value) -> Vec<toml::Value> {
 }
 
 #[test]
-fn unit_what_the_schema_refuses_the_reader_refuses_at_the_same_key() {
+fn what_the_schema_refuses_the_reader_refuses_at_the_same_key() {
     let validator = jsonschema::validator_for(&machine_file::schema()).unwrap();
     for (path, key) in all_keys() {
         let dotted = path.join(".");
@@ -107,7 +107,7 @@ fn unit_what_the_schema_refuses_the_reader_refuses_at_the_same_key() {
 }
 
 #[test]
-fn unit_each_table_of_the_reader_allows_the_keys_of_the_schema() {
+fn each_table_of_the_reader_allows_the_keys_of_the_schema() {
     let mut tables = vec![(Vec::new(), machine_file::schema())];
     tables.extend(all_keys().into_iter().filter_map(|(path, key)| {
         let table = if key["type"] == "array" {
@@ -137,7 +137,7 @@ fn unit_each_table_of_the_reader_allows_the_keys_of_the_schema() {
 }
 
 #[test]
-fn unit_the_examples_and_the_templates_are_valid() {
+fn the_examples_and_the_templates_are_valid() {
     let validator = jsonschema::validator_for(&machine_file::schema()).unwrap();
     let mut files = 0;
     for folder in ["examples", "cli/src/new", "model/machine/tests/machine_file"] {
@@ -157,7 +157,7 @@ fn unit_the_examples_and_the_templates_are_valid() {
 }
 
 #[test]
-fn unit_the_speed_of_a_line_goes_with_its_kind() {
+fn the_speed_of_a_line_goes_with_its_kind() {
     let text = std::fs::read_to_string(root().join("examples/xy-stage.toml")).unwrap();
     let validator = jsonschema::validator_for(&machine_file::schema()).unwrap();
     for (link, is_right) in [
@@ -177,7 +177,7 @@ fn unit_the_speed_of_a_line_goes_with_its_kind() {
 }
 
 #[test]
-fn unit_every_key_has_a_row_in_the_documentation() {
+fn every_key_has_a_row_in_the_documentation() {
     let page = std::fs::read_to_string(root().join("docs/machine-file.md")).unwrap();
     for (path, _) in all_keys() {
         let (name, tables) = path.split_last().unwrap();

@@ -72,7 +72,7 @@ fn named(mut machine: Machine, unit: AxisUnit) -> Machine {
 }
 
 #[test]
-fn unit_the_examples_in_millimetres_are_the_machines_that_they_are_in_metres() {
+fn the_examples_in_millimetres_are_the_machines_that_they_are_in_metres() {
     for text in [
         include_str!("../../../../examples/xy-stage.toml"),
         include_str!("../../../../examples/xy-stage-torque.toml"),
@@ -85,7 +85,7 @@ fn unit_the_examples_in_millimetres_are_the_machines_that_they_are_in_metres() {
 }
 
 #[test]
-fn unit_every_unit_gives_the_same_tables_gains_and_words() {
+fn every_unit_gives_the_same_tables_gains_and_words() {
     let stage = |machine: &Machine| {
         let design = design_machine(machine).unwrap();
         let tables: Vec<_> = design.axes.iter().map(|axis| axis.table.clone()).collect();
@@ -112,7 +112,7 @@ fn unit_every_unit_gives_the_same_tables_gains_and_words() {
 }
 
 #[test]
-fn unit_a_file_without_a_unit_is_in_metres() {
+fn a_file_without_a_unit_is_in_metres() {
     assert_eq!(right(SMALL).axes[0].unit, AxisUnit::Metre);
     assert_eq!(right(EVERYTHING).axes[0].unit, AxisUnit::Metre);
     let joint = right(include_str!("../../../../examples/robot-joint.toml"));
@@ -120,7 +120,7 @@ fn unit_a_file_without_a_unit_is_in_metres() {
 }
 
 #[test]
-fn unit_an_unknown_unit_is_refused() {
+fn an_unknown_unit_is_refused() {
     let to = "counts_per_unit = 1_000_000\nunit = \"cm\"";
     breaks(
         "counts_per_unit = 1_000_000",
@@ -130,7 +130,7 @@ fn unit_an_unknown_unit_is_refused() {
 }
 
 #[test]
-fn unit_ranges_are_told_in_the_unit_of_the_axis() {
+fn ranges_are_told_in_the_unit_of_the_axis() {
     let text = in_unit(SMALL, AxisUnit::Millimetre);
     assert_eq!(
         wrong(&text.replace("= 1000\n", "= 1e10\n")).to_string(),
@@ -142,7 +142,7 @@ fn unit_ranges_are_told_in_the_unit_of_the_axis() {
 }
 
 #[test]
-fn unit_what_a_word_does_not_hold_is_told_in_the_unit_of_the_axis() {
+fn what_a_word_does_not_hold_is_told_in_the_unit_of_the_axis() {
     let text = in_unit(EVERYTHING, AxisUnit::Millimetre);
     let machine = right(&text.replace("following_error = 1\n", "following_error = 40\n"));
     let design = design_machine(&machine).unwrap();
@@ -156,7 +156,7 @@ fn unit_what_a_word_does_not_hold_is_told_in_the_unit_of_the_axis() {
 }
 
 #[test]
-fn unit_warnings_of_a_controller_have_the_figures_of_the_file() {
+fn warnings_of_a_controller_have_the_figures_of_the_file() {
     let text = include_str!("../../../../examples/xy-stage-torque.toml").replace("epsilon = 4.0", "epsilon = 0.5");
     let machine = right(&in_unit(&text, AxisUnit::Millimetre));
     let (axis, clock) = (&machine.axes[0], machine.clock);

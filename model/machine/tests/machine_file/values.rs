@@ -23,7 +23,7 @@ fn golden_xy_stage_is_the_machine_of_the_thesis() {
 }
 
 #[test]
-fn unit_every_example_is_a_right_machine_with_a_name_of_its_own() {
+fn every_example_is_a_right_machine_with_a_name_of_its_own() {
     let machines = [XY_STAGE, GANTRY, ROBOT_JOINT, CUSTOM_SHAPER].map(right);
     let mut names: Vec<&str> = machines.iter().map(|m| m.name.as_str()).collect();
     names.sort_unstable();
@@ -31,7 +31,7 @@ fn unit_every_example_is_a_right_machine_with_a_name_of_its_own() {
 }
 
 #[test]
-fn unit_each_mode_has_its_effective_kind_and_tolerance() {
+fn each_mode_has_its_effective_kind_and_tolerance() {
     let gantry = right(GANTRY);
     let axis = &gantry.axes[0];
     assert_eq!(
@@ -70,7 +70,7 @@ fn unit_each_mode_has_its_effective_kind_and_tolerance() {
 }
 
 #[test]
-fn unit_defaults_of_the_number_formats() {
+fn defaults_of_the_number_formats() {
     let format = |text: &str| right(text).fixed_point;
     let wide = format(&SMALL.replace("[fixed_point]\ncommand_bits = 32\n", ""));
     assert_eq!(wide, format(SMALL));
@@ -98,7 +98,7 @@ fn unit_defaults_of_the_number_formats() {
 }
 
 #[test]
-fn unit_a_damped_frequency_is_converted_to_the_undamped_one() {
+fn a_damped_frequency_is_converted_to_the_undamped_one() {
     let machine = right(&SMALL.replace("frequency_hz = 40.0", "damped_frequency_hz = 40.0"));
     let mode = machine.axes[0].modes[0].mode;
     assert!((mode.frequency_hz - 40.0 / 0.99f64.sqrt()).abs() < 1e-12);
@@ -106,7 +106,7 @@ fn unit_a_damped_frequency_is_converted_to_the_undamped_one() {
 }
 
 #[test]
-fn unit_integers_of_any_radix_and_floats_are_numbers() {
+fn integers_of_any_radix_and_floats_are_numbers() {
     let clock = right(&SMALL.replace("10_000", "0x2710").replace("50_000_000", "5e7")).clock;
     assert_eq!((clock.frequency_hz, clock.sample_hz), (50e6, 10e3));
 }

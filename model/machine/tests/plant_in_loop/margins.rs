@@ -103,7 +103,7 @@ fn golden_the_gain_margin_is_where_the_simulated_loop_begins_to_swing() {
 }
 
 #[test]
-fn unit_default_gains_leave_their_margin_on_machines_that_are_a_fifth_off() {
+fn default_gains_leave_their_margin_on_machines_that_are_a_fifth_off() {
     let of = |kind: &str, text: &str| machine(&text.replace("kind = \"pd\"", &format!("kind = \"{kind}\"")), true);
     let wrist = include_str!("../../../../testbench/tests/fixtures/machines/wrist.toml");
     for machine in [of("pd", SOFT), of("pid", SOFT), of("pid", wrist), of("pd", VELOCITY)] {
@@ -124,7 +124,7 @@ fn unit_default_gains_leave_their_margin_on_machines_that_are_a_fifth_off() {
 }
 
 #[test]
-fn unit_gains_that_the_machine_does_not_bear_are_an_error_with_the_margin() {
+fn gains_that_the_machine_does_not_bear_are_an_error_with_the_margin() {
     let with = |gains: &str| machine(&SOFT.replace("kind = \"pd\"", &format!("kind = \"pd\"\n{gains}")), true);
     let derive = |text: &str| {
         let machine = with(text);

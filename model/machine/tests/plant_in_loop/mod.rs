@@ -88,7 +88,7 @@ fn golden_the_trapezoid_of_the_notes_rings_without_shaper_and_not_with_it() {
 }
 
 #[test]
-fn unit_a_machine_that_is_off_by_a_tenth_rings_little() {
+fn a_machine_that_is_off_by_a_tenth_rings_little() {
     for axis in [0, 1] {
         for factor in [0.9, 1.1] {
             let left = |shaped, after_ticks| {
@@ -105,7 +105,7 @@ fn unit_a_machine_that_is_off_by_a_tenth_rings_little() {
 }
 
 #[test]
-fn unit_sliding_mode_follows_in_spite_of_friction_and_does_not_chatter() {
+fn sliding_mode_follows_in_spite_of_friction_and_does_not_chatter() {
     for axis in [0, 1] {
         let (chain, samples) = run(TORQUE, axis, true, 1.0, Pace::Clocks, &smooth());
         let seen = tracking(&samples, |sample| sample.machine.load);
@@ -127,7 +127,7 @@ fn unit_sliding_mode_follows_in_spite_of_friction_and_does_not_chatter() {
 }
 
 #[test]
-fn unit_the_fast_pace_is_like_the_clocks() {
+fn the_fast_pace_is_like_the_clocks() {
     for (text, limit) in [(VELOCITY, 0.5), (TORQUE, 2.5)] {
         let [clocks, ticks] = [Pace::Clocks, Pace::Ticks].map(|pace| run(text, 0, true, 1.0, pace, &smooth()).1);
         let pairs = clocks.iter().zip(&ticks);
@@ -137,7 +137,7 @@ fn unit_the_fast_pace_is_like_the_clocks() {
 }
 
 #[test]
-fn unit_a_stop_in_the_middle_loses_no_count() {
+fn a_stop_in_the_middle_loses_no_count() {
     for (text, brake) in [(VELOCITY, false), (VELOCITY, true), (TORQUE, false), (TORQUE, true)] {
         let mut chain = Chain::new(&machine(text, true), 0, 1.0, Pace::Clocks);
         let entries = smooth();

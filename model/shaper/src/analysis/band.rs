@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_zv_is_worst_at_the_edge_of_its_band() {
+    fn zv_is_worst_at_the_edge_of_its_band() {
         let zv = impulses(&[(0.0, 0.5), (1.0 / 6.0, 0.5)]);
         let edge = (std::f64::consts::FRAC_PI_2 * 0.1).sin();
         assert!((worst_residual(&zv, &MODE, 0.1) - edge).abs() < 1e-14);
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_hump_within_the_band_is_found() {
+    fn a_hump_within_the_band_is_found() {
         // The EI's hump, 5 %, is at the mode itself; ±15 % does not reach the level again.
         let ei = impulses(&[(0.0, 0.2625), (1.0 / 6.0, 0.475), (1.0 / 3.0, 0.2625)]);
         assert!((worst_residual(&ei, &MODE, 0.15) - 0.05).abs() < 1e-14);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_grid_holds_the_residual() {
+    fn the_grid_holds_the_residual() {
         let zv = impulses(&[(0.0, 0.5), (1.0 / 6.0, 0.5)]);
         let grid = sensitivity_grid(&zv, &MODE, (0.5, 1.5), (0.0, 0.2), (11, 3));
         assert_eq!((grid.residual.len(), grid.residual[0].len()), (3, 11));

@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_zv_has_the_closed_form_interval() {
+    fn zv_has_the_closed_form_interval() {
         let zv = impulses(&[(0.0, 0.5), (0.5, 0.5)]);
         let found = insensitivity(&zv, &ONE_HZ, 0.05).unwrap();
         // V = |cos(πr/2)|
@@ -185,14 +185,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_hump_of_an_ei_counts_as_inside() {
+    fn the_hump_of_an_ei_counts_as_inside() {
         let ei = impulses(&[(0.0, 0.2625), (0.5, 0.475), (1.0, 0.2625)]);
         let found = insensitivity(&ei, &ONE_HZ, 0.05).unwrap();
         assert!(found.low < 0.81 && found.high.unwrap() > 1.19, "{found:?}");
     }
 
     #[test]
-    fn unit_none_above_the_tolerance_and_open_ends() {
+    fn none_above_the_tolerance_and_open_ends() {
         assert_eq!(insensitivity(&impulses(&[(0.0, 1.0)]), &ONE_HZ, 0.05), None);
         // The tolerance is above every residual, so both sides are open.
         let zv = impulses(&[(0.0, 0.5), (0.5, 0.5)]);
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_spike_far_narrower_than_any_grid_is_found() {
+    fn a_spike_far_narrower_than_any_grid_is_found() {
         // A ZV for 1 Hz after a comb of long echoes: V = |cos(πr/2)| · |0.95 + 0.05 e^{jωτ}|-like ripple of period 1e-3 in r.
         let sequence = impulses(&[(0.0, 0.476), (0.5, 0.476), (1000.0, 0.024), (1000.5, 0.024)]);
         let limit = 0.05;
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_absurd_durations_end() {
+    fn absurd_durations_end() {
         let sequence = impulses(&[(0.0, 0.25), (0.5, 0.25), (1e12, 0.25), (1e12 + 0.5, 0.25)]);
         let found = insensitivity(&sequence, &ONE_HZ, 0.05).unwrap();
         assert!(found.low <= 1.0 && found.high.unwrap() >= 1.0);

@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_single_impulse_leaves_everything() {
+    fn a_single_impulse_leaves_everything() {
         let mode = Mode {
             frequency_hz: 3.0,
             damping: 0.2,
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_long_sequences_neither_overflow_nor_lose_the_last_impulse() {
+    fn long_sequences_neither_overflow_nor_lose_the_last_impulse() {
         let mode = Mode {
             frequency_hz: 1e6,
             damping: 0.5,
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_zero_impulse_does_not_move_the_end() {
+    fn a_zero_impulse_does_not_move_the_end() {
         let mode = Mode {
             frequency_hz: 1.0,
             damping: 0.1,
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_sensitivity_curve_spans_its_range() {
+    fn sensitivity_curve_spans_its_range() {
         let mode = Mode {
             frequency_hz: 1.0,
             damping: 0.0,

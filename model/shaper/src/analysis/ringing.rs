@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_a_mode_counts_by_its_share_over_the_square_of_its_frequency() {
+    fn a_mode_counts_by_its_share_over_the_square_of_its_frequency() {
         let weighted = |frequency_hz, participation| WeightedMode {
             mode: Mode {
                 frequency_hz,

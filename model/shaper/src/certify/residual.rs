@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_hump_of_an_ei_is_bounded_by_its_tolerance() {
+    fn the_hump_of_an_ei_is_bounded_by_its_tolerance() {
         // 1.05/4, 0.95/2, 1.05/4 at half periods of 50 samples: the residual at the mode is 5 %, and less at both
         // sides.
         let ei = table(&[(0, 17_203), (50, 31_130), (100, 17_203)]);
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_point_is_its_residual() {
+    fn a_point_is_its_residual() {
         let zv = table(&[(0, 40_000), (50, 25_536)]);
         let mode = Mode {
             frequency_hz: 9.0,

@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_two_samples_leave_the_side_of_a_square() {
+    fn two_samples_leave_the_side_of_a_square() {
         // Amplitudes a and 1 − a at a quarter of a period: |a + j(1 − a)| ≥ 1/√2.
         let found = check_shorter(&request(0.05), &proof(1, 1.0)).unwrap();
         let exact = 0.5f64.sqrt() / 0.05;
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_point_beside_the_band_is_no_proof() {
+    fn a_point_beside_the_band_is_no_proof() {
         let error = check_shorter(&request(0.05), &proof(1, 1.0 + 1e-12)).unwrap_err();
         assert_eq!(error, ShorterError::Point { index: 0 });
         let mut no_band = proof(1, 1.0);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_bounded_amplitudes_leave_what_their_bound_makes_them() {
+    fn bounded_amplitudes_leave_what_their_bound_makes_them() {
         let bounded = |high: f64, tolerance| Request {
             command: Command::Amplitudes { low: -high, high },
             ..request(tolerance)
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_too_few_bounded_amplitudes_do_not_sum_to_one() {
+    fn too_few_bounded_amplitudes_do_not_sum_to_one() {
         let bounded = Request {
             command: Command::Amplitudes { low: 0.0, high: 0.1 },
             ..request(0.05)
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_sums_between_bounds_reach_less() {
+    fn sums_between_bounds_reach_less() {
         // s_0 within −1 … 1, s_1 = 1: |s_0 + (1 − s_0)(−j)·…| is least at s_0 = ½, as without negative ones.
         let signed = Request {
             command: Command::PartialSums { low: -1.0, high: 1.0 },

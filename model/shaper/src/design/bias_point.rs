@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_closed_forms_of_the_paper() {
+    fn closed_forms_of_the_paper() {
         let v = 0.05f64;
         let zv_ei = undamped(ShaperKind::ZvEi, 1, v).unwrap();
         for (found, expected) in zv_ei.amplitudes.iter().zip([0.2625, 0.475, 0.2625]) {
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_largest_damping_is_where_the_design_ends() {
+    fn the_largest_damping_is_where_the_design_ends() {
         // The limits at 5 %, found independently.
         let known = [0.50, 0.31, 0.18, 0.28, 0.50, 0.28, 0.19, 0.144, 0.12];
         for ((kind, order), known) in KINDS.into_iter().zip(known) {
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_amplitudes_are_positive_at_every_tolerance() {
+    fn amplitudes_are_positive_at_every_tolerance() {
         for (kind, order) in KINDS {
             for percent in 1..100 {
                 let base = undamped(kind, order, f64::from(percent) / 100.0).unwrap();
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_the_family_does_not_have_is_an_error() {
+    fn what_the_family_does_not_have_is_an_error() {
         for (kind, order, tolerance) in [
             (ShaperKind::Zv, 1, 0.05),
             (ShaperKind::ChebyshevEi, 0, 0.05),

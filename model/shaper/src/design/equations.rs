@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_derivatives_are_those_of_the_values() {
+    fn derivatives_are_those_of_the_values() {
         let x = DVector::from_row_slice(&[0.3, 0.45, 0.28, 0.52, 1.03, 0.86, 1.1]);
         let (damping, tolerance, step) = (0.13, 0.08, 1e-6);
         let found = system(&x, damping, tolerance);
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_stationary_zero_is_that_of_zvd() {
+    fn a_stationary_zero_is_that_of_zvd() {
         let point = Point {
             damping: 0.0,
             tolerance: 1.0,

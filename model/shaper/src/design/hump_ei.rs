@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_undamped_closed_forms() {
+    fn undamped_closed_forms() {
         let v = 0.05f64;
         let cube_root = (v * v * ((1.0 - v * v).sqrt() + 1.0)).cbrt();
         let two = (3.0 * cube_root * cube_root + 2.0 * cube_root + 3.0 * v * v) / (16.0 * cube_root);
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_small_tolerances_approach_the_powers_of_zv() {
+    fn small_tolerances_approach_the_powers_of_zv() {
         for (kind, power) in [
             (ShaperKind::Ei, 2),
             (ShaperKind::TwoHumpEi, 3),
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_branch_ends_where_others_found_it_and_the_error_names_both_limits() {
+    fn the_branch_ends_where_others_found_it_and_the_error_names_both_limits() {
         // Damping at which the branch ends for a tolerance, for one, two and three humps; beyond 0.4 no end was
         // looked for.
         for (tolerance, ends) in [
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_short_steps_lead_to_the_same_solution() {
+    fn short_steps_lead_to_the_same_solution() {
         for (kind, zeros, dampings) in [
             (ShaperKind::Ei, 2, [0.2, 0.6]),
             (ShaperKind::TwoHumpEi, 3, [0.2, 0.44]),
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_tolerances_outside_the_range_are_errors() {
+    fn tolerances_outside_the_range_are_errors() {
         for tolerance in [0.0, -0.05, 1e-7, 0.95, 1.0, 1e300, f64::NAN, f64::INFINITY] {
             for kind in KINDS {
                 assert!(matches!(

@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_undamped_closed_forms() {
+    fn undamped_closed_forms() {
         let times = |kind| -> Vec<f64> {
             let impulses = design(kind, &mode(0.0), 0.05).unwrap();
             impulses.impulses().iter().skip(1).map(|i| i.time_s).collect()
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_exist_over_the_whole_range() {
+    fn exist_over_the_whole_range() {
         for kind in KINDS {
             for damping in [0.0, 1e-12, 0.1, 0.25, 0.4] {
                 for tolerance in [TOLERANCE_MIN, 1e-4, 0.05, 0.3, 0.4999999] {
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_short_steps_lead_to_the_same_solution() {
+    fn short_steps_lead_to_the_same_solution() {
         for kind in KINDS {
             let family = Family::of(kind).unwrap();
             for tolerance in [1e-3f64, 0.49] {
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_outside_the_range_the_error_names_it_and_an_alternative() {
+    fn outside_the_range_the_error_names_it_and_an_alternative() {
         for kind in KINDS {
             let error = design(kind, &mode(0.41), 0.05).unwrap_err().to_string();
             assert!(

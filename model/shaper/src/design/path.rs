@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_follows_the_branch_that_it_starts_on() {
+    fn follows_the_branch_that_it_starts_on() {
         for sign in [1.0, -1.0] {
             let start = DVector::from_element(1, 1.1 * sign);
             let found = follow(&Fold(1.25), start, 1.0, PRECISE).unwrap();
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_does_not_leap_over_a_fold() {
+    fn does_not_leap_over_a_fold() {
         let fold = 0.5 + 1.0 / (6.0 * 12f64.sqrt());
         for longest in [1.0, 0.7, 0.5, 0.3, 0.1, 0.03] {
             let ended = follow(&Cubic, DVector::from_element(1, -0.9), longest, PRECISE).unwrap_err();
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_says_where_a_branch_ends() {
+    fn says_where_a_branch_ends() {
         let ended = follow(&Fold(0.4), DVector::from_element(1, 1.0), 1.0, PRECISE).unwrap_err();
         assert!((ended - 0.4).abs() < 1e-5, "{ended}");
     }

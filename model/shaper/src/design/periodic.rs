@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_absurd_limits_end_in_errors_and_not_in_time() {
+    fn absurd_limits_end_in_errors_and_not_in_time() {
         for lowest_hz in [0.0, -1.0, 1e-300, f64::NAN, f64::MIN_POSITIVE] {
             assert!(matches!(
                 search(&[10.0, 35.0], 0.48, lowest_hz),
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_intervals_that_reach_below_the_limit_end_there() {
+    fn intervals_that_reach_below_the_limit_end_there() {
         let found = search(&[10.0], 0.5, 3.0).unwrap();
         let expected = [(10.0 / 1.5, 20.0, 0), (3.0, 4.0, 1)];
         assert_eq!(found.len(), 2);

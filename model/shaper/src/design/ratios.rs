@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_fractions_are_found_or_refused() {
+    fn fractions_are_found_or_refused() {
         assert_eq!(fraction(1.0), Some((1, 1)));
         assert_eq!(fraction(0.3 / 0.1), Some((3, 1)));
         assert_eq!(fraction(2.1 / 1.414), Some((1050 / 7, 707 / 7)));
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_nearby_odd_multiples_are_the_smallest_within_the_tolerance() {
+    fn nearby_odd_multiples_are_the_smallest_within_the_tolerance() {
         let found = nearest_odd(&[30.2, 10.0], 0.01).unwrap();
         assert_eq!(found.multiples, [3, 1]);
         let (a, b) = (3.0 / 30.2, 0.1);
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_searches_without_an_answer_end() {
+    fn searches_without_an_answer_end() {
         assert!(nearest_odd(&[1.0, 2.0, std::f64::consts::E, 7.77, 31.4], 1e-9).is_err());
         assert!(common_divisor(&[1.0, f64::NAN]).is_err());
         assert!(common_divisor(&[1.0, 1.0001234567]).is_err());

@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_undamped_amplitudes_are_binomial() {
+    fn undamped_amplitudes_are_binomial() {
         let mode = Mode {
             frequency_hz: 2.0,
             damping: 0.0,
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_modes_that_are_none_are_errors() {
+    fn modes_that_are_none_are_errors() {
         for (frequency_hz, damping) in [
             (0.0, 0.1),
             (-1.0, 0.1),

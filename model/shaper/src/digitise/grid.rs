@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_an_impulse_on_a_sample_is_one_tap() {
+    fn an_impulse_on_a_sample_is_one_tap() {
         // 0.0039 · 10000 is 38.99999999999999
         let impulse = Impulse {
             time_s: 0.0039,
@@ -118,13 +118,13 @@ mod tests {
     }
 
     #[test]
-    fn unit_nearest_rounds_halves_up() {
+    fn nearest_rounds_halves_up() {
         let at = |time_s| taps(nearest(&Impulse { time_s, amplitude: 1.0 }, 2.0))[0].0;
         assert_eq!((at(0.249), at(0.25), at(0.75)), (0, 1, 2));
     }
 
     #[test]
-    fn unit_modal_taps_have_the_pole_sum_of_the_impulse() {
+    fn modal_taps_have_the_pole_sum_of_the_impulse() {
         for (time_s, sample_hz) in [(0.00386, 1e4), (0.0005, 1300.0), (0.012_345, 50e3)] {
             let impulse = Impulse { time_s, amplitude: 0.7 };
             let placed: Vec<Impulse> = taps(modal(&impulse, &MODE, sample_hz))

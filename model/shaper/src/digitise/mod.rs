@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_custom_says_which_method_it_took() {
+    fn custom_says_which_method_it_took() {
         let mode = Mode {
             frequency_hz: 10.0,
             damping: 0.1,
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_impulses_that_share_a_sample_add_up() {
+    fn impulses_that_share_a_sample_add_up() {
         let design = custom(&[(0.0, 0.5), (0.0102, 0.25), (0.0105, 0.25)], None);
         let taps = digitise(&design, Digitise::Linear, 1000.0).unwrap().taps;
         for (tap, expected) in taps.iter().zip([(0, 0.5), (10, 0.325), (11, 0.175)]) {
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_shaper_longer_than_any_ring_is_refused_before_it_is_built() {
+    fn a_shaper_longer_than_any_ring_is_refused_before_it_is_built() {
         for last_s in [1e300, 1e9, 16.383] {
             let error = digitise(&custom(&[(0.0, 0.5), (last_s, 0.5)], None), Digitise::Linear, 1000.0).unwrap_err();
             assert!(matches!(error, DigitiseError::Delay { .. }), "{error}");
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_mode_beyond_half_the_sample_rate_has_no_modal_taps() {
+    fn a_mode_beyond_half_the_sample_rate_has_no_modal_taps() {
         let mode = Mode {
             frequency_hz: 500.0,
             damping: 0.0,
@@ -336,14 +336,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_shaping_starts_at_rest_on_the_first_word() {
+    fn shaping_starts_at_rest_on_the_first_word() {
         let digitised = digitise(&custom(&[(0.0, 0.25), (0.002, 0.75)], None), Digitise::Modal, 1000.0).unwrap();
         assert_eq!(digitised.shape(&[8, 8, 12, 12, 16]), [8.0, 8.0, 9.0, 9.0, 13.0]);
         assert!(digitised.shape(&[]).is_empty());
     }
 
     #[test]
-    fn unit_a_delay_is_folded_in_as_whole_samples_and_a_fraction() {
+    fn a_delay_is_folded_in_as_whole_samples_and_a_fraction() {
         let digitised = digitise(&custom(&[(0.0, 0.25), (0.002, 0.75)], None), Digitise::Modal, 1000.0).unwrap();
         let taps = |samples: f64| -> Vec<(u32, f64)> {
             let later = digitised.delayed(samples).unwrap();
@@ -362,14 +362,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_amplitudes_out_of_all_proportion_are_an_error() {
+    fn amplitudes_out_of_all_proportion_are_an_error() {
         let design = custom(&[(0.0, 1e8 + 1.0), (0.0015, -1e8)], None);
         let error = digitise(&design, Digitise::Linear, 1000.0).unwrap_err();
         assert!(matches!(error, DigitiseError::NoUnitSum { .. }), "{error}");
     }
 
     #[test]
-    fn unit_each_mode_keeps_its_own_pole() {
+    fn each_mode_keeps_its_own_pole() {
         let mode = |frequency_hz| Mode {
             frequency_hz,
             damping: 0.05,

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_largest_remainders_get_the_missing_ones() {
+    fn largest_remainders_get_the_missing_ones() {
         // Times 4: 1.2, 0.9, 1.9; floors 1 0 1, two are missing.
         assert_eq!(coefficients(&table(&[0.3, 0.225, 0.475], Some(2)).unwrap()), [1, 1, 2]);
         // Thirds of 2^16 have equal fractions; the missing unit goes to the smallest delay.
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_negative_weights_floor_downwards() {
+    fn negative_weights_floor_downwards() {
         // Times 4: -1.7, 1.3, 4.4; floors -2 1 4, one is missing.
         assert_eq!(
             coefficients(&table(&[-0.425, 0.325, 1.1], Some(2)).unwrap()),
@@ -165,14 +165,14 @@ mod tests {
     }
 
     #[test]
-    fn unit_zero_coefficients_are_dropped() {
+    fn zero_coefficients_are_dropped() {
         let table = table(&[0.5, 1e-7, 0.5 - 1e-7], None).unwrap();
         let delays: Vec<u32> = table.taps().iter().map(|t| t.delay_samples).collect();
         assert_eq!(delays, [0, 2]);
     }
 
     #[test]
-    fn unit_one_fraction_serves_all_axes() {
+    fn one_fraction_serves_all_axes() {
         let (small, large) = (digitised(&[0.5, 0.5]), digitised(&[5.0, -4.0]));
         let tables = quantise(&[("x", &small), ("y", &large)], None).unwrap();
         // 5 · 2^14 = 81920 fits in 131071, twice that does not.
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_edge_is_judged_after_rounding() {
+    fn the_edge_is_judged_after_rounding() {
         // 131071.4 rounds down to the largest coefficient, 131071.6 up and out.
         let at = |scaled: f64| {
             let weight = scaled / 65536.0;
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_does_not_fit_names_what_does() {
+    fn what_does_not_fit_names_what_does() {
         assert_eq!(
             table(&[5.0, -4.0], Some(16)),
             Err(DigitiseError::Fraction {
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_more_taps_than_a_table_holds() {
+    fn more_taps_than_a_table_holds() {
         let weights = vec![1.0 / 257.0; 257];
         assert!(matches!(
             table(&weights, None),
@@ -219,13 +219,13 @@ mod tests {
     }
 
     #[test]
-    fn unit_quantising_error_counts_taps_of_the_table_alone() {
+    fn quantising_error_counts_taps_of_the_table_alone() {
         let other = table(&[0.25, 0.25, 0.5], None).unwrap();
         assert_eq!(quantising_error(&digitised(&[0.5, 0.5]), &other), 1.0);
     }
 
     #[test]
-    fn unit_quantising_error_counts_dropped_taps() {
+    fn quantising_error_counts_dropped_taps() {
         let weights = [0.5, 1e-7, 0.5 - 1e-7];
         let error = quantising_error(&digitised(&weights), &table(&weights, None).unwrap());
         assert!((error - 2e-7).abs() < 1e-15);

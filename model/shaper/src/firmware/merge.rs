@@ -57,7 +57,7 @@ mod tests {
     use crate::mode::Mode;
 
     #[test]
-    fn unit_pairs_of_taps_become_impulses_that_leave_as_little() {
+    fn pairs_of_taps_become_impulses_that_leave_as_little() {
         let taps = [
             (0.0, 0.2997),
             (0.0095, 0.2),

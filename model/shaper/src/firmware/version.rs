@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_klippers_commits_and_dates_decide_what_it_takes() {
+    fn klippers_commits_and_dates_decide_what_it_takes() {
         // git describe of Klipper's own repository: what the commit before each change and the change itself have.
         for (before, after, of) in [
             ("v0.13.0-272-gabc", "v0.13.0-273-g5da026a33", "fits"),
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_no_version_is_refused() {
+    fn what_is_no_version_is_refused() {
         for wrong in [
             "",
             "new",
@@ -434,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_reprapfirmware_changed_with_3_6() {
+    fn reprapfirmware_changed_with_3_6() {
         for (text, form) in [
             ("3.4", Form::Sums),
             ("3.5.4", Form::Sums),

@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_rows_are_in_the_order_of_the_table() {
+    fn rows_are_in_the_order_of_the_table() {
         let text = next();
         assert!(
             text.starts_with("(((from) == 3'd0 & if_drive_ready & !if_cause & !if_enable) ? 3'd1 : "),

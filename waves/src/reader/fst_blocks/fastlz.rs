@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_both_levels_unpack_by_hand() {
+    fn both_levels_unpack_by_hand() {
         let unpacked = |packed: &[u8], length| {
             let mut out = b"before".to_vec();
             unpack(packed, length, &mut out).map(|()| out.split_off(6))

@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_words_are_read_in_every_spelling() {
+    fn words_are_read_in_every_spelling() {
         for line in [
             "G1 X10.5 Y-2 E1 F3000",
             "g1x10.5y-2e1f3000",
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_no_word_is_told() {
+    fn what_is_no_word_is_told() {
         for (line, bad) in [
             ("G1 X[1+2]", "X[1+2]"),
             ("G1 X#1", "X#1"),
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_other_lines_are_told_apart() {
+    fn other_lines_are_told_apart() {
         let read = |line: &str| read(line.as_bytes(), &mut Vec::new());
         for nothing in [
             "",

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_velocity_drive_follows_by_its_bandwidth() {
+    fn a_velocity_drive_follows_by_its_bandwidth() {
         let mut stiff = velocity_drive(None);
         run(&mut stiff, ON, 500);
         assert!((stiff.position - 0.2 * 1e-3).abs() < 1e-15);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_torque_drive_accelerates_its_mass_within_the_limit() {
+    fn a_torque_drive_accelerates_its_mass_within_the_limit() {
         let mut driven = torque_drive(0.0, 0.0);
         run(&mut driven, ON, 50_000);
         // Half of 8 A is commanded, but 2 A is the limit: 16 m/s², late by the time constant of the current.
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_friction_of_both_kinds_ends_a_coast() {
+    fn friction_of_both_kinds_ends_a_coast() {
         let mut driven = torque_drive(100.0, 100.0);
         run(&mut driven, ON, 25_000);
         assert!(driven.velocity > 0.6);

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_edges_lie_where_the_line_crosses() {
+    fn edges_lie_where_the_line_crosses() {
         let mut encoder = Encoder::new(1.0, 10, Some(2), 0.0);
         // The motion crosses 0.5 and 1.5 on the way from 0 to 2, then 1.5 on the way back to 1.
         assert_eq!(edges(&mut encoder, &[2.0]), [(2, 1), (7, 2)]);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_what_is_too_fast_comes_late() {
+    fn what_is_too_fast_comes_late() {
         let mut encoder = Encoder::new(1.0, 10, None, 0.0);
         let found = edges(&mut encoder, &[25.0, 25.0, 25.0, 25.0]);
         assert_eq!(found.len(), 25);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_no_number_does_harm() {
+    fn no_number_does_harm() {
         let mut encoder = Encoder::new(1e12, 10, None, -1e9);
         for position in [1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0] {
             edges(&mut encoder, &[position]);

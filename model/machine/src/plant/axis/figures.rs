@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_peak_and_mean_square() {
+    fn peak_and_mean_square() {
         let error = tracking_error(&[1.0, 2.0, 3.0, 9.0], &[1.0, 5.0, -1.0]);
         assert_eq!(error.peak, 4.0);
         assert!((error.rms - (25.0f64 / 3.0).sqrt()).abs() < 1e-15);

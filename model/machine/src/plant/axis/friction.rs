@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_closed_forms_equal_small_steps() {
+    fn closed_forms_equal_small_steps() {
         for viscous in [0.0, 3.0, 400.0] {
             let sliding = Sliding::new(viscous, 2.0, 0.01);
             for (velocity, drive) in [
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_mass_at_rest_stays_there() {
+    fn a_mass_at_rest_stays_there() {
         let sliding = Sliding::new(3.0, 2.0, 1e-6);
         let mut velocity = 1e-4;
         for _ in 0..200 {
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_series_meets_the_exponential() {
+    fn the_series_meets_the_exponential() {
         let [below, above] = [0.999e-3, 1.001e-3].map(|viscous| Decay::new(viscous, 1.0));
         assert!((below.once - above.once - 1e-6).abs() < 1e-9);
         assert!((below.twice - above.twice - 2e-6 / 6.0).abs() < 1e-9);

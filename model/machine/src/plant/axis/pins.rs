@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_the_pins_of_the_pwm_mean_its_duty() {
+    fn the_pins_of_the_pwm_mean_its_duty() {
         for active_low in [false, true] {
             for duty in [-1000, -600, 0, 400, 1000] {
                 let share = f64::from(duty) / 1000.0;
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_two_sides_of_a_leg_are_a_short() {
+    fn two_sides_of_a_leg_are_a_short() {
         let mut mean = PinMean::new(PwmMode::FullBridge, false, 10, 1);
         let leg = DrivePins {
             b_high: true,

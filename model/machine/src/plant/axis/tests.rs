@@ -73,7 +73,7 @@ fn staircase((start_s, velocity): (f64, f64)) -> impl Iterator<Item = Jump> {
 }
 
 #[test]
-fn unit_the_load_is_that_of_the_plant_in_closed_form() {
+fn the_load_is_that_of_the_plant_in_closed_form() {
     // 1.5 ms at full speed, a ramp and a stop, for any frequency factor.
     for factor in [0.9, 1.0, 1.1] {
         let options = PlantOptions {
@@ -126,7 +126,7 @@ fn two_masses(force: impl Fn(f64) -> f64, end_s: f64) -> f64 {
 }
 
 #[test]
-fn unit_a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
+fn a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
     // Free vibration of the two: √(K (1/m₁ + 1/m₂)), 278.2 Hz in the notes.
     let mode = "frequency_hz = 278.2393\ndamping = 0.334847";
     let reach = |mode: &str| {
@@ -154,7 +154,7 @@ fn unit_a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
 }
 
 #[test]
-fn unit_what_the_encoder_sees() {
+fn what_the_encoder_sees() {
     let counts = |drive, encoder_at| {
         let options = PlantOptions {
             encoder_at,
@@ -182,7 +182,7 @@ fn unit_what_the_encoder_sees() {
 }
 
 #[test]
-fn unit_without_power_or_with_the_brake_nothing_moves() {
+fn without_power_or_with_the_brake_nothing_moves() {
     for drive in [VELOCITY, TORQUE] {
         for (drive_enable, brake_release) in [(false, false), (false, true), (true, false)] {
             let pins = DrivePins {
@@ -207,7 +207,7 @@ fn unit_without_power_or_with_the_brake_nothing_moves() {
 }
 
 #[test]
-fn unit_an_index_is_a_count_wide() {
+fn an_index_is_a_count_wide() {
     let options = PlantOptions {
         index_at: 100,
         ..PlantOptions::default()
@@ -224,7 +224,7 @@ fn unit_an_index_is_a_count_wide() {
 }
 
 #[test]
-fn unit_what_is_no_plant_is_named() {
+fn what_is_no_plant_is_named() {
     let machine = machine(TORQUE, GX);
     let of = |change: &dyn Fn(&mut AxisSection), options: PlantOptions| {
         let mut axis = machine.axes[0].clone();

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_response_is_the_integral_of_the_shape() {
+    fn the_response_is_the_integral_of_the_shape() {
         let shape = [0.3, -0.7, 1.1, 0.4];
         let points = 20_000;
         for theta in [2.1, 4.0, 9.3] {

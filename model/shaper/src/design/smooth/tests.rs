@@ -38,7 +38,7 @@ fn golden_durations_are_those_of_a_second_solution() {
 }
 
 #[test]
-fn unit_samples_keep_what_the_kernel_promises_and_sum_to_one() {
+fn samples_keep_what_the_kernel_promises_and_sum_to_one() {
     for damping in [0.0, 0.1, 0.3] {
         let mode = Mode {
             frequency_hz: 31.0,
@@ -67,7 +67,7 @@ fn unit_samples_keep_what_the_kernel_promises_and_sum_to_one() {
 }
 
 #[test]
-fn unit_the_flat_kinds_are_flat_at_the_mode() {
+fn the_flat_kinds_are_flat_at_the_mode() {
     let mode = Mode {
         frequency_hz: 50.0,
         damping: 0.0,
@@ -84,7 +84,7 @@ fn unit_the_flat_kinds_are_flat_at_the_mode() {
 }
 
 #[test]
-fn unit_damping_makes_the_kernel_asymmetric() {
+fn damping_makes_the_kernel_asymmetric() {
     let mode = |damping| Mode {
         frequency_hz: 50.0,
         damping,
@@ -98,7 +98,7 @@ fn unit_damping_makes_the_kernel_asymmetric() {
 }
 
 #[test]
-fn unit_smooth_ei_ends_where_its_error_says() {
+fn smooth_ei_ends_where_its_error_says() {
     let mode = |damping| Mode {
         frequency_hz: 50.0,
         damping,
@@ -112,7 +112,7 @@ fn unit_smooth_ei_ends_where_its_error_says() {
 }
 
 #[test]
-fn unit_cells_grow_until_a_table_holds_the_kernels() {
+fn cells_grow_until_a_table_holds_the_kernels() {
     let kernel = Kernel::new(
         ShaperKind::SmoothZv,
         &Mode {
@@ -167,7 +167,7 @@ fn over_band(kernel: &Kernel, mode: &Mode, [from, to]: [f64; 2]) -> (Vec<f64>, f
 }
 
 #[test]
-fn unit_humps_are_as_high_as_the_tolerance_and_lower_with_damping() {
+fn humps_are_as_high_as_the_tolerance_and_lower_with_damping() {
     // Bands in which the kinds promise it: from the lowest zero on, or from the mode on.
     for (kind, tolerance, band, humps) in [
         (ShaperKind::SmoothTwoHumpEi, 0.05, [0.75, 1.3], 2),
@@ -205,7 +205,7 @@ fn unit_humps_are_as_high_as_the_tolerance_and_lower_with_damping() {
 }
 
 #[test]
-fn unit_smooth_mzv_has_the_zeros_of_mzv() {
+fn smooth_mzv_has_the_zeros_of_mzv() {
     let mode = Mode {
         frequency_hz: 31.0,
         damping: 0.0,
@@ -221,7 +221,7 @@ fn unit_smooth_mzv_has_the_zeros_of_mzv() {
 }
 
 #[test]
-fn unit_a_tolerance_out_of_range_is_refused_with_the_range() {
+fn a_tolerance_out_of_range_is_refused_with_the_range() {
     let mode = Mode {
         frequency_hz: 31.0,
         damping: 0.02,
