@@ -248,10 +248,7 @@ impl Gatherer {
             }
             changes.grow(count);
             if count < places {
-                match lines.none(data, at) {
-                    Some(next) => at = next,
-                    None => break,
-                }
+                break;
             }
         }
         if let Some(digit) = clock {

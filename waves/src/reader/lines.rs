@@ -8,8 +8,8 @@ use super::header::Kind;
 use super::ids::Ids;
 
 /// What a table has for an id code: the slot, shifted, and one of these.
-const SHIFT: u32 = 3;
-const FORM: u32 = 7;
+const SHIFT: u32 = 2;
+const FORM: u32 = 3;
 /// A signal of one bit.
 const BIT: u32 = 0;
 /// The watched clock, of one bit.
@@ -18,8 +18,6 @@ const CLOCK: u32 = 1;
 const WORD: u32 = 2;
 /// Anything else.
 const OTHER: u32 = 3;
-/// A vector of no bits, which stands for all signals that are left out.
-const NONE: u32 = 4;
 
 /// Id codes of one to three characters have numbers below this.
 const NUMBERS: u64 = 94 + 94 * 94 + 94 * 94 * 94 + 1;
@@ -68,7 +66,6 @@ impl Lines {
             Kind::Bits(1) if clock == Some(slot) => CLOCK,
             Kind::Bits(1) => BIT,
             Kind::Bits(2..=64) => WORD,
-            Kind::Bits(0) => NONE,
             _ => OTHER,
         };
         let entry = |number: u64| ids.get(number).map_or(OTHER, |slot| slot << SHIFT | form(slot));
@@ -125,24 +122,6 @@ impl Lines {
             end: (line >> (8 * (1 + length))) as u8,
             next: at + 2 + length,
         })
-    }
-
-    /// Returns the position after the line of digits at `at`, if it changes a vector of no bits, and enough bytes are there.
-    #[inline]
-    pub(super) fn none(&self, data: &[u8], at: usize) -> Option<usize> {
-        let mut id_at = at + 1;
-        if *data.get(at)? == b'b' {
-            let (known, end) = known_run(data, at + 1);
-            let (_, space) = mixed_run(known, data, end);
-            if space == at + 1 || *data.get(space)? != b' ' {
-                return None;
-            }
-            id_at = space + 1;
-        } else if DIGITS[usize::from(data[at])] > 3 {
-            return None;
-        }
-        let (entry, length) = self.entry(eight(data, id_at)?)?;
-        (entry & FORM == NONE).then_some(id_at + length + 1)
     }
 
     /// Returns the line of a vector at `at`, if it is one, and enough bytes are there.
@@ -203,7 +182,7 @@ mod tests {
             digits in "[01x]{1,9} ?",
             other in "[ -~\n]{0,4}",
             is_other: bool,
-            widths in prop::collection::vec(prop::sample::select(vec![0u32, 1, 1, 2, 8, 64, 65]), 40),
+            widths in prop::collection::vec(prop::sample::select(vec![1u32, 1, 2, 8, 64, 65]), 40),
             clock: prop::sample::Index,
         ) {
             let known: Vec<String> = known.into_iter().collect();
@@ -248,12 +227,6 @@ mod tests {
                 next: end + 1,
             });
             prop_assert_eq!(lines.word(&vector, 0), expected);
-            let is_none = |slot: u32| widths[slot as usize] == 0;
-            let of_bit = ids.slot_at(&data, 1);
-            let none = of_bit.0.filter(|slot| is_none(*slot) && of_bit.1 <= 4 && digit(first).is_some() && !is_state(first));
-            prop_assert_eq!(lines.none(&data, 0), none.map(|_| of_bit.1 + 1));
-            let none = slot.filter(|slot| is_none(*slot) && end <= id_at + 3 && digits.ends_with(' '));
-            prop_assert_eq!(lines.none(&vector, 0), none.map(|_| end + 1));
             for short in 0..8 {
                 prop_assert_eq!(lines.bit(&data[..short], 0), None);
                 prop_assert_eq!(lines.word(&vector[..id_at + short], 0), None);

@@ -181,16 +181,6 @@ impl<'a> Worker<'a> {
                     (line.slot, line.end, line.next)
                 } else if let Some(line) = self.common.word(data, at) {
                     (line.slot, line.end, line.next)
-                } else if let Some(next) = self.common.none(data, at) {
-                    if data[next - 1] != b'\n' {
-                        return None;
-                    }
-                    // A time that has nothing else is no sample.
-                    if at == step_at {
-                        step_at = next;
-                    }
-                    at = next;
-                    continue;
                 } else {
                     break;
                 };
