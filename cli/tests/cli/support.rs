@@ -62,6 +62,15 @@ pub(crate) fn json(output: &[u8]) -> serde_json::Value {
     serde_json::from_slice(output).unwrap()
 }
 
+/// The crates of the model.
+pub(crate) const MODEL: [&str; 5] = [
+    "model/taps",
+    "model/shaper",
+    "model/blocks",
+    "model/machine",
+    "model/papers",
+];
+
 /// Returns the Rust files of these packages of the workspace, without their tests.
 pub(crate) fn rust_sources(packages: &[&str]) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -1,7 +1,7 @@
 //! Nothing that a user owns is replaced, appended to or made useless.
 
 use super::{mode, printer};
-use crate::cli::support::{posicast, rust_sources, scratch};
+use crate::cli::support::{MODEL, posicast, rust_sources, scratch};
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};
 
@@ -121,7 +121,7 @@ fn cli_a_file_of_its_own_is_written_again_until_somebody_edits_it() {
 #[test]
 fn no_command_of_ours_appends_to_a_configuration() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut pages = rust_sources(&["cli", "identify", "model", "host", "synth"]);
+    let mut pages = rust_sources(&[&MODEL[..], &["cli", "identify", "host", "synth"]].concat());
     for folder in ["", "docs", "docs/tutorial", "docs/examples", "scripts"] {
         let entries = fs::read_dir(root.join(folder))
             .unwrap()
