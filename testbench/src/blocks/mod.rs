@@ -62,7 +62,7 @@ pub use self::linked_stage::{DenseLinkBlock, LinkedStageBlock};
 pub use self::part::{PartBlock, SmallPart};
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::pwm::PwmBlock;
-pub use self::reached::{Reach, Reached};
+pub use self::reached::{Reach, ReachedCount};
 pub use self::registers::RegistersBlock;
 pub use self::registry::{
     AreaBudget, AreaRow, BenchSizes, SmallBench, areas, benches, proofs, proofs_named, small_benches,

@@ -27,7 +27,7 @@ const RUN: u64 = 3;
 
 /// A count and its bar.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Reached {
+pub struct ReachedCount {
     /// What is counted.
     pub what: String,
     /// How many there were.
@@ -36,7 +36,7 @@ pub struct Reached {
     pub least: u64,
 }
 
-impl Reached {
+impl ReachedCount {
     fn new(what: impl Into<String>, count: u64, least: u64) -> Self {
         Self {
             what: what.into(),
@@ -57,7 +57,7 @@ pub trait Reach {
     fn observe(&mut self, clock: &Clock<'_>);
 
     /// Returns the counts, each with the instance of its row.
-    fn reached(&self) -> Vec<(String, Reached)>;
+    fn reached(&self) -> Vec<(String, ReachedCount)>;
 }
 
 fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
@@ -153,21 +153,25 @@ impl Reach for AtThePorts {
         }
     }
 
-    fn reached(&self) -> Vec<(String, Reached)> {
+    fn reached(&self) -> Vec<(String, ReachedCount)> {
         let mut counts = Vec::new();
         if self.valid.is_some() {
-            counts.push(Reached::new("samples", self.samples, 1));
+            counts.push(ReachedCount::new("samples", self.samples, 1));
         }
         if self.taps.is_some() {
-            counts.push(Reached::new("taps", self.tap_writes, 1));
+            counts.push(ReachedCount::new("taps", self.tap_writes, 1));
         }
         if let Some(bus) = &self.bus {
             let [written, read] = bus.bars;
-            counts.push(Reached::new("registers written", bus.written.len() as u64, written));
-            counts.push(Reached::new("registers read", bus.read.len() as u64, read));
+            counts.push(ReachedCount::new(
+                "registers written",
+                bus.written.len() as u64,
+                written,
+            ));
+            counts.push(ReachedCount::new("registers read", bus.read.len() as u64, read));
         }
         if !self.words.is_empty() {
-            counts.push(Reached::new("words", self.changes, 1));
+            counts.push(ReachedCount::new("words", self.changes, 1));
         }
         counts.into_iter().map(|count| (self.instance.clone(), count)).collect()
     }
@@ -290,19 +294,19 @@ impl Reach for InsideAStage {
         }
     }
 
-    fn reached(&self) -> Vec<(String, Reached)> {
+    fn reached(&self) -> Vec<(String, ReachedCount)> {
         let [moves, taps] = self.least;
         let of_axis = |axis: &InsideAxis| {
             [
-                Reached::new(format!("samples of {}", axis.name), axis.samples, 1),
-                Reached::new(format!("moves of {}", axis.name), axis.moves, moves),
-                Reached::new(format!("taps of {}", axis.name), axis.taps, taps),
+                ReachedCount::new(format!("samples of {}", axis.name), axis.samples, 1),
+                ReachedCount::new(format!("moves of {}", axis.name), axis.moves, moves),
+                ReachedCount::new(format!("taps of {}", axis.name), axis.taps, taps),
             ]
         };
         let [written, read] = self.bars;
         let registers = [
-            Reached::new("registers written", self.written.len() as u64, written),
-            Reached::new("registers read", self.read.len() as u64, read),
+            ReachedCount::new("registers written", self.written.len() as u64, written),
+            ReachedCount::new("registers read", self.read.len() as u64, read),
         ];
         let counts = self.axes.iter().flat_map(of_axis).chain(registers);
         counts.map(|count| (self.instance.clone(), count)).collect()

@@ -10,7 +10,7 @@ use posicast_taps::{Tap, TapTable};
 
 use super::reached::AtThePorts;
 use super::registry::{AreaRow, RegistryRow, one, small};
-use super::{Bins, Block, Exercise, Reach, Reached, named, proofs};
+use super::{Bins, Block, Exercise, Reach, ReachedCount, named, proofs};
 use crate::Error;
 use crate::campaign::Campaign;
 use crate::formal::refused;
@@ -260,7 +260,7 @@ impl Reach for SideBySideReach {
         self.0.iter_mut().for_each(|shaper| shaper.observe(clock));
     }
 
-    fn reached(&self) -> Vec<(String, Reached)> {
+    fn reached(&self) -> Vec<(String, ReachedCount)> {
         self.0.iter().flat_map(AtThePorts::reached).collect()
     }
 }

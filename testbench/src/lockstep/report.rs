@@ -6,7 +6,7 @@ use posicast_blocks::{Direction, Port};
 use serde::Serialize;
 
 use super::window::{Row, Window};
-use crate::blocks::Reached;
+use crate::blocks::ReachedCount;
 use wavecmp::diff::{Shown, View, value, value_and_digits};
 
 /// Verdict of a lock step.
@@ -77,7 +77,7 @@ impl LockstepReport {
 
     /// Adds what the clocks reached, each with the instance of its row. What is below its bar counts as not exercised. Samples
     /// are those counted here where a block has no `valid`.
-    pub fn with_reached(mut self, counts: Vec<(String, Reached)>) -> Self {
+    pub fn with_reached(mut self, counts: Vec<(String, ReachedCount)>) -> Self {
         let low = counts.iter().filter(|(_, count)| count.is_low());
         let low = low.map(|(row, count)| {
             (
@@ -148,7 +148,7 @@ pub struct BlockReport {
     pub unchanged: Vec<String>,
     /// What the clocks reached, with the bars.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub reached: Vec<Reached>,
+    pub reached: Vec<ReachedCount>,
     /// Findings of a directed test that the lock step cannot see, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,
