@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
-use posicast_testbench::blocks::{Block, Sources, library};
+use posicast_testbench::blocks::{Block, Sources, library_named};
 use posicast_testbench::lockstep::report;
 use posicast_testbench::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 
@@ -42,24 +42,13 @@ fn compare() -> Result<bool, Box<dyn Error>> {
         names.drain(..2);
     }
     let yosys = Yosys::installed()?;
-    let blocks = library()?;
-    if let Some(unknown) = names
-        .iter()
-        .find(|name| !blocks.iter().any(|block| block.name() == *name))
-    {
-        return Err(format!("there is no block `{unknown}`").into());
-    }
+    let mut blocks = library_named(&names)?;
+    blocks.retain(|block| !names.is_empty() || block.name() != "stage");
     println!("| block | instance | LUT | flip-flops | kept | simulated | RTL = netlist | seconds |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut is_good = true;
     for block in blocks {
-        let wanted = match names.is_empty() {
-            true => block.name() != "stage",
-            false => names.iter().any(|name| name == block.name()),
-        };
-        if wanted {
-            is_good &= row(&yosys, block.as_ref(), clocks)?;
-        }
+        is_good &= row(&yosys, block.as_ref(), clocks)?;
     }
     Ok(is_good)
 }

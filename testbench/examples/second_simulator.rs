@@ -7,7 +7,7 @@
 use std::process::ExitCode;
 
 use posicast_testbench::Error;
-use posicast_testbench::blocks::library;
+use posicast_testbench::blocks::library_named;
 use posicast_testbench::crosssim::{CrosssimOutcome, outputs, run};
 use wavecmp::diff::DiffVerdict;
 
@@ -30,20 +30,11 @@ fn compare() -> Result<bool, Error> {
         clocks = number.ok_or_else(|| Error::Option("--clocks needs a number".to_owned()))?;
         arguments.drain(..2);
     }
-    let blocks = library()?;
-    if let Some(unknown) = arguments
-        .iter()
-        .find(|name| !blocks.iter().any(|block| block.name() == *name))
-    {
-        return Err(Error::Option(format!("there is no block `{unknown}`")));
-    }
+    let blocks = library_named(&arguments)?;
     println!("| block | instance | outputs | clocks | Verilator = Icarus | after reset, nothing preset | seconds |");
     println!("|---|---|---|---|---|---|---|");
     let mut is_good = true;
     for block in blocks {
-        if !arguments.is_empty() && !arguments.iter().any(|name| name == block.name()) {
-            continue;
-        }
         let folder = tempfile::tempdir()
             .map_err(|cause| Error::Option(format!("no temporary folder for the waveforms: {cause}")))?;
         let outcome = run(block.as_ref(), clocks, 1, folder.path())?;

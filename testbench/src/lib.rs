@@ -49,6 +49,7 @@ pub mod recording;
 pub mod register_tests;
 pub mod replay;
 pub mod shard;
+mod sides;
 pub mod stage_bench;
 pub mod stage_run;
 pub mod stimuli;

@@ -13,7 +13,6 @@
 //! - An asynchronous clear counts as a synchronous one.
 //! - The netlist is read from its text, so a changed table is detected.
 
-use std::fmt::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -22,13 +21,11 @@ use posicast_system::scratch;
 
 use crate::Error;
 use crate::blocks::{self, Block, Sources};
-use crate::formal::{YOSYS, abc, asserted};
 use crate::lockstep::report::LockstepReport;
+use crate::sides::Sides;
 
 /// Length in clocks of the longest difference that is searched for: longer than a division.
 const SEARCHED_CLOCKS: u32 = 150;
-
-const COMPARING: &str = "comparing RTL and netlist";
 
 /// Whether two versions of a block are equivalent: its RTL and its netlist, or the block and a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,57 +104,20 @@ pub fn equivalent(
     folder: &Path,
     limit: Duration,
 ) -> Result<EquivalenceVerdict, Error> {
-    let write = |name: &str, text: &str| {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(Error::file(&path, "write"))
-    };
-    write("netlist.v", netlist)?;
-    write("cell_models.v", cell_models)?;
-    let mut rtl = String::new();
-    let (mut kept, mut cut) = (String::new(), String::new());
-    for module in &parts.logic {
-        let file = format!("{}.v", module.name);
-        write(&file, &module.text)?;
-        let _ = write!(rtl, " {file}");
-    }
-    for module in &parts.kept {
-        let file = format!("{}.v", module.name);
-        write(&file, &module.text)?;
-        let _ = writeln!(kept, "read_verilog -lib {file}");
-        let _ = write!(cut, " t:{}", module.name);
-    }
-    if !cut.is_empty() {
-        cut = format!("expose -evert{cut}\n");
-    }
-    let side = |files: &str, name: &str| {
-        format!(
-            "{kept}read_verilog {files}\nhierarchy -check -top {top}\nproc\nflatten\nasync2sync\nopt_clean\n{cut}rename -top {name}\n\
-             design -stash {name}\n"
-        )
-    };
+    let sides = Sides::new(top, &parts.kept, folder)?;
+    sides.write("netlist.v", netlist)?;
+    sides.write("cell_models.v", cell_models)?;
+    let rtl = sides.write_modules(&parts.logic)?.join(" ");
     let script = format!(
         "{}{}design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
          miter -equiv -flatten -make_assert gold gate miter\nhierarchy -top miter\nproc\nsetundef -undriven -zero\n\
          delete -output\nopt -fast\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
          write_aiger -I -B -zinit -no-startoffset miter.aig\n",
-        side(&rtl, "gold"),
-        side("netlist.v cell_models.v", "gate")
+        sides.side(&rtl, "gold"),
+        sides.side("netlist.v cell_models.v", "gate")
     );
-    write("miter.ys", &script)?;
-    let mut yosys = YOSYS.command_in(folder);
-    yosys.args(["-q", "miter.ys"]);
-    YOSYS.run(&mut yosys, "joining RTL and netlist")?;
-
-    let seconds = limit.as_secs().max(1);
-    let proof = format!("read_aiger miter.aig; fold; strash; scorr; pdr -T {seconds}");
-    if abc(folder, &proof, COMPARING)?.contains("Property proved") {
-        return Ok(EquivalenceVerdict::Equivalent);
-    }
-    let search = format!("read_aiger miter.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {seconds}");
-    let found = asserted(&abc(folder, &search, COMPARING)?).next();
-    Ok(found.map_or(EquivalenceVerdict::Unknown, |(_, clock)| {
-        EquivalenceVerdict::Different { clock }
-    }))
+    let doing = ["joining RTL and netlist", "comparing RTL and netlist"];
+    sides.decide(("miter", &script), SEARCHED_CLOCKS, limit, doing)
 }
 
 /// Result for a block.

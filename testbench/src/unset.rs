@@ -13,24 +13,22 @@
 //!   is any value, the same in both. That no word of a memory is shown before it was written is not proven here; the second simulator
 //!   begins with `x` in all of them.
 
-use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Duration;
 
+use posicast_hdl::emit::Module;
 use posicast_system::scratch;
 
 use crate::Error;
 use crate::blocks::Block;
 use crate::crosssim::without_initial_values;
-use crate::formal::{YOSYS, abc, asserted};
 use crate::netlist::{EquivalenceVerdict, NetlistParts};
+use crate::sides::Sides;
 
 /// Clocks of the reset: a synchroniser of two flip-flops has taken its input after two.
 pub const RESET_CLOCKS: u32 = 3;
 /// Length in clocks of the longest difference that is searched for.
 const SEARCHED_CLOCKS: u32 = 60;
-
-const COMPARING: &str = "comparing two copies after a reset";
 
 /// The reset of the first clocks, and the outputs afterwards. What is not connected here is any value.
 const AFTER_RESET: &str = "\
@@ -65,55 +63,19 @@ pub fn independent(
     folder: &Path,
     limit: Duration,
 ) -> Result<EquivalenceVerdict, Error> {
-    let write = |name: &str, text: &str| {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(Error::file(&path, "write"))
-    };
-    let (mut kept, mut cut) = (String::new(), String::new());
-    for module in &parts.kept {
-        let file = format!("{}.v", module.name);
-        write(&file, &module.text)?;
-        let _ = writeln!(kept, "read_verilog -lib {file}");
-        let _ = write!(cut, " t:{}", module.name);
-    }
-    if !cut.is_empty() {
-        cut = format!("expose -evert{cut}\n");
-    }
-    let mut logic = String::new();
-    for module in &parts.logic {
-        let file = format!("{}.v", module.name);
-        write(&file, &without_initial_values(module).text)?;
-        let _ = write!(logic, " {file}");
-    }
-    write("after_reset.v", AFTER_RESET)?;
-    let copy = |name: &str| {
-        format!(
-            "{kept}read_verilog{logic}\nhierarchy -check -top {top}\nproc\nflatten\nasync2sync\nopt_clean\n{cut}rename -top {name}\n\
-             design -stash {name}\n"
-        )
-    };
+    let sides = Sides::new(top, &parts.kept, folder)?;
+    sides.write("after_reset.v", AFTER_RESET)?;
+    let unset: Vec<Module> = parts.logic.iter().map(without_initial_values).collect();
+    let files = sides.write_modules(&unset)?.join(" ");
     // No pass may give an unset register a value, nor merge registers of the copies: therefore no `opt`.
     let script = format!(
         "{}{}design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
          miter -equiv -flatten gold gate miter\nread_verilog -formal after_reset.v\nhierarchy -top after_reset\nproc\nflatten\n\
          setundef -undriven -anyseq\ntechmap\ndffunmap\nabc -g AND -fast\nopt_clean\n\
          write_aiger -I -B -zinit -no-startoffset copies.aig\n",
-        copy("gold"),
-        copy("gate")
+        sides.side(&files, "gold"),
+        sides.side(&files, "gate")
     );
-    write("copies.ys", &script)?;
-    let mut yosys = YOSYS.command_in(folder);
-    yosys.args(["-q", "copies.ys"]);
-    YOSYS.run(&mut yosys, "joining two copies")?;
-
-    let seconds = limit.as_secs().max(1);
-    let proof = format!("read_aiger copies.aig; fold; strash; scorr; pdr -T {seconds}");
-    if abc(folder, &proof, COMPARING)?.contains("Property proved") {
-        return Ok(EquivalenceVerdict::Equivalent);
-    }
-    let search = format!("read_aiger copies.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {seconds}");
-    let found = asserted(&abc(folder, &search, COMPARING)?).next();
-    Ok(found.map_or(EquivalenceVerdict::Unknown, |(_, clock)| {
-        EquivalenceVerdict::Different { clock }
-    }))
+    let doing = ["joining two copies", "comparing two copies after a reset"];
+    sides.decide(("copies", &script), SEARCHED_CLOCKS, limit, doing)
 }

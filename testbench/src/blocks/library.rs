@@ -50,6 +50,22 @@ pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
     Ok(blocks)
 }
 
+/// Returns the blocks of the library that have one of these names, or all of them without names.
+///
+/// # Errors
+/// [`Error::Option`] for a name that no block has; as [`library`].
+pub fn library_named(names: &[String]) -> Result<Vec<Box<dyn Block>>, Error> {
+    let mut blocks = library()?;
+    let is_known = |name: &&String| blocks.iter().any(|block| block.name() == *name);
+    if let Some(unknown) = names.iter().find(|name| !is_known(name)) {
+        return Err(Error::Option(format!("there is no block `{unknown}`")));
+    }
+    if !names.is_empty() {
+        blocks.retain(|block| names.iter().any(|name| name == block.name()));
+    }
+    Ok(blocks)
+}
+
 /// The sizes of the library.
 ///
 /// # Errors

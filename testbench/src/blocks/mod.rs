@@ -56,7 +56,7 @@ pub use self::drive_command::DriveCommandBlock;
 pub use self::encoder_generator::EncoderGeneratorBlock;
 pub use self::error_table::ErrorTableBlock;
 pub use self::excitation::ExcitationBlock;
-pub use self::library::{library, library_sizes};
+pub use self::library::{library, library_named, library_sizes};
 pub use self::linear_scale::LinearScaleBlock;
 pub use self::linked_stage::{DenseLinkBlock, LinkedStageBlock};
 pub use self::part::{PartBlock, SmallPart};
