@@ -103,8 +103,7 @@ impl Filter {
         let (mut settled, mut before) = (0, 0.0);
         let kept = (0..length).map(|n| {
             let now = (n * self.factor) as f64;
-            while let Some((at, acceleration)) = edges.get(settled).filter(|(at, _)| *at < now - reach) {
-                let _ = at;
+            while let Some((_, acceleration)) = edges.get(settled).filter(|(at, _)| *at < now - reach) {
                 (settled, before) = (settled + 1, *acceleration);
             }
             let (mut value, mut level) = (before, before);

@@ -82,8 +82,8 @@ pub(super) struct AtThePorts {
 /// The bus of a component at its ports.
 #[derive(Debug, Clone)]
 struct Bus {
-    /// Address, read, write, byte enables, data.
-    inputs: [usize; 5],
+    /// Reset, address, read, write, byte enables, data.
+    inputs: [usize; 6],
     read_data: usize,
     /// Address of a read in the clock before.
     asked: Option<u64>,
@@ -102,12 +102,28 @@ impl AtThePorts {
             .enumerate()
             .filter(|(_, port)| port.width > 1 && port.name.starts_with(prefix));
         let bus = map.and_then(|map| {
-            let bus = ["address", "read", "write", "byteenable", "writedata"].map(|name| input(&format!("avs_{name}")));
-            let [Some(address), Some(read), Some(write), Some(bytes), Some(data)] = bus else {
+            let bus = [
+                "rst",
+                "avs_address",
+                "avs_read",
+                "avs_write",
+                "avs_byteenable",
+                "avs_writedata",
+            ]
+            .map(input);
+            let [
+                Some(reset),
+                Some(address),
+                Some(read),
+                Some(write),
+                Some(bytes),
+                Some(data),
+            ] = bus
+            else {
                 return None;
             };
             Some(Bus {
-                inputs: [address, read, write, bytes, data],
+                inputs: [reset, address, read, write, bytes, data],
                 read_data: output("avs_readdata")?,
                 asked: None,
                 written: HashSet::new(),
@@ -142,11 +158,11 @@ impl Reach for AtThePorts {
             *before = outputs[*at];
         }
         if let Some(bus) = &mut self.bus {
-            let [address, read, write, bytes, data] = bus.inputs.map(|at| inputs[at]);
+            let [reset, address, read, write, bytes, data] = bus.inputs.map(|at| inputs[at]);
             if let Some(asked) = bus.asked.filter(|_| outputs[bus.read_data] != 0) {
                 bus.read.insert(asked);
             }
-            bus.asked = (read != 0 && inputs[0] == 0).then_some(address);
+            bus.asked = (read != 0 && reset == 0).then_some(address);
             if write != 0 && bytes != 0 && data != 0 {
                 bus.written.insert(address);
             }
