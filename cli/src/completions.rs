@@ -1,8 +1,8 @@
 //! `posicast completions`: scripts with which a shell completes commands and options.
 
-use crate::failure::Failure;
 use crate::output;
 use clap_complete::Shell;
+use posicast_flow::Failure;
 
 /// A script that lets a shell complete posicast's commands and options, on standard output
 #[derive(clap::Args)]

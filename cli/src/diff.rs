@@ -1,7 +1,7 @@
 //! `posicast diff`: a door to `wavecmp`, with posicast's rules for the files that it writes.
 
-use crate::failure::Failure;
 use crate::output;
+use posicast_flow::Failure;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::SealedFiles;
 use std::error::Error;

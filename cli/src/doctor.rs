@@ -2,9 +2,10 @@
 
 mod tools;
 
-use crate::failure::Failure;
-use crate::output::{self, Table};
-use crate::style;
+use crate::output;
+use posicast_flow::Failure;
+use posicast_flow::style;
+use posicast_flow::text::Table;
 use posicast_system::tool::{self, Ended};
 use serde::Serialize;
 use std::path::Path;

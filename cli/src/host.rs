@@ -5,11 +5,11 @@ mod text;
 mod way;
 
 use self::way::Way;
-use crate::design::DesignReport;
-use crate::failure::Failure;
-use crate::machine;
-use crate::moves::PerAxis;
 use posicast_blocks::uart_bridge::BAUD;
+use posicast_flow::Failure;
+use posicast_flow::design::DesignReport;
+use posicast_flow::machine;
+use posicast_flow::moves::PerAxis;
 use posicast_host::{HostError, HostedStage, Line as AnyLine, LinkError, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::Machine;

@@ -1,26 +1,12 @@
 //! `posicast identify`: finds modes in a measured log, and writes a machine file with them.
 
-mod document;
-mod excitation;
-mod findings;
-mod log_flags;
-mod machine_file;
-mod pictures;
-mod text;
-
-use crate::failure::Failure;
-use crate::new::{KindFlags, MachineKind};
+use crate::new::KindFlags;
 use crate::output;
-use crate::plot;
-use crate::schema;
-use excitation::ExcitationFlags;
-use findings::Findings;
-use log_flags::{LogFlags, read};
-use machine_file::Written;
-use posicast_identify::recommend::Judgement;
-use posicast_system::output::OutputFiles;
-use posicast_testbench::wave::write_text;
-use std::path::{Path, PathBuf};
+use posicast_flow::Failure;
+use posicast_flow::compare::band;
+use posicast_flow::identify::{LogExcitation, LogOptions, Options, identify, positive, sweep};
+use posicast_identify::sweep::Sweep;
+use std::path::PathBuf;
 
 /// Modes from a measured log, with their uncertainty, shapers for them, and a machine file
 #[derive(clap::Args)]
@@ -59,101 +45,67 @@ pub(crate) struct Args {
     #[command(flatten)]
     log_flags: LogFlags,
     /// Jump of the acceleration by which shapers are judged, in m/s² or rad/s²
-    #[arg(long, value_name = "M/S2", default_value = "5", value_parser = excitation::positive)]
+    #[arg(long, value_name = "M/S2", default_value = "5", value_parser = positive)]
     acceleration: f64,
     /// Change of the frequencies in percent that a shaper must stand beside what the log leaves open
-    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = crate::compare::band, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = band, allow_negative_numbers = true)]
     margin: f64,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
     #[arg(long)]
     force: bool,
 }
 
+/// What describes the excitation of an accelerometer's log.
+#[derive(clap::Args)]
+struct ExcitationFlags {
+    /// Sweep of the resonance test: first and last frequency in Hz, Hz per second, mm/s² per Hz; and, where the log does not tell it, the
+    /// square wave beside it, in mm/s² and s (a period of 0: none). Without this, the log tells the sweep
+    #[arg(long, value_name = "START:END:RATE:ACCEL[:SWEEPING_ACCEL:SWEEPING_PERIOD]", value_parser = sweep)]
+    sweep: Option<Sweep>,
+    /// The excitation is not known: look for modes in the spectrum alone, as if it were even
+    #[arg(long, conflicts_with = "sweep")]
+    output_only: bool,
+    /// The log of an accelerometer is of a stop: look for modes in what rings after it
+    #[arg(long, conflicts_with_all = ["sweep", "output_only"])]
+    ring_down: bool,
+}
+
+/// What the log's file leaves open.
+#[derive(clap::Args)]
+struct LogFlags {
+    /// Names of the columns in their order, in the place of the header's, such as time_ms,accel_x_g,-; `-` for one that is not used
+    #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',', allow_hyphen_values = true)]
+    columns: Option<Vec<String>>,
+    /// Samples per second, for a log without times or with times that waver
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    rate: Option<f64>,
+    /// Direction of the accelerometer to be used, x, y or z or the name of its column; else the strongest
+    #[arg(long, value_name = "NAME")]
+    direction: Option<String>,
+}
+
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let mut outputs = OutputFiles::new(args.force);
-    outputs.input("the log", &args.log);
-    if let Some(machine) = &args.machine {
-        outputs.input("--machine", machine);
-    }
-    for (option, path) in [("-o", &args.output), ("--plot", &args.plot)] {
-        if let Some(path) = path {
-            let claimed = match option {
-                "-o" => outputs.claim_machine_file(option, path),
-                _ => outputs.claim(option, path),
-            };
-            claimed.map_err(Failure::because)?;
-        }
-    }
-    if let Some(path) = &args.plot {
-        plot::check_name("--plot", path)?;
-    }
-    output::one_document(&outputs, args.json)?;
-    let reading = read(&args.log, &args.log_flags)?;
-    let judgement = Judgement {
+    let options = Options {
+        log: args.log.clone(),
+        output: args.output.clone(),
+        machine: args.machine.clone(),
+        axis: args.axis.clone(),
+        kind: args.kind.kind(),
+        plot: args.plot.clone(),
+        excitation: LogExcitation {
+            sweep: args.excitation.sweep,
+            output_only: args.excitation.output_only,
+            ring_down: args.excitation.ring_down,
+        },
+        log_options: LogOptions {
+            columns: args.log_flags.columns.clone(),
+            rate_hz: args.log_flags.rate,
+            direction: args.log_flags.direction.clone(),
+        },
         acceleration: args.acceleration,
-        margin: args.margin / 100.0,
-        ..Judgement::default()
+        margin_percent: args.margin,
+        force: args.force,
+        form: output::form(args.json),
     };
-    let mut findings =
-        Findings::of(&reading, &args.excitation, &judgement).map_err(|error| error.in_file(&args.log))?;
-    let machine = match &args.output {
-        Some(path) if !findings.modes.is_empty() => Some((path, machine_text(args, path, &findings)?)),
-        _ => None,
-    };
-    findings.unit = match &machine {
-        Some((_, machine)) => machine.unit,
-        None => args.kind.kind().unwrap_or(findings.kind()).unit(),
-    };
-    if let Some(path) = &args.plot {
-        write_text(path, &plot::svg(&pictures::panels(&findings, &reading.log))?).map_err(Failure::because)?;
-    }
-    if let Some((path, machine)) = &machine {
-        output::write_text(path, machine.text.as_str())?;
-    }
-    if args.json {
-        output::print_json(&document::Document::new(&findings))?;
-    } else {
-        let written = machine.as_ref().map(|(path, machine)| (path.as_path(), machine));
-        output::print_beside(&outputs, &text::text(&args.log, &findings, written))?;
-    }
-    match findings.modes.is_empty() {
-        false => Ok(()),
-        true => Err(none_found(&args.log, args.output.is_some())),
-    }
-}
-
-/// Writes a machine file with the modes of a log, found with default settings.
-pub(crate) fn new_machine(
-    log: &Path,
-    file: &Path,
-    kind: Option<MachineKind>,
-    outputs: &OutputFiles,
-) -> Result<(), Failure> {
-    const OPTIONS: &str = "`posicast identify LOG -o FILE` has the options --columns, --rate and --direction";
-    let flags = ExcitationFlags::default();
-    let reading = read(log, &LogFlags::default()).map_err(|failure| failure.or_help(OPTIONS))?;
-    let mut findings = Findings::of(&reading, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
-    if findings.modes.is_empty() {
-        return Err(none_found(log, true));
-    }
-    let machine = machine_file::from_template(kind.unwrap_or(findings.kind()), file, None, &findings)?;
-    findings.unit = machine.unit;
-    output::write_text(file, machine.text.as_str())?;
-    let said = text::text(log, &findings, Some((file, &machine)));
-    output::print_beside(outputs, &format!("{said}{}\n", schema::hint(file)))
-}
-
-fn none_found(log: &Path, wanted: bool) -> Failure {
-    let but = if wanted { ", and no machine file written" } else { "" };
-    Failure::Check(format!("{}: no mode was found{but}", log.display()))
-}
-
-fn machine_text(args: &Args, path: &Path, findings: &Findings) -> Result<Written, Failure> {
-    match &args.machine {
-        Some(machine) => machine_file::into_existing(machine, args.axis.as_deref(), findings),
-        None => {
-            let kind = args.kind.kind().unwrap_or(findings.kind());
-            machine_file::from_template(kind, path, args.axis.as_deref(), findings)
-        }
-    }
+    output::show(identify(&options)?, args.json)
 }

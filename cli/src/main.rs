@@ -1,51 +1,33 @@
 //! The `posicast` command: from a machine's modes to verified input-shaper hardware.
 //!
-//! There is one file per subcommand. This crate reads arguments, calls the other crates in order and prints; it
-//! computes nothing itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was
+//! There is one file per subcommand. This crate reads arguments, calls the steps of `posicast-flow` and prints; it computes nothing
+//! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was
 //! asked for is missing; 130 and 143 after SIGINT and SIGTERM, with nothing left behind.
 
-mod allowance;
-mod bench;
-mod blocks;
 mod campaign;
-mod command;
-mod compare;
+mod choice;
 mod completions;
 mod contour;
-mod control;
 mod design;
 mod diff;
 mod doctor;
-mod driver;
 mod export;
 mod failure;
 mod generate;
-mod guards;
-mod hal;
-mod hardware;
 mod host;
 mod identify;
-mod input;
-mod kit;
-mod machine;
 mod man;
 mod moves;
 mod new;
 mod output;
-mod plot;
-mod progress;
-mod replay;
 mod reproduce;
 mod run;
 mod schema;
 mod simulate;
-mod sopc;
 mod style;
 mod synth;
-mod tolerance;
+mod terminal;
 mod verify;
-mod verilog;
-mod warning;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use posicast_system::interrupt;
@@ -63,7 +45,7 @@ Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a need
 
 /// From a machine's modes to verified input-shaper hardware
 #[derive(Parser)]
-#[command(name = "posicast", version = env!("POSICAST_VERSION"), after_help = EXAMPLES)]
+#[command(name = "posicast", version = posicast_flow::VERSION, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -130,6 +112,6 @@ fn main() -> ExitCode {
     interrupt::done();
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => failure::report(&failure),
     }
 }

@@ -3,11 +3,12 @@
 //! The synopsis has the values of the options, and what follows the options in the help is in sections of its own:
 //! the examples, and the exit status, which every page has.
 
-use crate::failure::Failure;
 use crate::output;
 use clap::Arg;
 use clap_mangen::Man;
 use clap_mangen::roff::{Inline, Roff, bold, italic, roman};
+use posicast_flow::Failure;
+use posicast_flow::text::write_text;
 use posicast_system::output::OutputFiles;
 use std::path::PathBuf;
 
@@ -47,7 +48,7 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
         written.push((path, text));
     }
     for (path, text) in &written {
-        output::write_text(path, text.as_str())?;
+        write_text(path, text.as_str())?;
     }
     output::print(&format!(
         "{} pages written to {}\n",
@@ -65,7 +66,7 @@ const STATUS: &str =
 const SIGNALS: &str = "130 or 143 after SIGINT or SIGTERM, with nothing left behind.";
 
 fn page_text(command: &clap::Command) -> std::io::Result<String> {
-    let man = Man::new(command.clone()).source(concat!("posicast ", env!("POSICAST_VERSION")));
+    let man = Man::new(command.clone()).source(format!("posicast {}", posicast_flow::VERSION));
     let mut synopsis = Roff::new();
     synopsis.control("SH", ["SYNOPSIS"]).text(usage(command));
     let mut parts = vec![

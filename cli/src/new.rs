@@ -4,18 +4,18 @@
 //! so that their comments stay.
 
 mod questions;
-mod template;
 
-use crate::failure::Failure;
-use crate::identify;
-use crate::output::{self, shell_word};
+use crate::output;
 use crate::schema;
+use posicast_flow::Failure;
+use posicast_flow::identify::new_machine;
+use posicast_flow::template::{MachineDraft, MachineKind, to_measure};
+use posicast_flow::text::{shell_word, write_text};
 use posicast_system::output::{OutputError, OutputFiles};
 use questions::Questions;
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
 use std::path::PathBuf;
-pub(crate) use template::{Draft, MachineKind, to_measure};
 
 /// Write a commented machine file for a kind of machine, to start from
 #[derive(clap::Args)]
@@ -75,16 +75,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = claim(&args.file, args.force)?;
     if let Some(log) = &args.from_log {
         outputs.input("--from-log", log);
-        return identify::new_machine(log, &args.file, args.kind.kind(), &outputs);
+        let said = new_machine(log, &args.file, args.kind.kind())?;
+        return output::print_beside(&outputs, &format!("{said}{}\n", schema::hint(&args.file)));
     }
     let asks = stdin().is_terminal() && stderr().is_terminal();
     let draft = match args.kind.kind() {
         // Standard error is not locked, so that a signal that ends the questions can be reported there.
         None if asks => Questions::new(stdin().lock(), stderr()).draft(&args.file)?,
-        kind => Draft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
+        kind => MachineDraft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
     };
     let (file, text) = (shell_word(&args.file), draft.text());
-    output::write_text(&args.file, text)?;
+    write_text(&args.file, text)?;
     let said = format!(
         "{} written: machine {}, {}\n\
          next: {}`posicast design {file}`, then `posicast run {file}`\n\

@@ -2,12 +2,14 @@
 
 mod beyond;
 
-use crate::failure::Failure;
-use crate::output::{self, Table};
-use crate::plot::{self, Curve, Panel};
-use crate::progress;
-use crate::style;
+use crate::output;
+use crate::terminal::Terminal;
 use clap::builder::PossibleValuesParser;
+use posicast_flow::Failure;
+use posicast_flow::Observer;
+use posicast_flow::plot::{self, Curve, Panel};
+use posicast_flow::style;
+use posicast_flow::text::Table;
 use posicast_papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
@@ -54,18 +56,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
                 .map_err(Failure::because)?;
         }
     }
-    let progress = progress::bar("reproducing", papers.len() as u64);
+    let progress = Terminal.begin("reproducing", Some(papers.len() as u64));
     let mut tables = Vec::with_capacity(papers.len());
     for paper in papers {
-        progress.set_message(paper.name());
+        progress.rename(paper.name());
         tables.push((paper, paper.reproduce().map_err(|e| fault(paper, &e))?));
         if let Some(folder) = &args.plot {
             let figures = paper.figures().map_err(|e| fault(paper, &e))?;
             draw(folder, paper, figures)?;
         }
-        progress.inc(1);
+        progress.advance(1);
     }
-    progress.finish_and_clear();
+    drop(progress);
     let counts = Counts::of(&tables);
     if args.json {
         output::print_json(&Document::new(&tables, counts))?;

@@ -1,7 +1,8 @@
 //! `posicast schema`: writes the JSON Schema of the machine file, for editors, or that of a run's report, for programs.
 
-use crate::failure::Failure;
-use crate::output::{self, shell_word};
+use crate::output;
+use posicast_flow::Failure;
+use posicast_flow::text::{json_text, shell_word, write_text};
 use posicast_machine::machine_file;
 use posicast_system::output::OutputFiles;
 use std::path::{Path, PathBuf};
@@ -42,7 +43,7 @@ pub(crate) fn hint(machine: &Path) -> String {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let text = match args.report {
         true => REPORT.to_owned(),
-        false => output::json_text(&machine_file::schema())?,
+        false => json_text(&machine_file::schema())?,
     };
     let Some(path) = &args.output else {
         return output::print(&text);
@@ -50,5 +51,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     OutputFiles::new(args.force)
         .claim("--output", path)
         .map_err(Failure::because)?;
-    output::write_text(path, &text)
+    write_text(path, &text)
 }

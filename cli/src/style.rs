@@ -1,17 +1,11 @@
-//! Colours of text on a terminal: of verdicts, and of the word with which a message begins.
+//! When colours are used: on a terminal, or as `--color` says.
 //!
 //! Text carries its colours as escape sequences; [`print_styled`](crate::output::print_styled) and [`say`](crate::output::say) leave them out
 //! where nobody sees them: in a pipe or a file, with `NO_COLOR`, on a terminal that has none, or by `--color`.
 
 use anstream::ColorChoice;
-use anstyle::{AnsiColor, Style};
 use clap::ValueEnum;
 use std::ffi::OsString;
-
-const GREEN: Style = AnsiColor::Green.on_default();
-const BOLD_GREEN: Style = GREEN.bold();
-const RED: Style = AnsiColor::Red.on_default().bold();
-const YELLOW: Style = AnsiColor::Yellow.on_default();
 
 /// Value of `--color`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -52,48 +46,4 @@ pub(crate) fn of_arguments(arguments: impl Iterator<Item = OsString>) -> clap::C
         .or(joined)
         .and_then(|value| clap::ColorChoice::from_str(value, false).ok());
     value.unwrap_or_default()
-}
-
-/// Style for what holds.
-pub(crate) fn good(text: &str) -> String {
-    styled(GREEN, text)
-}
-
-/// Style for a passed verdict.
-pub(crate) fn passed(text: &str) -> String {
-    styled(BOLD_GREEN, text)
-}
-
-/// Style for what does not hold.
-pub(crate) fn bad(text: &str) -> String {
-    styled(RED, text)
-}
-
-/// Style for what is doubtful.
-pub(crate) fn doubtful(text: &str) -> String {
-    styled(YELLOW, text)
-}
-
-/// Words with which a line of a message or verdict may begin, with their colours.
-const BEGINNINGS: [(&str, Style); 7] = [
-    ("warning:", YELLOW),
-    ("error:", RED),
-    ("match:", BOLD_GREEN),
-    ("MISMATCH", RED),
-    ("PASS:", BOLD_GREEN),
-    ("FAIL:", RED),
-    ("NO VERDICT", YELLOW),
-];
-
-/// A line with its first word coloured, if that is one of [`BEGINNINGS`].
-pub(crate) fn message(line: &str) -> String {
-    let known = BEGINNINGS.iter().find(|(beginning, _)| line.starts_with(beginning));
-    known.map_or_else(
-        || line.to_owned(),
-        |(beginning, style)| styled(*style, beginning) + &line[beginning.len()..],
-    )
-}
-
-fn styled(style: Style, text: &str) -> String {
-    format!("{style}{text}{style:#}")
 }

@@ -1,11 +1,12 @@
 //! What `posicast host` lets a stage do.
 
 use super::{Port, TraceArgs, axis_of, failure};
-use crate::design::DesignReport;
-use crate::failure::Failure;
-use crate::machine;
-use crate::moves::PerAxis;
 use crate::output;
+use posicast_flow::Failure;
+use posicast_flow::design::DesignReport;
+use posicast_flow::machine;
+use posicast_flow::moves::PerAxis;
+use posicast_flow::text::{shell_word, write_text};
 use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
 use posicast_machine::machine_file::Machine;
 use posicast_system::output::OutputFiles;
@@ -171,10 +172,10 @@ fn write(args: &TraceArgs, trace: &RecordedTrace) -> Result<(), Failure> {
             String::from_utf8_lossy(&bytes).into_owned()
         }
     };
-    output::write_text(&args.output, text.as_str())?;
+    write_text(&args.output, text.as_str())?;
     let names: Vec<&str> = trace.signals.iter().map(|signal| signal.name.as_str()).collect();
     let next = match args.shake.is_some() && !is_vcd(&args.output)? {
-        true => format!("next: posicast identify {}\n", output::shell_word(&args.output)),
+        true => format!("next: posicast identify {}\n", shell_word(&args.output)),
         false => String::new(),
     };
     output::print_beside(

@@ -1,9 +1,10 @@
 //! The state of a stage, for people and for programs.
 
 use super::{Port, failure};
-use crate::failure::Failure;
-use crate::output::{self, Table, UnitDocument};
+use crate::output;
 use posicast_blocks::axis::SupervisorState;
+use posicast_flow::Failure;
+use posicast_flow::text::{Table, UnitDocument};
 use posicast_host::{AxisStatus, causes};
 use posicast_machine::machine_file::{AxisSection, Machine};
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! The ways to a stage, as the first argument of `posicast host` names them.
 
-use crate::failure::Failure;
+use posicast_flow::Failure;
 #[cfg(target_os = "linux")]
 use posicast_host::SpiLine;
 use posicast_host::{Line, Link, LinkError, LinkOptions, UdpLine};

@@ -3,10 +3,9 @@
 //! Every answer is put into the file, and the file checked: an answer that does not fit is reported at once, and the
 //! question is asked again.
 
-use super::template::{At, Draft, MachineKind, quoted};
-use crate::design::DesignReport;
-use crate::failure::Failure;
-use crate::hardware;
+use posicast_flow::Failure;
+use posicast_flow::design::DesignReport;
+use posicast_flow::template::{At, MachineDraft, MachineKind, quoted};
 use std::io::{BufRead, Read, Write};
 use std::path::Path;
 
@@ -35,13 +34,13 @@ impl<R: BufRead, W: Write> Questions<R, W> {
     }
 
     /// Asks all questions, and makes the file that `path` will hold.
-    pub(crate) fn draft(&mut self, path: &Path) -> Result<Draft, Failure> {
+    pub(crate) fn draft(&mut self, path: &Path) -> Result<MachineDraft, Failure> {
         self.say("Enter takes the value in brackets; all can be changed in the file later.\n")?;
         let kinds = MachineKind::ALL.map(|(_, name)| name);
         let kind = self.word("Kind of machine", &kinds, "gantry")?;
         let kind = MachineKind::ALL.into_iter().find(|(_, name)| *name == kind);
         let kind = kind.map_or(MachineKind::Gantry, |(kind, _)| kind);
-        let mut draft = Draft::new(kind, path);
+        let mut draft = MachineDraft::new(kind, path);
         let name = draft.name().to_owned();
         draft = self.change(&draft, "Name of the machine", &name, |draft, answer| {
             Ok(draft.with(At::Top, "name", &quoted(answer)))
@@ -78,11 +77,11 @@ impl<R: BufRead, W: Write> Questions<R, W> {
     /// Asks until an answer fits, and returns the file with it.
     fn change(
         &mut self,
-        draft: &Draft,
+        draft: &MachineDraft,
         question: &str,
         default: &str,
-        put: impl Fn(&Draft, &str) -> Result<Draft, String>,
-    ) -> Result<Draft, Failure> {
+        put: impl Fn(&MachineDraft, &str) -> Result<MachineDraft, String>,
+    ) -> Result<MachineDraft, Failure> {
         loop {
             let answer = self.ask(question, default)?;
             if answer == default {
@@ -142,7 +141,7 @@ fn number(answer: &str) -> Result<f64, String> {
 }
 
 /// Checks that the file can be built; the error has the problems with their remedies.
-fn fits(draft: &Draft) -> Result<(), String> {
+fn fits(draft: &MachineDraft) -> Result<(), String> {
     let machine = draft.machine().map_err(|error| {
         let lines = error.problems().iter().map(|problem| {
             let cause = problem.cause.to_string();
@@ -154,8 +153,7 @@ fn fits(draft: &Draft) -> Result<(), String> {
         lines.collect::<Vec<_>>().join("\n  ")
     })?;
     let path = Path::new("answer");
-    let built = DesignReport::new(&machine, path)
-        .and_then(|report| hardware::shapers(&machine, &report.hardware, path).map(drop));
+    let built = DesignReport::new(&machine, path).and_then(|report| report.check_shapers());
     built.map_err(|failure| match failure {
         Failure::Input(report) | Failure::MissingTool(report) => report.to_string(),
         Failure::Check(line) => line,
@@ -166,7 +164,7 @@ fn fits(draft: &Draft) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    fn answered(answers: &str) -> (Draft, String) {
+    fn answered(answers: &str) -> (MachineDraft, String) {
         let mut terminal = Vec::new();
         let draft = Questions::new(answers.as_bytes(), &mut terminal).draft(Path::new("mill.toml"));
         let draft = draft.map_err(|_| "failed").unwrap();
@@ -192,7 +190,7 @@ mod tests {
         let (draft, _) = answered(&"\n".repeat(12));
         assert_eq!(
             draft.text(),
-            Draft::new(MachineKind::Gantry, Path::new("mill.toml")).text()
+            MachineDraft::new(MachineKind::Gantry, Path::new("mill.toml")).text()
         );
     }
 

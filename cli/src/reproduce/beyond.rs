@@ -1,8 +1,10 @@
 //! `posicast reproduce --beyond`: the paper's shaper, the shortest closed form and the shortest there is, side by side.
 
-use crate::failure::Failure;
-use crate::output::{self, Table};
-use crate::progress;
+use crate::output;
+use crate::terminal::Terminal;
+use posicast_flow::Failure;
+use posicast_flow::Observer;
+use posicast_flow::text::Table;
 use posicast_papers::{BeyondRow, beyond};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
@@ -12,9 +14,9 @@ use serde::Serialize;
 /// # Errors
 /// A check that failed: an example cannot be designed, or what is found is not proven to be the shortest.
 pub(super) fn run(json: bool) -> Result<(), Failure> {
-    let progress = progress::bar("designing", 1);
+    let progress = Terminal.begin("designing", None);
     let rows = beyond().map_err(|error| Failure::Check(format!("an example cannot be designed: {error}")))?;
-    progress.finish_and_clear();
+    drop(progress);
     if json {
         let rows = rows.iter().map(RowDocument::new).collect();
         output::print_json(&Document { beyond: rows })?;

@@ -121,7 +121,7 @@ fn cli_a_file_of_its_own_is_written_again_until_somebody_edits_it() {
 #[test]
 fn no_command_of_ours_appends_to_a_configuration() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut pages = rust_sources(&[&MODEL[..], &["cli", "identify", "host", "synth"]].concat());
+    let mut pages = rust_sources(&[&MODEL[..], &["cli", "flow", "identify", "host", "synth"]].concat());
     for folder in ["", "docs", "docs/tutorial", "docs/examples", "scripts"] {
         let entries = fs::read_dir(root.join(folder))
             .unwrap()

@@ -1,0 +1,78 @@
+//! `posicast campaign coverage`: what the lock step reaches of each block, a block a unit.
+
+use super::{UnitOutcome, Units, figures, only_blocks, row_name};
+use crate::bench;
+use crate::failure::Failure;
+use posicast_testbench::blocks::Block;
+use posicast_testbench::coverage::explanation::{self, Explanation};
+use posicast_testbench::coverage::{self, CLOCKS, Share};
+use posicast_testbench::shard::MachineFileHash;
+use posicast_testbench::verilator;
+use serde_json::{Map, Value};
+
+/// Measure which lines, nets and bins of the blocks the lock step reaches.
+#[derive(Debug, Clone)]
+pub struct CoverageOptions {
+    /// Only the blocks of this name; may be given several times.
+    pub blocks: Vec<String>,
+}
+
+struct Coverage {
+    blocks: Vec<Box<dyn Block>>,
+    explanations: Vec<Explanation>,
+}
+
+pub(super) fn of(options: &CoverageOptions) -> Result<impl Units + use<>, Failure> {
+    let mut blocks = coverage::subjects().map_err(bench::failure)?;
+    only_blocks(&mut blocks, &options.blocks, |block| block.name())?;
+    Ok(Coverage {
+        blocks,
+        explanations: explanation::all().map_err(bench::failure)?,
+    })
+}
+
+impl Coverage {
+    fn block(&self, unit: u64) -> &dyn Block {
+        self.blocks[unit as usize].as_ref()
+    }
+}
+
+impl Units for Coverage {
+    fn kind(&self) -> &'static str {
+        "coverage"
+    }
+
+    fn machine(&self) -> Option<MachineFileHash> {
+        None
+    }
+
+    fn options(&self) -> Map<String, Value> {
+        figures([("clocks", CLOCKS.into()), ("blocks", self.names())])
+    }
+
+    fn count(&self) -> u64 {
+        self.blocks.len() as u64
+    }
+
+    fn name(&self, unit: u64) -> String {
+        row_name(self.block(unit))
+    }
+
+    fn require_tools(&self) -> Result<(), Failure> {
+        bench::require_installed(verilator::missing_tools())
+    }
+
+    /// The explanations of what is not reached are those of the ladder's seed, whatever that of the campaign is.
+    fn run(&self, unit: u64, _seed: u64) -> Result<UnitOutcome, Failure> {
+        let measured = coverage::measure(self.block(unit), CLOCKS).map_err(bench::failure)?;
+        let of = |share: &Share| format!("{} of {}", share.reached, share.all);
+        Ok(UnitOutcome {
+            figures: figures([
+                ("lines", of(&measured.lines)),
+                ("toggles", of(&measured.toggles)),
+                ("bins", of(&measured.bins)),
+            ]),
+            failure: measured.problems(&self.explanations).into_iter().next(),
+        })
+    }
+}

@@ -1,0 +1,189 @@
+//! `posicast design --compare`: every kind of shaper on the axes of one machine.
+
+use crate::Outcome;
+use crate::failure::Failure;
+use crate::machine;
+use crate::text::{Table, percent};
+use posicast_machine::compare::{Candidate, KindComparison, compare as compare_kinds};
+use posicast_machine::machine_file::Machine;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Parses a percentage by which frequencies may be off.
+///
+/// # Errors
+/// What is allowed, for any other text.
+pub fn band(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(percent) if (0.0..=90.0).contains(&percent) => Ok(percent),
+        _ => Err("the modes' frequency error in percent, 0 to 90".into()),
+    }
+}
+
+/// Compares the kinds of shaper on the axes of a machine file, for modes whose frequencies are off by up to `band_percent`.
+///
+/// # Errors
+/// [`Failure`] for a machine file that cannot be read.
+pub fn compare(path: &Path, band_percent: f64) -> Result<Outcome<Document>, Failure> {
+    let machine = machine::read(path)?.machine;
+    let comparisons = compare_kinds(&machine, band_percent / 100.0);
+    let text = text(&machine, band_percent, &comparisons);
+    Ok(Outcome::passed(
+        Document::new(&machine, band_percent, &comparisons),
+        text,
+    ))
+}
+
+fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) -> String {
+    let mut text = format!("{}: shapers for modes off by up to ±{band_percent} %\n", machine.name);
+    for comparison in comparisons {
+        let _ = writeln!(text, "\naxis {}{}", comparison.axis, tolerance(comparison));
+        let mut table = Table::new(&[
+            "",
+            "kind",
+            ">duration ms",
+            ">worst residual %",
+            ">least there %",
+            ">taps",
+            ">partial sums",
+            ">delay ms",
+            "",
+        ]);
+        for c in &comparison.candidates {
+            table.row([
+                if c.pareto { "*" } else { "" }.into(),
+                c.kind.clone(),
+                format!("{:.4}", 1e3 * c.duration_s),
+                percent(c.worst_residual),
+                c.least_residual.map_or_else(String::new, percent),
+                c.taps.to_string(),
+                format!("{:.3} … {:.3}", c.partial_sums.min, c.partial_sums.max),
+                format!("{:.4}", 1e3 * c.delay_s),
+                remark(c).into(),
+            ]);
+        }
+        text += &table.text("  ");
+        for missing in &comparison.missing {
+            let _ = writeln!(text, "  no {}: {}", missing.kind, missing.reason);
+        }
+    }
+    text + "\n* no other kind is as good in duration, worst residual and taps, and better in one of them\n\
+            optimal: designed for this band and these tolerances, without negative amplitudes and with a step within −1 … 1\n\
+            least there: what the best shaper without negative amplitudes leaves in the duration of a smooth kind\n"
+}
+
+/// The tolerance of an axis's modes, by which its kinds are judged.
+fn tolerance(comparison: &KindComparison) -> String {
+    let texts: Vec<String> = comparison
+        .tolerances
+        .iter()
+        .map(|tolerance| percent(*tolerance))
+        .collect();
+    match texts.split_first() {
+        None => String::new(),
+        Some((first, others)) if others.iter().all(|other| other == first) => format!(", tolerance {first} %"),
+        Some(_) => format!(", tolerances {} %", texts.join(", ")),
+    }
+}
+
+fn remark(candidate: &Candidate) -> &'static str {
+    match (candidate.in_file, candidate.shortest) {
+        (true, true) => "as in the file; the shortest that keeps the tolerance",
+        (true, false) => "as in the file",
+        (false, true) => "the shortest that keeps the tolerance",
+        (false, false) => "",
+    }
+}
+
+/// `design --compare --json`, and `kinds` in `report.json`.
+#[derive(Serialize)]
+pub struct Document {
+    name: String,
+    band_percent: f64,
+    axes: Vec<AxisDocument>,
+}
+
+#[derive(Serialize)]
+struct AxisDocument {
+    name: String,
+    tolerances: Vec<f64>,
+    kinds: Vec<KindDocument>,
+    missing: Vec<MissingDocument>,
+}
+
+#[derive(Serialize)]
+struct KindDocument {
+    kind: String,
+    in_file: bool,
+    pareto: bool,
+    keeps_tolerance: bool,
+    shortest: bool,
+    duration_s: f64,
+    worst_residual: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    least_residual: Option<f64>,
+    taps: usize,
+    partial_sum_min: f64,
+    partial_sum_max: f64,
+    delay_s: f64,
+}
+
+#[derive(Serialize)]
+struct MissingDocument {
+    kind: String,
+    reason: String,
+}
+
+impl Document {
+    pub(crate) fn new(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) -> Self {
+        let axes = comparisons.iter().map(|comparison| AxisDocument {
+            name: comparison.axis.clone(),
+            tolerances: comparison.tolerances.clone(),
+            kinds: comparison
+                .candidates
+                .iter()
+                .map(|c| KindDocument {
+                    kind: c.kind.clone(),
+                    in_file: c.in_file,
+                    pareto: c.pareto,
+                    keeps_tolerance: c.keeps_tolerance,
+                    shortest: c.shortest,
+                    duration_s: c.duration_s,
+                    worst_residual: c.worst_residual,
+                    least_residual: c.least_residual,
+                    taps: c.taps,
+                    partial_sum_min: c.partial_sums.min,
+                    partial_sum_max: c.partial_sums.max,
+                    delay_s: c.delay_s,
+                })
+                .collect(),
+            missing: comparison
+                .missing
+                .iter()
+                .map(|m| MissingDocument {
+                    kind: m.kind.clone(),
+                    reason: m.reason.clone(),
+                })
+                .collect(),
+        });
+        Self {
+            name: machine.name.clone(),
+            band_percent,
+            axes: axes.collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_band_is_a_percentage() {
+        assert_eq!(band("7.5"), Ok(7.5));
+        for wrong in ["-1", "91", "nan", "inf", "wide", ""] {
+            assert!(band(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,565 @@
+//! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
+
+mod certificate;
+mod delay;
+mod document;
+mod error_table;
+mod family;
+mod front;
+mod given_move;
+mod sensitivity;
+mod together;
+
+use crate::Outcome;
+use crate::control::{self, AxisControl};
+use crate::failure::Failure;
+use crate::files::{ResultForm, one_document};
+use crate::guards;
+use crate::hardware;
+use crate::machine;
+use crate::moves::PerAxis;
+use crate::observer::Observer;
+use crate::plot;
+use crate::sopc;
+use crate::text::{Table, UnitDocument, percent};
+use crate::tolerance::beyond_tolerance;
+use posicast_machine::hardware::{Hardware, HardwareError};
+use posicast_machine::machine_file::{AxisSection, DriveMode, Machine};
+use posicast_machine::plan::{AxisTables, MachineDesign, ModeFigures, design_machine};
+use posicast_shaper::analysis::INSENSITIVITY_LIMIT;
+use posicast_shaper::design::ratios::Class;
+use posicast_shaper::design::{ConvolutionFigures, Findings, convolution_figures};
+use posicast_shaper::mode::Mode;
+use posicast_shaper::unit::trimmed;
+use posicast_system::output::OutputFiles;
+use posicast_testbench::wave::write_text;
+use posicast_testbench::wording::counted;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use certificate::CertificateReport;
+use delay::{DelayDocument, StageDocument};
+pub use document::Document;
+use document::{
+    AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, MechanicsDocument, ModeDocument,
+    QuantisedDocument, ResidualDocument, SolutionDocument, TapDocument,
+};
+use error_table::ErrorTableReport;
+use family::FamilyReport;
+use front::FrontReport;
+use given_move::MoveReport;
+pub(crate) use sensitivity::sensitivity_panels;
+use together::TogetherReport;
+
+/// What to design, and what to show of it.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Machine file.
+    pub machine: PathBuf,
+    /// The SVG file into which the sensitivity curves are drawn.
+    pub plot: Option<PathBuf>,
+    /// Whether a file that posicast did not write is replaced; never one that is read.
+    pub force: bool,
+    /// Whether what the integer taps of every axis leave at most is certified, over the whole bands of its modes.
+    pub certify: bool,
+    /// Whether it is shown what more duration buys an optimal shaper.
+    pub front: bool,
+    /// Distance of a move, in the axis's unit, which is compared with one whose jerk time is a period of a mode.
+    pub distance: Option<PerAxis>,
+    /// What the front does with the document.
+    pub form: ResultForm,
+}
+
+/// Designs the shapers of a machine.
+///
+/// # Errors
+/// [`Failure`] for what cannot be read, designed or written.
+pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
+    let machine = machine::read(&options.machine)?.machine;
+    let mut outputs = OutputFiles::new(options.force);
+    outputs.input("the machine file", &options.machine);
+    if let Some(path) = &options.plot {
+        outputs.claim("--plot", path).map_err(Failure::because)?;
+        plot::check_name("--plot", path)?;
+    }
+    one_document(&outputs, options.form)?;
+    // A board that `generate` would refuse is reported here too.
+    sopc::board(&machine, &options.machine)?;
+    let mut report = DesignReport::new(&machine, &options.machine)?;
+    report.certify = options.certify;
+    report.warn(observer);
+    let fronts = match options.front {
+        true => front::of_axes(&report, observer)?,
+        false => Vec::new(),
+    };
+    let moves = match &options.distance {
+        Some(distance) => given_move::of_axes(&report, distance)?,
+        None => Vec::new(),
+    };
+    if let Some(path) = &options.plot {
+        let mut panels = sensitivity_panels(&machine, &report.design);
+        panels.extend(report.family_panels());
+        panels.extend(fronts.iter().flat_map(|front| front.panels(&machine.name)));
+        panels.extend(report.controllers.iter().flatten().map(AxisControl::nyquist));
+        write_text(path, &plot::svg(&panels)?).map_err(Failure::because)?;
+    }
+    let mut document = report.json();
+    document.fronts = fronts.iter().map(FrontReport::json).collect();
+    document.moves = moves.iter().map(MoveReport::json).collect();
+    let fronts: String = fronts.iter().map(FrontReport::text).collect();
+    let moves: String = moves.iter().map(MoveReport::text).collect();
+    Ok(Outcome::passed(document, report.text() + &fronts + &moves).beside(&outputs))
+}
+
+/// The design of a machine with its figures at every mode.
+pub struct DesignReport<'a> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// The shapers of its axes.
+    pub design: MachineDesign,
+    /// The hardware that is built for it.
+    pub hardware: Hardware<'a>,
+    pub(crate) controllers: Vec<Option<AxisControl>>,
+    /// Whether every axis is certified, and not just those of `optimal`.
+    certify: bool,
+    /// The machine file, or the folder that contains it.
+    path: &'a Path,
+}
+
+impl<'a> DesignReport<'a> {
+    /// Designs the shapers of `machine`, which the file at `path` describes.
+    ///
+    /// # Errors
+    /// [`Failure`] with the key of the file that is to blame.
+    pub fn new(machine: &'a Machine, path: &'a Path) -> Result<Self, Failure> {
+        let design = design_machine(machine).map_err(|error| machine::of_design(machine, &error, path))?;
+        let hardware = Hardware::of(machine, &design).map_err(|error| machine::of_hardware(&error, path))?;
+        let controllers = control::of_machine(machine, &hardware);
+        Ok(Self {
+            machine,
+            design,
+            hardware,
+            controllers,
+            certify: false,
+            path,
+        })
+    }
+
+    /// Refuses a machine of which a shaper cannot be built.
+    ///
+    /// # Errors
+    /// [`Failure`] with the key of the file that is to blame.
+    pub fn check_shapers(&self) -> Result<(), Failure> {
+        hardware::shapers(self.machine, &self.hardware, self.path).map(drop)
+    }
+
+    /// Tells the front of problems of tables and controllers, and of guards that an axis lacks.
+    pub(crate) fn warn(&self, observer: &dyn Observer) {
+        let mut warnings = beyond_tolerance(self.machine, &self.design);
+        warnings.extend(guards::missing(self.machine));
+        warnings.extend(self.families().filter_map(|family| family.warning()));
+        warnings.extend(error_table::not_built(self.machine, &self.hardware));
+        let controllers = self.controllers.iter().enumerate();
+        warnings.extend(controllers.flat_map(|(index, control)| {
+            let of_axis = control.as_ref().map(|control| control.warnings_of(index));
+            of_axis.unwrap_or_default()
+        }));
+        warnings.iter().for_each(|warning| warning.tell(self.path, observer));
+    }
+
+    fn axes(&self) -> impl Iterator<Item = AxisReport<'_>> {
+        self.machine
+            .axes
+            .iter()
+            .zip(&self.design.axes)
+            .zip(&self.controllers)
+            .zip(self.hardware.axes())
+            .enumerate()
+            .map(|(place, (((axis, tables), control), built))| AxisReport {
+                path: self.path,
+                place,
+                axis,
+                tables,
+                certificate: CertificateReport::new(axis, tables, self.design.sample_hz, self.certify),
+                in_stage: self.design.stage.is_some(),
+                control: control.as_ref(),
+                modes: tables.mode_figures(axis, self.design.sample_hz),
+                convolution: convolution_figures(axis.shaped(), &tables.design),
+                misfit: built.shaper.as_ref().err(),
+                family: self.families().find(|family| std::ptr::eq(family.axis, axis)),
+                error_table: ErrorTableReport::new(&self.hardware, axis, place),
+            })
+    }
+
+    /// The axes whose modes move, with their tables.
+    fn families(&self) -> impl Iterator<Item = FamilyReport<'_>> {
+        let axes = self.machine.axes.iter().enumerate();
+        axes.filter_map(|(index, axis)| {
+            FamilyReport::new(index, axis, self.design.family_of(index), self.design.sample_hz)
+        })
+    }
+
+    /// The residual over the variable of the modes, for each axis whose modes move.
+    pub(crate) fn family_panels(&self) -> impl Iterator<Item = plot::Panel> {
+        self.families().map(|family| family.panel(&self.machine.name))
+    }
+
+    /// The JSON document of the command line's contract.
+    pub(crate) fn json(&self) -> Document {
+        let fraction = self.design.coefficient_fraction;
+        let axes = self.axes().map(|a| a.json(self.design.sample_hz, fraction)).collect();
+        Document {
+            name: self.machine.name.clone(),
+            axes,
+            fronts: Vec::new(),
+            moves: Vec::new(),
+            stage: self
+                .design
+                .stage
+                .as_ref()
+                .map(|stage| StageDocument::new(stage, &self.design)),
+        }
+    }
+
+    fn text(&self) -> String {
+        let clock = &self.machine.clock;
+        let mut text = format!(
+            "{}: {}, {} MHz clock, {} Hz samples, coefficients with {} fraction bits\n",
+            self.machine.name,
+            counted(self.machine.axes.len() as u64, "axis"),
+            clock.frequency_hz / 1e6,
+            clock.sample_hz,
+            self.design.coefficient_fraction,
+        );
+        for axis in self.axes() {
+            text.push('\n');
+            text += &axis.text(self.design.sample_hz);
+        }
+        text += &delay::text(self.machine, &self.design);
+        text + &TogetherReport::new(&self.design).map_or_else(String::new, |together| together.text())
+    }
+}
+
+struct AxisReport<'a> {
+    /// The machine file, or the folder that contains it.
+    path: &'a Path,
+    /// Index of the axis, from 0.
+    place: usize,
+    axis: &'a AxisSection,
+    tables: &'a AxisTables,
+    /// What is certified of it, where that is asked for.
+    certificate: Option<CertificateReport<'a>>,
+    /// Whether its delay is made equal to that of others.
+    in_stage: bool,
+    modes: Vec<ModeFigures>,
+    convolution: ConvolutionFigures,
+    /// Why its shaper cannot be built, or cannot run at the sample rate.
+    misfit: Option<&'a HardwareError>,
+    control: Option<&'a AxisControl>,
+    /// Its table family, where its modes move.
+    family: Option<FamilyReport<'a>>,
+    /// Its error table.
+    error_table: Option<ErrorTableReport<'a>>,
+}
+
+impl AxisReport<'_> {
+    fn json(&self, sample_hz: f64, coefficient_fraction: u32) -> AxisDocument {
+        let impulses = &self.tables.design.impulses;
+        let sums = impulses.partial_sums();
+        let findings = &self.tables.design.findings;
+        AxisDocument {
+            name: self.axis.name.clone(),
+            unit: UnitDocument::new(self.axis.unit),
+            kind: self.tables.design.kind.clone(),
+            solutions: match findings {
+                Findings::Periodic(found) => Some(found.solutions.iter().map(SolutionDocument::new).collect()),
+                _ => None,
+            },
+            classes: match findings {
+                Findings::Antisymmetric(found) => Some(found.classes.iter().map(ClassDocument::new).collect()),
+                _ => None,
+            },
+            time_optimal: match findings {
+                Findings::Simultaneous(found) => Some(found.is_time_optimal),
+                _ => None,
+            },
+            impulses: impulses
+                .impulses()
+                .iter()
+                .map(|i| ImpulseDocument {
+                    time_s: i.time_s,
+                    amplitude: i.amplitude,
+                })
+                .collect(),
+            duration_s: impulses.duration_s(),
+            delay_s: impulses.delay_s(),
+            partial_sum_min: sums.min,
+            partial_sum_max: sums.max,
+            peak_command: self.convolution.peak_command,
+            cross_gains: self
+                .convolution
+                .cross_gains
+                .iter()
+                .map(|g| CrossGainDocument {
+                    kind: g.kind.name(),
+                    shaper_hz: self.modes[g.shaper].mode.frequency_hz,
+                    at_hz: self.modes[g.at].mode.frequency_hz,
+                    gain: g.gain,
+                })
+                .collect(),
+            warnings: self.convolution.warnings.iter().map(ToString::to_string).collect(),
+            modes: self
+                .modes
+                .iter()
+                .zip(&self.axis.modes)
+                .map(|(m, of_file)| ModeDocument {
+                    frequency_hz: m.mode.frequency_hz,
+                    damping: m.mode.damping,
+                    mechanics: self
+                        .axis
+                        .mechanics
+                        .map(|screw| MechanicsDocument::new(&screw, self.is_motor_free())),
+                    free: of_file.free.map(|free| FreeDocument {
+                        frequency_hz: free.frequency_hz,
+                        damping: free.damping,
+                    }),
+                    residual: m.residual,
+                    insensitivity: m.insensitivity.map(|i| (i.low, i.high)),
+                })
+                .collect(),
+            quantised: QuantisedDocument {
+                sample_hz,
+                coefficient_fraction,
+                digitise: self.tables.digitised.method_used.to_string(),
+                fits: self.misfit.is_none(),
+                taps: TapDocument::of(&self.tables.table),
+                modes: self
+                    .modes
+                    .iter()
+                    .enumerate()
+                    .map(|(index, m)| ResidualDocument {
+                        residual: m.residual_quantised,
+                        certified_residual: self.certificate.as_ref().and_then(|c| c.residual(index)),
+                    })
+                    .collect(),
+            },
+            certificate: self.certificate.as_ref().map(CertificateReport::json),
+            family: self.family.as_ref().map(FamilyReport::json),
+            error_table: self.error_table.as_ref().map(ErrorTableReport::json),
+            delay: self.in_stage.then(|| DelayDocument::new(&self.tables.delay)),
+            control: self.control.map(AxisControl::json),
+        }
+    }
+
+    fn text(&self, sample_hz: f64) -> String {
+        let mut text = String::new();
+        let impulses = &self.tables.design.impulses;
+        let sums = impulses.partial_sums();
+        let _ = writeln!(
+            text,
+            "axis {}: {}, {}, duration {:.4} ms, delay {:.4} ms, partial sums {:.4} … {:.4}",
+            self.axis.name,
+            self.tables.design.kind,
+            counted(impulses.impulses().len() as u64, "impulse"),
+            impulses.duration_s() * 1e3,
+            impulses.delay_s() * 1e3,
+            sums.min,
+            sums.max,
+        );
+        let mut table = Table::new(&["", ">time ms", ">amplitude"]);
+        for impulse in impulses.impulses() {
+            table.row([
+                String::new(),
+                format!("{:.6}", impulse.time_s * 1e3),
+                format!("{:.6}", impulse.amplitude),
+            ]);
+        }
+        text += &table.text("  ");
+        text += &findings_text(&self.tables.design.findings);
+        text += &self.modes_text();
+        text += &self.convolution_text();
+        let taps = self.tables.table.taps();
+        let _ = writeln!(
+            text,
+            "\n  {} at {sample_hz} Hz, digitised {}, sum {}",
+            counted(taps.len() as u64, "tap"),
+            self.tables.digitised.method_used,
+            taps.iter().map(|t| i64::from(t.coefficient)).sum::<i64>(),
+        );
+        let mut table = Table::new(&["", ">delay", ">coefficient"]);
+        for tap in taps {
+            table.row([
+                String::new(),
+                tap.delay_samples.to_string(),
+                tap.coefficient.to_string(),
+            ]);
+        }
+        text += &table.text("  ");
+        if let Some(certificate) = &self.certificate {
+            text += &certificate.text();
+        }
+        if let Some(family) = &self.family {
+            text += &family.text();
+        }
+        if let Some(table) = &self.error_table {
+            text += &table.text();
+        }
+        if let Some(reason) = self.misfit {
+            let _ = writeln!(text, "  does not fit: {reason}");
+        }
+        if let Some(control) = self.control {
+            let _ = write!(text, "\n{}", control.text());
+        }
+        text
+    }
+
+    /// The effect of the modes' shapers on each other, where there are several.
+    fn convolution_text(&self) -> String {
+        let mut text = String::new();
+        if !self.convolution.cross_gains.is_empty() {
+            let mut table = Table::new(&["shaper", ">for mode Hz", ">at mode Hz", ">gain"]);
+            for g in &self.convolution.cross_gains {
+                table.row([
+                    g.kind.to_string(),
+                    format!("{:.3}", self.modes[g.shaper].mode.frequency_hz),
+                    format!("{:.3}", self.modes[g.at].mode.frequency_hz),
+                    format!("{:.4}", g.gain),
+                ]);
+            }
+            let _ = write!(
+                text,
+                "\n  peak command {:.4} of a step; gain of each shaper at the other modes\n{}",
+                self.convolution.peak_command,
+                table.text("  ")
+            );
+        }
+        for warning in &self.convolution.warnings {
+            let placed = machine::place(self.path, self.place, "axis.shaper", warning);
+            let _ = writeln!(text, "\n  warning: {placed}");
+        }
+        text
+    }
+
+    /// Whether the drive leaves the motor free to swing against the load.
+    fn is_motor_free(&self) -> bool {
+        let drive = self.axis.drive.as_ref();
+        drive.is_some_and(|drive| matches!(drive.mode, DriveMode::Torque { .. }))
+    }
+
+    /// Where the mode of `[axis.mechanics]` comes from.
+    fn mechanics_text(&self) -> String {
+        let Some(screw) = &self.axis.mechanics else {
+            return String::new();
+        };
+        let between = format!(
+            "mode 1: from [axis.mechanics], {} N/µm between motor and table, table {} kg, motor and screw {} kg·m² ({} kg at the table)",
+            trimmed(screw.stiffness() / 1e6, 4),
+            trimmed(screw.table_mass, 4),
+            trimmed(screw.turning_inertia(), 4),
+            trimmed(screw.motor_mass(), 4),
+        );
+        let mode = |mode: Mode| format!("{:.3} Hz and {:.4}", mode.frequency_hz, mode.damping);
+        match self.is_motor_free() {
+            true => format!(
+                "  {between}; the motor free, as behind a torque drive; held it would be {}\n",
+                mode(screw.held_mode())
+            ),
+            false => format!(
+                "  {between}; the motor held; free it would be {}\n",
+                mode(screw.free_mode())
+            ),
+        }
+    }
+
+    fn modes_text(&self) -> String {
+        if self.modes.is_empty() {
+            return "\n  no modes given: no residual to state\n".to_owned();
+        }
+        let headings = [
+            "mode Hz",
+            ">damping",
+            ">residual %",
+            ">quantised %",
+            ">tolerance %",
+            "insensitivity f/f0",
+        ];
+        let mut table = Table::new(&headings);
+        for m in &self.modes {
+            let range = match m.insensitivity {
+                None => "none: the residual exceeds the tolerance".to_owned(),
+                Some(i) => match i.high {
+                    Some(high) => format!("{:.4} … {high:.4}", i.low),
+                    None => format!("{:.4} … above {INSENSITIVITY_LIMIT}", i.low),
+                },
+            };
+            table.row([
+                format!("{:.3}", m.mode.frequency_hz),
+                format!("{:.4}", m.mode.damping),
+                percent(m.residual),
+                percent(m.residual_quantised),
+                percent(m.tolerance),
+                range,
+            ]);
+        }
+        let mut text = format!("\n{}{}", table.text("  "), self.mechanics_text());
+        for (index, mode) in self.axis.modes.iter().enumerate() {
+            if let Some(free) = mode.free {
+                let _ = writeln!(
+                    text,
+                    "  mode {}: measured with the motor free at {:.3} Hz, damping {:.4}; designed for the motor held, {:.3} Hz and {:.4}",
+                    index + 1,
+                    free.frequency_hz,
+                    free.damping,
+                    mode.mode.frequency_hz,
+                    mode.mode.damping,
+                );
+            }
+        }
+        text
+    }
+}
+
+/// Further results of a kind that treats all modes together.
+fn findings_text(findings: &Findings) -> String {
+    let mut text = String::new();
+    match findings {
+        // Its certificate says what was found.
+        Findings::None | Findings::Optimal(_) => {}
+        Findings::Periodic(found) => {
+            let _ = writeln!(text, "\n  periodic at {:.6} Hz; all solutions:", found.system_hz);
+            let mut table = Table::new(&["", ">from Hz", ">to Hz", "odd multiples"]);
+            for solution in &found.solutions {
+                let multiples = solution.n.iter().map(|n| (2 * n + 1).to_string());
+                table.row([
+                    String::new(),
+                    format!("{:.6}", solution.low_hz),
+                    format!("{:.6}", solution.high_hz),
+                    multiples.collect::<Vec<_>>().join(", "),
+                ]);
+            }
+            text += &table.text("  ");
+        }
+        Findings::Antisymmetric(found) => {
+            for Class { members, multiples } in &found.classes {
+                let modes: Vec<String> = members.iter().map(|index| (index + 1).to_string()).collect();
+                let odd: Vec<String> = multiples.multiples.iter().map(u64::to_string).collect();
+                let _ = writeln!(
+                    text,
+                    "\n  antisymmetric modes {}: {} times {:.6} Hz, within {:.2e} of each",
+                    modes.join(", "),
+                    odd.join(", "),
+                    multiples.divisor,
+                    multiples.error,
+                );
+            }
+        }
+        Findings::Simultaneous(found) => {
+            text += if found.is_time_optimal {
+                "\n  no command within the same bounds is shorter\n"
+            } else {
+                "\n  the shortest found, not proven to be the shortest\n"
+            };
+        }
+    }
+    text
+}

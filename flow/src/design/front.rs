@@ -1,0 +1,156 @@
+//! `posicast design --front`: what more duration buys, of each axis with an `optimal` shaper.
+
+use super::DesignReport;
+use crate::failure::Failure;
+use crate::observer::Observer;
+use crate::plot::{Curve, Panel};
+use crate::text::{Table, percent};
+use posicast_shaper::design::Findings;
+use posicast_shaper::design::front::{FrontFigures, design_front};
+use serde::Serialize;
+
+/// Label of an axis that counts taps.
+const TAPS: &str = "taps";
+
+/// The front of an axis.
+pub(super) struct FrontReport {
+    axis: String,
+    figures: Vec<FrontFigures>,
+    tolerance: f64,
+}
+
+/// The fronts of all axes with an `optimal` shaper.
+pub(super) fn of_axes(report: &DesignReport<'_>, observer: &dyn Observer) -> Result<Vec<FrontReport>, Failure> {
+    let axes = report.machine.axes.iter().zip(&report.design.axes);
+    let mut fronts = Vec::new();
+    let progress = observer.begin("durations", Some(report.machine.axes.len() as u64));
+    for (axis, tables) in axes {
+        if let Findings::Optimal(found) = &tables.design.findings {
+            let tolerances = found.request.bands.iter().map(|band| band.tolerance);
+            fronts.push(FrontReport {
+                axis: axis.name.clone(),
+                figures: design_front(found).map_err(Failure::because)?,
+                tolerance: tolerances.fold(0.0, f64::max),
+            });
+        }
+        progress.advance(1);
+    }
+    drop(progress);
+    if fronts.is_empty() {
+        return Err(Failure::from(miette::miette!(
+            help = "set kind = \"optimal\" in [axis.shaper]; --compare shows the other kinds side by side",
+            "--front: no axis of the machine has an optimal shaper, whose duration could be chosen"
+        )));
+    }
+    Ok(fronts)
+}
+
+impl FrontReport {
+    pub(super) fn text(&self) -> String {
+        let mut table = Table::new(&[
+            "",
+            ">duration ms",
+            ">more than the least %",
+            ">taps",
+            ">peak command",
+            ">mean delay ms",
+            ">least residual %",
+        ]);
+        let least_s = self.figures.first().map_or(0.0, |figures| figures.duration_s);
+        for figures in &self.figures {
+            table.row([
+                String::new(),
+                format!("{:.4}", 1e3 * figures.duration_s),
+                format!("{:.1}", 100.0 * (figures.duration_s / least_s - 1.0)),
+                figures.taps.to_string(),
+                format!("{:.4}", figures.peak_command),
+                format!("{:.4}", 1e3 * figures.delay_s),
+                percent(figures.least_ratio * self.tolerance),
+            ]);
+        }
+        format!(
+            "\naxis {}: what the duration buys: the fewest taps found within the tolerance, their peak command and mean delay; and the \
+             least residual of any shaper of that duration\n{}",
+            self.axis,
+            table.text("  ")
+        )
+    }
+
+    pub(super) fn panels(&self, machine: &str) -> Vec<Panel> {
+        // A shaper holds for every longer duration too, until a better one is found: steps. The residual only has points.
+        let panel = |what: &str, y_label: &str, in_steps: bool, value: &dyn Fn(&FrontFigures) -> f64| {
+            let mut points: Vec<(f64, f64)> = Vec::new();
+            for figures in &self.figures {
+                let point = (1e3 * figures.duration_s, value(figures));
+                if let Some(last) = points.last().copied().filter(|_| in_steps) {
+                    points.push((point.0, last.1));
+                }
+                points.push(point);
+            }
+            Panel {
+                title: format!("{machine}, axis {}: {what} against duration", self.axis),
+                x_label: "duration, ms".into(),
+                y_label: y_label.into(),
+                y_is_whole: y_label == TAPS,
+                curves: vec![Curve::new(what.to_owned(), points)],
+                ..Panel::default()
+            }
+        };
+        let mut panels = vec![
+            panel("fewest taps found", TAPS, true, &|figures| figures.taps as f64),
+            panel("mean delay of the fewest taps", "mean delay, ms", true, &|figures| {
+                1e3 * figures.delay_s
+            }),
+            panel(
+                "least residual",
+                "residual vibration over the bands, %",
+                false,
+                &|figures| 100.0 * figures.least_ratio * self.tolerance,
+            ),
+        ];
+        // Without negative amplitudes the command never exceeds the step.
+        if self.figures.iter().any(|figures| figures.peak_command > 1.0 + 1e-6) {
+            let peak = &|figures: &FrontFigures| figures.peak_command;
+            panels.push(panel(
+                "peak command of the fewest taps",
+                "largest part of the step",
+                true,
+                peak,
+            ));
+        }
+        panels
+    }
+
+    pub(super) fn json(&self) -> FrontDocument {
+        FrontDocument {
+            axis: self.axis.clone(),
+            durations: self
+                .figures
+                .iter()
+                .map(|figures| DurationDocument {
+                    duration_s: figures.duration_s,
+                    taps: figures.taps,
+                    peak_command: figures.peak_command,
+                    delay_s: figures.delay_s,
+                    least_residual: figures.least_ratio * self.tolerance,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// What the durations of an axis's shaper buy.
+#[derive(Serialize)]
+pub(super) struct FrontDocument {
+    axis: String,
+    durations: Vec<DurationDocument>,
+}
+
+#[derive(Serialize)]
+struct DurationDocument {
+    duration_s: f64,
+    taps: usize,
+    peak_command: f64,
+    delay_s: f64,
+    least_residual: f64,
+}

@@ -1,0 +1,194 @@
+//! `posicast generate`: writes the Verilog of a machine, and the files that Quartus needs with it, into a folder.
+
+use crate::Outcome;
+use crate::design::DesignReport;
+use crate::driver;
+use crate::failure::Failure;
+use crate::hal;
+use crate::hardware::{Built, LINK_SUFFIX, STAGE_SUFFIX};
+use crate::kit;
+use crate::machine::{self, MachineFile};
+use crate::observer::Observer;
+use crate::text::{json_text, shell_word};
+use crate::{sopc, verilog};
+use posicast_machine::machine_file::Machine;
+use posicast_synth::package::{Committed, Package};
+use posicast_synth::sopc::Board;
+use posicast_testbench::blocks::LinkedStageBlock;
+use posicast_testbench::wording::counted;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What to generate.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Machine file.
+    pub machine: PathBuf,
+    /// Output folder: new, empty, or written by posicast before; `None`: the machine's name.
+    pub output: Option<PathBuf>,
+    /// Rate of LinuxCNC's servo thread in Hz; `None`: no files for LinuxCNC.
+    pub servo_hz: Option<f64>,
+}
+
+/// Writes a machine's Verilog, its components and its Quartus projects into a folder.
+///
+/// # Errors
+/// [`Failure`] for what cannot be read, designed, built or written.
+pub fn generate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
+    let path = options.machine.as_path();
+    let file = machine::read(path)?;
+    let report = DesignReport::new(&file.machine, path)?;
+    report.warn(observer);
+    let board = sopc::board(&file.machine, path)?;
+    let built = Built::new(&report, path, observer)?;
+    let mut package = open(options.output.as_deref(), &file)?;
+    add(&mut package, (&file, path), &built, board, observer)?;
+    let has_stage = built.stage.is_some();
+    if let Some(servo_hz) = options.servo_hz {
+        let of_file = (&file.machine, path);
+        hal::add(&mut package, servo_hz, of_file, &report.design, has_stage, observer)?;
+    }
+    package
+        .add("report.json", json_text(&report.json())?.as_bytes())
+        .map_err(Failure::because)?;
+    let folder = package.root().to_owned();
+    let committed = package.commit().map_err(Failure::because)?;
+    tell(&committed, observer);
+    let of_stage = (has_stage, built.link.as_ref());
+    let document = Document::new(&file.machine, of_stage, &folder, &committed.files);
+    let text = document.text();
+    Ok(Outcome::passed(document, text))
+}
+
+/// Adds the machine's Verilog, and what describes it to tools, systems and drivers. Returns the paths of the Verilog.
+pub(crate) fn add(
+    package: &mut Package,
+    (file, path): (&MachineFile, &Path),
+    built: &Built<'_>,
+    board: Option<Board>,
+    observer: &dyn Observer,
+) -> Result<Vec<PathBuf>, Failure> {
+    let machine = &file.machine;
+    let modules = built.modules(path)?;
+    let sources = verilog::add_sources(package, file, &modules)?;
+    kit::add(package, &kit::files(machine, &modules, built))?;
+    let of_stage = (built.stage.as_ref(), built.link.as_ref());
+    sopc::add(package, (machine, path), board, of_stage, &built.components, observer)?;
+    driver::add(package, machine, &modules, &built.components, of_stage)?;
+    Ok(sources)
+}
+
+/// What was generated, and where.
+#[derive(Serialize)]
+pub struct Document {
+    name: String,
+    folder: String,
+    top: Vec<String>,
+    files: Vec<String>,
+    /// What the line of the stage is called, where it has one.
+    #[serde(skip)]
+    line: Option<&'static str>,
+}
+
+impl Document {
+    fn new(
+        machine: &Machine,
+        (has_stage, link): (bool, Option<&LinkedStageBlock>),
+        folder: &Path,
+        files: &[PathBuf],
+    ) -> Self {
+        let name = &machine.name;
+        let relative = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).display().to_string();
+        Self {
+            name: name.clone(),
+            folder: folder.display().to_string(),
+            top: std::iter::once(name.clone())
+                .chain(has_stage.then(|| format!("{name}{STAGE_SUFFIX}")))
+                .chain(link.map(|_| format!("{name}{LINK_SUFFIX}")))
+                .collect(),
+            files: files.iter().map(relative).collect(),
+            line: link.map(|link| link.config().line()),
+        }
+    }
+
+    /// Every file, one a line.
+    #[must_use]
+    pub fn list(&self) -> String {
+        let folder = Path::new(&self.folder);
+        let files = self
+            .files
+            .iter()
+            .map(|file| format!("{}\n", folder.join(file).display()));
+        files.collect()
+    }
+
+    /// Number of files by folder, the top modules, and what to do next.
+    fn text(&self) -> String {
+        let folder = Path::new(&self.folder);
+        let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
+        let top = match (self.top.as_slice(), self.line) {
+            ([shapers, stage], _) => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
+            ([shapers, stage, link], Some(line)) => {
+                format!(
+                    "top modules: {shapers} (the shapers), {stage} (the whole stage), {link} (the stage with its {line})"
+                )
+            }
+            _ => format!("top module: {} (the shapers)", self.top.join(", ")),
+        };
+        format!(
+            "{} in {}: {}\n{top}\nnext: read {}; `posicast verify {}` compares this Verilog with its model\n",
+            counted(files.len() as u64, "file"),
+            folder.display(),
+            entries(folder, &files).join(", "),
+            folder.join("README.md").display(),
+            shell_word(folder),
+        )
+    }
+}
+
+/// Contents of the folder with these files: subfolders with a `/` and their number of files, then the names of the
+/// files.
+pub(crate) fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
+    let (mut folders, mut alone): (Vec<(String, usize)>, Vec<String>) = (Vec::new(), Vec::new());
+    for file in files {
+        let mut parts = file.strip_prefix(root).unwrap_or(file).iter();
+        let first = parts.next().unwrap_or_default().to_string_lossy().into_owned();
+        if parts.next().is_none() {
+            alone.push(first);
+        } else if let Some((_, count)) = folders.iter_mut().find(|(name, _)| *name == first) {
+            *count += 1;
+        } else {
+            folders.push((first, 1));
+        }
+    }
+    let folders = folders.into_iter().map(|(name, count)| format!("{name}/ ({count})"));
+    folders.chain(alone).collect()
+}
+
+/// Tells the front which files of an earlier run were removed, and which of its evidence was kept.
+pub(crate) fn tell(committed: &Committed, observer: &dyn Observer) {
+    let note = |what: &str, files: &[String]| {
+        if !files.is_empty() {
+            observer.say(&format!("note: {what}: {}", files.join(", ")));
+        }
+    };
+    note(
+        "kept the evidence of the last `posicast run`, which is about this very machine file and Verilog",
+        &committed.kept,
+    );
+    note(
+        "removed the evidence of an earlier `posicast run`, which was about another machine file or other Verilog (`posicast \
+         run` makes it anew)",
+        &committed.outdated,
+    );
+    note(
+        "removed what an earlier run wrote and this one does not",
+        &committed.removed,
+    );
+}
+
+/// The output folder, by default named after the machine.
+pub(crate) fn open(output: Option<&Path>, file: &MachineFile) -> Result<Package, Failure> {
+    let name = &file.machine.name;
+    Package::open(output.unwrap_or(Path::new(name)), name).map_err(Failure::because)
+}

@@ -1,0 +1,148 @@
+//! The hardware of a machine as blocks with Verilog: the shapers of its top module, its components, its stage.
+
+use crate::design::DesignReport;
+use crate::failure::Failure;
+use crate::machine::{at_key, of_hardware};
+use crate::observer::Observer;
+use crate::warning::Warning;
+use posicast_blocks::component::Component;
+use posicast_blocks::linked_stage::address_limit;
+use posicast_blocks::stage::StageConfig;
+use posicast_hdl::emit::{Module, add};
+use posicast_hdl::machine::{AxisShaper, emit_machine};
+use posicast_machine::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
+use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
+use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
+use std::path::Path;
+
+/// Suffix of a component's top module.
+pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
+/// Suffix of a stage's top module.
+pub(crate) const STAGE_SUFFIX: &str = "_stage";
+/// Suffix of the top module with a stage and its line to a host.
+pub(crate) const LINK_SUFFIX: &str = "_link";
+
+/// The hardware of a machine.
+pub(crate) struct Built<'a> {
+    machine: &'a Machine,
+    /// The shaper of each axis in the top module.
+    pub(crate) shapers: Vec<AxisShaper>,
+    /// The blocks of the axes as components, ready for a system with a processor. Their top modules are
+    /// `<machine>_<axis>_<block>_avalon`.
+    pub(crate) components: Vec<ComponentBlock>,
+    /// All axes behind one agent, where every loop is complete.
+    pub(crate) stage: Option<Stage>,
+    /// The stage with its line to a host, where the machine file has one. Its top module is `<machine>_link`.
+    pub(crate) link: Option<LinkedStageBlock>,
+}
+
+/// A stage: its settings from the machine file, and its hardware.
+pub(crate) struct Stage {
+    /// Its settings, with the figures derived from them.
+    pub(crate) of_machine: MachineStage,
+    /// Its top module is `<machine>_stage`.
+    pub(crate) block: ComponentBlock,
+}
+
+/// The shaper of each axis in the top module of the machine that the file at `path` describes.
+pub(crate) fn shapers(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<Vec<AxisShaper>, Failure> {
+    let configs = hardware.shapers().map_err(|error| of_hardware(&error, path))?;
+    let shapers = machine.axes.iter().zip(configs);
+    let shapers = shapers.map(|(axis, config)| AxisShaper {
+        axis: axis.name.clone(),
+        config,
+    });
+    Ok(shapers.collect())
+}
+
+impl<'a> Built<'a> {
+    /// The hardware of a report's machine, which the file at `path` describes. Where the shapers do not suit a stage
+    /// there is none, and a warning says so.
+    pub(crate) fn new(report: &DesignReport<'a>, path: &Path, observer: &dyn Observer) -> Result<Self, Failure> {
+        let (machine, hardware) = (report.machine, &report.hardware);
+        let refused = |error: HardwareError| of_hardware(&error, path);
+        let shapers = shapers(machine, hardware, path)?;
+        let components = hardware.components().map_err(refused)?.into_iter().map(|one| {
+            let axis = &machine.axes[one.axis].name;
+            let top = format!("{}_{axis}_{}{COMPONENT_SUFFIX}", machine.name, one.component.name());
+            ComponentBlock::new(one.component, &top, axis).with_prefix(&format!("{}_{axis}", machine.name))
+        });
+        if let Some(reason) = hardware.without_stage() {
+            let text = format!("no stage is built, its blocks are components of their own: {reason}");
+            Warning::new(reason.axis, reason.key.as_str(), text).tell(path, observer);
+        }
+        let stage = hardware.stage().map_err(refused)?.map(|stage| {
+            let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+            let top = format!("{}{STAGE_SUFFIX}", machine.name);
+            Stage {
+                of_machine: stage.of_machine.clone(),
+                block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")).with_prefix(&machine.name),
+            }
+        });
+        let link = match (&machine.link, &stage) {
+            (None, _) => None,
+            (Some(link), Some(stage)) => Some(linked(machine, link, stage, path)?),
+            (Some(link), None) => {
+                let reason =
+                    "a line needs the stage, and none is built; remove [link], or change what the warning names";
+                return Err(at_key(path, 0, link_key(link), reason));
+            }
+        };
+        Ok(Self {
+            machine,
+            shapers,
+            components: components.collect(),
+            stage,
+            link,
+        })
+    }
+
+    /// The Verilog modules without duplicates: those of the machine's top, then those of its components, of its stage,
+    /// and of its line. `path` is the machine file.
+    pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
+        let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
+        for component in &self.components {
+            add(&mut modules, component.modules().map_err(Failure::because)?).map_err(Failure::because)?;
+        }
+        if let Some(stage) = &self.stage {
+            add(&mut modules, stage.modules(path)?).map_err(Failure::because)?;
+        }
+        if let Some(link) = &self.link {
+            add(&mut modules, link.modules().map_err(Failure::because)?).map_err(Failure::because)?;
+        }
+        Ok(modules)
+    }
+}
+
+/// The key of the line's speed.
+fn link_key(link: &LinkSection) -> &'static str {
+    match link.line {
+        LinkLine::Uart { .. } => "link.baud",
+        LinkLine::Spi { .. } => "link.sck_hz",
+    }
+}
+
+/// The stage of a machine with its line.
+fn linked(machine: &Machine, link: &LinkSection, stage: &Stage, path: &Path) -> Result<LinkedStageBlock, Failure> {
+    let config = link.bridge(&machine.clock, address_limit(stage.block.component()));
+    let config = config.map_err(|error| at_key(path, 0, link_key(link), error))?;
+    let top = format!("{}{LINK_SUFFIX}", machine.name);
+    let names = [top.as_str(), &stage.block.top(), &machine.name];
+    let line = (config, machine.clock.frequency_hz);
+    LinkedStageBlock::new(&stage.of_machine.config, line, names).map_err(Failure::because)
+}
+
+impl Stage {
+    /// Its Verilog modules. Axis names for which two modules would have the same name are an error of the machine
+    /// file at `path`.
+    fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
+        self.block.modules().map_err(|error| {
+            let modules = |config: &StageConfig| {
+                let component = Component::stage(config).ok()?;
+                self.block.like(component).modules().ok()
+            };
+            let axis = self.of_machine.clashing_axis(|config| modules(config).is_some());
+            at_key(path, axis, NAME_KEY, format_args!("{error}; rename the axis"))
+        })
+    }
+}

@@ -1,0 +1,419 @@
+//! The modes found in a log, by whichever method.
+
+use super::excitation::LogExcitation;
+use super::log_file::axis_of;
+use crate::failure::Failure;
+use crate::template::MachineKind;
+use posicast_identify::log::{Log, Reading};
+use posicast_identify::modal::ResponsePoint;
+use posicast_identify::output_only;
+use posicast_identify::position::{self, FoundInPosition, PositionError, motor};
+use posicast_identify::recommend::{Judgement, Recommendation, recommend};
+use posicast_identify::ring_down::{self, FoundInRingDown, RingDownError};
+use posicast_identify::sweep::{self, Band, FoundInSweep, Sweep, SweepError};
+use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
+use posicast_machine::unit::AxisUnit;
+use posicast_shaper::unit::trimmed;
+
+/// Measured data and what the modes explain of it, for the plots.
+pub(super) enum Evidence {
+    /// A transfer function, and the fitted one at the same points.
+    Transfer {
+        points: Vec<ResponsePoint>,
+        fitted: Vec<(f64, f64)>,
+    },
+    /// A response over time, and what the modes explain of it.
+    Response {
+        /// Name of the response.
+        name: &'static str,
+        row_s: f64,
+        measured: Vec<f64>,
+        fitted: Vec<f64>,
+    },
+}
+
+impl Evidence {
+    fn response(name: &'static str, found: &FoundInPosition) -> Self {
+        Self::Response {
+            name,
+            row_s: found.row_s,
+            measured: found.response.clone(),
+            fitted: found.fitted.clone(),
+        }
+    }
+}
+
+/// Modes and shapers, with their source.
+pub(super) struct Findings {
+    pub(super) rows: usize,
+    pub(super) sample_s: f64,
+    /// Description of the log.
+    pub(super) source: String,
+    /// Description of the method by which the modes were found.
+    pub(super) method: String,
+    /// Name of the method in the JSON document.
+    pub(super) method_name: &'static str,
+    /// Whether the modes are known to be those with the motor held.
+    pub(super) is_motor_held: bool,
+    /// The axis that the log says it is of.
+    pub(super) axis: Option<String>,
+    pub(super) modes: Vec<FoundMode>,
+    pub(super) recommended: Vec<Recommendation>,
+    /// Unit of the axis that the modes are for, in which the shapers' figures are shown.
+    pub(super) unit: AxisUnit,
+    pub(super) judgement: Judgement,
+    /// Problems of the log, and what it does not contain.
+    pub(super) remarks: Vec<String>,
+    pub(super) evidence: Evidence,
+    /// Name of the direction of an accelerometer that was used.
+    pub(super) direction: Option<String>,
+}
+
+impl Findings {
+    /// Finds the modes of a log.
+    pub(super) fn of(reading: &Reading, excitation: &LogExcitation, judgement: &Judgement) -> Result<Self, Failure> {
+        let mut remarks: Vec<String> = reading.remarks.iter().map(ToString::to_string).collect();
+        let sample_s = match &reading.log {
+            Log::Acceleration(log) => log.sample_s,
+            Log::Position(log) => log.sample_s,
+            Log::Drive(log) => log.sample_s,
+        };
+        if sample_s > SLOW_S {
+            remarks.push(MILLISECONDS.to_owned());
+        }
+        let mut findings = match &reading.log {
+            Log::Acceleration(log) if excitation.output_only => of_output(log)?,
+            Log::Acceleration(log) if excitation.ring_down => of_ring_down(log)?,
+            Log::Acceleration(log) => of_accelerometer(log, excitation)?,
+            Log::Position(log) => of_position(log)?,
+            Log::Drive(log) => of_motor(log)?,
+        };
+        let found = std::mem::replace(&mut findings.remarks, remarks);
+        findings.remarks.extend(found);
+        findings.rows = reading.rows;
+        findings.judgement = *judgement;
+        findings.recommended = recommend(&findings.modes, judgement);
+        Ok(findings)
+    }
+
+    /// The template for a machine with these modes.
+    pub(super) fn kind(&self) -> MachineKind {
+        const SLOW_HZ: f64 = 2.0;
+        match self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ) {
+            true => MachineKind::Crane,
+            false => MachineKind::Printer,
+        }
+    }
+}
+
+/// Time between samples above which it is asked whether it was given in milliseconds.
+const SLOW_S: f64 = 0.2;
+const MILLISECONDS: &str =
+    "the log has less than 5 samples per second; if its times are in milliseconds, say so: --columns time_ms,…";
+
+/// A log of an accelerometer of which nothing is said: a sweep, or else what rings after a stop.
+fn of_accelerometer(log: &AccelerationLog, excitation: &LogExcitation) -> Result<Findings, Failure> {
+    /// Length of a log in seconds below which it has no sweep.
+    const SHORT_S: f64 = 2.0;
+    let samples = log.directions.iter().map(|(_, record)| record.len()).min().unwrap_or(0);
+    if (samples as f64) * log.sample_s < SHORT_S {
+        return of_ring_down(log);
+    }
+    let no_sweep = match of_sweep(log, excitation.sweep.as_ref()) {
+        Err(failure) => failure,
+        Ok(findings) => return Ok(findings),
+    };
+    match ring_down::identify(log) {
+        Ok(found) if !found.modes.is_empty() && found.explained > RINGS && found.part > PART => {
+            Ok(of_decay(log, found))
+        }
+        _ => Err(no_sweep),
+    }
+}
+
+/// Fraction of the power after the last push that modes must explain if nothing says that the log is of a stop, and fraction of the whole
+/// log's power that this must be: the end of a sweep rings too.
+const RINGS: f64 = 0.95;
+const PART: f64 = 0.1;
+
+/// What rings after a stop.
+fn of_ring_down(log: &AccelerationLog) -> Result<Findings, Failure> {
+    Ok(of_decay(log, ring_down::identify(log).map_err(of_ring_down_error)?))
+}
+
+fn of_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
+    let mut remarks: Vec<String> = found.decay.remarks.iter().map(ToString::to_string).collect();
+    if found.modes.is_empty() {
+        remarks.push("what follows the last push does not decay as a mode would: log a sudden stop, until the machine is at rest".into());
+    }
+    let method = format!(
+        "modes that decay freely after a stop, fitted from {} s after the first sample on; they explain {:.2} % of it",
+        trimmed(found.begin_s, 4),
+        100.0 * found.explained
+    );
+    let evidence = Evidence::response("acceleration", &found.decay);
+    in_direction(
+        log,
+        &found.direction,
+        ("ring-down", method),
+        found.modes,
+        remarks,
+        evidence,
+    )
+}
+
+/// What was found in a direction of an accelerometer, by a method with this name and description.
+fn in_direction(
+    log: &AccelerationLog,
+    direction: &str,
+    (method_name, method): (&'static str, String),
+    modes: Vec<FoundMode>,
+    remarks: Vec<String>,
+    evidence: Evidence,
+) -> Findings {
+    Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: format!("accelerometer, direction {direction}"),
+        method,
+        method_name,
+        is_motor_held: false,
+        axis: axis_of(direction),
+        modes,
+        recommended: Vec::new(),
+        unit: AxisUnit::default(),
+        judgement: Judgement::default(),
+        remarks,
+        evidence,
+        direction: Some(direction.to_owned()),
+    }
+}
+
+fn of_ring_down_error(error: RingDownError) -> Failure {
+    let help = match error {
+        RingDownError::Directions(..) => "--direction names the direction of the sensor along the axis",
+        RingDownError::Log(_) => "log from before the stop until the machine is at rest",
+    };
+    Failure::from(miette::miette!(help = help, "{error}"))
+}
+
+fn of_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Failure> {
+    let found = match given {
+        Some(sweep) => sweep::identify(log, sweep),
+        None => sweep::identify_any(log),
+    };
+    let found = found.map_err(|error| {
+        let help = match error {
+            SweepError::Unrelated(_) | SweepError::Unlike(_) | SweepError::Piece(_) => {
+                "--sweep START:END:RATE:ACCEL describes another sweep; --ring-down says that it is the log of a stop; --output-only looks for modes without knowing the excitation"
+            }
+            SweepError::Description(_) if log.sample_s > SLOW_S => MILLISECONDS,
+            SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",
+            SweepError::Short { .. } | SweepError::Empty => "log the whole resonance test, from rest to rest",
+        };
+        Failure::from(miette::miette!(help = help, "{error}"))
+    })?;
+    let sweep = found.sweep;
+    // The sensor's gain is 1 at low frequencies, so that the log tells the acceleration that was not described.
+    let per_hz = match given {
+        Some(_) => sweep.acceleration_per_hz,
+        None => sweep.acceleration_per_hz * found.static_gain,
+    };
+    let beside = match found.wave {
+        Some(wave) => format!(
+            " beside a square wave of {} mm/s² and {} s",
+            trimmed(1e3 * wave.acceleration, 2),
+            trimmed(wave.period_s, 4)
+        ),
+        None => " without a square wave beside it".into(),
+    };
+    let description = format!(
+        "sweep{} of {} … {} Hz at {} Hz/s and {} mm/s² per Hz{beside}, begun {} s after the first sample",
+        if found.is_estimated {
+            ", estimated from the log,"
+        } else {
+            ""
+        },
+        trimmed(sweep.start_hz, 4),
+        trimmed(sweep.end_hz, 4),
+        trimmed(sweep.rate_hz_per_s, 4),
+        trimmed(1e3 * per_hz, if given.is_some() { 4 } else { 2 }),
+        trimmed(found.start_s, 5),
+    );
+    let method = format!(
+        "transfer function of a {description}; it explains {:.2} % of the log in its band",
+        100.0 * found.transfer.explained
+    );
+    let remarks = remarks(&found, &sweep);
+    let fitted = found.transfer.points.iter().zip(&found.fitted);
+    let evidence = Evidence::Transfer {
+        fitted: fitted
+            .map(|(point, value)| (point.frequency_hz, value.norm()))
+            .collect(),
+        points: found.transfer.points,
+    };
+    Ok(in_direction(
+        log,
+        &found.direction,
+        ("sweep", method),
+        found.modes,
+        remarks,
+        evidence,
+    ))
+}
+
+fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
+    let found = output_only::identify(log).map_err(of_position_error)?;
+    let mut remarks: Vec<String> = vec![
+        "the excitation was taken as even over the frequencies: what it has of its own, such as a fan, looks like a mode here, and \
+         shares are rough"
+            .into(),
+    ];
+    if found.modes.is_empty() {
+        remarks.push("no vibration in the log decays as a mode would".into());
+    }
+    let method = "decay of the correlation of the response with itself, the excitation not known".into();
+    let evidence = Evidence::response("correlation of the acceleration with itself", &found.decay);
+    Ok(in_direction(
+        log,
+        &found.direction,
+        ("output-only", method),
+        found.modes,
+        remarks,
+        evidence,
+    ))
+}
+
+fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
+    let found = position::identify(log).map_err(of_position_error)?;
+    let (source, method_name) = match found.is_forced {
+        true => ("command and response", "output-error"),
+        false => ("response", "decay"),
+    };
+    let driven = match found.is_forced {
+        true => "modes under the command, held between samples",
+        false => "modes that decay freely",
+    };
+    let remarks = found.remarks.iter().map(ToString::to_string).collect();
+    Ok(Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: source.into(),
+        method: format!(
+            "{driven}, fitted to {}; they leave {:.2e} (root mean square, in the response's SI unit)",
+            match found.decimation {
+                1 => "every sample".into(),
+                joined => format!("means of {joined} samples"),
+            },
+            found.noise,
+        ),
+        method_name,
+        is_motor_held: false,
+        axis: None,
+        evidence: Evidence::response("response", &found),
+        modes: found.modes,
+        recommended: Vec::new(),
+        unit: AxisUnit::default(),
+        judgement: Judgement::default(),
+        remarks,
+        direction: None,
+    })
+}
+
+/// A drive and its own motor: modes with the motor held.
+fn of_motor(log: &DriveLog) -> Result<Findings, Failure> {
+    let found = motor::identify(log).map_err(of_position_error)?;
+    let acts = if found.is_force { "force" } else { "velocity" };
+    let remarks = found.held.remarks.iter().map(ToString::to_string).collect();
+    Ok(Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: "drive and its motor".into(),
+        method: format!(
+            "modes with the motor held: the zeros of the motor's motion, which follows the drive's command as a {acts}, {} samples late; \
+             they leave {:.2e} (root mean square, in the position's SI unit)",
+            found.delay, found.held.noise,
+        ),
+        method_name: "motor",
+        is_motor_held: true,
+        axis: None,
+        evidence: Evidence::response("motor", &found.held),
+        modes: found.held.modes,
+        recommended: Vec::new(),
+        unit: AxisUnit::default(),
+        judgement: Judgement::default(),
+        remarks,
+        direction: None,
+    })
+}
+
+fn of_position_error(error: PositionError) -> Failure {
+    let help = "log longer, from before the command moves until the machine is at rest";
+    Failure::from(miette::miette!(help = help, "{error}"))
+}
+
+fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
+    /// Ratio of the square of the remainder to that of the noise, above which the fit is incomplete.
+    const LEFT_OVER: f64 = 4.0;
+    /// Part by which clocks differ that is told: less moves no mode.
+    const TOLD_CLOCK: f64 = 1e-5;
+    /// Ratio by which an end of the sweep must be missing to be told.
+    const PART: f64 = 1.05;
+    let mut remarks = Vec::new();
+    if found.reduced_square > LEFT_OVER {
+        remarks.push(format!(
+            "the modes leave {:.1} times as much of the transfer function as its noise would: it has something that no linear \
+             mode explains, such as play or stick; the intervals are widened for it",
+            found.reduced_square.sqrt()
+        ));
+    }
+    if found.clock_error.abs() > TOLD_CLOCK {
+        remarks.push(format!(
+            "the clock of the log runs {} % {} than that of the sweep; frequencies are by the sweep's",
+            trimmed(100.0 * found.clock_error.abs(), 3),
+            if found.clock_error > 0.0 { "faster" } else { "slower" }
+        ));
+    }
+    for Band { low_hz, high_hz } in &found.unseen {
+        remarks.push(format!(
+            "samples are missing while the sweep passed {} to {} Hz: modes there are not seen",
+            trimmed(*low_hz, 4),
+            trimmed(*high_hz, 4)
+        ));
+    }
+    let Band { low_hz, high_hz } = found.covered;
+    let (low, high) = (trimmed(low_hz, 4), trimmed(high_hz, 4));
+    if found.order.first_harmonic() > 1.0 {
+        remarks.push(
+            "the log fits this sweep if the axis moved in one direction, shaken at twice the sweep's frequencies; if it did not, it was another sweep: --sweep".to_owned(),
+        );
+    }
+    if low_hz > swept.start_hz * PART || high_hz * PART < swept.end_hz {
+        remarks.push(format!(
+            "the log has a part of this sweep only, from {low} to {high} Hz, and modes near a missing end are doubtful; if it was another sweep, describe it: \
+             --sweep START:END:RATE:ACCEL"
+        ));
+    }
+    remarks.push(if found.modes.is_empty() {
+        format!(
+            "between {low} and {high} Hz the sensor follows the sweep without a resonance that could be told from noise"
+        )
+    } else {
+        // A slow mode rings much for its share of the response, and is shaken less.
+        let part = trimmed(100.0 * sweep::TOLD_RINGING, 3);
+        let visible = found.visible.map_or(low_hz, |visible| visible.from_hz);
+        let slower = match found.visible.filter(|visible| visible.from_hz > PART * low_hz) {
+            Some(visible) => format!(
+                "; of slower ones those that ring more, at {} Hz with {} times as much as all of these, and none below {low} Hz or above {high} Hz",
+                trimmed(visible.least_at_hz, 2),
+                trimmed(visible.least_ringing, 2)
+            ),
+            None => format!("; none below that or above {high} Hz"),
+        };
+        format!(
+            "from {} Hz on the log shows every mode that rings with {part} % of all{slower}",
+            trimmed(visible.max(low_hz), 3)
+        )
+    });
+    remarks
+}

@@ -1,0 +1,90 @@
+//! The steps of posicast as functions: each takes typed options and gives one document, and the same in words.
+//!
+//! A front calls them: the command line does. Nothing here reads arguments, prints, or draws a progress bar: what a step wants to
+//! say while it works goes to the front's [`Observer`].
+
+mod allowance;
+mod bench;
+mod blocks;
+pub mod campaign;
+pub mod choice;
+mod command;
+pub mod compare;
+pub mod contour;
+mod control;
+pub mod design;
+mod driver;
+pub mod export;
+mod failure;
+mod files;
+pub mod generate;
+mod guards;
+pub mod hal;
+mod hardware;
+pub mod identify;
+mod input;
+mod kit;
+pub mod machine;
+pub mod moves;
+mod observer;
+pub mod plot;
+pub mod replay;
+pub mod run;
+pub mod simulate;
+mod sopc;
+pub mod style;
+pub mod synth;
+pub mod template;
+pub mod text;
+mod tolerance;
+pub mod verify;
+mod verilog;
+mod warning;
+
+pub use bench::{Simulator, clocks};
+pub use failure::{Failure, with_causes};
+pub use files::ResultForm;
+pub use observer::{Late, Observer, Silent, WorkProgress};
+
+use posicast_system::output::OutputFiles;
+use serde::Serialize;
+
+/// Version of posicast, with the short hash of the commit where it was built in a checkout of its own repository.
+pub const VERSION: &str = env!("POSICAST_VERSION");
+
+/// The result of a step.
+#[derive(Serialize)]
+pub struct Outcome<D> {
+    /// The result for programs.
+    #[serde(flatten)]
+    pub document: D,
+    /// The result for people: lines, with colours as escape sequences.
+    #[serde(skip)]
+    pub text: String,
+    /// Whether a file that the options name is the standard output, so that the text belongs elsewhere.
+    #[serde(skip)]
+    pub is_beside_a_file: bool,
+    /// Why a check of the step failed; `None` where all hold.
+    #[serde(skip)]
+    pub failed: Option<String>,
+}
+
+impl<D> Outcome<D> {
+    /// The result of a step in which nothing failed.
+    pub(crate) fn passed(document: D, text: String) -> Self {
+        Self {
+            document,
+            text,
+            is_beside_a_file: false,
+            failed: None,
+        }
+    }
+
+    /// The same of a step that wrote these files.
+    pub(crate) fn beside(self, outputs: &OutputFiles) -> Self {
+        Self {
+            is_beside_a_file: outputs.take_standard_output(),
+            ..self
+        }
+    }
+}

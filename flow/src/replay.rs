@@ -1,0 +1,289 @@
+//! `posicast verify --stimulus FILE`: replays a recording into the RTL and the model.
+
+use crate::bench::{self, Needs, Simulator};
+use crate::failure::Failure;
+use crate::observer::Observer;
+use crate::text::few;
+use posicast_blocks::{Direction, Port};
+use posicast_testbench::Error;
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::lockstep::report::LockstepReport;
+use posicast_testbench::replay::{Exercised, Extent, Replay, is_timing};
+use posicast_testbench::wording::counted;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use wavecmp::WaveError;
+use wavecmp::diff::{DiffOptions, Reset};
+
+/// The recording of stimuli, and how its names are read.
+#[derive(Debug, Clone, Default)]
+pub struct Recording {
+    /// A VCD or FST, whose inputs go into RTL and model, and whose outputs are compared; `None`: no recording.
+    pub stimulus: Option<PathBuf>,
+    /// `A=B`: scope or signal A of the recording is B of the block, whose scope is its top module; with * in both, a pattern.
+    pub map: Vec<String>,
+    /// The scope of the recording below which its names are looked for.
+    pub root: Option<String>,
+    /// The recorded clock; `None`: the only `clk` or `clock`.
+    pub clock: Option<String>,
+    /// `NAME[=0|1]`: the signal from whose release on recorded outputs are compared; `none`: from the first edge; `None`: the only
+    /// reset found.
+    pub reset: Option<String>,
+}
+
+impl Recording {
+    fn options(&self) -> Result<DiffOptions, Error> {
+        let mut options = DiffOptions {
+            clock: self.clock.clone(),
+            roots: [self.root.clone(), None],
+            reset: Reset::Found,
+            ..DiffOptions::default()
+        };
+        self.map.iter().try_for_each(|text| options.add_map(text))?;
+        if let Some(text) = &self.reset {
+            options.set_reset(text)?;
+        }
+        Ok(options)
+    }
+}
+
+/// Result of a replay, beside the rows of the report.
+#[derive(Debug, Serialize)]
+pub(crate) struct Replayed {
+    file: PathBuf,
+    /// Number of clocks that were replayed, and number of those in which recorded outputs were compared.
+    clocks: u64,
+    compared: u64,
+    /// Inputs that are not in the file and were held at 0.
+    missing_inputs: Vec<String>,
+    /// Outputs that are not in the file, which were compared between RTL and model only.
+    missing_outputs: Vec<String>,
+    /// Number of outputs of the block.
+    #[serde(skip)]
+    outputs: usize,
+    /// Inputs in the file, and outputs of the model, that never changed in the clocks that were compared.
+    unchanged_inputs: Vec<String>,
+    unchanged_outputs: Vec<String>,
+    /// What else the recording does not exercise of what a verdict on the block would speak of.
+    not_exercised: Vec<String>,
+    /// Number of clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
+    unknown_input_clocks: u64,
+    unknown_output_clocks: u64,
+    /// Number of signals of the file that are not ports.
+    other_signals: usize,
+    notes: Vec<String>,
+}
+
+impl Replayed {
+    /// Inputs that are not in the file.
+    pub(crate) fn missing_inputs(&self) -> &[String] {
+        &self.missing_inputs
+    }
+
+    /// What the recording does not exercise: taps, banks, levels of flags.
+    pub(crate) fn not_exercised(&self) -> &[String] {
+        &self.not_exercised
+    }
+
+    /// How much of the block's outputs the recording moves, for the line of the verdict.
+    pub(crate) fn summary(&self) -> String {
+        let changed = self.outputs - self.unchanged_outputs.len();
+        let mut text = format!(
+            "{changed} of {} change in the recording",
+            counted(self.outputs as u64, "output")
+        );
+        if !self.not_exercised.is_empty() {
+            text += &format!(
+                ", {} not exercised by it (see above)",
+                counted(self.not_exercised.len() as u64, "thing")
+            );
+        }
+        text
+    }
+
+    /// The result in words, in lines.
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!(
+            "replayed {}: {}, recorded outputs compared in {} of them\n",
+            self.file.display(),
+            counted(self.clocks, "clock"),
+            self.compared
+        );
+        let mut line = |names: &[String], what: &str| {
+            if !names.is_empty() {
+                text += &format!("  {what}: {}\n", few(names));
+            }
+        };
+        line(&self.notes, "time");
+        line(&self.missing_inputs, "inputs not in the file, held at 0");
+        line(
+            &self.missing_outputs,
+            "outputs not in the file, compared between RTL and model only",
+        );
+        line(&self.unchanged_inputs, "inputs that never change");
+        line(&self.unchanged_outputs, "outputs that never change");
+        line(&self.not_exercised, "not exercised");
+        for (clocks, what) in [
+            (self.unknown_input_clocks, "with x or z in inputs, taken as 0"),
+            (
+                self.unknown_output_clocks,
+                "with x or z in outputs, whose bits were not compared",
+            ),
+        ] {
+            if clocks > 0 {
+                text += &format!("  clocks {what}: {clocks}\n");
+            }
+        }
+        if self.other_signals > 0 {
+            text += &format!("  signals of the file that are not ports: {}\n", self.other_signals);
+        }
+        text
+    }
+}
+
+/// Replays the recording, for at most this many clocks, into the block that has most in common with it, in each of these
+/// simulators, and returns a report for each.
+pub(crate) fn run(
+    blocks: &[(Box<dyn Block>, Sources)],
+    file: &Path,
+    args: &Recording,
+    simulators: &[Simulator],
+    (seed, most_clocks): (u64, u64),
+    observer: &dyn Observer,
+) -> Result<(Vec<LockstepReport>, Replayed), Failure> {
+    let options = args.options().map_err(bench::failure)?;
+    let (block, sources, replay) = choose(blocks, file, &options)?;
+    has_content(block, &replay, file)?;
+    let extent = replay.extent(most_clocks).map_err(bench::failure)?;
+    let Extent { clocks, compared, .. } = extent;
+    if compared == 0 {
+        return Err(Failure::from(miette::miette!(
+            help = "--clock NAME names another clock, --reset none compares from the first edge",
+            "`{}` has {} and none after the release of its reset: there is nothing to compare ({})",
+            file.display(),
+            counted(clocks, "clock edge"),
+            replay.notes().join(", ")
+        )));
+    }
+    let needs: Vec<Needs<'_>> = simulators
+        .iter()
+        .map(|simulator| (*simulator, vec![(block, sources)]))
+        .collect();
+    bench::require_tools(&needs, false)?;
+    let mut reports = Vec::new();
+    let mut exercised = Exercised::default();
+    for simulator in simulators {
+        simulator.say_sizes(std::iter::once(block), observer);
+        let mut device = simulator.device(block, sources, seed).map_err(bench::failure)?;
+        let report = replay
+            .run(block, device.as_mut(), &extent, seed)
+            .map_err(bench::failure)?;
+        reports.push(report.0);
+        // It is the model's, and so the same for each.
+        exercised = report.1;
+    }
+    let replayed = Replayed {
+        file: file.to_owned(),
+        clocks,
+        compared,
+        missing_inputs: replay.missing_inputs(),
+        missing_outputs: replay.missing_outputs(),
+        outputs: replay.outputs(),
+        unchanged_inputs: exercised.unchanged_inputs,
+        unchanged_outputs: exercised.unchanged_outputs,
+        not_exercised: exercised.missing,
+        unknown_input_clocks: extent.unknown_inputs,
+        unknown_output_clocks: extent.unknown_outputs,
+        other_signals: replay.strangers(),
+        notes: replay.notes().to_vec(),
+    };
+    if !replayed.missing_inputs.is_empty() {
+        observer.say(&format!(
+            "warning: not in the recording, and so held at 0: {}",
+            replayed.missing_inputs.join(", ")
+        ));
+    }
+    Ok((reports, replayed))
+}
+
+/// Refuses a recording without an input that carries data, or without an output, because it would compare nothing.
+fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Failure> {
+    let ports = block.model(0).ports().to_vec();
+    let lacks_all = |direction: Direction, missing: &[String]| {
+        let of = |port: &&Port| port.direction == direction && !is_timing(port);
+        let mut of = ports.iter().filter(of).peekable();
+        of.peek().is_some() && of.all(|port| missing.contains(&port.name))
+    };
+    let what = match (
+        lacks_all(Direction::Input, &replay.missing_inputs()),
+        lacks_all(Direction::Output, &replay.missing_outputs()),
+    ) {
+        (false, false) => return Ok(()),
+        (true, true) => "none of the data inputs and none of the outputs",
+        (true, false) => "none of the data inputs",
+        (false, true) => "none of the outputs",
+    };
+    let inputs = replay.missing_inputs().into_iter().chain(replay.missing_outputs());
+    let some = inputs.take(6).collect::<Vec<_>>().join(", ");
+    Err(Failure::from(miette::miette!(
+        help = format!(
+            "say with --map SCOPE=TOP or --map SIGNAL=TOP.PORT which signals of the file are the block's, or choose another \
+             block with --block; its top is `{}`",
+            block.top()
+        ),
+        "`{}` has {what} of {} {}: its replay would compare nothing. Not found: {some}, …",
+        file.display(),
+        block.name(),
+        block.instance()
+    )))
+}
+
+type Chosen<'a> = (&'a dyn Block, &'a Sources, Replay);
+
+/// The block with the most ports in the file.
+fn choose<'a>(
+    blocks: &'a [(Box<dyn Block>, Sources)],
+    file: &Path,
+    options: &DiffOptions,
+) -> Result<Chosen<'a>, Failure> {
+    let mut best: Vec<Chosen<'a>> = Vec::new();
+    let mut refused = None;
+    for (block, sources) in blocks {
+        let block = block.as_ref();
+        match Replay::new(block, file, options) {
+            Ok(None) => {}
+            Ok(Some(replay)) => {
+                let most = best.first().map_or(0, |(_, _, best)| best.found());
+                if replay.found() > most {
+                    best.clear();
+                }
+                if replay.found() >= most {
+                    best.push((block, sources, replay));
+                }
+            }
+            // This block has no port for a map, but another one may.
+            Err(error @ Error::Wave(WaveError::Option(_))) => refused = refused.or(Some(error)),
+            Err(error) => return Err(bench::failure(error)),
+        }
+    }
+    if best.len() > 1 {
+        let names = best
+            .iter()
+            .map(|(block, ..)| format!("{} {} (top {})", block.name(), block.instance(), block.top()));
+        return Err(Failure::from(miette::miette!(
+            help = "choose with --block NAME, or map the recorded scope to a top: --map SCOPE=TOP",
+            "`{}` fits several blocks equally well: {}",
+            file.display(),
+            names.collect::<Vec<_>>().join("; ")
+        )));
+    }
+    match (best.pop(), refused) {
+        (Some(chosen), _) => Ok(chosen),
+        (None, Some(error)) => Err(bench::failure(error)),
+        (None, None) => Err(Failure::from(miette::miette!(
+            help = "say with --map A=B which scope or signal of the file is which of the block, or choose the block with --block",
+            "`{}` has no signal in common with the ports of any block",
+            file.display()
+        ))),
+    }
+}

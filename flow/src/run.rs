@@ -1,0 +1,323 @@
+//! `posicast run`: goes the whole way from the machine file to the verdict.
+//!
+//! design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. Later steps
+//! use what an earlier one has decided: the tap table is made once. The folder appears when everything is done, also
+//! after a failed check: it holds all that `generate` writes, and the evidence with it.
+
+mod advice;
+mod checks;
+mod closed_loop;
+mod excerpt;
+mod gain;
+mod options;
+mod page;
+mod pictures;
+mod report;
+mod summary;
+mod waves;
+
+use crate::Outcome;
+use crate::bench::{self, Simulator};
+use crate::blocks;
+use crate::command::{self, Words};
+use crate::design::{self, DesignReport};
+use crate::failure::Failure;
+use crate::generate;
+use crate::hardware::Built;
+use crate::input;
+use crate::machine::{self, MachineFile};
+use crate::moves;
+use crate::observer::Observer;
+use crate::plot::{self, Panel};
+use crate::simulate::simulate_axes;
+use crate::text::json_text;
+use crate::{sopc, synth};
+use closed_loop::{ClosedLoop, NamedContour};
+use posicast_machine::compare::{DEFAULT_BAND, compare};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::motion::AxisMove;
+use posicast_machine::simulation::AxisSimulation;
+use posicast_synth::package::Package;
+use posicast_synth::yosys::{Estimate, Yosys, YosysError};
+use posicast_testbench::blocks::{Block, MachineShapers, Sources};
+use posicast_testbench::lockstep::report::LockstepReport;
+use posicast_testbench::stage_run::Circle;
+use report::RunReport;
+use std::path::PathBuf;
+use waves::Waves;
+
+pub use options::{Detail, Options};
+pub use report::Document;
+
+/// Goes the whole way: design, Verilog, simulation, comparison, estimate, verdict.
+///
+/// # Errors
+/// [`Failure`] for what cannot be read, built, simulated or written, and for a tool that is missing. A failed check is no error but
+/// [`Outcome::failed`].
+pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
+    let path = options.machine.as_path();
+    let file = machine::read(path)?;
+    let machine = &file.machine;
+    let design = DesignReport::new(machine, path)?;
+    design.warn(observer);
+    let board = sopc::board(machine, path)?;
+    let built = Built::new(&design, path, observer)?;
+    let plan = Plan::new(options, &design, &built, observer)?;
+    let axes = simulate_axes(machine, &design.design, &built.shapers, &plan.words)?;
+    let top = blocks::shapers(machine, built.shapers.clone(), &plan.words)?;
+
+    let mut package = opened(options, &file, &plan)?;
+    let files = generate::add(&mut package, (&file, path), &built, board, observer)?;
+    let rtl = Rtl {
+        top: &top,
+        built: &built,
+        sources: Sources::found(files),
+    };
+    rtl.require_tools(plan.simulator)?;
+    let (lockstep, waves) = of_shapers(options, (&design, &plan), &rtl, &axes, &mut package, observer)?;
+    let estimate = estimate(&plan, machine, rtl.sources.files(), observer)?;
+    let closed_loop = of_stage(options, (machine, &plan), &rtl, observer)?;
+
+    let mut checks = Vec::from_iter(checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?);
+    checks.push(checks::moves(machine, &axes));
+    checks.extend(checks::all(plan.simulator, machine, &design.design, &lockstep, &waves));
+    checks.extend(checks::link(built.link.as_ref()));
+    checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
+    checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
+    let kinds = compare(machine, DEFAULT_BAND);
+    let report = RunReport {
+        machine,
+        design: &design,
+        axes: &axes,
+        plants: report::on_plants(machine, &design.design)?,
+        simulator: plan.simulator,
+        seed: options.seed,
+        lockstep: &lockstep,
+        waves: &waves,
+        estimate: estimate.as_ref(),
+        closed_loop: closed_loop.as_ref(),
+        checks: &checks,
+        words: &plan.words,
+        gains: gain::of_axes(machine, &plan.words, &axes, |axis| {
+            closed_loop.as_ref().and_then(|of| of.gain(axis))
+        }),
+        kinds: &kinds,
+        command: options.command_line(),
+    };
+    let document = report.json();
+    add_report(&mut package, &report, &document)?;
+
+    let root = package.root().to_owned();
+    let committed = package.commit().map_err(Failure::because)?;
+    generate::tell(&committed, observer);
+    let text = match options.detail {
+        Detail::Verdict => report.quiet(),
+        Detail::Summary => report.summary(&root, &committed.files),
+        Detail::Everything => report.text(&root, &committed.files),
+    };
+    let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
+    Ok(Outcome {
+        failed: (!failed.is_empty()).then(|| format!("failed: {}", failed.join(", "))),
+        ..Outcome::passed(document, text)
+    })
+}
+
+/// What a run will do, found before anything long begins.
+struct Plan {
+    /// The move of each axis.
+    moves: Vec<AxisMove>,
+    /// The command of that move, or of the command file, per axis.
+    words: Words,
+    /// The path of the closed loop in place of the circle.
+    contour: Option<NamedContour>,
+    /// The circle of the closed loop; the error says why there is none.
+    circle: Result<Circle, String>,
+    /// Names and contents of the copies of files that options name.
+    inputs: Vec<(String, Vec<u8>)>,
+    simulator: Simulator,
+    /// What estimates the area, where it is installed.
+    yosys: Option<Yosys>,
+}
+
+impl Plan {
+    fn new(
+        options: &Options,
+        design: &DesignReport<'_>,
+        built: &Built<'_>,
+        observer: &dyn Observer,
+    ) -> Result<Self, Failure> {
+        let (machine, motion) = (design.machine, &options.motion);
+        let has_stage = built.stage.is_some();
+        let moves = match options.contour {
+            Some(_) => moves::by_default(machine),
+            None => motion.moves(machine, has_stage)?,
+        };
+        let contour = closed_loop::contour(machine, options.path().as_ref(), motion, has_stage, observer)?;
+        let circle = match &contour {
+            Some(_) => Err("--contour drives another path".to_owned()),
+            None => closed_loop::circle(machine, options.radius, has_stage)?,
+        };
+        let inputs = options.files().filter_map(input::copy);
+        let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
+        let command = motion.command.as_deref();
+        let words = command::words(machine, &design.design, command, &moves, observer)?;
+        let simulator = Simulator::choose(options.simulator, observer)?;
+        if has_stage {
+            closed_loop::announce(simulator, command.is_some(), observer);
+        }
+        Ok(Self {
+            moves,
+            words,
+            contour,
+            circle,
+            inputs,
+            simulator,
+            yosys: installed_yosys(observer)?,
+        })
+    }
+}
+
+/// The Verilog of a run, and what it is the Verilog of.
+struct Rtl<'a> {
+    /// The shapers of all axes.
+    top: &'a MachineShapers,
+    built: &'a Built<'a>,
+    sources: Sources,
+}
+
+impl Rtl<'_> {
+    /// The shapers, the components, the stage and its line.
+    fn tops(&self) -> Vec<&dyn Block> {
+        let stage = self.built.stage.as_ref().map(|stage| &stage.block);
+        let components = self.built.components.iter().chain(stage);
+        let components = components.map(|component| component as &dyn Block);
+        let link = self.built.link.as_ref().map(|link| link as &dyn Block);
+        std::iter::once(self.top as &dyn Block)
+            .chain(components)
+            .chain(link)
+            .collect()
+    }
+
+    /// Refuses a run for which a tool is missing: it is named before anything is simulated, and not by the last step that needs it.
+    fn require_tools(&self, simulator: Simulator) -> Result<(), Failure> {
+        let stage = self.built.stage.as_ref().filter(|_| simulator == Simulator::Verilator);
+        let simulated = std::iter::once(self.top as &dyn Block).chain(stage.map(|stage| &stage.block as &dyn Block));
+        let simulated = simulated.map(|block| Ok((block, self.sources.reached_by(block).map_err(bench::failure)?)));
+        let simulated = simulated.collect::<Result<Vec<_>, Failure>>()?;
+        let simulated = simulated.iter().map(|(block, sources)| (*block, sources)).collect();
+        bench::require_tools(&[(simulator, simulated)], false)
+    }
+}
+
+/// The output folder with the files that options name.
+fn opened(options: &Options, file: &MachineFile, plan: &Plan) -> Result<Package, Failure> {
+    let package = generate::open(options.output.as_deref(), file)?;
+    let mut package = package.with_evidence().map_err(Failure::because)?;
+    for (name, bytes) in &plan.inputs {
+        package.add_evidence(name, bytes).map_err(Failure::because)?;
+    }
+    Ok(package)
+}
+
+/// The shapers in lock step with their model, and the waveforms of the move.
+fn of_shapers(
+    options: &Options,
+    (design, plan): (&DesignReport<'_>, &Plan),
+    rtl: &Rtl<'_>,
+    axes: &[AxisSimulation],
+    package: &mut Package,
+    observer: &dyn Observer,
+) -> Result<(LockstepReport, Waves), Failure> {
+    let job = waves::Job {
+        machine: design.machine,
+        top: rtl.top,
+        sources: &rtl.sources.reached_by(rtl.top).map_err(bench::failure)?,
+        simulator: plan.simulator,
+        seed: options.seed,
+        observer,
+    };
+    let lockstep = job.lockstep(options.cycles)?;
+    Ok((lockstep, job.waves(package, &design.design, axes)?))
+}
+
+/// The stage on its simulated machine.
+fn of_stage<'a>(
+    options: &'a Options,
+    (machine, plan): (&'a Machine, &'a Plan),
+    rtl: &'a Rtl<'a>,
+    observer: &dyn Observer,
+) -> Result<Option<ClosedLoop<'a>>, Failure> {
+    let built = rtl.built;
+    let closed_loop = built.stage.as_ref().map(|stage| {
+        let job = closed_loop::Job {
+            machine,
+            moves: &plan.moves,
+            circle: plan.circle.clone(),
+            contour: plan.contour.as_ref(),
+            path: &options.machine,
+            stage,
+            sources: &rtl.sources,
+            simulator: plan.simulator,
+            seed: options.seed,
+        };
+        job.run(observer)
+    });
+    closed_loop.transpose()
+}
+
+/// Adds the pictures, the document and the page.
+fn add_report(package: &mut Package, report: &RunReport<'_>, document: &Document) -> Result<(), Failure> {
+    let mut add = |name: &str, text: &str| package.add_evidence(name, text.as_bytes()).map_err(Failure::because);
+    let (machine, design) = (report.machine, &report.design.design);
+    let closed_loop: Vec<(&str, Vec<Panel>)> = report.closed_loop.into_iter().flat_map(ClosedLoop::pictures).collect();
+    for (name, panels) in &closed_loop {
+        add(name, &plot::svg(panels)?)?;
+    }
+    let mut sensitivity = design::sensitivity_panels(machine, design);
+    sensitivity.extend(report.design.family_panels());
+    let of_model = pictures::response_panels(machine, design, report.axes, None)?;
+    let response = pictures::response_panels(machine, design, report.axes, Some(report.waves))?;
+    add("plots/sensitivity.svg", &plot::svg(&sensitivity)?)?;
+    add("plots/response.svg", &plot::svg(&of_model)?)?;
+    add("report.json", &json_text(document)?)?;
+    let page = report.page(&page::Extra {
+        closed_loop,
+        sensitivity,
+        response,
+    })?;
+    add("report.html", &page)
+}
+
+/// Opens Yosys; where it is not installed, warns that there will be no estimate.
+fn installed_yosys(observer: &dyn Observer) -> Result<Option<Yosys>, Failure> {
+    match Yosys::installed() {
+        Ok(yosys) => Ok(Some(yosys)),
+        // One that a variable names was asked for.
+        Err(error @ YosysError::Missing(_))
+            if std::env::var_os("POSICAST_YOSYS").is_some_and(|name| !name.is_empty()) =>
+        {
+            Err(synth::failure(error))
+        }
+        Err(YosysError::Missing(_)) => {
+            observer
+                .say("warning: Yosys is not installed: no estimate of area. Install it with scripts/install-tools.");
+            Ok(None)
+        }
+        Err(error) => Err(Failure::because(error)),
+    }
+}
+
+/// The area of the machine's top, where Yosys is installed.
+fn estimate(
+    plan: &Plan,
+    machine: &Machine,
+    files: &[PathBuf],
+    observer: &dyn Observer,
+) -> Result<Option<Estimate>, Failure> {
+    let Some(yosys) = &plan.yosys else {
+        return Ok(None);
+    };
+    let family = machine::family(machine)?;
+    let estimate = synth::mapped(yosys, files, (&machine.name, "the design"), family, observer);
+    estimate.map(Some).map_err(Failure::because)
+}

@@ -1,0 +1,200 @@
+//! The path of `--contour` in the closed loop.
+
+use super::verdicts::equals_model;
+use crate::contour::PathOptions;
+use crate::failure::Failure;
+use crate::moves::Motion;
+use crate::observer::Observer;
+use crate::plot::{Curve, Panel, label, time_axis};
+use crate::run::checks::Check;
+use crate::text::Table;
+use posicast_machine::contour::{Contour, FollowedContour};
+use posicast_machine::machine_file::Machine;
+use posicast_shaper::unit::show_seconds;
+use posicast_testbench::stage_run::{Compared, Contoured, Trouble};
+use posicast_testbench::wording::counted;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A path, and its name on the command line.
+pub(crate) struct NamedContour {
+    pub(crate) name: String,
+    pub(crate) contour: Contour,
+}
+
+/// Results of a path.
+pub(super) struct Contours<'a> {
+    pub(super) path: &'a NamedContour,
+    /// Comparison with the Verilog; `None` without Verilator.
+    pub(super) compared: Option<Compared>,
+    /// Result with each shaper's own delay.
+    pub(super) apart: Contoured,
+    /// Result with equal delays of all shapers; the error says why there are no such tables.
+    pub(super) matched: Result<Contoured, String>,
+}
+
+/// The path of a run, from where the axes stand at reset.
+pub(crate) fn contour(
+    machine: &Machine,
+    path: Option<&PathOptions>,
+    motion: &Motion,
+    has_stage: bool,
+    observer: &dyn Observer,
+) -> Result<Option<NamedContour>, Failure> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    if !has_stage {
+        return Err(Failure::from(miette::miette!(
+            help = "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md explains the requirements of a stage",
+            "--contour: the machine has no stage, whose closed loop would drive it"
+        )));
+    }
+    let contour = path.planned(machine, motion.along_contour()?, observer)?;
+    Ok(Some(NamedContour {
+        name: path.contour.clone().unwrap_or_default(),
+        contour,
+    }))
+}
+
+/// `contour` of `stage` in `report.json`. Lengths are in m.
+#[derive(Serialize)]
+pub(super) struct ContourDocument {
+    path: String,
+    length: f64,
+    /// Part of it that is rapids: at least the way to its beginning.
+    rapid_length: f64,
+    duration_s: f64,
+    stops: usize,
+    compared_clocks: Option<u64>,
+    own_delays: Option<DistanceDocument>,
+    equal_delays: Option<DistanceDocument>,
+}
+
+#[derive(Serialize)]
+struct DistanceDocument {
+    peak: f64,
+    rms: f64,
+    /// Largest distance on the rapids, which the other figures do not count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rapid_peak: Option<f64>,
+}
+
+impl DistanceDocument {
+    fn new(followed: &FollowedContour) -> Option<Self> {
+        let error = followed.error?;
+        Some(Self {
+            peak: error.peak,
+            rms: error.rms,
+            rapid_peak: followed.rapid.map(|rapid| rapid.peak),
+        })
+    }
+}
+
+impl Contours<'_> {
+    /// The troubles of the stage on the path.
+    pub(super) fn troubles(&self) -> impl Iterator<Item = Option<&Trouble>> + Clone {
+        let matched = self.matched.as_ref().ok();
+        std::iter::once(&self.apart)
+            .chain(matched)
+            .map(|contoured| contoured.trouble.as_ref())
+    }
+
+    pub(super) fn check(&self) -> Option<Check> {
+        self.compared.as_ref().map(|compared| Check {
+            name: "the stage's RTL equals the bit-exact model in every clock of the contour",
+            ..equals_model(compared, "the end of the path")
+        })
+    }
+
+    fn rows(&self) -> impl Iterator<Item = (&'static str, &FollowedContour)> {
+        let matched = self
+            .matched
+            .as_ref()
+            .ok()
+            .and_then(|contoured| contoured.followed.as_ref());
+        let apart = self
+            .apart
+            .followed
+            .as_ref()
+            .map(|followed| ("each with its own delay", followed));
+        apart
+            .into_iter()
+            .chain(matched.map(|followed| ("delays made equal", followed)))
+    }
+
+    pub(super) fn text(&self, machine: &Machine) -> String {
+        let unit = machine.axes[0].unit;
+        let survey = self.path.contour.survey();
+        let has_rapids = survey.rapid_length > 0.0;
+        let mut headings = vec!["tap tables", ">distance from the path, peak", ">rms"];
+        if has_rapids {
+            headings.push(">in rapids, peak");
+        }
+        let mut table = Table::new(&headings);
+        for (name, followed) in self.rows() {
+            let shown = |figure: Option<f64>| figure.map_or_else(|| "–".to_owned(), |figure| unit.show(figure, 3));
+            let error = followed.error.map(|error| unit.show_all([error.peak, error.rms]));
+            let [peak, rms] = error.unwrap_or_else(|| [shown(None), shown(None)]);
+            let rapid = has_rapids.then(|| shown(followed.rapid.map(|rapid| rapid.peak)));
+            table.row([name.to_owned(), peak, rms].into_iter().chain(rapid));
+        }
+        let mut text = format!(
+            "\nContour {} of axes {} and {}: {} in {}, {}\n{}",
+            self.path.name,
+            machine.axes[0].name,
+            machine.axes[1].name,
+            unit.show_round(survey.length, ""),
+            show_seconds(survey.duration_s, 3),
+            counted(survey.stops as u64, "stop"),
+            table.text("  ")
+        );
+        if let Err(reason) = &self.matched {
+            let _ = writeln!(text, "  delays cannot be made equal: {reason}");
+        }
+        text
+    }
+
+    pub(super) fn json(&self) -> ContourDocument {
+        let of = |contoured: &Contoured| DistanceDocument::new(contoured.followed.as_ref()?);
+        let survey = self.path.contour.survey();
+        ContourDocument {
+            path: self.path.name.clone(),
+            length: survey.length,
+            rapid_length: survey.rapid_length,
+            duration_s: survey.duration_s,
+            stops: survey.stops,
+            compared_clocks: self.compared.as_ref().map(|compared| compared.clocks),
+            own_delays: of(&self.apart),
+            equal_delays: self.matched.as_ref().ok().and_then(of),
+        }
+    }
+
+    /// The distance over time; `None` where the stage never moved.
+    pub(super) fn panel(&self, machine: &Machine) -> Option<Panel> {
+        let sample_s = machine.clock.sample_period_s();
+        let rows = || {
+            let rows = self.rows();
+            rows.filter_map(|(name, followed)| Some((name, followed.distance.as_ref()?)))
+        };
+        let samples = rows().map(|(_, distance)| distance.samples()).max()?;
+        let time = time_axis(samples as f64 * sample_s);
+        let distances = rows().flat_map(|(_, distance)| distance.points().map(|(_, distance)| distance));
+        let unit = machine.axes[0].unit.for_largest(distances);
+        let curves = rows().map(|(name, distance)| {
+            let points = distance.points();
+            let points = points.map(|(tick, distance)| (time.of(tick as f64 * sample_s), unit.of(distance)));
+            Curve::new(name, points.collect())
+        });
+        Some(Panel {
+            title: format!(
+                "{}, {}: distance of the load from the path",
+                machine.name, self.path.name
+            ),
+            x_label: label("time", time),
+            y_label: label("to the left of the path", unit),
+            curves: curves.collect(),
+            ..Panel::default()
+        })
+    }
+}
