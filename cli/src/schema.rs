@@ -29,8 +29,6 @@ pub(crate) struct Args {
     force: bool,
 }
 
-/// The schema of a run's report; the tests of the command line check reports with it.
-const REPORT: &str = include_str!("../../docs/report.schema.json");
 /// Name of the schema's file in the first line of machine files that `posicast new` writes.
 const FILE: &str = "posicast-machine.schema.json";
 
@@ -42,7 +40,7 @@ pub(crate) fn hint(machine: &Path) -> String {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let text = match args.report {
-        true => REPORT.to_owned(),
+        true => json_text(&posicast_flow::run::schema())?,
         false => json_text(&machine_file::schema())?,
     };
     let Some(path) = &args.output else {

@@ -10,6 +10,7 @@ use posicast_testbench::lockstep::report::{BlockReport, LockstepReport};
 use posicast_testbench::wording::counted;
 use posicast_testbench::{Error, MissingTool};
 use posicast_testbench::{icarus, verilator};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::num::NonZero;
@@ -24,7 +25,7 @@ const MOST_AT_ONCE: usize = 2;
 const MOST_TIMES_LONGER: u64 = 10;
 
 /// Simulator of the hardware.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Simulator {
     /// The emitted Verilog, compiled

@@ -6,6 +6,7 @@ use crate::machine;
 use crate::text::{Table, percent};
 use posicast_machine::compare::{Candidate, KindComparison, compare as compare_kinds};
 use posicast_machine::machine_file::Machine;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
@@ -97,30 +98,38 @@ fn remark(candidate: &Candidate) -> &'static str {
 }
 
 /// `design --compare --json`, and `kinds` in `report.json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Kinds")]
 pub struct Document {
     name: String,
     band_percent: f64,
     axes: Vec<AxisDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "KindsOfAxis")]
 struct AxisDocument {
     name: String,
+    /// Of each mode, in the order of the file.
     tolerances: Vec<f64>,
     kinds: Vec<KindDocument>,
     missing: Vec<MissingDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct KindDocument {
     kind: String,
     in_file: bool,
+    /// No other kind is as good in duration, worst residual and taps, and better in one of them.
     pareto: bool,
+    /// The worst residual of each mode is within its tolerance.
     keeps_tolerance: bool,
+    /// No other kind that keeps the tolerance is shorter.
     shortest: bool,
     duration_s: f64,
+    /// With the modes' frequencies off by up to `band_percent`.
     worst_residual: f64,
+    /// Of a smooth kind: the least worst residual of any shaper without negative amplitudes in its duration.
     #[serde(skip_serializing_if = "Option::is_none")]
     least_residual: Option<f64>,
     taps: usize,
@@ -129,7 +138,7 @@ struct KindDocument {
     delay_s: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct MissingDocument {
     kind: String,
     reason: String,

@@ -9,6 +9,7 @@ use posicast_machine::hardware::{AxisLoop, Hardware};
 use posicast_machine::machine_file::Machine;
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::unit::show_seconds;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -172,7 +173,7 @@ impl AxisControl {
 }
 
 /// `control` of an axis in `design --json` and `report.json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct ControlDocument {
     law: &'static str,
     /// Lag from the position to the drive's response, in s.
@@ -189,7 +190,7 @@ pub(crate) struct ControlDocument {
 }
 
 /// Stability margins; null where there is no limit.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct MarginsDocument {
     gain_margin_db: Option<f64>,
     /// Reduction of the gains, in dB, that makes the loop unstable.
@@ -214,7 +215,7 @@ impl MarginsDocument {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct SettingDocument {
     row: String,
     /// Value in counts, ticks and command units.

@@ -16,6 +16,7 @@ use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
 use posicast_testbench::blocks::LinkedStageBlock;
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -79,7 +80,7 @@ pub(crate) fn add(
 }
 
 /// What was generated, and where.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     name: String,
     folder: String,

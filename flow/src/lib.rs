@@ -47,13 +47,14 @@ pub use files::ResultForm;
 pub use observer::{Late, Observer, Silent, WorkProgress};
 
 use posicast_system::output::OutputFiles;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Version of posicast, with the short hash of the commit where it was built in a checkout of its own repository.
 pub const VERSION: &str = env!("POSICAST_VERSION");
 
 /// The result of a step.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Outcome<D> {
     /// The result for programs.
     #[serde(flatten)]

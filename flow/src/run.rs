@@ -47,7 +47,7 @@ use std::path::PathBuf;
 use waves::Waves;
 
 pub use options::{Detail, Options};
-pub use report::Document;
+pub use report::{Document, schema};
 
 /// Goes the whole way: design, Verilog, simulation, comparison, estimate, verdict.
 ///

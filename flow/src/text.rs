@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use anstream::adapter::strip_str;
 use posicast_machine::unit::AxisUnit;
 use posicast_system::output::write_text as write_whole;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 
@@ -46,9 +47,12 @@ pub fn few(names: &[String]) -> String {
 }
 
 /// The unit of an axis in a JSON document, whose figures are in `si_unit` whatever unit the machine file uses.
-#[derive(Clone, Copy, Serialize)]
+#[derive(Clone, Copy, Serialize, JsonSchema)]
 pub struct UnitDocument {
+    /// Unit of the axis in the machine file.
     unit: &'static str,
+    /// Unit of the figures here: `m` or `rad`.
+    #[schemars(extend("enum" = ["m", "rad"]))]
     si_unit: &'static str,
     #[serde(skip)]
     of_axis: AxisUnit,

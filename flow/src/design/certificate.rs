@@ -7,6 +7,7 @@ use posicast_machine::plan::{AxisCertificate, ModeCertificate, certify_axis};
 use posicast_shaper::design::Findings;
 use posicast_shaper::design::optimal::Optimal;
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -163,14 +164,14 @@ fn row(mode: &ModeCertificate) -> [String; 9] {
 }
 
 /// What is certified of an axis.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct CertificateDocument {
     modes: Vec<ModeDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shorter: Option<ShorterDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ModeDocument {
     frequency_hz: [f64; 2],
     damping: [f64; 2],
@@ -181,7 +182,7 @@ struct ModeDocument {
     holds: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct FoundDocument {
     frequency_hz: f64,
     damping: f64,
@@ -205,7 +206,7 @@ impl ModeDocument {
 }
 
 /// That no shorter shaper exists, with the points and weights that prove it; modes are counted from 1.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ShorterDocument {
     least_samples: u32,
     least_duration_s: f64,
@@ -215,7 +216,7 @@ struct ShorterDocument {
     points: Vec<PointDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct PointDocument {
     mode: usize,
     frequency_hz: f64,

@@ -6,6 +6,7 @@ use posicast_machine::machine_file::Machine;
 use posicast_machine::plan::{AxisDelay, MachineDesign, StageDelay};
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::unit::show_seconds;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -54,7 +55,8 @@ pub(super) fn text(machine: &Machine, design: &MachineDesign) -> String {
 }
 
 /// `stage` in `design --json` and `report.json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "EqualDelays")]
 pub(super) struct StageDocument {
     /// Total delay of every axis, before the coefficients are rounded.
     total_delay_s: f64,
@@ -81,7 +83,7 @@ impl StageDocument {
 }
 
 /// `delay` of an axis there: its parts and their sum.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct DelayDocument {
     shaper_s: f64,
     mode_lag_s: f64,

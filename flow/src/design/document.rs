@@ -12,10 +12,12 @@ use posicast_machine::mechanics::ScrewDrive;
 use posicast_shaper::design::periodic::Solution;
 use posicast_shaper::design::ratios::Class;
 use posicast_taps::TapTable;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// `design --json`: the command line's contract.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Design")]
 pub struct Document {
     pub(super) name: String,
     pub(super) axes: Vec<AxisDocument>,
@@ -27,7 +29,8 @@ pub struct Document {
     pub(super) stage: Option<StageDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "DesignAxis")]
 pub(super) struct AxisDocument {
     pub(super) name: String,
     #[serde(flatten)]
@@ -62,7 +65,7 @@ pub(super) struct AxisDocument {
 }
 
 /// An interval of frequencies that `periodic` may take.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct SolutionDocument {
     pub(super) low_hz: f64,
     pub(super) high_hz: f64,
@@ -80,7 +83,7 @@ impl SolutionDocument {
 }
 
 /// Modes of `antisymmetric` that share an antiperiod; modes are counted from 1.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ClassDocument {
     pub(super) modes: Vec<usize>,
     pub(super) divisor_hz: f64,
@@ -99,14 +102,14 @@ impl ClassDocument {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ImpulseDocument {
     pub(super) time_s: f64,
     pub(super) amplitude: f64,
 }
 
 /// Residual of the shaper for one mode at another mode.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct CrossGainDocument {
     pub(super) kind: &'static str,
     pub(super) shaper_hz: f64,
@@ -114,7 +117,8 @@ pub(super) struct CrossGainDocument {
     pub(super) gain: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "DesignMode")]
 pub(super) struct ModeDocument {
     pub(super) frequency_hz: f64,
     pub(super) damping: f64,
@@ -129,7 +133,7 @@ pub(super) struct ModeDocument {
 }
 
 /// A mode from data sheets.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct MechanicsDocument {
     /// Whether the motor is `held` or `free` in this mode.
     motor: &'static str,
@@ -151,13 +155,13 @@ impl MechanicsDocument {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct FreeDocument {
     pub(super) frequency_hz: f64,
     pub(super) damping: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct QuantisedDocument {
     pub(super) sample_hz: f64,
     pub(super) coefficient_fraction: u32,
@@ -167,7 +171,7 @@ pub(super) struct QuantisedDocument {
     pub(super) modes: Vec<ResidualDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct TapDocument {
     delay_samples: u32,
     coefficient: i32,
@@ -185,7 +189,7 @@ impl TapDocument {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ResidualDocument {
     pub(super) residual: f64,
     /// Upper bound over the whole band of the mode.

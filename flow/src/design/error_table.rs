@@ -5,6 +5,7 @@ use posicast_blocks::stage::StageErrorTable;
 use posicast_machine::hardware::{self, Hardware};
 use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The table that the hardware has of what was measured on an axis.
@@ -14,7 +15,7 @@ pub(super) struct ErrorTableReport<'a> {
 }
 
 /// The same in JSON.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ErrorTableDocument {
     apply: &'static str,
     points: usize,

@@ -9,6 +9,7 @@ use posicast_shaper::analysis::{residual_vibration, tap_impulses};
 use posicast_shaper::mode::Mode;
 use posicast_shaper::unit::trimmed;
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -22,7 +23,7 @@ const DIGITS: usize = 5;
 const SHOWN: f64 = 3.0;
 
 /// `family` of an axis in `design --json`. Values of a position are in m or rad.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct FamilyDocument {
     variable: String,
     range: [f64; 2],
@@ -36,7 +37,7 @@ pub(super) struct FamilyDocument {
     tables: Vec<MemberDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct MemberDocument {
     value: f64,
     modes: Vec<MemberMode>,
@@ -51,7 +52,7 @@ struct MemberDocument {
     taps: Vec<TapDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct MemberMode {
     frequency_hz: f64,
     damping: f64,

@@ -7,6 +7,7 @@ use crate::plot::{Curve, Panel};
 use crate::text::{Table, percent};
 use posicast_shaper::design::Findings;
 use posicast_shaper::design::front::{FrontFigures, design_front};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Label of an axis that counts taps.
@@ -140,13 +141,13 @@ impl FrontReport {
 }
 
 /// What the durations of an axis's shaper buy.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct FrontDocument {
     axis: String,
     durations: Vec<DurationDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct DurationDocument {
     duration_s: f64,
     taps: usize,

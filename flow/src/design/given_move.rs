@@ -7,6 +7,7 @@ use crate::text::Table;
 use posicast_machine::machine_file::AxisSection;
 use posicast_machine::motion::{AxisMove, BetterMove, MoveComparison, MoveFigures, compare_move};
 use posicast_shaper::analysis::tap_impulses;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -113,7 +114,7 @@ impl MoveReport<'_> {
 }
 
 /// A move in `design --json`, in m or rad; modes are counted from 1.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct MoveDocument {
     axis: String,
     distance: f64,
@@ -124,7 +125,7 @@ pub(super) struct MoveDocument {
     better: Option<&'static str>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct PeriodDocument {
     mode: usize,
     jerk_s: f64,
@@ -135,7 +136,7 @@ struct PeriodDocument {
     way: WayDocument,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct WayDocument {
     command_s: f64,
     shaper_s: f64,

@@ -3,6 +3,7 @@
 use posicast_machine::plan::MachineDesign;
 use posicast_shaper::certify::{CheckedShorter, CheckedTogether, check_together};
 use posicast_shaper::design::optimal::TogetherDesign;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -100,7 +101,7 @@ impl<'a> TogetherReport<'a> {
 }
 
 /// `together` in `stage` of `design --json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct TogetherDocument {
     /// Least common duration.
     samples: u32,

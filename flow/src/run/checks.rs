@@ -15,6 +15,7 @@ use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, LinkedStageBlock, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use wavecmp::diff::{Comparison, DiffVerdict};
 
@@ -22,7 +23,8 @@ use wavecmp::diff::{Comparison, DiffVerdict};
 const MEASURED_ROUNDING: f64 = 1e-9;
 
 /// One check and how it went.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(with = "CheckDocument<'static>")]
 pub(crate) struct Check {
     /// Description of the check in a few words.
     pub(crate) name: &'static str,
@@ -35,11 +37,15 @@ pub(crate) struct Check {
 }
 
 /// A check in `report.json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct CheckDocument<'a> {
+    /// What was checked, in a few words.
     name: &'a str,
     passed: bool,
+    /// `ok`, `open` or `failed`; open: the check held but compared nothing, or too little.
+    #[schemars(extend("enum" = ["ok", "open", "failed"]))]
     verdict: String,
+    /// The figures of the check; for a failed one the place where it failed first.
     detail: &'a str,
 }
 

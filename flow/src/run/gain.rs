@@ -4,10 +4,11 @@ use super::pictures::slowest_period_s;
 use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_machine::simulation::AxisSimulation;
 use posicast_shaper::analysis::settled_from;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Where the figures come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum GainSource {
     /// The stage with its controller on the simulated machine.
@@ -17,26 +18,28 @@ pub(crate) enum GainSource {
 }
 
 /// The move of an axis with its shaper and without it. All times are in seconds since the command began to move.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Gain {
     /// Where the figures come from.
     pub(crate) of: GainSource,
-    /// Half the width of the band in which the load counts as at rest: one count, in m or rad.
+    /// One count, in `si_unit`: the load is at rest when it stays within ± this.
     pub(crate) band: f64,
-    /// When the command arrives; `None` if it never moves.
+    /// When the command arrives; null if it never moves.
     pub(crate) arrival_unshaped_s: Option<f64>,
     /// When the shaped command arrives.
     pub(crate) arrival_s: Option<f64>,
-    /// How much later that is.
+    /// What the shaper costs: `arrival_s - arrival_unshaped_s`.
     pub(crate) later_s: Option<f64>,
-    /// From when on the load stays in the band without the shaper; `None` if the simulation ends before.
+    /// From when on the load is at rest without the shaper; null if it is not seen at rest for a period of its slowest mode before the
+    /// simulation ends.
     pub(crate) settled_unshaped_s: Option<f64>,
-    /// From when on the load stays in the band with the shaper.
+    /// From when on the load is at rest with the shaper.
     pub(crate) settled_s: Option<f64>,
-    /// How much sooner that is; negative if it is later.
+    /// What the shaper gains: `settled_unshaped_s - settled_s`; negative if it loses.
     pub(crate) sooner_s: Option<f64>,
-    /// When the simulation without the shaper ends, and that with it.
+    /// When the simulation without the shaper ends.
     pub(crate) end_unshaped_s: f64,
+    /// When the simulation with it ends.
     pub(crate) end_s: f64,
 }
 

@@ -23,6 +23,8 @@ use posicast_shaper::impulse::ImpulseSequence;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::diff::Comparison;
@@ -50,7 +52,7 @@ pub(crate) struct RunReport<'a> {
     pub(crate) command: String,
 }
 
-/// Version of the document: raised when a key is removed or gets another meaning. `docs/report.schema.json` describes it.
+/// Version of the document: raised when a key is removed or gets another meaning.
 const REPORT_VERSION: u32 = 1;
 
 /// Figures of one axis on the simulated machine.
@@ -235,10 +237,9 @@ impl RunReport<'_> {
             posicast: env!("CARGO_PKG_VERSION"),
             command: self.command.clone(),
             name: self.machine.name.clone(),
-            result: if self.checks.iter().all(|c| c.passed) {
-                "pass"
-            } else {
-                "fail"
+            result: match self.checks.iter().all(|check| check.passed) {
+                true => RunVerdict::Pass,
+                false => RunVerdict::Fail,
             },
             simulator: self.simulator,
             seed: self.seed,
@@ -255,43 +256,82 @@ impl RunReport<'_> {
     }
 }
 
-/// The report of a run: `report.json`.
-#[derive(Serialize)]
+/// The JSON Schema of [`Document`], as its types say.
+#[must_use]
+pub fn schema() -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<Document>()
+}
+
+/// The result of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum RunVerdict {
+    /// Every check held.
+    Pass,
+    /// At least one check did not hold.
+    Fail,
+}
+
+/// `report.json` after `posicast run`, and `posicast run --json`. Times are in s, lengths in m, angles in rad.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "posicast report")]
 pub struct Document {
+    /// Raised when a key is removed or gets another meaning; new keys do not raise it.
+    #[schemars(extend("const" = REPORT_VERSION))]
     report_version: u32,
+    /// Version of posicast.
     posicast: &'static str,
+    /// The command line of the run, to be called in the output folder.
     command: String,
+    /// Name of the machine.
     name: String,
-    result: &'static str,
+    result: RunVerdict,
     simulator: Simulator,
+    /// Seed of the random stimuli.
     seed: u64,
+    /// As `design --json`.
     design: design::Document,
     axes: Vec<AxisDocument>,
+    /// As `verify --json`: the shapers, with random stimuli.
     verify: LockstepReport,
+    /// As `diff --json`.
     model_against_rtl: Comparison,
+    /// As `diff --json`.
     rtl_against_float: Comparison,
+    /// As `synth --json`; null without Yosys.
     synth: Option<Estimate>,
+    /// The closed loop; absent where the machine file describes no stage.
     #[serde(skip_serializing_if = "Option::is_none")]
     stage: Option<StageDocument>,
+    /// As `design --compare --json`.
     kinds: compare::Document,
     checks: Vec<Check>,
 }
 
-#[derive(Serialize)]
+/// The move of an axis.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "RunAxis")]
 struct AxisDocument {
     name: String,
     #[serde(flatten)]
     unit: UnitDocument,
     plant: PlantDocument,
+    /// Ringing after the move without the shaper, in `si_unit`.
     residual_displacement_unshaped: f64,
+    /// Ringing after the move with it, in `si_unit`.
     residual_displacement: f64,
+    /// Output samples of the move.
     samples: usize,
+    /// Largest difference of hardware and float design.
     largest_difference_lsb: f64,
+    /// The largest that rounding explains.
     bound_lsb: f64,
     gain: Gain,
 }
 
-#[derive(Serialize)]
+/// A step on the simulated machine, and on machines whose frequencies are 10 % off.
+#[derive(Serialize, JsonSchema)]
 struct PlantDocument {
     unshaped: StepDocument,
     nominal: StepDocument,
@@ -299,9 +339,12 @@ struct PlantDocument {
     plus_10_percent: StepDocument,
 }
 
-#[derive(Serialize)]
+/// A step.
+#[derive(Serialize, JsonSchema)]
 struct StepDocument {
+    /// Residual vibration of each mode, as a fraction of that of an unshaped step.
     residual: Vec<f64>,
+    /// As a fraction of the step.
     overshoot: f64,
 }
 

@@ -8,6 +8,7 @@
 
 use std::ops::AddAssign;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::family::{Cell, Family};
@@ -15,7 +16,7 @@ use super::netlist::{Module, Netlist, NetlistCell};
 use super::{logic_elements, m4k, multiplier_registers};
 
 /// Resources of a device that a block takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Resources {
     /// Number of logic cells, in the unit of the device.
     pub cells: u64,
@@ -49,7 +50,7 @@ impl AddAssign for Resources {
 }
 
 /// Resources of one instance.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct BlockEstimate {
     /// Name of the instance in the top module; the top module's own name for the logic between its instances.
     pub name: String,

@@ -5,10 +5,12 @@ use std::str::FromStr;
 
 use posicast_machine::machine_file::FAMILIES;
 use posicast_machine::spelling::did_you_mean;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 /// A device family, with its name in the machine file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema)]
+#[schemars(with = "String")]
 pub enum Family {
     /// Cyclone II. Yosys has no such target, so Cyclone IV E, which has the same logic element, represents it.
     Cyclone2,
@@ -24,7 +26,7 @@ pub enum Family {
 }
 
 /// Unit in which a family's logic is counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub enum Cell {
     /// Logic element: a 4-input LUT and a flip-flop.
     #[serde(rename = "LE")]
@@ -35,7 +37,7 @@ pub enum Cell {
 }
 
 /// Resources of a device.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct FpgaDevice {
     /// Order code.
     pub name: &'static str,

@@ -35,10 +35,11 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use posicast_system::tool;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Resources of a design.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Estimate {
     /// The family for which it was made.
     pub family: Family,
@@ -55,7 +56,7 @@ pub struct Estimate {
 }
 
 /// Method of an estimate.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct EstimateMethod {
     /// Name and version of the tool.
     pub tool: String,

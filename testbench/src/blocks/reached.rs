@@ -14,6 +14,7 @@ use std::collections::HashSet;
 
 use posicast_blocks::registers::{Access, RegisterMap};
 use posicast_blocks::{Direction, Port};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::lockstep::Clock;
@@ -26,7 +27,7 @@ pub(super) const REGISTERS_PER_CENT: u64 = 50;
 const RUN: u64 = 3;
 
 /// A count and its bar.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct ReachedCount {
     /// What is counted.
     pub what: String,

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write as _};
 
 use posicast_blocks::{Direction, Port};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::window::{Row, Window};
@@ -10,7 +11,7 @@ use crate::blocks::ReachedCount;
 use wavecmp::diff::{Shown, View, value, value_and_digits};
 
 /// Verdict of a lock step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LockstepVerdict {
     /// Every value of every clock was equal, and all that the verdict speaks of was exercised.
@@ -22,7 +23,7 @@ pub enum LockstepVerdict {
 }
 
 /// Result of a whole run, which serialises to `verify --json`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct LockstepReport {
     /// The verdict over all blocks. There is none on a run without clocks, which shows nothing, nor on one that has not
     /// exercised all that it should ([`BlockReport::not_exercised`]).
@@ -126,7 +127,7 @@ impl LockstepReport {
 }
 
 /// Result for one instance of a block.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct BlockReport {
     /// Name of the block.
     pub name: String,
@@ -155,7 +156,7 @@ pub struct BlockReport {
 }
 
 /// The first wrong value of a block, with the clocks around it. `Display` draws the table.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Mismatch {
     /// Number of clocks since the start of the run.
     pub time: u64,

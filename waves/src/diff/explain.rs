@@ -11,6 +11,7 @@ use crate::wording::counted;
 
 /// Two signals that are compared.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MatchedSignal {
     /// Full name in the first file.
     pub a: String,
@@ -22,6 +23,7 @@ pub struct MatchedSignal {
 
 /// A signal without a partner.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UnmatchedSignal {
     /// Full name.
     pub signal: String,
@@ -33,6 +35,7 @@ pub struct UnmatchedSignal {
 
 /// The result of the matching: `--explain`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MatchReport {
     /// Matched signals, in the order of the first file.
     pub matched: Vec<MatchedSignal>,

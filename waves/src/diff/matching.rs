@@ -12,6 +12,7 @@ use crate::reader::Range;
 
 /// Why two signals were paired.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum MatchedBy {
     /// A `--map` names both.

@@ -14,6 +14,7 @@ use crate::wording::counted;
 
 /// Verdict of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum DiffVerdict {
     /// Every compared value of every signal that both files have was equal.
@@ -26,6 +27,7 @@ pub enum DiffVerdict {
 
 /// A signal that differs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Difference {
     /// Full name in the first file, or in the second if the first does not have it.
     pub signal: String,
@@ -55,6 +57,7 @@ pub struct Difference {
 
 /// Values around the first divergence of all.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Context {
     /// Number of the diverging sample, counted from 0.
     pub sample: u64,
@@ -68,6 +71,7 @@ pub struct Context {
 
 /// A signal's values at the times of a [`Context`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ContextRow {
     /// Full name.
     pub signal: String,
@@ -82,6 +86,7 @@ pub struct ContextRow {
 
 /// Values of a signal at the first difference and at the previous sample.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SignalState {
     /// Full name.
     pub signal: String,
@@ -98,6 +103,7 @@ pub struct SignalState {
 
 /// A file that is compared only up to where it was cut off.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CutFile {
     /// `first` or `second`.
     pub file: &'static str,
@@ -107,6 +113,7 @@ pub struct CutFile {
 
 /// Changes that no sample saw.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Unsampled {
     /// Number of changes, in both files together, that others replaced before the next edge, or at the same time.
     pub changes: u64,
@@ -160,6 +167,7 @@ impl Unsampled {
 
 /// How a signal is compared, if it is not compared bit by bit in equal widths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Leniency {
     /// Full name.
     pub signal: String,
@@ -181,6 +189,7 @@ pub struct Leniency {
 
 /// The whole result. It serialises to the document of `diff --json`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// The verdict.
     pub result: DiffVerdict,

@@ -179,7 +179,9 @@ fn command(form: Form, impulses: &[Impulse]) -> String {
     match (impulses, form) {
         ([] | [_], _) => "M593 P\"none\"\n".into(),
         // From 3.6 on, a single time would be taken for four; F and S say the same.
-        ([_, second], Form::Amplitudes) => format!("M593 P\"custom\" F{:.5} S0 H{}\n", 0.5 / second.time_s, digits(&h)),
+        ([_, second], Form::Amplitudes) => {
+            format!("M593 P\"custom\" F{:.5} S0 H{}\n", 0.5 / second.time_s, digits(&h))
+        }
         _ => format!("M593 P\"custom\" H{} T{}\n", digits(&h), digits(&t)),
     }
 }

@@ -13,6 +13,7 @@ use posicast_machine::machine_file::Machine;
 use posicast_shaper::unit::show_seconds;
 use posicast_testbench::stage_run::{Compared, Contoured, Trouble};
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -58,7 +59,7 @@ pub(crate) fn contour(
 }
 
 /// `contour` of `stage` in `report.json`. Lengths are in m.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ContourDocument {
     path: String,
     length: f64,
@@ -71,7 +72,7 @@ pub(super) struct ContourDocument {
     equal_delays: Option<DistanceDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct DistanceDocument {
     peak: f64,
     rms: f64,

@@ -9,6 +9,7 @@ use posicast_machine::plant::axis::ErrorFigures;
 use posicast_machine::unit::AxisUnit;
 use posicast_testbench::lockstep::report::Mismatch;
 use posicast_testbench::stage_run::{Circled, Compared, Moved};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -71,6 +72,12 @@ impl ClosedLoop<'_> {
             )
         });
         lines.collect()
+    }
+
+    /// Clocks of the Verilog beside its model in the move, and values that differed; `None` without Verilator.
+    pub(crate) fn side_by_side(&self) -> Option<[u64; 2]> {
+        let compared = self.compared.as_ref()?;
+        Some([compared.clocks, compared.mismatches])
     }
 
     /// Vibration of an axis's load without its shaper and with it, in m or rad; `None` if a move was not made to its end.
@@ -210,9 +217,11 @@ impl ClosedLoop<'_> {
     }
 }
 
-/// `stage` in `report.json`. Lengths are in m or rad.
-#[derive(Serialize)]
+/// The closed loop: the stage on its simulated machine. Lengths are in m or rad.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "ClosedLoop")]
 pub(crate) struct StageDocument {
+    /// The Verilog beside its model; null without Verilator.
     side_by_side: Option<SideBySideDocument>,
     axes: Vec<AxisDocument>,
     circle: Option<CircleDocument>,
@@ -221,9 +230,10 @@ pub(crate) struct StageDocument {
     schedule: ScheduleDocument,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct SideBySideDocument {
     clocks: u64,
+    /// Whether the run was not given up before its end.
     whole: bool,
     mismatches: u64,
     first: Option<Mismatch>,
@@ -240,7 +250,9 @@ impl SideBySideDocument {
     }
 }
 
-#[derive(Serialize)]
+/// The move of an axis of the stage.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "StageAxis")]
 struct AxisDocument {
     name: String,
     #[serde(flatten)]
@@ -256,14 +268,14 @@ struct AxisDocument {
 }
 
 /// Distance of the load's rest position from its target, with the axis's error table and without it.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct CompensatedDocument {
     offset_without: f64,
     offset_with: f64,
     offset_allowed: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct CircleDocument {
     axes: Vec<String>,
     radius: f64,
@@ -272,7 +284,7 @@ struct CircleDocument {
     equal_delays: Option<ErrorDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ErrorDocument {
     peak: f64,
     rms: f64,
@@ -287,7 +299,8 @@ impl From<ErrorFigures> for ErrorDocument {
     }
 }
 
-#[derive(Serialize)]
+/// When in a tick the stage does what.
+#[derive(Serialize, JsonSchema)]
 struct ScheduleDocument {
     tick_clocks: u32,
     control_clocks: u32,

@@ -1,8 +1,7 @@
 //! `report.html`: the results of a run on one page, which needs no other file and no network.
 //!
 //! The verdict comes first, then what each shaper costs and gains, then the checks, then the pictures, each with the command
-//! that makes it. Every figure in a sentence or a table is read from the document that is `report.json`, and carries its
-//! place there (`data-path`). All text of users passes through `maud`, which escapes it.
+//! that makes it. Every figure in a sentence or a table carries its place in `report.json` (`data-path`). All text of users passes through `maud`, which escapes it.
 
 mod drawings;
 mod pictures;
@@ -17,7 +16,6 @@ use crate::failure::Failure;
 use crate::plot::{Inline, Panel, inline, style_rules};
 use anstream::adapter::strip_str;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use serde_json::Value;
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
@@ -32,20 +30,11 @@ pub(crate) struct Extra {
     pub(crate) response: Vec<Panel>,
 }
 
-/// The figures of `report.json`, by their JSON pointers.
-struct Figures(Value);
-
-impl Figures {
-    fn number(&self, pointer: &str) -> Option<f64> {
-        self.0.pointer(pointer)?.as_f64()
-    }
-
-    /// A figure as the page shows it; a dash where the document has none.
-    fn show(&self, pointer: &str, shown: impl Fn(f64) -> String) -> Markup {
-        match self.number(pointer) {
-            Some(number) => html! { data value=(number) data-path=(pointer) { (shown(number)) } },
-            None => html! { "–" },
-        }
+/// A figure that `report.json` has at this JSON pointer, as the page shows it; a dash where there is none.
+fn figure_at(pointer: &str, figure: impl Into<Option<f64>>, shown: impl Fn(f64) -> String) -> Markup {
+    match figure.into() {
+        Some(number) => html! { data value=(number) data-path=(pointer) { (shown(number)) } },
+        None => html! { "–" },
     }
 }
 
@@ -64,8 +53,6 @@ struct Part {
 impl RunReport<'_> {
     /// The page.
     pub(crate) fn page(&self, extra: &Extra) -> Result<String, Failure> {
-        let document = serde_json::to_value(self.json()).map_err(Failure::because)?;
-        let figures = Figures(document);
         let is_failed = self.checks.iter().any(|check| !check.passed);
         let verdict = strip_str(&self.verdict()).to_string();
         let (verdict, remark) = verdict.split_once('\n').unwrap_or((&verdict, ""));
@@ -95,15 +82,15 @@ impl RunReport<'_> {
                         @if is_failed { (self.failures()) }
                         section {
                             h2 { "What the shapers cost and gain" }
-                            (self.sentences(&figures))
-                            (self.axes_table(&figures))
+                            (self.sentences())
+                            (self.axes_table())
                         }
                         section {
                             h2 { "What was checked" }
                             (self.checks_table())
                             (self.not_exercised())
                         }
-                        @for part in self.parts(&figures, extra)? { (shown(&part)) }
+                        @for part in self.parts(extra)? { (shown(&part)) }
                     }
                     footer {
                         p { "Figures in sentences and tables are those of " code { "report.json" } ". Commands are called in the folder that holds this page, with the files that they name beside it." }

@@ -1,7 +1,8 @@
 //! The parts of the page that show pictures, in their order.
 
 use super::drawings;
-use super::{Extra, Figures, Part, drawn, figure};
+use super::tables::kinds_table;
+use super::{Extra, Part, drawn, figure};
 use crate::failure::Failure;
 use crate::plot::{Panel, inline_map};
 use crate::run::excerpt;
@@ -10,7 +11,7 @@ use maud::{Markup, html};
 use posicast_machine::compare::DEFAULT_BAND;
 
 impl RunReport<'_> {
-    pub(super) fn parts(&self, figures: &Figures, extra: &Extra) -> Result<Vec<Part>, Failure> {
+    pub(super) fn parts(&self, extra: &Extra) -> Result<Vec<Part>, Failure> {
         let mut parts = vec![self.commands_part()?];
         if !extra.sensitivity.is_empty() {
             parts.push(Part {
@@ -47,7 +48,7 @@ impl RunReport<'_> {
             command: "posicast design machine.toml --compare".to_owned(),
             pictures: drawn(&self.kinds_panels())?,
             more: html! {
-                @for (index, kinds) in self.kinds.iter().enumerate() { (self.kinds_table(index, kinds, figures)) }
+                @for (index, kinds) in self.kinds.iter().enumerate() { (kinds_table(index, kinds)) }
             },
         });
         parts.push(Part {
@@ -58,14 +59,14 @@ impl RunReport<'_> {
                 self.simulator, self.lockstep.cycles, self.seed
             ),
             pictures: Vec::new(),
-            more: self.blocks_table(figures),
+            more: self.blocks_table(),
         });
         parts.push(Part {
             title: "Area",
             about: "Resources of the shapers, estimated before place and route.".to_owned(),
             command: "posicast synth machine.toml".to_owned(),
             pictures: Vec::new(),
-            more: self.area_table(figures),
+            more: self.area_table(),
         });
         Ok(parts)
     }

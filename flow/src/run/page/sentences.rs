@@ -1,11 +1,13 @@
 //! A sentence per axis: what its shaper costs, and what it gains.
 
-use super::Figures;
+use super::figure_at;
 use crate::run::gain::{Gain, GainSource};
 use crate::run::report::RunReport;
+use crate::simulate::si_per_lsb;
 use crate::text::percent;
 use maud::{Markup, html};
 use posicast_machine::machine_file::AxisSection;
+use posicast_machine::plan::ModeFigures;
 use posicast_shaper::unit::show_seconds;
 
 /// A time with the digits that a sentence needs.
@@ -14,13 +16,13 @@ fn time(seconds: f64) -> String {
 }
 
 impl RunReport<'_> {
-    pub(super) fn sentences(&self, figures: &Figures) -> Markup {
+    pub(super) fn sentences(&self) -> Markup {
         html! {
             ul.gains {
                 @for ((index, axis, tables), gain) in self.rows().zip(&self.gains) {
                     li {
                         strong { "Axis " (axis.name) ", " (tables.design.kind) }
-                        ": " (cost(gain, index, figures)) (gained(axis, gain, index, figures)) "."
+                        ": " (cost(gain, index)) (gained(axis, gain, index)) "."
                     }
                 }
             }
@@ -42,7 +44,7 @@ impl RunReport<'_> {
     }
 
     /// The figures of each axis in a table.
-    pub(super) fn axes_table(&self, figures: &Figures) -> Markup {
+    pub(super) fn axes_table(&self) -> Markup {
         html! {
             div.wide { table {
                 thead {
@@ -55,18 +57,21 @@ impl RunReport<'_> {
                     tr { @for _ in 0..2 { th.number { "unshaped" } th.number { "shaped" } } }
                 }
                 tbody {
-                    @for (index, axis, tables) in self.rows() {
+                    @for ((index, axis, tables), gain) in self.rows().zip(&self.gains) {
                         @let length = |figure: f64| axis.unit.show(figure, 3);
-                        @let [unshaped, shaped] = self.ringing_paths(index);
+                        @let [unshaped, shaped] = self.ringing(index, axis);
+                        @let settled = |name: &str, time_s: Option<f64>| {
+                            figure_at(&format!("/axes/{index}/gain/{name}"), time_s, |s| show_seconds(s, 3))
+                        };
                         tr {
                             td { (axis.name) }
                             td { (tables.design.kind) }
-                            td.number { (figures.show(&format!("/design/axes/{index}/duration_s"), |s| show_seconds(s, 3))) }
-                            td.number { (worst_residual(figures, index, axis.modes.len())) }
-                            td.number { (figures.show(&unshaped, length)) }
-                            td.number { (figures.show(&shaped, length)) }
-                            td.number { (figures.show(&format!("/axes/{index}/gain/settled_unshaped_s"), |s| show_seconds(s, 3))) }
-                            td.number { (figures.show(&format!("/axes/{index}/gain/settled_s"), |s| show_seconds(s, 3))) }
+                            td.number { (figure_at(&format!("/design/axes/{index}/duration_s"), tables.design.impulses.duration_s(), |s| show_seconds(s, 3))) }
+                            td.number { (worst_residual(index, &tables.mode_figures(axis, self.sample_hz()))) }
+                            td.number { (figure_at(&unshaped.0, unshaped.1, length)) }
+                            td.number { (figure_at(&shaped.0, shaped.1, length)) }
+                            td.number { (settled("settled_unshaped_s", gain.settled_unshaped_s)) }
+                            td.number { (settled("settled_s", gain.settled_s)) }
                         }
                     }
                 }
@@ -74,34 +79,38 @@ impl RunReport<'_> {
         }
     }
 
-    /// Where `report.json` has the ringing of an axis: in the closed loop if it has one.
-    fn ringing_paths(&self, index: usize) -> [String; 2] {
+    /// The ringing of an axis without and with its shaper, in the closed loop if it has one, with its place in `report.json`.
+    fn ringing(&self, index: usize, axis: &AxisSection) -> [(String, f64); 2] {
         match self.closed_loop.and_then(|closed| closed.ringing(index)) {
-            Some(_) => ["residual_unshaped", "residual"].map(|name| format!("/stage/axes/{index}/{name}")),
+            Some([unshaped, shaped]) => [("residual_unshaped", unshaped), ("residual", shaped)]
+                .map(|(name, figure)| (format!("/stage/axes/{index}/{name}"), figure)),
             None => {
-                ["residual_displacement_unshaped", "residual_displacement"].map(|name| format!("/axes/{index}/{name}"))
+                let (run, per_lsb) = (&self.axes[index], si_per_lsb(self.machine, axis));
+                [
+                    ("residual_displacement_unshaped", run.vibration_unshaped),
+                    ("residual_displacement", run.vibration),
+                ]
+                .map(|(name, figure)| (format!("/axes/{index}/{name}"), figure * per_lsb))
             }
         }
     }
 }
 
 /// The largest residual of the integer taps at any mode.
-fn worst_residual(figures: &Figures, axis: usize, modes: usize) -> Markup {
-    let path = |mode: &usize| format!("/design/axes/{axis}/quantised/modes/{mode}/residual");
-    let number = |mode: &usize| figures.number(&path(mode)).unwrap_or(0.0);
-    let worst = (0..modes).max_by(|a, b| number(a).total_cmp(&number(b)));
-    match worst {
-        Some(mode) => figures.show(&path(&mode), |residual| format!("{} %", percent(residual))),
-        None => html! { "–" },
-    }
+fn worst_residual(axis: usize, modes: &[ModeFigures]) -> Markup {
+    let residuals = modes.iter().map(|mode| mode.residual_quantised).enumerate();
+    let worst = residuals.max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let (mode, residual) = worst.unzip();
+    let path = format!("/design/axes/{axis}/quantised/modes/{}/residual", mode.unwrap_or(0));
+    figure_at(&path, residual, |residual| format!("{} %", percent(residual)))
 }
 
-fn cost(gain: &Gain, index: usize, figures: &Figures) -> Markup {
+fn cost(gain: &Gain, index: usize) -> Markup {
     let path = format!("/axes/{index}/gain/later_s");
     match gain.later_s {
         None => html! { "the command does not move it" },
         Some(later) if later > 0.0 => html! {
-            "its command arrives " strong { (figures.show(&path, |later| format!("{} later", time(later)))) }
+            "its command arrives " strong { (figure_at(&path, later, |later| format!("{} later", time(later)))) }
         },
         Some(_) => html! { "its command arrives no later" },
     }
@@ -115,9 +124,12 @@ fn why_later(gain: &Gain) -> &'static str {
     }
 }
 
-fn gained(axis: &AxisSection, gain: &Gain, index: usize, figures: &Figures) -> Markup {
-    let show = |name: &str| figures.show(&format!("/axes/{index}/gain/{name}"), time);
-    let band = figures.show(&format!("/axes/{index}/gain/band"), |band| axis.unit.show(band, 3));
+fn gained(axis: &AxisSection, gain: &Gain, index: usize) -> Markup {
+    let path = |name: &str| format!("/axes/{index}/gain/{name}");
+    let settled = figure_at(&path("settled_s"), gain.settled_s, time);
+    let settled_unshaped = figure_at(&path("settled_unshaped_s"), gain.settled_unshaped_s, time);
+    let end = figure_at(&path("end_s"), gain.end_s, time);
+    let band = figure_at(&path("band"), gain.band, |band| axis.unit.show(band, 3));
     if gain.later_s.is_none() {
         return html! {};
     }
@@ -128,26 +140,24 @@ fn gained(axis: &AxisSection, gain: &Gain, index: usize, figures: &Figures) -> M
                 sooner if sooner < 0.0 => "later",
                 _ => "sooner or later",
             };
-            let sooner = figures.show(&format!("/axes/{index}/gain/sooner_s"), |sooner| {
-                format!("{} {word}", time(sooner))
-            });
+            let sooner = figure_at(&path("sooner_s"), sooner, |sooner| format!("{} {word}", time(sooner)));
             html! {
                 ", and its load is at rest to ±1 count (" (band) ") " strong { (sooner) } ", "
-                (show("settled_s")) " after the start of the move instead of " (show("settled_unshaped_s"))
+                (settled) " after the start of the move instead of " (settled_unshaped)
                 @if word == "later" { "; " (why_later(gain)) }
             }
         }
-        (None, Some(settled), _) => html! {
-            ", and its load is at rest to ±1 count (" (band) ") " strong { "at least " (time(gain.end_unshaped_s - settled)) " sooner" } ", "
-            (show("settled_s")) " after the start of the move; without the shaper it still rings after " (show("end_unshaped_s"))
+        (None, Some(settled_s), _) => html! {
+            ", and its load is at rest to ±1 count (" (band) ") " strong { "at least " (time(gain.end_unshaped_s - settled_s)) " sooner" } ", "
+            (settled) " after the start of the move; without the shaper it still rings after " (figure_at(&path("end_unshaped_s"), gain.end_unshaped_s, time))
             ", where the simulation ends"
         },
         (Some(_), None, _) => html! {
-            ", and its load is not at rest to ±1 count (" (band) ") after " (show("end_s"))
-            ", where the simulation ends; without the shaper it is, after " (show("settled_unshaped_s"))
+            ", and its load is not at rest to ±1 count (" (band) ") after " (end)
+            ", where the simulation ends; without the shaper it is, after " (settled_unshaped)
         },
         (None, None, _) => html! {
-            ", and its load is at rest to ±1 count (" (band) ") neither with the shaper nor without it after " (show("end_s"))
+            ", and its load is at rest to ±1 count (" (band) ") neither with the shaper nor without it after " (end)
             ", where the simulation ends"
         },
         _ => html! {},
@@ -159,7 +169,6 @@ mod tests {
     use super::*;
     use crate::run::gain::Gain;
     use posicast_machine::machine_file;
-    use serde_json::json;
 
     /// The sentence of a load that is at rest at these times, with a command that arrives at 10 ms and at 14 ms.
     fn sentence(unshaped: Option<f64>, shaped: Option<f64>) -> String {
@@ -177,9 +186,7 @@ mod tests {
             end_unshaped_s: 0.5,
             end_s: 0.5,
         };
-        let figures = Figures(json!({"axes": [{"gain": gain}]}));
-        let text = (cost(&gain, 0, &figures).into_string()
-            + &gained(&machine.axes[0], &gain, 0, &figures).into_string())
+        let text = (cost(&gain, 0).into_string() + &gained(&machine.axes[0], &gain, 0).into_string())
             .split('<')
             .map(|part| part.split_once('>').map_or(part, |(_, text)| text))
             .collect::<String>();
