@@ -203,6 +203,11 @@ fn write_fst(path: &Path, rows: &[Row], block: usize) {
                 time += 1;
                 body.time_change(time).unwrap();
             }
+            // The clock, too, may change several times at one time.
+            if value % 13 == 4 {
+                let digit = [b"x", b"0", b"1", b"z"][(value >> 7) as usize % 4];
+                body.signal_change(clk, digit).unwrap();
+            }
             let width = WIDTHS[*signal];
             let value = value & (u128::MAX >> (128 - width));
             let mut digits = format!("{value:0width$b}");

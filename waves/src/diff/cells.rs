@@ -334,7 +334,7 @@ pub(super) fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u
         }
     }
     let mut cells: Vec<Partners> = Vec::new();
-    let mut of_slot = std::collections::HashMap::new();
+    let mut of_slot: Vec<Option<usize>> = vec![None; slots[0]];
     for of_one_bit in [true, false] {
         for (at, (pair, _)) in (0..).zip(pairs) {
             let (Some(slot_a), Some(slot_b), Some(width)) = (pair.a, pair.b, width(pair)) else {
@@ -343,7 +343,7 @@ pub(super) fn cells(a: &Side, b: &Side, pairs: &[(Pair, Rule)]) -> (Cells, Vec<u
             if (width == 1) != of_one_bit || is_general[0][slot_a as usize] || is_general[1][slot_b as usize] {
                 continue;
             }
-            let cell = *of_slot.entry(slot_a).or_insert_with(|| {
+            let cell = *of_slot[slot_a as usize].get_or_insert_with(|| {
                 cells.push(Partners {
                     slots: [slot_a, slot_b],
                     width,

@@ -1,7 +1,8 @@
 //! Compares at the edges of the clock, and pairs the edges of both files.
 
 use super::clocking::Slots;
-use super::engine::{Engine, Progress};
+use super::engine::{Engine, PROGRESS_SAMPLES, Progress};
+use super::gather::Gathering;
 use super::options::SamplingEdge;
 use super::result::{Difference, seconds};
 use super::rule::View;
@@ -72,8 +73,39 @@ impl Engine<'_> {
                     last = Some([times_fs[0]; 2]);
                     period_fs = times_fs[0] - times_fs[1];
                 }
+                if let Some(times_fs) = self.sample_quiet_edges(progress) {
+                    last = Some([times_fs[0]; 2]);
+                    period_fs = times_fs[0] - times_fs[1];
+                }
             }
         }
+    }
+
+    /// Counts the next samples up to which nothing changes in either file: they say what the one before said. Returns the times of
+    /// the last of them and of the one before it.
+    fn sample_quiet_edges(&mut self, progress: &mut dyn FnMut(Progress)) -> Option<[u128; 2]> {
+        let unit_fs = self.a.unit_fs();
+        let is_gathering = self.context.as_ref().is_some_and(Gathering::is_missing_some);
+        if is_gathering || self.options.end_fs.is_some() || unit_fs != self.b.unit_fs() {
+            return None;
+        }
+        let now = self.a.step()?.time;
+        let (a, b) = (self.a.quiet_edges(), self.b.quiet_edges());
+        let count = a.iter().zip(b).take_while(|(a, b)| a.time == b.time).count();
+        let last = a.get(..count)?.last()?.time;
+        let before = count.checked_sub(2).map_or(now, |at| a[at].time);
+        let times_fs = [last, before].map(|time| u128::from(time) * unit_fs);
+        self.a.skip_edges(count);
+        self.b.skip_edges(count);
+        if let Some((_, before_fs)) = &mut self.before {
+            *before_fs = times_fs[0];
+        }
+        let reported = self.samples / PROGRESS_SAMPLES;
+        self.samples += count as u64;
+        if self.samples / PROGRESS_SAMPLES > reported {
+            self.report(progress);
+        }
+        Some(times_fs)
     }
 
     /// After a period that one file does not record, pairs edges by their time, with the same offset as before.

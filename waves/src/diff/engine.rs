@@ -18,7 +18,7 @@ use super::value::Shown;
 use crate::WaveError;
 use crate::reader::{Kind, Value, Values, value};
 
-const PROGRESS_SAMPLES: u64 = 1 << 14;
+pub(super) const PROGRESS_SAMPLES: u64 = 1 << 14;
 
 /// Progress of a comparison.
 #[derive(Debug, Clone, Copy, Default)]
@@ -295,12 +295,16 @@ impl<'a> Engine<'a> {
         self.forget_events();
         self.samples += 1;
         if self.samples.is_multiple_of(PROGRESS_SAMPLES) {
-            progress(Progress {
-                samples: self.samples,
-                bytes: self.a.bytes() + self.b.bytes(),
-                total_bytes: self.total_bytes,
-            });
+            self.report(progress);
         }
+    }
+
+    pub(super) fn report(&self, progress: &mut dyn FnMut(Progress)) {
+        progress(Progress {
+            samples: self.samples,
+            bytes: self.a.bytes() + self.b.bytes(),
+            total_bytes: self.total_bytes,
+        });
     }
 
     /// Looks at what comes after the last edge, which no sample sees.

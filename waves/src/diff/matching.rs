@@ -63,7 +63,7 @@ struct Partners<'a> {
     of_a: Vec<Option<usize>>,
     by: Vec<Option<MatchedBy>>,
     claimed_a: Vec<bool>,
-    claimed_b: HashSet<usize>,
+    claimed_b: Vec<bool>,
 }
 
 impl Matched {
@@ -75,7 +75,7 @@ impl Matched {
             of_a: vec![None; a.entries.len()],
             by: vec![None; a.entries.len()],
             claimed_a: vec![false; a.entries.len()],
-            claimed_b: HashSet::new(),
+            claimed_b: vec![false; b.entries.len()],
         };
         partners.map(maps)?;
         partners.meet_by_name();
@@ -112,10 +112,13 @@ impl Partners<'_> {
     fn claim(&mut self, a: usize, b: usize, by: MatchedBy) {
         self.of_a[a] = Some(b);
         self.by[a] = Some(by);
-        self.claimed_b.insert(b);
+        self.claimed_b[b] = true;
     }
 
     fn map(&mut self, maps: &[(String, String)]) -> Result<(), WaveError> {
+        if maps.is_empty() {
+            return Ok(());
+        }
         let (tops_a, tops_b) = (tops(self.a), tops(self.b));
         let by_name: HashMap<&str, usize> = (0..).zip(self.b).map(|(at, entry)| (entry.path.as_str(), at)).collect();
         let mut maps: Vec<&(String, String)> = maps.iter().collect();
@@ -161,12 +164,20 @@ impl Partners<'_> {
 
     fn free(&self) -> (Vec<usize>, Vec<usize>) {
         let free_a = (0..self.a.len()).filter(|at| !self.claimed_a[*at] && self.of_a[*at].is_none());
-        let free_b = (0..self.b.len()).filter(|at| !self.claimed_b.contains(at));
+        let free_b = (0..self.b.len()).filter(|at| !self.claimed_b[*at]);
         (free_a.collect(), free_b.collect())
     }
 
     fn meet_by_name(&mut self) {
         let (free_a, free_b) = self.free();
+        // Two runs of one design: each name meets its equal, in the order of the files.
+        let mut both = free_a.iter().zip(&free_b);
+        if free_a.len() == free_b.len() && both.all(|(a, b)| self.a[*a].path == self.b[*b].path) {
+            for (a, b) in free_a.into_iter().zip(free_b) {
+                self.claim(a, b, MatchedBy::Name);
+            }
+            return;
+        }
         let (top_a, top_b) = best_tops(self.a, self.b, &free_a, &free_b);
         let by = match top_a.is_empty() && top_b.is_empty() {
             true => MatchedBy::Name,

@@ -44,6 +44,7 @@ mod gather;
 mod github;
 mod human;
 mod junit;
+mod leave_out;
 mod matching;
 mod names;
 mod options;
@@ -62,7 +63,7 @@ mod text;
 mod touched;
 mod value;
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
 /// The JSON Schema of a [`Comparison`], as `--json` prints it.
@@ -89,7 +90,8 @@ pub use self::rule::{Tolerance, View};
 use self::side::{Delayed, Side, slot_of};
 pub use self::value::{Shown, UnknownPolicy};
 use crate::WaveError;
-use crate::reader::{self, Declarations, FileEnd, Kind, Watch, Wave};
+use crate::quiet::caught;
+use crate::reader::{self, Declarations, FileEnd, Kind, Selection, Watch, Wave};
 use crate::wording::{counted, time};
 
 /// Compares file `a` with file `b`. `progress` is called now and then.
@@ -144,7 +146,7 @@ fn compare_once(
     odd: &[BTreeSet<u32>; 2],
 ) -> Result<(Comparison, [BTreeSet<u32>; 2]), WaveError> {
     let select = |side: usize| names::selection(options.roots[side].as_deref(), &options.only, &options.ignore);
-    let mut waves = [Wave::open_selected(a, select(0)?)?, Wave::open_selected(b, select(1)?)?];
+    let mut waves = open_both([a, b], [select(0)?, select(1)?])?;
     for (wave, odd) in waves.iter_mut().zip(odd) {
         wave.hold_any(odd);
     }
@@ -237,6 +239,16 @@ fn compare_once(
     Ok((comparison, found))
 }
 
+/// Opens both files at the same time.
+fn open_both([a, b]: [&Path; 2], [of_a, of_b]: [Selection; 2]) -> Result<[Wave; 2], WaveError> {
+    let (a, b) = std::thread::scope(|scope| {
+        let b = scope.spawn(|| caught(|| Wave::open_selected(b, of_b)));
+        (Wave::open_selected(a, of_a), b.join().ok().flatten())
+    });
+    let again = || WaveError::Option("the second file could not be opened".to_owned());
+    Ok([a?, b.ok_or_else(again)??])
+}
+
 /// The pairs, and how they are compared.
 struct Plan {
     names: [Names; 2],
@@ -305,64 +317,6 @@ impl Plan {
             .iter()
             .map(|latency| latency.as_ref().map(text))
             .collect()
-    }
-
-    /// Leaves out of FST what is not compared. Without a clock, it is read for the times at which it changes.
-    fn leave_out(&self, waves: &mut [Wave; 2], options: &DiffOptions) {
-        if self.clocking.clock.is_none() {
-            return;
-        }
-        for (side, wave) in waves.iter_mut().enumerate() {
-            let pairs = self.matched.pairs.iter();
-            let wanted = pairs.filter(|pair| options.require_all || pair.a.is_some() && pair.b.is_some());
-            let mut slots: HashSet<u32> = wanted.filter_map(|pair| [pair.a, pair.b][side]).collect();
-            let derived = self.matched.derived[side].iter();
-            slots.extend(derived.flat_map(|derived| derived.runs.iter().map(|run| run.source)));
-            wave.leave_out(|slot| slots.contains(&slot));
-        }
-    }
-
-    /// Leaves out what is written with the same bytes in two FST: it is equal by every rule, at every sample.
-    fn leave_out_same(&self, [wave_a, wave_b]: &mut [Wave; 2], options: &DiffOptions) {
-        // These show values of equal signals, or compare values of other times.
-        let by_value = options.first || options.glitch_fs > 0 || self.latencies.iter().any(Option::is_some);
-        let units = [&*wave_a, &*wave_b].map(|wave| wave.declarations.unit_fs);
-        if by_value || units[0] != units[1] {
-            return;
-        }
-        let mut partners: [HashMap<u32, Option<u32>>; 2] = Default::default();
-        for pair in &self.matched.pairs {
-            for (side, [slot, partner]) in [[pair.a, pair.b], [pair.b, pair.a]].into_iter().enumerate() {
-                if let Some(slot) = slot {
-                    let known = partners[side].entry(slot).or_insert(partner);
-                    *known = known.filter(|known| Some(*known) == partner);
-                }
-            }
-        }
-        let needed: Vec<[u32; 2]> = [self.clocking.clock, self.clocking.reset.map(|(reset, _)| reset)]
-            .into_iter()
-            .flatten()
-            .collect();
-        let sources = self.matched.derived.each_ref().map(|derived| {
-            let slots = derived.iter().flat_map(|derived| {
-                let sources = derived.runs.iter().map(|run| run.source);
-                sources.chain([derived.slot])
-            });
-            slots.collect::<HashSet<u32>>()
-        });
-        let pairs = partners[0].iter().filter_map(|(a, b)| {
-            let pair = [*a, (*b)?];
-            let is_only = partners[1].get(&pair[1]) == Some(&Some(*a));
-            let is_part = (0..2).any(|side| sources[side].contains(&pair[side]));
-            let is_needed = needed.iter().any(|needed| needed[0] == pair[0] || needed[1] == pair[1]);
-            let kinds = [&wave_a.declarations.kinds, &wave_b.declarations.kinds];
-            let same_kind = kinds[0].get(pair[0] as usize) == kinds[1].get(pair[1] as usize);
-            (is_only && !is_part && !is_needed && same_kind).then_some(pair)
-        });
-        let mut pairs: Vec<[u32; 2]> = pairs.collect();
-        pairs.sort_unstable();
-        let every_time = self.clocking.clock.is_none();
-        Wave::leave_out_same([wave_a, wave_b], &pairs, &needed, every_time);
     }
 
     /// Starts to read both files.

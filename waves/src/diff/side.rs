@@ -190,6 +190,19 @@ impl Side {
         Ok(None)
     }
 
+    /// Returns the next edges up to which nothing changes, if the current step is an edge that was returned.
+    pub(super) fn quiet_edges(&self) -> &[Step] {
+        match self.at_edge && self.reset.is_none() && self.lines.is_empty() {
+            true => self.feed.quiet_edges(),
+            false => &[],
+        }
+    }
+
+    /// Takes so many of [`Side::quiet_edges`] for returned.
+    pub(super) fn skip_edges(&mut self, count: usize) {
+        self.feed.skip(count);
+    }
+
     fn is_released(&self, (slot, active): (u32, bool)) -> bool {
         *self.values.words(slot) == [u64::from(!active), 0]
     }

@@ -222,6 +222,35 @@ impl Feed {
         false
     }
 
+    /// Returns the next steps, as far as they have been handed over, as long as each is an edge and nothing changes from the current
+    /// step up to it.
+    pub(crate) fn quiet_edges(&self) -> &[Step] {
+        let Some([current, next @ ..]) = self.batch.steps.get(self.step..) else {
+            return &[];
+        };
+        let nothing = self.first.0 as u32;
+        if current.end != nothing || current.off {
+            return &[];
+        }
+        let mut count = 0;
+        for step in next {
+            if !step.edge || step.off {
+                break;
+            }
+            count += 1;
+            // What changes at an edge is sampled at the next one.
+            if step.end != nothing {
+                break;
+            }
+        }
+        &next[..count]
+    }
+
+    /// Goes on by so many steps, up to which nothing changes.
+    pub(crate) fn skip(&mut self, steps: usize) {
+        self.step += steps;
+    }
+
     /// Whether a change of the current step has a state beside its value.
     #[inline]
     pub(crate) fn has_states(&self) -> bool {

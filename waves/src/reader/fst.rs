@@ -6,7 +6,6 @@
 //! How a signal's values are written is in a block of its own, and tells its kind: bits, a real number or text. Where that
 //! block is missing, because the writer was stopped, the kind follows from the hierarchy.
 
-use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -209,13 +208,22 @@ impl Declaring {
 
 /// Leaves out of both files the pairs of slots whose changes are the same in them, if the pairs without which nothing is
 /// gained are among them: a comparison would find them equal. With `every_time`, the first file's steps stay those at which
-/// anything changes.
-pub(super) fn leave_out_same([a, b]: [&mut FstValues; 2], pairs: &[[u32; 2]], needed: &[[u32; 2]], every_time: bool) {
+/// anything changes. With `only_edges`, the first of those pairs is the watched clock, of which only the edges are wanted.
+pub(super) fn leave_out_same(
+    [a, b]: [&mut FstValues; 2],
+    pairs: &[[u32; 2]],
+    needed: &[[u32; 2]],
+    every_time: bool,
+    only_edges: bool,
+) {
     if a.is_cut || b.is_cut {
         return;
     }
     let [handles_a, handles_b] = [&*a, &*b].map(FstValues::handles);
-    let handle = |[slot_a, slot_b]: &[u32; 2]| Some([*handles_a.get(slot_a)?, *handles_b.get(slot_b)?]);
+    let handle = |[slot_a, slot_b]: &[u32; 2]| {
+        let of = |handles: &[Option<usize>], slot: u32| handles.get(slot as usize).copied().flatten();
+        Some([of(&handles_a, *slot_a)?, of(&handles_b, *slot_b)?])
+    };
     let found: Option<Vec<[usize; 2]>> = needed.iter().chain(pairs).map(handle).collect();
     let Some(found) = found else { return };
     let needed: Vec<usize> = (0..needed.len()).collect();
@@ -230,15 +238,28 @@ pub(super) fn leave_out_same([a, b]: [&mut FstValues; 2], pairs: &[[u32; 2]], ne
     let left_out = found
         .iter()
         .map(|pair| pair[0])
-        .filter(|handle| a.slots[*handle].is_none());
+        .filter(|handle| every_time && a.slots[*handle].is_none());
     a.blocks.stop_at(same.times, left_out.collect());
+    if let Some([of_a, of_b]) = found.first()
+        && only_edges
+        && same.times_rise
+    {
+        a.blocks.take_only_edges(*of_a);
+        b.blocks.take_only_edges(*of_b);
+    }
 }
 
 impl FstValues {
     /// Returns the handle of each slot.
-    fn handles(&self) -> HashMap<u32, usize> {
-        let handles = self.slots.iter().enumerate();
-        handles.filter_map(|(handle, slot)| Some(((*slot)?, handle))).collect()
+    fn handles(&self) -> Vec<Option<usize>> {
+        let mut handles = Vec::new();
+        for (handle, slot) in self.slots.iter().enumerate() {
+            let Some(slot) = slot else { continue };
+            let slot = *slot as usize;
+            handles.resize(handles.len().max(slot + 1), None);
+            handles[slot] = Some(handle);
+        }
+        handles
     }
 
     /// Leaves out the slots that are not wanted.

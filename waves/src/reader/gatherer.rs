@@ -6,6 +6,7 @@ use super::batch::{Batch, Change, NOWHERE, Step};
 use super::digits::UNKNOWN;
 use super::header::Kind;
 use super::lines::Lines;
+use super::since_edge::SinceEdge;
 use super::values::words_of;
 
 /// A batch is handed over when it has this many changes or words.
@@ -32,64 +33,6 @@ impl Watch {
     #[inline]
     pub(super) fn before_edge(self) -> u8 {
         u8::from(self.falling)
-    }
-}
-
-/// Tells whether signals change more than once from edge to edge.
-///
-/// Most designs change signals at one time between two edges, in the order in which they are declared or the other way
-/// round; only where they do not, each change is marked.
-#[derive(Default)]
-struct SinceEdge {
-    /// Number of the stretch from edge to edge, and the last one in which each slot changed.
-    stretch: u32,
-    marks: Vec<u32>,
-    /// Where the changes begin that are not marked yet; they are all different.
-    unmarked: Option<usize>,
-    is_busy: bool,
-    /// Whether unmarked changes were handed over.
-    is_lost: bool,
-}
-
-impl SinceEdge {
-    /// Begins the next stretch.
-    #[inline]
-    fn begin(&mut self) {
-        self.stretch = self.stretch.wrapping_add(1);
-        (self.unmarked, self.is_busy, self.is_lost) = (None, false, false);
-    }
-
-    /// Forgets where changes are in the batch.
-    fn forget_batch(&mut self) {
-        self.is_lost |= self.unmarked.take().is_some();
-    }
-
-    /// Adds the changes of a step, from `from` on. Returns whether a slot other than the clock changes again in the stretch.
-    #[inline]
-    fn add(&mut self, changes: &[Change], from: usize, clock: u32, slots: usize) -> bool {
-        let step = &changes[from..];
-        if step.is_empty() || matches!(step, [only] if only.slot() == clock) {
-            return false;
-        }
-        if !std::mem::replace(&mut self.is_busy, true) {
-            let rise = |pair: &[Change]| pair[0].slot() < pair[1].slot();
-            let fall = |pair: &[Change]| pair[0].slot() > pair[1].slot();
-            if step.windows(2).all(rise) || step.windows(2).all(fall) {
-                self.unmarked = Some(from);
-                return false;
-            }
-        }
-        if self.marks.is_empty() {
-            self.marks.resize(slots, self.stretch.wrapping_sub(1));
-        }
-        let mut again = self.is_lost;
-        for change in &changes[self.unmarked.take().unwrap_or(from)..] {
-            let slot = change.slot();
-            if slot != clock {
-                again |= std::mem::replace(&mut self.marks[slot as usize], self.stretch) == self.stretch;
-            }
-        }
-        again
     }
 }
 
@@ -280,6 +223,25 @@ impl Gatherer {
         Arc::clone(&self.kinds)
     }
 
+    /// Returns the clock whose edges are marked.
+    pub(super) fn watch(&self) -> Option<Watch> {
+        self.watch
+    }
+
+    /// Returns the digits of the clock before the current step, and now.
+    pub(super) fn clock(&self) -> [u8; 2] {
+        self.clock
+    }
+
+    /// Says whether the clock has its edge in the current step, where its changes are not put.
+    #[inline]
+    pub(super) fn set_edge(&mut self, is_edge: bool) {
+        self.clock = match self.watch {
+            Some(watch) if is_edge => [watch.before_edge(), 1 - watch.before_edge()],
+            _ => [UNKNOWN; 2],
+        };
+    }
+
     /// Returns the slot of the clock, if its edges are marked.
     pub(super) fn watched(&self) -> Option<u32> {
         self.watch.map(|watch| watch.slot)
@@ -373,7 +335,10 @@ impl Gatherer {
         self.end_step();
         self.time = time;
         self.place = place;
-        self.batch.changes.len() >= CHANGES || self.batch.words.len() >= WORDS
+        let Batch {
+            steps, changes, words, ..
+        } = &self.batch;
+        changes.len() >= CHANGES || words.len() >= WORDS || steps.len() >= CHANGES
     }
 
     pub(super) fn time(&self) -> u64 {

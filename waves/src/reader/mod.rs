@@ -29,6 +29,7 @@ mod lines;
 mod piece;
 mod put;
 mod section;
+mod since_edge;
 mod twin;
 mod unpack;
 mod values;
@@ -153,9 +154,15 @@ impl Wave {
     }
 
     /// Leaves out of two FST the pairs of slots whose changes are the same in both ([`fst::leave_out_same`]).
-    pub(crate) fn leave_out_same([a, b]: [&mut Self; 2], pairs: &[[u32; 2]], needed: &[[u32; 2]], every_time: bool) {
+    pub(crate) fn leave_out_same(
+        [a, b]: [&mut Self; 2],
+        pairs: &[[u32; 2]],
+        needed: &[[u32; 2]],
+        every_time: bool,
+        only_edges: bool,
+    ) {
         if let (Rest::Fst(a), Rest::Fst(b)) = (&mut a.rest, &mut b.rest) {
-            fst::leave_out_same([a, b], pairs, needed, every_time);
+            fst::leave_out_same([a, b], pairs, needed, every_time, only_edges);
         }
     }
 

@@ -135,10 +135,9 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Returns the number of times, if they can be read.
-    pub(super) fn count_times(&self) -> Option<usize> {
-        let times = times(&self.packed_times, self.times.0, self.times.1).ok()?;
-        Some(times.len())
+    /// Returns the times, if they can be read.
+    pub(super) fn times(&self) -> Option<Vec<u64>> {
+        times(&self.packed_times, self.times.0, self.times.1).ok()
     }
 }
 

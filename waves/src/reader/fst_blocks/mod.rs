@@ -12,11 +12,13 @@
 //! All chains are unpacked, and their changes are put in the order of time, window by window ([`chains`]).
 
 mod chains;
+mod edges;
 mod fastlz;
 pub(super) mod hierarchy;
 mod layout;
 mod packing;
 mod same;
+mod values;
 mod written;
 
 use std::collections::{HashSet, VecDeque};
@@ -24,17 +26,16 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::Arc;
 
 use self::chains::{Chains, Due};
-use self::layout::Layout;
+use self::edges::Edges;
+use self::layout::{Layout, Table};
 pub(super) use self::layout::{blackouts, forms};
 pub(super) use self::same::same;
-use self::written::{Written, change, digit_byte};
+use self::values::put_digits;
+use self::written::change;
 use super::batch::NOWHERE;
-use super::digits::{is_state, pack, state};
+use super::digits::UNKNOWN;
 use super::fst_file::Bytes;
 use super::gatherer::Gatherer;
-use super::header::Kind;
-use super::put::put_port;
-use super::values::pack_text;
 
 /// Kinds of blocks.
 pub(super) const HEADER: u8 = 0;
@@ -105,6 +106,10 @@ pub(super) struct Blocks {
     more_times: Vec<Vec<u64>>,
     /// The signals that change at these times.
     left_out: HashSet<usize>,
+    /// The watched clock, if only its edges are wanted, and its digit after the blocks that were read.
+    clock: Option<(usize, u8)>,
+    /// Whether it has changed in these.
+    clock_began: bool,
 }
 
 /// Why the blocks could not be read.
@@ -155,6 +160,8 @@ impl Blocks {
             little_endian: true,
             more_times: Vec::new(),
             left_out: HashSet::new(),
+            clock: None,
+            clock_began: false,
         };
         let mut euler = [0; 8];
         found.file.seek(SeekFrom::Start(EULER_AT))?;
@@ -171,6 +178,13 @@ impl Blocks {
     /// Makes a step also of each time of which a bit is set, block by block; the signals that change then are left out.
     pub(super) fn stop_at(&mut self, more_times: Vec<Vec<u64>>, left_out: HashSet<usize>) {
         (self.more_times, self.left_out) = (more_times, left_out);
+    }
+
+    /// Takes only the edges of the watched clock, which has this handle, if it is a single bit; each time is later than the one
+    /// before.
+    pub(super) fn take_only_edges(&mut self, clock: usize) {
+        let is_bit = self.forms.get(clock) == Some(&Form::Bits(1));
+        self.clock = is_bit.then_some((clock, UNKNOWN));
     }
 
     /// Reads all blocks. `hand_over` takes full batches, and returns whether to continue.
@@ -211,7 +225,9 @@ impl Blocks {
             let all = times.first() != Some(&layout.start);
             self.values_before(&values, layout.values_of, all, slots, gatherer)?;
         }
-        let wanted = |handle: usize| slots.get(handle).copied().flatten().is_some();
+        let edges = self.edges(&layout, &table, &times, number, gatherer)?;
+        let clock = self.clock.filter(|_| edges.is_some()).map(|(handle, _)| handle);
+        let wanted = |handle: usize| Some(handle) != clock && slots.get(handle).copied().flatten().is_some();
         let mut chains = Chains::unpack(
             &mut self.file,
             &layout,
@@ -221,6 +237,9 @@ impl Blocks {
             wanted,
         )?;
         drop(table);
+        // The file has a change from there on.
+        let first_of_clock = edges.as_ref().and_then(|edges| edges.first);
+        let first_of_clock = first_of_clock.filter(|_| !std::mem::replace(&mut self.clock_began, true));
         let kinds = gatherer.kinds_shared();
         let slot = |handle: usize| {
             let slot = slots.get(handle).copied().flatten()?;
@@ -237,18 +256,49 @@ impl Blocks {
                 let due = chains.due(at);
                 let more = self.more_times.get(number).and_then(|bits| bits.get(time_at / 64));
                 let is_more = more.is_some_and(|bits| bits >> (time_at % 64) & 1 == 1);
-                if due.is_empty() && !is_more {
+                let is_edge = edges.as_ref().is_some_and(|edges| edges.is_edge(time_at));
+                let is_first = first_of_clock == Some(time_at);
+                if due.is_empty() && !is_more && !is_edge && !is_first {
                     continue;
                 }
                 let time = times[time_at];
                 self.switch_up_to(time, gatherer, hand_over)?;
                 advance(gatherer, time, hand_over)?;
-                if is_more {
+                if is_more || is_edge || is_first {
                     gatherer.keep_step();
                 }
-                self.put_due(due, chains.bytes(), slots, gatherer)?;
+                if edges.is_some() {
+                    gatherer.set_edge(is_edge);
+                }
+                if !due.is_empty() {
+                    self.put_due(due, chains.bytes(), slots, gatherer)?;
+                }
             }
         }
+    }
+
+    /// Returns the edges of the watched clock in a block, if nothing else is wanted of it. The values before the first block have
+    /// been taken.
+    fn edges(
+        &mut self,
+        layout: &Layout,
+        table: &Table,
+        times: &[u64],
+        number: usize,
+        gatherer: &Gatherer,
+    ) -> Result<Option<Edges>, Stop> {
+        let (Some((handle, last)), Some(watch)) = (self.clock, gatherer.watch()) else {
+            return Ok(None);
+        };
+        let before = match number {
+            // What happens at the time of the first values belongs to their step.
+            0 if times.first() == Some(&gatherer.time()) => gatherer.clock(),
+            0 => [gatherer.clock()[1]; 2],
+            _ => [last; 2],
+        };
+        let edges = Edges::read(&mut self.file, layout, table, handle, times.len(), watch, before)?;
+        self.clock = Some((handle, edges.last));
+        Ok(Some(edges))
     }
 
     /// Takes the changes of a time.
@@ -329,56 +379,6 @@ impl Blocks {
         }
         Ok(())
     }
-
-    /// Takes a change.
-    fn put(&self, value: Written<'_>, form: Form, slot: u32, gatherer: &mut Gatherer) -> Result<(), Stop> {
-        let kind = gatherer.kind(slot);
-        match (value, form) {
-            (Written::Digit(digit), _) => {
-                let byte = digit_byte(digit);
-                if kind == Kind::Bits(1) {
-                    let value = super::digits::digit(byte).ok_or_else(|| damaged("a bit is not a digit"))?;
-                    gatherer.put_digit(slot, value);
-                    if is_state(byte) {
-                        gatherer.note_state(state(&[byte]));
-                    }
-                } else if byte == b'1' && kind == Kind::Event {
-                    gatherer.put_event(slot);
-                }
-            }
-            // An event has no value.
-            (Written::Known(_), _) if kind == Kind::Event => {}
-            (Written::Known(bytes), Form::Bits(width)) => {
-                let bit = |at: usize| b'0' + (bytes[at / 8] >> (7 - at % 8) & 1);
-                let digits: Vec<u8> = (0..width as usize).map(bit).collect();
-                put_digits(gatherer, slot, width, &digits)?;
-            }
-            (Written::Digits(digits), Form::Bits(width)) => put_digits(gatherer, slot, width, digits)?,
-            (Written::Real(bytes), _) => self.put_real(gatherer, slot, bytes),
-            (Written::Text(text), _) => {
-                if kind == Kind::Text {
-                    pack_text(text, gatherer.put_words(slot));
-                }
-            }
-            (Written::Known(_) | Written::Digits(_), Form::Real | Form::Text) => {}
-        }
-        Ok(())
-    }
-
-    fn real(&self, value: &[u8]) -> f64 {
-        let mut bytes = [0; 8];
-        bytes.copy_from_slice(value);
-        match self.little_endian {
-            true => f64::from_le_bytes(bytes),
-            false => f64::from_be_bytes(bytes),
-        }
-    }
-
-    fn put_real(&self, gatherer: &mut Gatherer, slot: u32, value: &[u8]) {
-        if gatherer.kind(slot) == Kind::Real {
-            gatherer.put_word(slot, self.real(value).to_bits(), 0);
-        }
-    }
 }
 
 fn advance(gatherer: &mut Gatherer, time: u64, hand_over: &mut dyn FnMut(&mut Gatherer) -> bool) -> Result<(), Stop> {
@@ -393,34 +393,4 @@ fn advance(gatherer: &mut Gatherer, time: u64, hand_over: &mut dyn FnMut(&mut Ga
         gatherer.batch.bytes = bytes;
     }
     Ok(())
-}
-
-fn put_digits(gatherer: &mut Gatherer, slot: u32, width: u32, digits: &[u8]) -> Result<(), Stop> {
-    match gatherer.kind(slot) {
-        Kind::Bits(declared) if declared == width => {}
-        Kind::Bits(bits) if port_bits(width) == Some(bits) => return put_port_of(gatherer, slot, bits, digits),
-        _ => return Ok(()),
-    }
-    let words = gatherer.put_words(slot);
-    let (bits, unknown) = words.split_at_mut(words.len() / 2);
-    let packed = pack(digits, width, bits, unknown);
-    let has_states = packed.map_err(|byte| Stop::Damaged(format!("byte {byte} is not a digit")))?;
-    gatherer.watch_last(slot);
-    if has_states {
-        gatherer.note_state(state(digits));
-    }
-    Ok(())
-}
-
-/// Takes the value of a port: states and strengths, or digits.
-fn put_port_of(gatherer: &mut Gatherer, slot: u32, bits: u32, value: &[u8]) -> Result<(), Stop> {
-    let mut words = value.split(|byte| *byte <= b' ').filter(|word| !word.is_empty());
-    let states = words.next().unwrap_or_default();
-    if states.len() == bits as usize {
-        let strengths = [words.next(), words.next()].map(Option::unwrap_or_default);
-        return put_port(gatherer, slot, states, strengths).map_err(Stop::Unknown);
-    }
-    // `vcd2fst` extends digits to the length of states and strengths.
-    let digits = &value[value.len() - bits as usize..];
-    super::put::put_digits(gatherer, slot, digits).map_err(Stop::Damaged)
 }

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::layout::{Layout, Parts};
-use super::packing::unpack_chain;
+use super::packing::{unpack_chain, varint};
 use super::written::{Change, Written, change};
 use super::{Block, Blocks, Form};
 use crate::reader::digits::digit;
@@ -29,14 +29,18 @@ pub(in crate::reader) struct Same {
     pub(in crate::reader) pairs: Vec<bool>,
     /// For each block, a bit for each time at which one of these pairs changes; empty if they were not wanted.
     pub(in crate::reader) times: Vec<Vec<u64>>,
+    /// Whether each time is later than the one before, in all blocks.
+    pub(in crate::reader) times_rise: bool,
 }
 
 /// A block of both files, if they have the same times.
 struct Both {
     parts: [Parts; 2],
     chains: [Vec<u8>; 2],
-    /// Number of times.
+    /// Number of times, the first and the last of them, and whether each is later than the one before.
     times: usize,
+    ends: Option<[u64; 2]>,
+    times_rise: bool,
     packing: u8,
 }
 
@@ -55,12 +59,18 @@ pub(in crate::reader) fn same(
     }
     let is_same: Vec<AtomicBool> = pairs.iter().map(|_| AtomicBool::new(true)).collect();
     let mut times = Vec::new();
+    let (mut times_rise, mut last) = (true, None);
     for number in 0..a.blocks.len() {
         let blocks = [a.blocks[number], b.blocks[number]];
         if number == 0 {
             compare_first_values([&mut *a, &mut *b], blocks, pairs, &is_same)?;
         }
         let both = Both::read([&mut *a, &mut *b], blocks)?;
+        times_rise &= both.times_rise;
+        if let Some([first, end]) = both.ends {
+            times_rise &= last.is_none_or(|last| last < first);
+            last = Some(end);
+        }
         let changed = both.compare(&a.forms, pairs, &is_same, with_times);
         times.extend(with_times.then_some(changed));
         let left = is_same.iter().filter(|same| same.load(Ordering::Relaxed)).count();
@@ -70,7 +80,11 @@ pub(in crate::reader) fn same(
         }
     }
     let pairs = is_same.into_iter().map(AtomicBool::into_inner).collect();
-    Some(Same { pairs, times })
+    Some(Same {
+        pairs,
+        times,
+        times_rise,
+    })
 }
 
 /// Compares the values before the first change.
@@ -131,9 +145,12 @@ impl Both {
         if !same {
             return None;
         }
+        let times = parts[0].times()?;
         Some(Self {
             packing: layouts[0].packing,
-            times: parts[0].count_times()?,
+            times: times.len(),
+            times_rise: times.windows(2).all(|pair| pair[0] < pair[1]),
+            ends: times.first().zip(times.last()).map(|(first, last)| [*first, *last]),
             parts: parts.try_into().ok()?,
             chains: chains.try_into().ok()?,
         })
@@ -183,8 +200,36 @@ impl Both {
         let Some(chain) = a else { return Some(()) };
         unpacked.clear();
         unpack_chain(chain?, self.packing, unpacked).ok()?;
+        if changed.is_empty() && forms.get(pair[0]) == Some(&Form::Bits(1)) {
+            return last_time_of_bits(unpacked)
+                .filter(|last| *last < self.times as u64)
+                .map(drop);
+        }
         look_through(unpacked, *forms.get(pair[0])?, self.times, changed)
     }
+}
+
+/// Returns the time of the last change of a chain of single bits, all of which are digits; `None` if it cannot be read.
+fn last_time_of_bits(chain: &[u8]) -> Option<u64> {
+    const SOME: usize = 32;
+    // A change of one byte, below 0x80, has its digit in the lower bits: two, or four if it is neither 0 nor 1.
+    let step = |byte: &u8| if byte & 1 == 0 { byte >> 2 } else { byte >> 4 };
+    let (mut at, mut time) = (0, 0u64);
+    while at < chain.len() {
+        while let Some(some) = chain.get(at..at + SOME)
+            && some.iter().fold(0, |all, byte| all | byte) < 0x80
+        {
+            let steps = some.iter().map(|byte| u16::from(step(byte))).sum::<u16>();
+            time = time.checked_add(u64::from(steps))?;
+            at += SOME;
+        }
+        let until = chain.len().min(at + SOME);
+        while at < until {
+            let head = varint(chain, &mut at)?;
+            time = time.checked_add(head >> (2 << (head & 1)))?;
+        }
+    }
+    (!chain.is_empty()).then_some(time)
 }
 
 /// Looks through a chain, and sets the bit of each time at which it has a change; `None` if it cannot be read.
@@ -208,6 +253,25 @@ fn look_through(chain: &[u8], form: Form, times: usize, changed: &mut [u64]) -> 
         rest = &rest[length..];
         if rest.is_empty() {
             return Some(());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn prop_single_bits_end_when_change_by_change_they_end(
+            chain in prop::collection::vec(prop_oneof![30 => 0u8..0x80, 1 => any::<u8>()], 0..300),
+            times in 0u64..4000,
+        ) {
+            let by_change = look_through(&chain, Form::Bits(1), times as usize, &mut []);
+            let last = last_time_of_bits(&chain).filter(|last| *last < times);
+            prop_assert_eq!(last.is_some(), by_change.is_some());
         }
     }
 }
