@@ -319,3 +319,22 @@ fn a_difference_is_shown_in_files_that_open_there() {
         !diff::show(&PlainFiles, &at("none"), &at("a.vcd"), &at("a.vcd"), &same).unwrap() && !at("none.vcd").exists()
     );
 }
+
+#[test]
+fn a_vector_of_no_bits_is_compared_beside_signals_that_are_left_out() {
+    let file = |digit: char| {
+        format!(
+            "$timescale 1 ns $end $scope module t $end $var wire 0 n none $end $var wire 8 l left $end $upscope $end \
+             $enddefinitions $end\n#0\nb0 l\nb{digit} n\n#5\nb1 l\n#7\nb1 n\n#9\nb10 l\n"
+        )
+    };
+    let options = with(|options| {
+        options.raw = true;
+        options.ignore = vec!["t.left".to_owned()];
+    });
+    let result = compare(&file('1'), &file('0'), &options).unwrap();
+    assert_eq!(result.result, DiffVerdict::Different, "{result}");
+    assert_eq!(result.differences[0].signal, "t.none", "{result}");
+    // Times at which only the left-out signal changes are no samples.
+    assert_eq!(verdict(&file('1'), &file('1'), &options), (DiffVerdict::Equal, 2));
+}

@@ -70,7 +70,8 @@ impl Engine<'_> {
     fn may_be_alike(&self) -> bool {
         let context_is_whole = self.context.as_ref().is_none_or(|context| !context.is_missing_some());
         let recorded = !self.a.is_off() && !self.b.is_off();
-        let started = self.options.start_fs.is_none() || self.samples > 0;
+        // Up to the first sample, signals that have had no value yet are noted as changed.
+        let started = self.samples > 0;
         let released = self.a.reset_slot().is_none() && self.b.reset_slot().is_none();
         context_is_whole && recorded && started && released
     }

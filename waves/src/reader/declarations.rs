@@ -308,7 +308,9 @@ fn declare(declarations: &mut Declarations, ids: &mut Ids, var: &[String], line:
     };
     if !declarations.is_wanted(&name, kind)? {
         if ids.find(id.as_bytes()).is_none() {
-            ids.insert(id.as_bytes(), declarations.unwanted_slot()?);
+            let slot = declarations.unwanted_slot()?;
+            ids.left_out = Some(slot);
+            ids.insert(id.as_bytes(), slot);
         }
         return Ok(());
     }

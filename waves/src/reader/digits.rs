@@ -166,6 +166,24 @@ pub(super) fn mixed_run(known: u64, data: &[u8], at: usize) -> ([u64; 2], usize)
     (words, end)
 }
 
+/// Returns the end of the digits `0`, `1`, `x` and `z` at `at`. Eight bytes must follow the last digit, or they end too early.
+#[inline]
+pub(super) fn run_end(data: &[u8], at: usize) -> usize {
+    const HIGH: u64 = u64::from_le_bytes([0x80; 8]);
+    const LOW: u64 = u64::from_le_bytes([0x7f; 8]);
+    let mut end = at;
+    while let Some(eight) = data.get(end..end + 8) {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(eight);
+        let [.., other] = eight_mixed(u64::from_le_bytes(bytes));
+        if other != 0 {
+            return end + ((((other & LOW) + LOW) | other) & HIGH).trailing_zeros() as usize / 8;
+        }
+        end += 8;
+    }
+    end
+}
+
 /// Extends `count` digits to a vector of `width` bits, at most 64, as in VCD: with zeros, or with the first digit if that is
 /// unknown.
 #[inline]
@@ -333,6 +351,7 @@ mod tests {
             let data = [digits.as_bytes(), &[next], &rest].concat();
             let (words, end) = mixed_run(0, &data, 0);
             prop_assert_eq!(end, digits.len());
+            prop_assert_eq!(run_end(&data, 0), digits.len());
             let (known, behind) = known_run(&data, 0);
             prop_assert_eq!(mixed_run(known, &data, behind), (words, end));
             let count = digits.len() as u32;

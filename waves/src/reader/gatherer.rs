@@ -169,6 +169,10 @@ impl Gatherer {
             let room = changes.room(1);
             let places = room.len();
             for place in room {
+                // First, since where any signal is left out, most are.
+                while let Some(next) = lines.left_out(data, at) {
+                    at = next;
+                }
                 if let Some(line) = lines.bit(data, at) {
                     if line.is_clock {
                         clock = Some(line.digit);

@@ -57,6 +57,8 @@ pub(super) struct Ids {
     others: HashMap<u64, u32>,
     /// Those without a number: some producers take the whole name.
     long: HashMap<Box<[u8]>, u32>,
+    /// The slot of all signals that are left out.
+    pub(super) left_out: Option<u32>,
 }
 
 impl Ids {

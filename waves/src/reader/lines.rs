@@ -3,13 +3,13 @@
 //! The time of a comparison goes by the change, so these are recognised from few loads and one table for the id code.
 //! Whatever else a line is, is left to [`super::section`].
 
-use super::digits::{DIGITS, extended, known_run, mixed_run};
+use super::digits::{DIGITS, extended, known_run, mixed_run, run_end};
 use super::header::Kind;
 use super::ids::Ids;
 
 /// What a table has for an id code: the slot, shifted, and one of these.
-const SHIFT: u32 = 2;
-const FORM: u32 = 3;
+const SHIFT: u32 = 3;
+const FORM: u32 = 7;
 /// A signal of one bit.
 const BIT: u32 = 0;
 /// The watched clock, of one bit.
@@ -18,6 +18,8 @@ const CLOCK: u32 = 1;
 const WORD: u32 = 2;
 /// Anything else.
 const OTHER: u32 = 3;
+/// The slot of all signals that are left out.
+const LEFT_OUT: u32 = 4;
 
 /// Id codes of one to three characters have numbers below this.
 const NUMBERS: u64 = 94 + 94 * 94 + 94 * 94 * 94 + 1;
@@ -32,6 +34,8 @@ pub(super) struct Lines {
     parts: [[u32; 256]; 3],
     /// Width by slot.
     widths: Vec<u32>,
+    /// Whether any signal is left out.
+    has_left_out: bool,
 }
 
 /// A line that changes one bit.
@@ -59,10 +63,11 @@ pub(super) struct WordLine {
 }
 
 impl Lines {
-    /// `kinds` has the kind by slot; `left_out` tells whose lines are not wanted.
-    pub(super) fn new(ids: &Ids, kinds: &[Kind], clock: Option<u32>, left_out: impl Fn(u32) -> bool) -> Self {
+    /// `kinds` has the kind by slot; `is_other` tells whose lines are to be taken for others.
+    pub(super) fn new(ids: &Ids, kinds: &[Kind], clock: Option<u32>, is_other: impl Fn(u32) -> bool) -> Self {
         let form = |slot: u32| match kinds[slot as usize] {
-            _ if left_out(slot) => OTHER,
+            _ if is_other(slot) => OTHER,
+            _ if ids.left_out == Some(slot) => LEFT_OUT,
             Kind::Bits(1) if clock == Some(slot) => CLOCK,
             Kind::Bits(1) => BIT,
             Kind::Bits(2..=64) => WORD,
@@ -83,6 +88,7 @@ impl Lines {
             more: (0..most).map(entry).collect(),
             parts,
             widths: kinds.iter().map(width).collect(),
+            has_left_out: ids.left_out.is_some(),
         }
     }
 
@@ -122,6 +128,26 @@ impl Lines {
             end: (line >> (8 * (1 + length))) as u8,
             next: at + 2 + length,
         })
+    }
+
+    /// Returns the position after the line of digits at `at`, if it changes a signal that is left out, and enough bytes are there.
+    #[inline]
+    pub(super) fn left_out(&self, data: &[u8], at: usize) -> Option<usize> {
+        if !self.has_left_out {
+            return None;
+        }
+        let mut id_at = at + 1;
+        if *data.get(at)? == b'b' {
+            let space = run_end(data, at + 1);
+            if space == at + 1 || *data.get(space)? != b' ' {
+                return None;
+            }
+            id_at = space + 1;
+        } else if DIGITS[usize::from(data[at])] > 3 {
+            return None;
+        }
+        let (entry, length) = self.entry(eight(data, id_at)?)?;
+        (entry & FORM == LEFT_OUT).then_some(id_at + length + 1)
     }
 
     /// Returns the line of a vector at `at`, if it is one, and enough bytes are there.
@@ -184,6 +210,7 @@ mod tests {
             is_other: bool,
             widths in prop::collection::vec(prop::sample::select(vec![1u32, 1, 2, 8, 64, 65]), 40),
             clock: prop::sample::Index,
+            left_out in prop::option::of(any::<prop::sample::Index>()),
         ) {
             let known: Vec<String> = known.into_iter().collect();
             let mut ids = Ids::default();
@@ -191,13 +218,20 @@ mod tests {
                 ids.insert(id.as_bytes(), slot);
             }
             let kinds: Vec<Kind> = widths.iter().map(|width| Kind::Bits(*width)).collect();
+            ids.left_out = left_out.map(|at| at.index(known.len()) as u32);
+            let is_left_out = |slot: u32| ids.left_out == Some(slot);
             let clock = clock.index(known.len()) as u32;
             let lines = Lines::new(&ids, &kinds, Some(clock), |_| false);
             let id = if is_other { &other } else { &known[which.index(known.len())] };
 
             let data = [&[first], id.as_bytes(), b"\n#1234567"].concat();
             let (slot, end) = ids.slot_at(&data, 1);
-            let expected = slot.zip(digit(first)).filter(|(slot, _)| widths[*slot as usize] == 1 && end <= 4 && !is_state(first));
+            let expected = slot.zip(digit(first)).filter(|_| end <= 4 && !is_state(first));
+            if first != b'b' {
+                let left_out = expected.filter(|(slot, _)| is_left_out(*slot));
+                prop_assert_eq!(lines.left_out(&data, 0), left_out.map(|_| end + 1));
+            }
+            let expected = expected.filter(|(slot, _)| widths[*slot as usize] == 1 && !is_left_out(*slot));
             let expected = expected.map(|(slot, digit)| BitLine {
                 slot,
                 digit,
@@ -215,7 +249,10 @@ mod tests {
                 [bits('1'), bits('x')]
             });
             let fits = |slot: u32| (2..=64).contains(&widths[slot as usize]) && digits.len() - 1 <= widths[slot as usize] as usize;
-            let expected = slot.zip(word).filter(|(slot, _)| fits(*slot) && end <= id_at + 3);
+            let expected = slot.zip(word).filter(|_| end <= id_at + 3);
+            let left_out = expected.filter(|(slot, _)| is_left_out(*slot));
+            prop_assert_eq!(lines.left_out(&vector, 0), left_out.map(|_| end + 1));
+            let expected = expected.filter(|(slot, _)| fits(*slot) && !is_left_out(*slot));
             let expected = expected.map(|(slot, [word, unknown])| WordLine {
                 slot,
                 word,

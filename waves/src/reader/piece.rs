@@ -174,6 +174,17 @@ impl<'a> Worker<'a> {
         let mut at = from;
         loop {
             loop {
+                // First, since where any signal is left out, most are.
+                while let Some(next) = self.common.left_out(data, at) {
+                    if data[next - 1] != b'\n' {
+                        return None;
+                    }
+                    // A time that has nothing else is no sample.
+                    if at == step_at {
+                        step_at = next;
+                    }
+                    at = next;
+                }
                 let (slot, end, next) = if let Some(line) = self.common.bit(data, at) {
                     if line.is_clock {
                         clock[1] = Some(line.digit);
