@@ -303,6 +303,8 @@ fn what_no_sample_sees_is_counted_by_signal() {
         ),
         // What is written again is no change.
         (&[(6, "1y"), (7, "1y"), (8, "1y")], &[(8, "1y")], 0, &[]),
+        (&[(6, "0y"), (7, "0y\n0y"), (8, "b0 w")], &[], 0, &[]),
+        (&[(6, "1y"), (7, "1y"), (8, "0y"), (9, "0y")], &[(6, "0y")], 1, &["t.y"]),
         // Around an edge, each is sampled.
         (&[(14, "1y"), (16, "0y")], &[(13, "1y"), (15, "0y")], 0, &[]),
     ] {
@@ -339,6 +341,42 @@ fn what_comes_after_the_last_edge_is_named_and_so_is_what_differs_there() {
         comparison.to_string().contains("1 signal differs there, t.y"),
         "{comparison}"
     );
+    // Each change of value counts there, at the edge's own time too; what is written again does not.
+    for (a, b, changes, signals, differ) in [
+        (
+            &[(36, "1y"), (37, "0y"), (38, "0y")][..],
+            &[][..],
+            2,
+            &["t.y"][..],
+            &[][..],
+        ),
+        (
+            &[(35, "1y"), (37, "0y"), (38, "1y")],
+            &[(36, "1y\n1y")],
+            4,
+            &["t.y"],
+            &[],
+        ),
+        (
+            &[(36, "b1 w\nb1 w"), (37, "0y")],
+            &[(36, "b0 w")],
+            1,
+            &["t.w"],
+            &["t.w"],
+        ),
+        (&[(36, "0y\nb0 w"), (38, "0y")], &[(40, "0y")], 0, &[], &[]),
+    ] {
+        let comparison = Files::new(&clocked(a), &clocked(b)).compare(&DiffOptions::default());
+        assert_eq!(comparison.result, DiffVerdict::Equal, "{a:?} {b:?}: {comparison}");
+        let unsampled = comparison.unsampled.clone().unwrap_or_default();
+        assert_eq!(
+            (unsampled.changes, unsampled.changes_after),
+            (0, changes),
+            "{a:?} {b:?}: {comparison}"
+        );
+        assert_eq!(unsampled.signals_after, signals, "{a:?} {b:?}: {comparison}");
+        assert_eq!(unsampled.differ_after, differ, "{a:?} {b:?}: {comparison}");
+    }
 }
 
 #[test]
@@ -359,4 +397,9 @@ fn without_a_clock_what_is_replaced_at_its_own_time_is_counted() {
         "{comparison}"
     );
     assert!(!unsampled.between_edges);
+    // What is written again, at the same time or later, is no change.
+    let files = Files::new(&file("#5\n1y\n1y\nb1 w\n#7\n1y\nb1 w\nb1 w"), &file("#5\n1y\nb1 w"));
+    let comparison = files.compare(&raw());
+    assert_eq!(comparison.result, DiffVerdict::Equal, "{comparison}");
+    assert_eq!(comparison.unsampled, None, "{comparison}");
 }

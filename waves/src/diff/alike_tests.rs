@@ -64,7 +64,12 @@ fn said(path: [&Path; 2], options: &DiffOptions, plainly: bool) -> String {
     let whole = |mut comparison: Comparison| {
         // What equal bytes have between the samples is equal, and is not counted.
         comparison.unsampled = None;
-        comparison.notes.retain(|note| !note.contains("were not compared"));
+        let counts_changes = |note: &String| {
+            ["was not compared", "were not compared"]
+                .iter()
+                .any(|said| note.contains(said))
+        };
+        comparison.notes.retain(|note| !counts_changes(note));
         format!("{comparison}\n{comparison:?}")
     };
     compared.map_or_else(|error| error.to_string(), whole)

@@ -310,10 +310,11 @@ impl<'a> Engine<'a> {
     /// Looks at what comes after the last edge, which no sample sees.
     pub(super) fn look_behind_last_edge(&mut self) {
         let mut behind = Vec::new();
-        for side in [&self.a, &self.b] {
-            let changed = side.hidden.changed();
-            self.behind_changes += changed.len() as u64;
-            behind.extend(changed.into_iter().filter_map(|slot| side.pair_of(slot)));
+        for side in [&mut self.a, &mut self.b] {
+            for (slot, count) in side.hidden.take_now() {
+                self.behind_changes += count;
+                behind.extend(side.pair_of(slot));
+            }
         }
         for pair in behind {
             let equal = match self.values(pair as usize) {

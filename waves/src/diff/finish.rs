@@ -13,7 +13,7 @@ impl Engine<'_> {
         let mut signals = BTreeSet::new();
         for side in [&self.a, &self.b] {
             for (slot, count) in side.hidden.counts() {
-                if let Some(pair) = side.pair_of(*slot) {
+                if let Some(pair) = side.pair_of(slot) {
                     signals.insert(pair);
                     unsampled.changes += count;
                 }

@@ -111,7 +111,7 @@ pub struct CutFile {
     pub place: String,
 }
 
-/// Changes that no sample saw.
+/// Changes of value that no sample saw; a value that is written again is none.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Unsampled {
@@ -141,24 +141,25 @@ impl Unsampled {
                 format!(", {first}")
             };
             let signals = counted(signals.len() as u64, "signal");
-            (format!("{} of {signals}", counted(changes, "change")), such)
+            let were = if changes == 1 { "was" } else { "were" };
+            (format!("{} of {signals}", counted(changes, "change")), were, such)
         };
         if self.changes > 0 {
-            let (what, such) = named(self.changes, &self.signals);
+            let (what, were, such) = named(self.changes, &self.signals);
             notes.push(match self.between_edges {
-                true => format!("{what} between the edges were not compared{such}: --raw"),
-                false => format!("{what} were not compared, since others follow at the same time{such}"),
+                true => format!("{what} between the edges {were} not compared{such}: --raw"),
+                false => format!("{what} {were} not compared, since others follow at the same time{such}"),
             });
         }
         if self.changes_after > 0 {
-            let (what, such) = named(self.changes_after, &self.signals_after);
+            let (what, were, such) = named(self.changes_after, &self.signals_after);
             let differ = match self.differ_after.as_slice() {
                 [] => String::new(),
                 [only] => format!("; 1 signal differs there, {only}"),
                 [first, ..] => format!("; {} signals differ there, such as {first}", self.differ_after.len()),
             };
             notes.push(format!(
-                "{what} after the last edge were not compared{such}{differ}: --raw"
+                "{what} after the last edge {were} not compared{such}{differ}: --raw"
             ));
         }
         notes

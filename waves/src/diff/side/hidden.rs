@@ -1,5 +1,8 @@
 //! Counts changes that no sample sees: values that others replace before the next edge of the clock, or at the same time.
 //!
+//! A change is a change of value: a value that is written again is none. A signal that changes *n* times from one edge to the next
+//! has *n* - 1 changes that no sample sees, whatever the last value is; after the last edge, all *n*.
+//!
 //! Most designs change each signal once from edge to edge; the reader tells ([`Feed::is_simple_until_edge`]), and only other
 //! stretches are looked at change by change.
 //!
@@ -21,8 +24,9 @@ pub(in crate::diff) struct Hidden {
     interval: u32,
     /// The stretch in which each slot changed last, and a hash of its value since; empty until they are needed.
     last: Vec<(u32, u64)>,
-    /// Number of replaced values by slot.
+    /// Number of replaced values by slot: in the stretches before, and in this one.
     counts: BTreeMap<u32, u64>,
+    now: BTreeMap<u32, u64>,
     /// The clock, which is not counted.
     clock: Option<u32>,
 }
@@ -38,23 +42,28 @@ impl Hidden {
     pub(super) fn begin(&mut self, is_counting: bool) {
         self.interval += 1;
         self.is_counting = is_counting;
+        while let Some((slot, count)) = self.now.pop_first() {
+            *self.counts.entry(slot).or_default() += count;
+        }
     }
 
     /// Forgets what was counted so far.
     pub(in crate::diff) fn forget(&mut self) {
         self.counts.clear();
+        self.now.clear();
     }
 
-    /// Returns the slots with replaced values, and the number of these.
-    pub(in crate::diff) fn counts(&self) -> &BTreeMap<u32, u64> {
-        &self.counts
+    /// Returns the slots with replaced values and the number of these, once for each stretch in which they are counted.
+    pub(in crate::diff) fn counts(&self) -> impl Iterator<Item = (u32, u64)> {
+        self.counts.iter().chain(&self.now).map(|(slot, count)| (*slot, *count))
     }
 
-    /// Returns the slots that changed in the current stretch.
-    pub(in crate::diff) fn changed(&self) -> Vec<u32> {
+    /// Returns the slots that changed in the current stretch, and how often; these changes are no longer among the others.
+    pub(in crate::diff) fn take_now(&mut self) -> Vec<(u32, u64)> {
+        let replaced = std::mem::take(&mut self.now);
         let last = (0..).zip(&self.last);
         last.filter(|(_, (interval, _))| *interval == self.interval)
-            .map(|(slot, _)| slot)
+            .map(|(slot, _)| (slot, 1 + replaced.get(&slot).copied().unwrap_or(0)))
             .collect()
     }
 }
@@ -76,7 +85,7 @@ impl Side {
         let Hidden {
             interval,
             last,
-            counts,
+            now,
             clock,
             ..
         } = &mut self.hidden;
@@ -93,16 +102,16 @@ impl Side {
             let known = &mut last[slot as usize];
             if known.0 == *interval {
                 if known.1 != value {
-                    *counts.entry(slot).or_default() += 1;
+                    *now.entry(slot).or_default() += 1;
                     known.1 = value;
                 }
                 continue;
             }
-            let now = match touched.cells.of(self.number, slot) {
+            let before = match touched.cells.of(self.number, slot) {
                 GENERAL => hash(self.values.words(slot)),
                 cell => hash(touched.cells.both(cell)[self.number]),
             };
-            if now != value {
+            if before != value {
                 *known = (*interval, value);
             }
         }
