@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod columns;
+mod expected;
 mod irregular;
 mod log;
 mod low_modes;

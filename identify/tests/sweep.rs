@@ -1,35 +1,15 @@
 //! Modes from accelerometer logs, compared with machines whose modes are known.
 
+use crate::expected::check;
+use posicast_identify::AccelerationLog;
 use posicast_identify::sweep::{self, Sweep, SweepError};
-use posicast_identify::synthetic::{KnownMode, Noise, Sensor, known, resonance_test};
-use posicast_identify::{AccelerationLog, FoundMode};
-
-/// Allowed relative errors.
-const FREQUENCY: f64 = 0.01;
-const DAMPING: f64 = 0.15;
+use posicast_identify::synthetic::{Noise, Sensor, known, resonance_test};
 
 /// Returns a sweep of 13 s, used where many logs are checked.
 fn quick() -> Sweep {
     Sweep {
         rate_hz_per_s: 10.0,
         ..Sweep::default()
-    }
-}
-
-fn check(truths: &[KnownMode], found: &[FoundMode]) {
-    assert_eq!(truths.len(), found.len(), "{truths:#?} {found:#?}");
-    for (truth, found) in truths.iter().zip(found) {
-        let frequency = found.mode.frequency_hz / truth.mode.frequency_hz - 1.0;
-        let damping = found.mode.damping / truth.mode.damping - 1.0;
-        assert!(
-            frequency.abs() < FREQUENCY && damping.abs() < DAMPING,
-            "{truth:#?} {found:#?}"
-        );
-        let whole: f64 = truths.iter().map(|truth| truth.share).sum();
-        assert!(
-            (found.participation - truth.share / whole).abs() < 0.03,
-            "{truth:#?} {found:#?}"
-        );
     }
 }
 

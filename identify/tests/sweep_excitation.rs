@@ -1,9 +1,10 @@
 //! The excitation of a printer's log: with and without the square wave of Klipper's present test, and sweeps that the log itself tells.
 
+use crate::expected::check_poles;
+use posicast_identify::AccelerationLog;
 use posicast_identify::log::{self, Log};
 use posicast_identify::sweep::{self, FoundInSweep, SquareWave, Sweep, SweepError, Sweeping};
 use posicast_identify::synthetic::{KnownMode, Sensor, known, present_test, resonance_test};
-use posicast_identify::{AccelerationLog, FoundMode};
 
 /// A rigid machine, and one with its mode above the band; and two with one weak mode or two strong ones.
 fn machines() -> [Vec<KnownMode>; 4] {
@@ -23,15 +24,6 @@ fn old_test() -> Sweep {
     }
 }
 
-fn check(truths: &[KnownMode], found: &[FoundMode]) {
-    assert_eq!(truths.len(), found.len(), "{truths:#?} {found:#?}");
-    for (truth, found) in truths.iter().zip(found) {
-        let frequency = found.mode.frequency_hz / truth.mode.frequency_hz - 1.0;
-        let damping = found.mode.damping / truth.mode.damping - 1.0;
-        assert!(frequency.abs() < 0.01 && damping.abs() < 0.1, "{truth:#?} {found:#?}");
-    }
-}
-
 /// Identifies logs of both tests of each machine at these rates of the sensor.
 fn both_tests_tell_the_modes(rates_hz: &[f64]) {
     for (truths, rate_hz) in machines()
@@ -46,7 +38,7 @@ fn both_tests_tell_the_modes(rates_hz: &[f64]) {
             let log = resonance_test(truths, &driven, &sensor, 1);
             let found = sweep::identify(&log, &Sweep::default()).unwrap();
             let seen: Vec<KnownMode> = truths.iter().filter(|t| t.mode.frequency_hz < 130.0).copied().collect();
-            check(&seen, &found.modes);
+            check_poles(&seen, &found.modes);
             match (driven.sweeping, found.wave) {
                 (Sweeping::Wave(truth), Some(wave)) => {
                     assert!((wave.acceleration / truth.acceleration - 1.0).abs() < 0.1, "{wave:?}");
@@ -122,7 +114,7 @@ fn a_wave_of_another_size_is_told_by_the_log() {
     let log = resonance_test(&truths, &driven, &sensor, 2);
     for sweeping in [Sweeping::FromLog, driven.sweeping] {
         let found = sweep::identify(&log, &Sweep { sweeping, ..driven }).unwrap();
-        check(&truths, &found.modes);
+        check_poles(&truths, &found.modes);
         let found = found.wave.unwrap();
         assert!((found.acceleration / wave.acceleration - 1.0).abs() < 0.05, "{found:?}");
         assert!((found.period_s / wave.period_s - 1.0).abs() < 1e-3, "{found:?}");
@@ -152,7 +144,7 @@ fn another_sweep_is_found_in_the_log() {
         };
         let log = resonance_test(&truths, &driven, &sensor, 3);
         let found = sweep::identify_any(&log).unwrap();
-        check(&truths, &found.modes);
+        check_poles(&truths, &found.modes);
         let sweep = found.sweep;
         assert!(found.is_estimated, "{sweep:?}");
         let close = |a: f64, b: f64, by: f64| (a - b).abs() < by;
@@ -208,7 +200,7 @@ fn the_first_frequency_is_that_at_which_the_motion_begins() {
             (found.sweep.start_hz, found.sweep.rate_hz_per_s),
             (start_hz, rate_hz_per_s)
         );
-        check(&truths, &found.modes);
+        check_poles(&truths, &found.modes);
     }
 }
 
@@ -228,7 +220,7 @@ fn a_log_that_is_shorter_than_a_test_with_a_square_wave_is_no_reason_to_stop() {
     let log = resonance_test(&truths, &described(60.0), &sensor, 7);
     // The log has the first 5 s of a test of 12 s.
     match sweep::identify(&log, &described(135.0)) {
-        Ok(found) => check(&truths, &found.modes),
+        Ok(found) => check_poles(&truths, &found.modes),
         Err(error) => panic!("{error}"),
     }
 }
