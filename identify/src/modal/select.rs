@@ -3,7 +3,9 @@
 use super::ResponsePoint;
 use super::fit::{Fit, Gains, Phase, Pole, refine};
 use crate::found::FoundMode;
+use crate::parallel::both;
 use crate::separable::Effort;
+use std::ops::Range;
 
 /// Largest number of poles that are searched.
 const MOST: usize = 8;
@@ -45,16 +47,27 @@ pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
 
 /// A fit without unnecessary poles: those that explain, beside the others, no more than noise might.
 pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
+    /// Multiple of what a pole must explain from which on a rough fit without it tells that it is necessary.
+    const FAR: f64 = 20.0;
     let mut kept = fit;
     loop {
-        let without = (0..kept.poles.len()).filter_map(|k| {
+        let least_gain = LEAST_GAIN * kept.reduced_square().max(1.0);
+        let without = |k: usize| {
             let mut poles = kept.poles.clone();
             poles.remove(k);
-            refine(points, &poles, kept.phase, Effort::Full)
-        });
-        let best = without.min_by(|a, b| a.square.total_cmp(&b.square));
-        match best {
-            Some(best) if best.square - kept.square < LEAST_GAIN * kept.reduced_square().max(1.0) => kept = best,
+            let rough = refine(points, &poles, kept.phase, Effort::Rough)?;
+            // What is far from enough when it has nearly converged will not be enough.
+            if rough.square - kept.square > FAR * least_gain {
+                return None;
+            }
+            refine(points, &rough.poles, rough.phase, Effort::Full)
+        };
+        let better = |a: &Fit, b: &Fit| a.square.total_cmp(&b.square);
+        let best_of = |range: Range<usize>| range.filter_map(without).min_by(better);
+        let count = kept.poles.len();
+        let (some, others) = both(|| best_of(0..count / 2), || best_of(count / 2..count));
+        match some.into_iter().chain(others).min_by(better) {
+            Some(best) if best.square - kept.square < least_gain => kept = best,
             _ => return kept,
         }
     }

@@ -114,7 +114,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
         }
     };
     let first = moved.as_ref().map(|wave| (wave, 1.0));
-    let rough_placed = Placed::new(&grid, smooth, &begun.excitation, first, begun.start_s);
+    let rough_placed = Placed::new(&grid, (smooth, pulses), &begun.excitation, first, begun.start_s);
     let rough = measure(&grid, &mut record, &rough_placed, band, seen(begun.start_s));
     let (explained_alone, rough) = (rough.explained, rough.transfer);
     // The wave's amplitude is known as the sensor shows it, that of the sweep as it was described.
@@ -149,7 +149,8 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     let (measured, transfer, fit) = loop {
         let smooth = placed(&grid, &begun, start_s);
         let again = moved.as_ref().map(|wave| (wave, gain));
-        let exact = Placed::new(&grid, smooth, &begun.excitation, again, start_s);
+        let pulses = grid.sampled(&begun.excitation, start_s);
+        let exact = Placed::new(&grid, (smooth, pulses), &begun.excitation, again, start_s);
         let mut measured = measure(&grid, &mut record, &exact, band, seen(start_s));
         let mut transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
         let points = &outside(&transfer.points, &crossing);

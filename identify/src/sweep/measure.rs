@@ -37,10 +37,11 @@ pub(super) struct Measured {
 }
 
 impl Placed {
-    /// The pulses, of which the lines are known, and the square wave beside them with a factor; both begin `start_s` after the start of the grid.
+    /// The pulses, of which the lines and those of their samples are known, and the square wave beside them with a factor; both begin `start_s` after
+    /// the start of the grid.
     pub(super) fn new(
         grid: &Grid,
-        lines: Lines,
+        (lines, pulses_sampled): (Lines, Vec<Complex<f64>>),
         pulses: &SweptAcceleration,
         wave: Option<(&SweptAcceleration, f64)>,
         start_s: f64,
@@ -59,7 +60,7 @@ impl Placed {
                 true => grid.folded_integrals(pulses, &lines, start_s).into(),
                 false => Vec::new(),
             },
-            pulses_sampled: grid.sampled(pulses, start_s),
+            pulses_sampled,
             pulses: lines,
             wave,
         }

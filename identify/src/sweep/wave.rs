@@ -4,7 +4,7 @@ use super::excitation::{SquareWave, SweptAcceleration};
 use super::record::Grid;
 use super::transfer::{Band, Lines};
 use nalgebra::Complex;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Fraction of the sweep's lowest frequency up to which it is looked for.
 const BELOW: f64 = 0.9;
@@ -73,8 +73,7 @@ impl Tried {
             acceleration: 1.0,
             period_s,
         };
-        let wave = SweptAcceleration::square_wave(&unit, end_s);
-        let of_wave = spectrum(&wave, lines, grid.sample_s(), start_s);
+        let of_wave = wave_spectrum(&unit, lines, grid.sample_s(), start_s, end_s);
         let (mut cross, mut square) = (Complex::new(0.0, 0.0), f64::MIN_POSITIVE);
         for (line, wave) in lines.values.iter().zip(&of_wave) {
             cross += line * wave.conj();
@@ -87,6 +86,40 @@ impl Tried {
             in_phase: cross.re.abs() / cross.norm().max(f64::MIN_POSITIVE),
         }
     }
+}
+
+/// Lines of a square wave that ends `end_s` after its start, as [`spectrum`] has them. All edges between the second and the last are half a period
+/// apart and of alternating sign, so that their sum is that of a geometric series: a period below the sweep may have thousands.
+fn wave_spectrum(wave: &SquareWave, lines: &Lines, sample_s: f64, start_s: f64, end_s: f64) -> Vec<Complex<f64>> {
+    let mut edges_s = wave.edges_s();
+    let (first_s, second_s) = (edges_s.next().unwrap_or(end_s), edges_s.next().unwrap_or(end_s));
+    let half_s = 0.5 * wave.period_s;
+    // The wave has those edges that come before its end.
+    let later = ((end_s - second_s) / half_s).ceil().max(0.0);
+    let is_positive = match (first_s < end_s, later % 2.0 == 0.0) {
+        (false, _) => true,
+        (true, is_even) => !is_even,
+    };
+    let line = |n: usize| {
+        let omega = TAU * lines.frequency_hz(n);
+        let at = |time_s: f64, size: f64| Complex::from_polar(size, -omega * (start_s + time_s));
+        let mut sum = at(0.0, 1.0) - at(end_s, if is_positive { 1.0 } else { -1.0 });
+        if first_s < end_s {
+            sum -= at(first_s, 2.0);
+        }
+        if later > 0.0 {
+            // Σ (−q)^n with q = e^{−jωP/2}, by the sines of half the angle of −q, which are exact where −q is near 1.
+            let angle = (PI - omega * half_s).rem_euclid(TAU);
+            let angle = if angle > PI { angle - TAU } else { angle };
+            let size = match (0.5 * angle).sin() {
+                0.0 => later,
+                sine => (0.5 * later * angle).sin() / sine,
+            };
+            sum += at(second_s, 2.0 * size) * Complex::from_polar(1.0, 0.5 * (later - 1.0) * angle);
+        }
+        sum * (wave.acceleration / (omega * sample_s)) * Complex::new(0.0, -1.0)
+    };
+    (0..lines.values.len()).map(line).collect()
 }
 
 /// Lines of an acceleration, from its edges: `Σ Δa·e^{−j2πft}/(j2πf)` over the time between samples.
@@ -112,4 +145,43 @@ pub(super) fn spectrum(
         *line /= Complex::new(0.0, TAU * lines.frequency_hz(n) * sample_s);
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lines_of_a_square_wave_are_those_of_its_edges() {
+        let lines = Lines {
+            first: 2,
+            resolution_hz: 0.0125,
+            dense: 1,
+            values: vec![Complex::new(0.0, 0.0); 400],
+        };
+        // A period of 1.6 s has its harmonics on lines; the last three end before the third, the second and the first edge.
+        for (period_s, end_s) in [
+            (1.6, 60.0),
+            (1.6, 60.4),
+            (1.2, 77.77),
+            (0.3, 79.0),
+            (1.6, 0.95),
+            (1.6, 0.8),
+            (1.6, 0.2),
+        ] {
+            let wave = SquareWave {
+                acceleration: 0.4,
+                period_s,
+            };
+            let found = wave_spectrum(&wave, &lines, 1e-3, 0.7, end_s);
+            let expected = spectrum(&SweptAcceleration::square_wave(&wave, end_s), &lines, 1e-3, 0.7);
+            let largest = expected.iter().map(|line| line.norm()).fold(0.0, f64::max);
+            for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                assert!(
+                    (found - expected).norm() < 1e-9 * largest,
+                    "{period_s} {end_s} {n}: {found} {expected}"
+                );
+            }
+        }
+    }
 }
