@@ -159,6 +159,18 @@ impl Bed {
         (0..clocks).for_each(|_| self.clock());
     }
 
+    /// As [`Self::clocks`] with levels that stay, a piece at a time: faster for millions of clocks.
+    pub(super) fn idle(&mut self, clocks: u64) {
+        const PIECE: usize = 4096;
+        let inputs = self.inputs.repeat(PIECE);
+        let mut outputs = vec![0; PIECE * self.outputs.len()];
+        for _ in 0..clocks / PIECE as u64 {
+            self.device.run(&inputs, &mut outputs).unwrap();
+            self.now += PIECE as u64;
+        }
+        self.clocks(clocks % PIECE as u64);
+    }
+
     /// Up to and with the clock of the next tick.
     pub(super) fn next_tick(&mut self) {
         self.clock();

@@ -7,6 +7,7 @@
 mod bed;
 mod caught;
 mod checks;
+mod constants;
 
 use self::bed::{Bed, modules};
 use self::checks::CHECKS;
