@@ -39,6 +39,7 @@ mod stage_guards;
 mod stage_hold;
 mod stage_range;
 mod stage_run;
+mod stage_wires;
 mod support;
 mod trace;
 mod uart_bridge;

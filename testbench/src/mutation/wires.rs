@@ -278,8 +278,8 @@ fn changed(module: &Module, parts: Option<&PlacesInAModule<'_>>, selects: &[Stri
     Ok(text)
 }
 
-/// Puts the mutants of a machine's stage into its Verilog with short ticks, and looks for them with the stimuli of that row. At most
-/// `most` are taken, by the seed. Files are in `folder`.
+/// Puts all mutants of a machine's stage into its Verilog with short ticks, and looks for them with the stimuli of that row. At most
+/// `most` are taken, by the seed. Returns how many there are, too. Files are in `folder`.
 ///
 /// # Errors
 /// [`Error::Option`] where the stage's ticks cannot be shortened; else as [`super::run`].
@@ -290,16 +290,41 @@ pub fn wires(
     options: &MutationOptions,
     folder: &Path,
 ) -> Result<(usize, Vec<WireFate>), Error> {
-    let refused = |error: &dyn std::fmt::Display| Error::Option(error.to_string());
-    let short = ShortTicksBlock::new(config, top).map_err(|error| refused(&error))?;
-    let short = short.ok_or_else(|| refused(&"the ticks of this stage cannot be shorter"))?;
-    let block = short.stage();
-    let mut mutants = list(block, options.seed);
+    let short = shortened(config, top)?;
+    let mut mutants = list(short.stage(), options.seed);
     let all = mutants.len();
     if most < all {
         mutants.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(options.seed));
         mutants.truncate(most);
     }
+    Ok((all, look_for(short.stage(), mutants, options, folder)?))
+}
+
+/// Looks for these mutants alone, as [`wires`] does.
+///
+/// # Errors
+/// As [`wires`], and [`Error::Unlike`] where the stage does not have a connection that a mutant changes.
+pub fn hunt_wires(
+    config: &StageConfig,
+    top: &str,
+    mutants: Vec<WireMutant>,
+    options: &MutationOptions,
+    folder: &Path,
+) -> Result<Vec<WireFate>, Error> {
+    look_for(shortened(config, top)?.stage(), mutants, options, folder)
+}
+
+fn shortened(config: &StageConfig, top: &str) -> Result<ShortTicksBlock, Error> {
+    let short = ShortTicksBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
+    short.ok_or_else(|| Error::Option("the ticks of this stage cannot be shorter".to_owned()))
+}
+
+fn look_for(
+    block: &StageBlock,
+    mutants: Vec<WireMutant>,
+    options: &MutationOptions,
+    folder: &Path,
+) -> Result<Vec<WireFate>, Error> {
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
     let file = folder.join("wires.v");
     let modules = with_wires(&block.modules()?, &mutants)?;
@@ -310,12 +335,9 @@ pub fn wires(
     })?;
     let differed = differences(block, &mutants, &kills, options)?;
     let fates = mutants.into_iter().zip(kills).zip(differed);
-    Ok((
-        all,
-        fates
-            .map(|((mutant, kill), differed)| WireFate { mutant, kill, differed })
-            .collect(),
-    ))
+    Ok(fates
+        .map(|((mutant, kill), differed)| WireFate { mutant, kill, differed })
+        .collect())
 }
 
 /// For each wire that was not found, the number of clocks of the run in which it and the one in its place had other values.

@@ -64,6 +64,8 @@ pub struct LinkedStageRandom {
     offsets: Vec<u16>,
     /// Place in `offsets` of the next register to read.
     next_read: usize,
+    /// Per axis, offsets of the words that show its motion.
+    motion: Vec<Vec<u16>>,
     /// Per axis, offsets of the registers that read back taps, then of those for settings: address, command, word.
     read_back: Vec<[[u16; 3]; 2]>,
     words: u16,
@@ -124,6 +126,7 @@ impl LinkedStageRandom {
             read_data: outputs.position(|port: &Port| port.name == "avs_readdata").unwrap_or(0),
             offsets: offsets(stage.map()),
             next_read: 0,
+            motion: axes.iter().map(|axis| motion(stage.map(), axis)).collect(),
             read_back: axes.iter().map(|axis| read_back(stage.map(), axis)).collect(),
             words,
             is_spi,
@@ -204,7 +207,8 @@ impl LinkedStageRandom {
         match self.rng.random_range(0..8) {
             0 => self.read_back(),
             1 => Request::ReadList((0..count).map(|_| self.any_address()).collect()),
-            2 => {
+            2 | 3 => Request::ReadList(pick(&mut self.rng, &self.motion).clone()),
+            4 => {
                 let address = self.next_offset();
                 Request::Read { address, count }
             }
@@ -353,6 +357,21 @@ fn all_registers(map: &RegisterMap, rng: &mut Xoshiro256PlusPlus) -> Vec<Vec<u8>
     let numbered = (100..).zip(writes.chain(reads));
     numbered
         .filter_map(|(number, request)| request.encode(number).ok())
+        .collect()
+}
+
+fn motion(map: &RegisterMap, axis: &str) -> Vec<u16> {
+    let names = [
+        "status",
+        "shaped_position",
+        "shaped_velocity",
+        "velocity",
+        "error",
+        "duty",
+    ];
+    names
+        .iter()
+        .map(|name| offset(map, &format!("{axis}_{name}")))
         .collect()
 }
 

@@ -8,6 +8,7 @@
 mod component;
 mod coverage;
 mod promises;
+mod reads;
 mod stage;
 mod stage_coverage;
 mod stage_driver;

@@ -4,10 +4,9 @@
 use posicast_blocks::component::Component;
 use posicast_blocks::registers::{Access, Register, RegisterMap};
 use posicast_blocks::{Direction, Port};
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::super::table::pick;
+use super::reads::{Clears, ReadBack};
 use super::stage_driver::{Driver, Moves, Pins, SCENES};
 use super::{ADDRESS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
 use crate::stimuli::Stimuli;
@@ -26,6 +25,8 @@ const LINES: [(&str, u32); 6] = [
 ];
 /// The shared lines of the stage, as in [`LINES`].
 const SHARED_LINES: [(&str, u32); 2] = [("emergency_stop_n", 4), ("pll_locked", 8)];
+/// A reset comes before every so many scenes: what the last one left in any block goes. It is odd, so that each axis had the lead.
+const SCENES_TO_A_RESET: usize = 5;
 /// Number of clocks of the gates' mean that make one step of an encoder that follows them.
 const STEP_CLOCKS: i32 = 48;
 /// Least number of clocks between two steps, so that the encoder's filter passes them.
@@ -57,6 +58,8 @@ struct AxisPins {
     shown: [usize; 4],
     moves: Moves,
     count: i32,
+    /// The count at the last reset.
+    origin: i32,
     /// Sum of the gates' mean since the last step.
     mean: i32,
     since_step: u32,
@@ -77,64 +80,6 @@ struct Line {
     low: u32,
 }
 
-/// Reads back settings or taps, from any bank at any time, in clocks in which the bus is otherwise idle.
-///
-/// It uses a generator of its own, so that it does not change what else a run reaches.
-#[derive(Debug, Clone)]
-struct ReadBack {
-    rng: Xoshiro256PlusPlus,
-    /// Per axis, the offsets of address, command and word.
-    words: Vec<[u64; 3]>,
-    /// Mask of the random address bits: bank and written rows.
-    places: u64,
-}
-
-impl ReadBack {
-    fn settings(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
-        let names = ["setting_address", "setting_read", "setting_loaded"];
-        Self::new(map, axes, names, 0x30f, seed.rotate_left(32))
-    }
-
-    fn taps(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
-        let names = ["tap_address", "tap_read", "tap_loaded"];
-        Self::new(map, axes, names, 0x307, seed.rotate_left(16))
-    }
-
-    fn new(map: &RegisterMap, axes: &[String], names: [&str; 3], places: u64, seed: u64) -> Self {
-        let of_axis = |axis: &String| {
-            let offset = |name| map.register(&format!("{axis}_{name}")).map(|found| found.offset.into());
-            let [address, read, loaded] = names.map(offset);
-            Some([address?, read?, loaded?])
-        };
-        Self {
-            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
-            words: axes.iter().filter_map(of_axis).collect(),
-            places,
-        }
-    }
-
-    /// Returns the registers that only this generator uses.
-    fn own(&self) -> Vec<u64> {
-        self.words.iter().flat_map(|[_, own @ ..]| *own).collect()
-    }
-
-    fn fill(&mut self, driver: &Driver, wild: bool, inputs: &mut [u64]) {
-        let axis = self.rng.random_range(0..self.words.len());
-        let [pace, kind, data] = [50, 3, 1 << 10].map(|end| self.rng.random_range(0..end));
-        let in_use = inputs[READ] != 0 || inputs[WRITE] != 0 || driver.writes(axis);
-        // Random traffic writes settings and taps at the current address, which is not changed then.
-        let moves_another = wild && kind == 0;
-        if pace != 0 || in_use || moves_another {
-            return;
-        }
-        inputs[ADDRESS] = self.words[axis][kind];
-        inputs[WRITE_DATA] = data as u64 & self.places;
-        inputs[BYTE_ENABLE] = 0xf;
-        let reads = kind == 2;
-        (inputs[READ], inputs[WRITE]) = (reads.into(), (!reads).into());
-    }
-}
-
 /// An endless random mixture of all inputs.
 #[derive(Debug, Clone)]
 pub struct StageRandom {
@@ -149,8 +94,11 @@ pub struct StageRandom {
     /// Number of moods and scenes so far.
     moods: u32,
     scenes: usize,
+    /// Clocks left of a reset between two scenes.
+    reset_clocks: u32,
     /// Offsets of the status words.
     status: Vec<u64>,
+    clears: Clears,
     axes: Vec<AxisPins>,
     lines: Vec<Line>,
 }
@@ -187,6 +135,7 @@ impl StageRandom {
                 shown: shown.map(|pin| place(ports, Direction::Output, &format!("{axis}_{pin}")).unwrap_or(0)),
                 moves: Moves::Still,
                 count: 0,
+                origin: 0,
                 mean: 0,
                 since_step: 0,
                 invert: false,
@@ -218,7 +167,9 @@ impl StageRandom {
             clock: 0,
             mood_ends: 0,
             scenes: 0,
+            reset_clocks: 0,
             moods: 0,
+            clears: Clears::new(map, axes, seed),
             status: status(map).into_iter().filter(|offset| !own.contains(offset)).collect(),
             mood: Mood {
                 wild: false,
@@ -275,6 +226,9 @@ impl StageRandom {
         }
         self.driver.play(self.scenes);
         self.scenes += 1;
+        if self.scenes.is_multiple_of(SCENES_TO_A_RESET) {
+            self.reset_clocks = 2;
+        }
     }
 
     /// Applies what the scenes require at the pins of an axis.
@@ -282,7 +236,7 @@ impl StageRandom {
         for at in 0..self.axes.len() {
             let axis = &self.axes[at];
             let [on, released] = [2, 3].map(|pin| seen.get(axis.shown[pin]).is_some_and(|value| value & 1 != 0));
-            for pins in self.driver.sees(at, axis.count, on, released) {
+            for pins in self.driver.sees(at, axis.count - axis.origin, on, released) {
                 match pins {
                     Pins::Encoder(moves) => self.axes[at].moves = moves,
                     Pins::Slip => self.axes[at].slips = true,
@@ -355,7 +309,14 @@ impl StageRandom {
     /// Makes the driver's next access, if there is one.
     fn drive(&mut self, seen: &[u64], inputs: &mut [u64]) {
         self.think(seen);
+        if let Some(word) = self.clears.word() {
+            self.driver.pass(0);
+            inputs[ADDRESS] = word;
+            (inputs[WRITE], inputs[READ]) = (0, 1);
+            return;
+        }
         if let Some((offset, data)) = self.driver.clock() {
+            self.clears.wrote(offset.into());
             inputs[ADDRESS] = offset.into();
             inputs[WRITE_DATA] = data.into();
             inputs[BYTE_ENABLE] = 0xf;
@@ -401,7 +362,15 @@ impl StageRandom {
     }
 
     fn reset(&mut self) -> bool {
-        self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace)
+        let between = self.reset_clocks > 0;
+        self.reset_clocks = self.reset_clocks.saturating_sub(1);
+        let resets = between || self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace);
+        if resets {
+            for axis in &mut self.axes {
+                axis.origin = axis.count;
+            }
+        }
+        resets
     }
 
     fn change_mood(&mut self, longer: u64) {

@@ -42,6 +42,8 @@ pub(super) enum Pins {
 #[derive(Debug, Clone, Copy)]
 enum Do {
     Write(u32, u32),
+    /// Writes the position of the axis plus these counts, both Q24.8.
+    Beside(u32, i32),
     Wait(u32),
     /// Moves the axis onto limit switches: bit 0 is +, bit 1 is −; 0 moves it off them.
     Switch(u32),
@@ -157,6 +159,10 @@ impl Driver {
                 self.axes[axis].script.pop_front();
                 Some((offset, data))
             }
+            Some(Do::Beside(offset, counts)) => {
+                self.axes[axis].script.pop_front();
+                Some((offset, (self.axes[axis].here << 8).wrapping_add(counts) as u32))
+            }
             _ => None,
         }
     }
@@ -194,7 +200,7 @@ impl Driver {
                     axis.pins.push(Pins::Slip);
                     axis.script.pop_front();
                 }
-                Some(Do::Write(..)) | None => {}
+                Some(Do::Write(..) | Do::Beside(..)) | None => {}
             }
         }
     }
@@ -209,7 +215,7 @@ impl Driver {
 
     /// Returns whether an axis is in a sequence of writes.
     pub(super) fn writes(&self, axis: usize) -> bool {
-        matches!(self.axes[axis].script.front(), Some(Do::Write(..)))
+        matches!(self.axes[axis].script.front(), Some(Do::Write(..) | Do::Beside(..)))
     }
 
     /// Returns the limit switches that an axis is on: bit 0 is +, bit 1 is −.
@@ -238,6 +244,14 @@ impl Driver {
     fn tell(&mut self, axis: usize, register: &str, data: u32) {
         let name = format!("{}_{register}", self.axes[axis].name);
         self.write(axis, &name, data);
+    }
+
+    /// Writes the axis's position at that time plus these counts, both Q24.8.
+    fn beside(&mut self, axis: usize, register: &str, counts: i32) {
+        let name = format!("{}_{register}", self.axes[axis].name);
+        let found = self.map.register(&name);
+        let access = found.map(|register| Do::Beside(register.offset, counts));
+        self.axes[axis].script.extend(access);
     }
 
     fn wait(&mut self, axis: usize, clocks: u32) {
@@ -385,7 +399,9 @@ impl Driver {
         self.wait(axis, 40);
         self.tell(axis, "control", 2);
         for _ in 0..=self.below(3) {
-            let duty = self.below(80) as i32 - 40;
+            // The second is mostly beyond the limit of a manual duty.
+            let duty = [self.below(80) as i32 - 40, self.below(1 << 16) as i32 - (1 << 15)];
+            let duty = self.pick(&duty);
             self.tell(axis, "direct", duty as u32);
             let ticks = self.below(5);
             self.ticks(axis, ticks);

@@ -18,26 +18,26 @@ pub(in super::super) const SCENES: [fn(&mut Driver, usize); 25] = [
     Driver::slips,
     Driver::runs_dry,
     Driver::stops_from_speed,
+    Driver::by_hand,
+    Driver::counts_and_interrupts,
     Driver::soft_limits,
     Driver::overflows,
     Driver::limit_switches,
     Driver::holds_the_feed,
     Driver::clears_in_a_quick_stop,
+    Driver::fills_the_fifo,
+    Driver::settings_and_laws,
+    Driver::leaves_the_range,
+    Driver::tables_in_flight,
     Driver::is_disabled_before_it_starts,
     Driver::emergency,
-    Driver::settings_and_laws,
-    Driver::counts_and_interrupts,
-    Driver::tables_in_flight,
     Driver::forgets_to_kick,
-    Driver::fills_the_fifo,
-    Driver::loses_the_encoder,
     Driver::drive_not_ready,
-    Driver::drive_fault,
-    Driver::fault_line,
-    Driver::clock_unlocked,
-    Driver::leaves_the_range,
-    Driver::by_hand,
+    Driver::loses_the_encoder,
     Driver::saturates,
+    Driver::fault_line,
+    Driver::drive_fault,
+    Driver::clock_unlocked,
 ];
 
 /// Largest jerk of an entry, which has 40 bits.
@@ -98,6 +98,7 @@ impl Driver {
         self.tell(axis, "swap", 0);
         self.tell(axis, "law", random >> 4 & 1);
         self.write(axis, "commit", 0);
+        self.tell(axis, "pwm_trigger", random >> 8 & 0x3f);
         // Random traffic may have left axes in a feed hold.
         self.write(axis, "feed_hold", 0);
         self.tell(axis, "flush", 0);
@@ -177,12 +178,18 @@ impl Driver {
     /// Crosses one soft limit while the other is far away; in the next round the roles are swapped.
     fn soft_limits(&mut self, axis: usize) {
         let back = self.is_odd(axis);
-        let here = self.axes[axis].here << 8;
         let near = self.below(40 << 8) as i32;
         let far = i32::MAX >> (1 + self.below(3)) & !0xff | near;
-        let [plus, minus] = if back { [far, here - near] } else { [here + near, -far] };
-        self.tell(axis, "soft_limit_plus", plus as u32);
-        self.tell(axis, "soft_limit_minus", minus as u32);
+        match back {
+            true => {
+                self.tell(axis, "soft_limit_plus", far as u32);
+                self.beside(axis, "soft_limit_minus", -near);
+            }
+            false => {
+                self.beside(axis, "soft_limit_plus", near);
+                self.tell(axis, "soft_limit_minus", -far as u32);
+            }
+        }
         self.tell(axis, "homed", 1);
         self.company(axis);
         self.goes(axis, SLOW << 2, back);
@@ -227,18 +234,17 @@ impl Driver {
         self.tell(axis, "swap", 1);
         self.tell(axis, "settle", 12);
         self.ticks(axis, 2);
-        let way = 60 << 8;
+        // The command was at the encoder's position when the brake opened: it may be many counts from it now.
+        let way = 240 << 8;
         let back = self.is_odd(axis);
-        let here = self.axes[axis].here << 8;
         let sign = if back { -1 } else { 1 };
-        let limit = here + sign * way / 2;
-        let far = here - sign * (1 << 29);
+        let (limit, far) = (sign * way / 2, -sign * (1 << 29));
         let [plus, minus] = if back { [far, limit] } else { [limit, far] };
-        self.tell(axis, "soft_limit_plus", plus as u32);
-        self.tell(axis, "soft_limit_minus", minus as u32);
+        self.beside(axis, "soft_limit_plus", plus);
+        self.beside(axis, "soft_limit_minus", minus);
         self.tell(axis, "homed", 1);
         self.company(axis);
-        // 60 counts in four ticks: the jerks j, -j, -j, j of a tick each make 2 j.
+        // 240 counts in four ticks: the jerks j, -j, -j, j of a tick each make 2 j.
         let jerk = i64::from(sign) * (i64::from(way) << 24) / 2;
         for jerk in [jerk, -jerk, -jerk, jerk] {
             self.entry(axis, 1, EntryMotion::Jerk(jerk), false);
@@ -490,6 +496,7 @@ impl Driver {
 
     fn counts_and_interrupts(&mut self, axis: usize) {
         self.act(axis, Do::Encoder(Moves::Walks));
+        self.low(axis, "home", self.tick_clocks);
         for _ in 0..3 {
             self.index(axis);
             self.interrupts(axis);
