@@ -13,4 +13,5 @@ mod position_noise;
 mod sweep;
 mod sweep_excitation;
 mod sweep_gaps;
+mod sweep_random;
 mod trial;

@@ -381,6 +381,18 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
             trimmed(*high_hz, 4)
         ));
     }
+    for mode in found.modes.iter().filter(|mode| found.is_at_end(mode)) {
+        remarks.push(format!(
+            "only one side of the mode at {} Hz lies within the sweep: its figures are doubtful beyond their intervals; sweep further",
+            trimmed(mode.mode.frequency_hz, 2)
+        ));
+    }
+    for frequency_hz in &found.doubtful_hz {
+        remarks.push(format!(
+            "at {} Hz, at an end of the sweep, there may be a mode, or it is an error of the end: sweep further to tell",
+            trimmed(*frequency_hz, 2)
+        ));
+    }
     let Band { low_hz, high_hz } = found.covered;
     let (low, high) = (trimmed(low_hz, 4), trimmed(high_hz, 4));
     if found.order.first_harmonic() > 1.0 {

@@ -4,7 +4,7 @@ use super::begin::{Begun, begin, placed, sought, timed};
 use super::crossing::{crossing, outside, weighed};
 use super::excitation::{Sweep, Sweeping, SweptAcceleration};
 use super::measure::{Placed, measure};
-use super::modes::{modes, told};
+use super::modes::{Told, modes, told};
 use super::record::{Grid, Record};
 use super::reduce::Reduced;
 use super::transfer::{self, Band, Lines, Transfer};
@@ -185,10 +185,11 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     if told < LEAST_TOLD {
         return Err(SweepError::Unlike(told));
     }
-    let modes = modes(&fit, &transfer.points, &covered, &measured.unseen);
+    let Told { modes, doubtful } = modes(&fit, &transfer.points, &covered, &measured.unseen, sweep.rate_hz_per_s);
     Ok(Pass::Ended(Box::new(FoundInSweep {
         visible: modal::visible(&transfer.points, &fit, &modes),
         modes,
+        doubtful_hz: doubtful.iter().map(|found| found.mode.frequency_hz).collect(),
         direction,
         sweep: *sweep,
         is_estimated: false,

@@ -4,10 +4,13 @@
 //! open, the time at which it began and the order of its quarter periods, is found by trying.
 
 mod begin;
+mod choose;
 mod crossing;
 mod excitation;
 mod find;
+mod first;
 mod follow;
+mod line;
 mod measure;
 mod modes;
 mod record;
@@ -21,8 +24,10 @@ pub use transfer::{Band, Transfer};
 
 use crate::found::FoundMode;
 use crate::signal::AccelerationLog;
+use choose::likelier;
 use follow::{Look, Pass, followed};
 use nalgebra::Complex;
+use posicast_shaper::mode::Mode;
 use reduce::Reduced;
 use thiserror::Error;
 
@@ -31,6 +36,8 @@ use thiserror::Error;
 pub struct FoundInSweep {
     /// The modes, sorted by frequency.
     pub modes: Vec<FoundMode>,
+    /// Frequencies of narrow poles at the ends of what is covered, in Hz: they may be modes, or errors of the transfer function's ends.
+    pub doubtful_hz: Vec<f64>,
     /// Name of the sensor direction that was used.
     pub direction: String,
     /// The sweep that was taken.
@@ -62,6 +69,15 @@ pub struct FoundInSweep {
     pub fitted: Vec<Complex<f64>>,
     /// Sum of squares of the residuals relative to the noise: 1 where only noise is left.
     pub reduced_square: f64,
+}
+
+impl FoundInSweep {
+    /// Whether a mode's resonance reaches beyond what is covered, so that only one side of it was measured.
+    pub fn is_at_end(&self, found: &FoundMode) -> bool {
+        let Mode { frequency_hz, damping } = found.mode;
+        let half_hz = damping * frequency_hz;
+        frequency_hz - half_hz < self.covered.low_hz || frequency_hz + half_hz > self.covered.high_hz
+    }
 }
 
 /// Why the sweep gives no modes of a log.
@@ -145,13 +161,8 @@ fn identify_reduced(log: &Reduced<'_>, sweep: &Sweep) -> Result<FoundInSweep, Sw
 /// # Errors
 /// [`SweepError`] where neither gives modes that can be determined.
 pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
-    /// What the first description must explain for others not to be tried.
-    const EXPLAINED: f64 = 0.97;
-    /// The same for the usual one, of which only the start is in doubt.
-    const NEARLY_EXPLAINED: f64 = 0.85;
-    /// How far a start that is told may be off the usual one to be that, in Hz: the slowest pulses are the weakest, so that a start is
-    /// the least certain.
-    const HZ: f64 = 1.0;
+    /// What the usual sweep must explain for others not to be tried.
+    const EXPLAINED: f64 = 0.85;
     long_enough(log)?;
     let usual = Sweep::default();
     let reduced = Reduced::new(log, usual.end_hz);
@@ -166,32 +177,22 @@ pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
     let mut likeliest = None;
     if course.is_of(&usual) {
         let found = by_default();
-        let is_near = |sweep: Sweep| (sweep.start_hz - usual.start_hz).abs() < HZ;
-        let is_it = |found: &FoundInSweep| {
-            found.transfer.explained > NEARLY_EXPLAINED || course.sweeps().next().is_none_or(is_near)
-        };
+        let is_it = |found: &FoundInSweep| found.transfer.explained > EXPLAINED && course.may_begin_at(usual.start_hz);
         if found.as_ref().is_ok_and(is_it) {
             return found;
         }
         likeliest = found.ok();
     }
-    for sweep in course.sweeps() {
-        let found = match described(&sweep) {
-            Ok(found) => found,
-            // The others rise in the same way, and would explain as little.
-            Err(SweepError::Unrelated(_)) => break,
-            Err(_) => continue,
-        };
-        let explained = found.transfer.explained;
-        if likeliest
-            .as_ref()
-            .is_none_or(|best: &FoundInSweep| explained > best.transfer.explained)
-        {
-            likeliest = Some(found);
-        }
-        if explained > EXPLAINED {
-            break;
-        }
+    likeliest = likelier(likeliest, &course.by_start(), described);
+    let rounded = course.at_round_rate();
+    if let Some(rounded) = &rounded {
+        likeliest = likelier(likeliest, &rounded.by_start(), described);
+    }
+    if let Some(found) = &likeliest {
+        let courses = [Some(&course), rounded.as_ref()].into_iter().flatten();
+        let ends = courses.filter(|course| course.rises_as(&found.sweep));
+        let ends: Vec<Sweep> = ends.flat_map(|course| course.by_end(&found.sweep)).collect();
+        likeliest = likelier(likeliest, &ends, described);
     }
     match likeliest {
         Some(found) => Ok(FoundInSweep {

@@ -27,8 +27,19 @@ const SIGNIFICANT: f64 = 6.0;
 /// Distance, as a fraction of the frequency, up to which what is cut off by a gap can look like a faint mode beside the band that the gap hides.
 const EDGE: f64 = 0.1;
 
-/// The modes of a fit within a band, without those that too few samples saw.
-pub(super) fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[Band]) -> Vec<FoundMode> {
+/// Poles of a fit that are modes of the machine, and those of which that is doubtful.
+pub(super) struct Told {
+    pub(super) modes: Vec<FoundMode>,
+    pub(super) doubtful: Vec<FoundMode>,
+}
+
+/// Distance to an end of the band, and half width `ζ·f` of a pole, both over the band that a sweep passes while it shakes a frequency
+/// (`√rate`), below which it is not told from an error of the transfer function's end.
+const NEAR_END: f64 = 0.5;
+const NARROW: f64 = 0.125;
+
+/// The modes of a fit within a band, without those that too few samples saw, of a sweep that rises by so many Hz per second.
+pub(super) fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[Band], rate_hz_per_s: f64) -> Told {
     let whole: f64 = fit.shares.iter().map(|(share, _)| share.max(0.0)).sum();
     let told = |k: &usize| {
         let pole = &fit.poles[*k];
@@ -45,7 +56,13 @@ pub(super) fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[
             && share > SIGNIFICANT * deviation
             && share > LEAST_OF_AXIS * fit.still.abs()
     };
-    let modes = (0..fit.poles.len()).filter(told).map(|k| FoundMode {
+    let passed_hz = rate_hz_per_s.sqrt();
+    let is_doubtful = |found: &FoundMode| {
+        let Mode { frequency_hz, damping } = found.mode;
+        let to_end_hz = (frequency_hz - band.low_hz).min(band.high_hz - frequency_hz);
+        to_end_hz < NEAR_END * passed_hz && damping * frequency_hz < NARROW * passed_hz
+    };
+    let poles = (0..fit.poles.len()).filter(told).map(|k| FoundMode {
         mode: Mode {
             frequency_hz: fit.poles[k].frequency_hz,
             damping: fit.poles[k].damping,
@@ -54,5 +71,9 @@ pub(super) fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[
         frequency_sd_hz: fit.deviations[k].0,
         damping_sd: fit.deviations[k].1,
     });
-    that_ring(modes.collect())
+    let (doubtful, modes): (Vec<_>, Vec<_>) = poles.partition(is_doubtful);
+    Told {
+        modes: that_ring(modes),
+        doubtful,
+    }
 }

@@ -300,27 +300,38 @@ impl Record {
         has_begun.then(|| (first + begins * width) as f64 * sample_s)
     }
 
-    /// Time in seconds, from the start of the grid, at which a motion stops that goes on until about `expected_s`: the last one at which
-    /// the record is a part of what it was in the second before.
-    pub(super) fn stops_s(&self, expected_s: f64, sample_s: f64) -> f64 {
-        /// Part of the acceleration of before, duration of what is compared, and time around the expected one that is searched.
+    /// Time in seconds, from the start of the grid, at which a motion of about this frequency stops that goes on until about `expected_s`: the last
+    /// period that has more of it than the rest afterwards.
+    pub(super) fn stops_s(&self, expected_s: f64, frequency_hz: f64, sample_s: f64) -> f64 {
+        /// Power over that of the rest, as a part of the motion's, and time around the expected one that is searched.
         const PART: f64 = 0.35;
-        const COMPARED_S: f64 = 0.006;
         const AROUND_S: (f64, f64) = (1.0, 15.0);
         let sample = |time_s: f64| ((time_s / sample_s).max(0.0) as usize).min(self.values.len());
-        let width = ((COMPARED_S / sample_s) as usize).max(2);
-        let level = |range: Range<usize>| {
-            let slow = self.values[range.clone()].iter().sum::<f64>() / range.len().max(1) as f64;
-            let square: f64 = self.values[range.clone()].iter().map(|x| (x - slow).powi(2)).sum();
-            (square / range.len().max(1) as f64).sqrt()
-        };
-        let before = level(sample(expected_s - 2.0 * AROUND_S.0)..sample(expected_s - AROUND_S.0));
-        let searched = &self.values[sample(expected_s - AROUND_S.0)..sample(expected_s + AROUND_S.1)];
-        let moving = searched
-            .windows(width)
-            .rposition(|few| few.iter().any(|x| x.abs() > 2.0 * PART * before));
-        let last = moving.map_or(0, |window| window + width - 1);
-        (sample(expected_s - AROUND_S.0) + last) as f64 * sample_s
+        let known = self.unknown.last().map_or(self.values.len(), |gap| gap.start);
+        let (first, last) = (
+            sample(expected_s - 2.0 * AROUND_S.0),
+            sample(expected_s + AROUND_S.1).min(known),
+        );
+        let searched = self.values.get(first..last).unwrap_or_default();
+        // Slow modes ring on after the end. The second difference over half a period leaves little of them.
+        let half = ((0.5 / (frequency_hz * sample_s)).round() as usize).max(1);
+        let fast = searched.windows(2 * half + 1);
+        let powers: Vec<f64> = fast
+            .map(|few| (few[0] - 2.0 * few[half] + few[2 * half]).powi(2))
+            .collect();
+        let period = 2 * half;
+        let sums: Vec<f64> = powers.windows(period).map(|few| few.iter().sum()).collect();
+        let usual = ((AROUND_S.0 / sample_s) as usize).min(sums.len());
+        let before = sums[..usual].iter().sum::<f64>() / usual.max(1) as f64;
+        // Periods of the rest differ by chance: their mean counts.
+        let rest = sums[usual..]
+            .chunks(4 * period)
+            .map(|few| few.iter().sum::<f64>() / few.len() as f64);
+        let rest = rest.fold(before, f64::min);
+        let moving = sums.iter().rposition(|sum| *sum > rest + PART * (before - rest));
+        // The difference is there until half a period after the motion, and a period with this part of it begins before its end.
+        let end = moving.map_or(0.0, |window| window as f64 + (PART * period as f64).max(1.0));
+        (first as f64 + end) * sample_s
     }
 
     /// Fills the samples that were not measured; the root mean square of the change, over that of the record.

@@ -1,0 +1,89 @@
+//! Chooses among descriptions that a log may be of.
+//!
+//! Where a sweep begins or ends otherwise than was described, its first or last pulses are missing or too many, and the transfer function
+//! has ripples beside that end which no mode explains. So descriptions are compared by what the modes leave of each there.
+
+use super::transfer::Band;
+use super::{FoundInSweep, SweepError};
+use crate::parallel::both;
+
+/// Smallest width in Hz of the parts of a band that are compared, and number of points in each.
+const PART_HZ: f64 = 1.0;
+const PART_POINTS: f64 = 20.0;
+/// Width of what is compared beside the end in which two descriptions differ, in Hz, and over the band that a sweep passes while it shakes a
+/// frequency (`√rate`).
+const BESIDE_HZ: f64 = 6.0;
+const BESIDE: f64 = 6.0;
+/// Sum of the logarithms of the ratios of what two descriptions leave in each part from which on the second is likelier than the first, which
+/// is the more usual one: by chance, that of a part differs by 0.3.
+const LIKELIER: f64 = 2.5;
+/// The same for an earlier end beside a square wave: what follows it is not known then, and so cannot speak against it.
+const LIKELIER_EARLIER: f64 = 10.0;
+
+/// The likeliest of what is found by some descriptions, the more usual ones first, and of what was found before.
+pub(super) fn likelier(
+    before: Option<FoundInSweep>,
+    sweeps: &[super::Sweep],
+    described: impl Fn(&super::Sweep) -> Result<FoundInSweep, SweepError> + Sync,
+) -> Option<FoundInSweep> {
+    let mut best = before;
+    for (n, pair) in sweeps.chunks(2).enumerate() {
+        let (second, first) = both(|| pair.get(1).map(&described), || described(&pair[0]));
+        // The others rise in the same way, and would explain as little.
+        if n == 0 && matches!(first, Err(SweepError::Unrelated(_))) {
+            return best;
+        }
+        for found in [Some(first), second].into_iter().flatten().flatten() {
+            best = match best {
+                Some(best) if gain(&best, &found) < least_gain(&best, &found) => Some(best),
+                _ => Some(found),
+            };
+        }
+    }
+    best
+}
+
+fn least_gain(first: &FoundInSweep, second: &FoundInSweep) -> f64 {
+    match second.wave.is_some() && second.sweep.end_hz < first.sweep.end_hz {
+        true => LIKELIER_EARLIER,
+        false => LIKELIER,
+    }
+}
+
+/// By how much the second leaves less than the first: the sum of the logarithms of the ratios, over parts of the band.
+fn gain(first: &FoundInSweep, second: &FoundInSweep) -> f64 {
+    let mut common = Band {
+        low_hz: first.covered.low_hz.max(second.covered.low_hz),
+        high_hz: first.covered.high_hz.min(second.covered.high_hz),
+    };
+    let beside_hz = BESIDE_HZ.max(BESIDE * first.sweep.rate_hz_per_s.sqrt());
+    let (one, other) = (&first.sweep, &second.sweep);
+    if one.rate_hz_per_s == other.rate_hz_per_s && one.start_hz == other.start_hz {
+        common.low_hz = common.low_hz.max(common.high_hz - beside_hz);
+    } else if one.rate_hz_per_s == other.rate_hz_per_s && one.end_hz == other.end_hz {
+        common.high_hz = common.high_hz.min(common.low_hz + beside_hz);
+    }
+    let width_hz = common.high_hz - common.low_hz;
+    if width_hz <= 0.0 {
+        return 0.0;
+    }
+    let points = first.transfer.points.len().max(second.transfer.points.len()).max(1);
+    let part_hz = PART_HZ.max(PART_POINTS * width_hz / points as f64);
+    let parts = ((width_hz / part_hz) as usize).max(1);
+    let (first, second) = (left(first, &common, parts), left(second, &common, parts));
+    let ratios = first.iter().zip(&second).filter(|(a, b)| **a > 0.0 && **b > 0.0);
+    ratios.map(|(a, b)| (a / b).ln()).sum()
+}
+
+/// The mean square that the modes leave of a transfer function, in equal parts of a band.
+fn left(found: &FoundInSweep, band: &Band, parts: usize) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0usize); parts];
+    for (point, fitted) in found.transfer.points.iter().zip(&found.fitted) {
+        let part = (point.frequency_hz - band.low_hz) / (band.high_hz - band.low_hz) * parts as f64;
+        if let Some((sum, count)) = sums.get_mut(part.floor() as usize).filter(|_| part >= 0.0) {
+            *sum += (point.value - fitted).norm_sqr();
+            *count += 1;
+        }
+    }
+    sums.iter().map(|(sum, count)| sum / (*count).max(1) as f64).collect()
+}
