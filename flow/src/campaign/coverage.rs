@@ -10,10 +10,10 @@ use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::verilator;
 use serde_json::{Map, Value};
 
-/// Measure which lines, nets and bins of the blocks the lock step reaches.
+/// The blocks of which it is measured what lines, nets and bins the lock step reaches.
 #[derive(Debug, Clone)]
 pub struct CoverageOptions {
-    /// Only the blocks of this name; may be given several times.
+    /// Only the blocks of these names; all without any.
     pub blocks: Vec<String>,
 }
 

@@ -6,7 +6,7 @@ use posicast_testbench::fault_campaign::{self, Bed};
 use posicast_testbench::shard::MachineFileHash;
 use serde_json::{Map, Value};
 
-/// Inject faults into the stage of the example machine, and check how it reacts.
+/// The faults that are injected into the stage of the example machine.
 #[derive(Debug, Clone)]
 pub struct FaultOptions {
     /// Number of faults, in whole units.

@@ -6,7 +6,7 @@ use posicast_identify::trial;
 use posicast_testbench::shard::MachineFileHash;
 use serde_json::{Map, Value};
 
-/// Identify logs of random machines, and compare the modes with those of the machines.
+/// The logs of random machines whose modes are compared with those of the machines.
 #[derive(Debug, Clone)]
 pub struct TrialOptions {
     /// Number of logs, in whole units.

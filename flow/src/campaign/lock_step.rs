@@ -12,18 +12,18 @@ use posicast_testbench::wording::counted;
 use serde_json::{Map, Value};
 use std::path::PathBuf;
 
-/// Compare the Verilog of a machine with its model in every clock, over many seeds.
+/// The Verilog that is compared with its model in every clock, over many seeds.
 #[derive(Debug, Clone)]
 pub struct LockStepOptions {
     /// Machine file, or a folder that `generate` or `run` wrote.
     pub source: PathBuf,
-    /// Only the blocks of this name, such as pulse_counter; may be given several times.
+    /// Only the blocks of these names, such as `pulse_counter`; all without any.
     pub blocks: Vec<String>,
     /// Clocks to compare in every row, in whole units.
     pub clocks: u64,
     /// Clocks of a unit; more where it takes more to see every tap, bank and flag.
     pub unit_clocks: u64,
-    /// Let the simulation alone judge Verilog of the folder that was edited.
+    /// Whether the simulation alone judges Verilog of the folder that was edited.
     pub edited: bool,
 }
 

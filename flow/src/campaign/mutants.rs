@@ -9,10 +9,10 @@ use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::{formal, verilator};
 use serde_json::{Map, Value};
 
-/// Put mutants into the blocks, and see whether lock step or proofs notice each.
+/// The mutants that lock step or proofs are to notice.
 #[derive(Debug, Clone)]
 pub struct MutantOptions {
-    /// Only the blocks of this name; may be given several times.
+    /// Only the blocks of these names; all without any.
     pub blocks: Vec<String>,
     /// Number of mutants of each block, in whole units; a block with fewer places for them has fewer.
     pub mutants: u64,

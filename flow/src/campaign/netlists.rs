@@ -13,10 +13,10 @@ use posicast_testbench::{formal, verilator};
 use serde_json::{Map, Value};
 use std::time::Duration;
 
-/// Compare the netlist of each block with its model and its RTL.
+/// The blocks whose netlists are compared with their models and their RTL.
 #[derive(Debug, Clone)]
 pub struct NetlistOptions {
-    /// Only the blocks of this name; may be given several times.
+    /// Only the blocks of these names; all without any.
     pub blocks: Vec<String>,
     /// Number of clocks for which each netlist is simulated, such as 1000000 or 1e6.
     pub clocks: u64,

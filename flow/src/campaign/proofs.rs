@@ -10,10 +10,10 @@ use posicast_testbench::shard::MachineFileHash;
 use serde_json::{Map, Value};
 use std::time::Duration;
 
-/// Prove the properties of the blocks.
+/// The blocks whose properties are proven.
 #[derive(Debug, Clone)]
 pub struct ProofOptions {
-    /// Only the properties of the blocks of this name; may be given several times.
+    /// Only the properties of the blocks of these names; all without any.
     pub blocks: Vec<String>,
 }
 

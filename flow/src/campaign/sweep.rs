@@ -16,16 +16,16 @@ use serde_json::{Map, Number, Value};
 use std::path::{Path, PathBuf};
 use toml_edit::{Array, DocumentMut, Item};
 
-/// Design a machine at every combination of values: residual, duration, area, clock.
+/// The machine that is designed at every combination of values, and what is found of each.
 #[derive(Debug, Clone)]
 pub struct SweepOptions {
     /// Machine file with all other values.
     pub machine: PathBuf,
-    /// A place in the machine file and its values; several places are combined.
+    /// Places in the machine file with their values, which are combined.
     pub places: Vec<Place>,
-    /// Estimate the area by Yosys: some seconds per combination.
+    /// Whether the area is estimated by Yosys: some seconds per combination.
     pub area: bool,
-    /// Estimate the highest clock by place and route: minutes per combination.
+    /// Whether the highest clock is estimated by place and route: minutes per combination.
     pub clock: bool,
 }
 

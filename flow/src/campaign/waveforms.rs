@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::path::PathBuf;
 use wavecmp::damage::{self, Survival};
 
-/// Damage recordings at random, and check that comparing them survives it.
+/// The recordings that are damaged at random, and whose comparison is to survive it.
 #[derive(Debug, Clone)]
 pub struct WaveformOptions {
     /// Small recordings, VCD or FST; each case damages one of them.
