@@ -304,6 +304,78 @@ fn golden_parts_of_different_length_meet_by_their_index() {
     assert_eq!(compare_texts(&shifted, &whole).result, DiffVerdict::Different);
 }
 
+/// Returns a VCD of a vector `v` in these parts, with the digits of `values`, the highest index first, at 0 and at 5.
+fn in_parts(parts: &[(i64, i64)], values: [&str; 2]) -> String {
+    let width = |(left, right): (i64, i64)| left.abs_diff(right) + 1;
+    let variables: String = (0..)
+        .zip(parts)
+        .map(|(at, &(left, right))| format!("$var wire {} i{at} v [{left}:{right}] $end\n", width((left, right))))
+        .collect();
+    let changes = values.map(|digits| {
+        let digit = |index: i64| char::from(digits.as_bytes()[digits.len() - 1 - index as usize]);
+        let part = |(at, &(left, right)): (usize, &(i64, i64))| {
+            let all: String = match left < right {
+                true => (left..=right).map(digit).collect(),
+                false => (right..=left).rev().map(digit).collect(),
+            };
+            format!("b{all} i{at}\n")
+        };
+        parts.iter().enumerate().map(part).collect::<String>()
+    });
+    vcd(&variables, &format!("#0\n{}#5\n{}#9", changes[0], changes[1]))
+}
+
+#[test]
+fn golden_a_bit_is_reported_once_however_both_files_are_cut() {
+    let cuts: [&[(i64, i64)]; 8] = [
+        &[(3, 1), (0, 0)],
+        &[(3, 3), (2, 2), (1, 1), (0, 0)],
+        &[(0, 0), (3, 1)],
+        &[(1, 1), (3, 3), (0, 0), (2, 2)],
+        &[(3, 2), (1, 0)],
+        &[(3, 2), (1, 1), (0, 0)],
+        &[(0, 1), (2, 3)],
+        &[(2, 2), (0, 1), (3, 3)],
+    ];
+    for (one, other) in cuts.iter().flat_map(|one| cuts.iter().map(move |other| (one, other))) {
+        let right = in_parts(one, ["0110", "1010"]);
+        let result = compare_texts(&right, &in_parts(other, ["0110", "1010"]));
+        assert_eq!(result.result, DiffVerdict::Equal, "{one:?} {other:?}: {result}");
+        assert!(result.only_in_a.is_empty() && result.only_in_b.is_empty(), "{result}");
+        for wrong in ["1011", "1000", "1110", "0010"] {
+            let found = compare_texts(&right, &in_parts(other, ["0110", wrong]));
+            let times: Vec<(f64, u64)> = found
+                .differences
+                .iter()
+                .map(|found| (found.time, found.count))
+                .collect();
+            assert_eq!(times, [(5e-9, 1)], "{one:?} {other:?} {wrong}: {found}");
+        }
+    }
+    // Bits that only one file has leave the others as they are.
+    for (one, other) in [
+        (&[(0, 1), (2, 3)][..], &[(0, 1), (2, 2)][..]),
+        (&[(3, 1), (0, 0)], &[(0, 0), (1, 1)]),
+        (&[(1, 0), (3, 2)], &[(1, 0), (2, 2)]),
+    ] {
+        let right = in_parts(one, ["0110", "1010"]);
+        for wrong in ["1011", "1000"] {
+            let found = compare_texts(&right, &in_parts(other, ["0110", wrong]));
+            assert_eq!(found.differences.len(), 1, "{one:?} {other:?} {wrong}: {found}");
+        }
+    }
+    // Another name of the same bit is a signal of its own.
+    let named =
+        |text: String, of: usize| text.replacen("$upscope", &format!("$var wire 1 i{of} other $end\n$upscope"), 1);
+    let found = compare_texts(
+        &named(in_parts(cuts[0], ["0110", "1010"]), 1),
+        &named(in_parts(cuts[1], ["0110", "1011"]), 3),
+    );
+    let mut names: Vec<&str> = found.differences.iter().map(|found| found.signal.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["t.other", "t.v"], "{found}");
+}
+
 #[test]
 fn golden_a_vector_without_a_range_meets_its_bits_with_a_note() {
     let whole = vcd("$var wire 4 ! v $end", "#0\nb0001 !\n#9");

@@ -269,6 +269,7 @@ impl Partners<'_> {
         let mut alone: [Vec<(String, u32)>; 2] = Default::default();
         let mut unpaired: HashSet<usize> = HashSet::new();
         let mut by_bits: Vec<Pair> = Vec::new();
+        let mut vectors_by_bits: HashSet<[&str; 2]> = HashSet::new();
         let entries = [self.a, self.b];
         for (at, partner) in self.of_a.iter().enumerate() {
             let Some(other) = *partner else { continue };
@@ -281,11 +282,7 @@ impl Partners<'_> {
             };
             match meeting(shape_a, shape_b) {
                 Meeting::AsDeclared => {
-                    let ranges = [shape_a, shape_b].map(|shape| match shape {
-                        Shape::Whole { range, .. } => *range,
-                        Shape::Parts(_) => None,
-                    });
-                    if let [Some(a), Some(b)] = ranges
+                    if let [Some(a), Some(b)] = [shape_a, shape_b].map(Shape::range)
                         && a != b
                         && a.left.abs_diff(a.right) == b.left.abs_diff(b.right)
                     {
@@ -305,6 +302,7 @@ impl Partners<'_> {
                     assumed,
                 } => {
                     unpaired.insert(at);
+                    vectors_by_bits.insert(met.map(|entry| entry.full.as_str()));
                     if assumed {
                         matched.assumed.push(met[0].full.clone());
                     }
@@ -346,6 +344,22 @@ impl Partners<'_> {
                 }
             }
         }
+        // A part that both files have alike is compared once: with its vector, unless it is all that is compared there.
+        let slots_by_bits: HashSet<[Option<u32>; 2]> = by_bits.iter().map(|pair| [pair.a, pair.b]).collect();
+        let is_in_vector = |met: [&Entry; 2]| {
+            let [Some(of_a), Some(of_b)] = met.map(|entry| entry.part_of.as_deref()) else {
+                return false;
+            };
+            let [a, b] = met.map(|entry| entry.shape.as_ref().and_then(Shape::range));
+            a == b
+                && vectors_by_bits.contains(&[of_a, of_b])
+                && !slots_by_bits.contains(&met.map(|entry| Some(entry.slot)))
+        };
+        let in_vector = self.of_a.iter().enumerate().filter_map(|(at, other)| {
+            let met = [&self.a[at], &self.b[(*other)?]];
+            is_in_vector(met).then_some(at)
+        });
+        unpaired.extend(in_vector);
         let mut met_b: HashSet<usize> = HashSet::new();
         for (at, entry) in self.a.iter().enumerate() {
             let partner = self.of_a[at].filter(|_| !unpaired.contains(&at));
@@ -368,7 +382,6 @@ impl Partners<'_> {
                 });
             }
         }
-        // A part that has a partner of its own is compared once.
         let known: HashSet<[Option<u32>; 2]> = matched.pairs.iter().map(|pair| [pair.a, pair.b]).collect();
         by_bits.retain(|pair| !known.contains(&[pair.a, pair.b]));
         matched.pairs.append(&mut by_bits);
@@ -407,6 +420,7 @@ mod tests {
             full: (*path).to_owned(),
             slot: slot as u32,
             shape: None,
+            part_of: None,
         };
         Names {
             entries: paths.iter().enumerate().map(entry).collect(),

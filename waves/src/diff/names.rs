@@ -28,6 +28,8 @@ pub(super) struct Entry {
     pub(super) slot: u32,
     /// Its bits, if it has any.
     pub(super) shape: Option<Shape>,
+    /// Full name of the vector of which it is a part, if the file has that only in parts.
+    pub(super) part_of: Option<Box<str>>,
 }
 
 impl Entry {
@@ -158,10 +160,10 @@ impl Names {
                 }),
                 _ => None,
             };
+            let part = named.part.as_ref().filter(|(vector, _)| parts.contains_key(vector));
             // The first part of a vector has the name of the whole vector.
-            if let Some((vector, range)) = &named.part
+            if let Some((vector, range)) = part
                 && *vector == full
-                && parts.contains_key(vector)
             {
                 let range = format!("[{}:{}]", range.left, range.right);
                 path.push_str(&range);
@@ -172,6 +174,7 @@ impl Names {
                 full,
                 slot: named.slot,
                 shape,
+                part_of: part.map(|(vector, _)| vector.as_str().into()),
             });
         }
         for (vector, parts) in parts {
@@ -181,6 +184,7 @@ impl Names {
                     full: vector,
                     slot,
                     shape: Some(Shape::Parts(parts)),
+                    part_of: None,
                 });
             }
         }

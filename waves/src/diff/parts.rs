@@ -88,6 +88,16 @@ pub(super) enum Shape {
     Parts(Vec<(u32, Range)>),
 }
 
+impl Shape {
+    /// Returns the range of one signal, if the file says it.
+    pub(super) fn range(&self) -> Option<Range> {
+        match self {
+            Self::Whole { range, .. } => *range,
+            Self::Parts(_) => None,
+        }
+    }
+}
+
 /// How two vectors of one name meet.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Meeting {
