@@ -16,7 +16,6 @@ use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
 use posicast_testbench::blocks::LinkedStageBlock;
 use posicast_testbench::wording::counted;
-use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -80,7 +79,7 @@ pub(crate) fn add(
 }
 
 /// What was generated, and where.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub struct Document {
     name: String,
     folder: String,

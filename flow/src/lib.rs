@@ -47,26 +47,19 @@ pub use files::ResultForm;
 pub use observer::{Late, Observer, Silent, WorkProgress};
 
 use posicast_system::output::OutputFiles;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 /// Version of posicast, with the short hash of the commit where it was built in a checkout of its own repository.
 pub const VERSION: &str = env!("POSICAST_VERSION");
 
 /// The result of a step.
-#[derive(Serialize, JsonSchema)]
 pub struct Outcome<D> {
     /// The result for programs.
-    #[serde(flatten)]
     pub document: D,
     /// The result for people: lines, with colours as escape sequences.
-    #[serde(skip)]
     pub text: String,
     /// Whether a file that the options name is the standard output, so that the text belongs elsewhere.
-    #[serde(skip)]
     pub is_beside_a_file: bool,
     /// Why a check of the step failed; `None` where all hold.
-    #[serde(skip)]
     pub failed: Option<String>,
 }
 

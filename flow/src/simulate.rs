@@ -20,7 +20,6 @@ use posicast_machine::simulation::{AxisSimulation, simulate_axis};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::{Heading, Recorder, Signal};
 use posicast_testbench::wording::counted;
-use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::diff::SAMPLE_CLOCK;
@@ -43,7 +42,7 @@ pub struct Options {
 }
 
 /// The result of a simulation.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 #[serde(untagged)]
 pub enum Simulated {
     /// Of a command, as a waveform.
@@ -178,7 +177,7 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
 }
 
 /// `simulate --json`.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub struct Document {
     name: String,
     samples: usize,
@@ -186,7 +185,7 @@ pub struct Document {
     wave: String,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct AxisDocument {
     name: String,
     #[serde(flatten)]

@@ -3,11 +3,10 @@
 use super::findings::Findings;
 use posicast_identify::recommend::Recommendation;
 use posicast_identify::{FoundMode, Interval};
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The modes of a log, and shapers for them.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub struct Document {
     modes: Vec<ModeDocument>,
     recommended: Vec<RecommendedDocument>,
@@ -20,7 +19,7 @@ pub struct Document {
     remarks: Vec<String>,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct ModeDocument {
     frequency_hz: f64,
     damping: f64,
@@ -34,7 +33,7 @@ struct ModeDocument {
     damping_interval: [f64; 2],
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct RecommendedDocument {
     kind: &'static str,
     duration_s: f64,

@@ -5,7 +5,6 @@ use crate::observer::Observer;
 use crate::text::Table;
 use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::yosys::{Yosys, YosysError};
-use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -16,14 +15,14 @@ pub(super) struct Clocks<'a> {
 }
 
 /// The highest clock frequency of a top.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct ClockEstimate {
     pub(super) name: String,
     pub(super) mhz: f64,
 }
 
 /// `clocks` of `synth --json`.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct ClockEstimates {
     pub(super) tops: Vec<ClockEstimate>,
     method: String,

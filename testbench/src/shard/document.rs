@@ -4,7 +4,6 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use posicast_system::output;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -14,7 +13,7 @@ use super::Shard;
 pub const FORMAT: u32 = 1;
 
 /// What makes two shards parts of the same campaign.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CampaignHead {
     /// Version of the files' format, [`FORMAT`].
     pub posicast_campaign: u32,
@@ -33,7 +32,7 @@ pub struct CampaignHead {
 }
 
 /// A machine file, by its contents.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MachineFileHash {
     /// Name of the machine.
     pub name: String,
@@ -42,7 +41,7 @@ pub struct MachineFileHash {
 }
 
 /// Result of a unit.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UnitResult {
     /// Number of the unit, from 0.
     pub unit: u64,
@@ -55,7 +54,7 @@ pub struct UnitResult {
 }
 
 /// The file of a shard.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShardDocument {
     /// The campaign.
     #[serde(flatten)]

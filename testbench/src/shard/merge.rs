@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -63,7 +62,7 @@ pub enum MergeError {
 }
 
 /// A whole campaign.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Merged {
     /// The campaign.
     #[serde(flatten)]
@@ -77,7 +76,7 @@ pub struct Merged {
 }
 
 /// The units of one name.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MergedRow {
     /// The name.
     pub name: String,

@@ -17,14 +17,13 @@ mod merge;
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use self::document::{CampaignHead, DocumentError, FORMAT, MachineFileHash, ShardDocument, UnitResult};
 pub use self::merge::{MergeError, Merged, MergedRow, merge, read_folder, rows};
 
 /// Which part of a campaign: `3/40` is the third of forty.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Shard {
     number: u64,
