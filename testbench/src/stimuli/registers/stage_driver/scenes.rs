@@ -64,6 +64,11 @@ impl Driver {
             self.bring_up(axis);
         }
         SCENES[rest % SCENES.len()](self, leader);
+        // A flag of the counter, which is cleared in one clock.
+        if self.one_in(2) {
+            self.act(leader, Do::Slip);
+            self.ticks(leader, 1);
+        }
         self.tell(leader, "clear_faults", 0);
     }
 
@@ -224,9 +229,10 @@ impl Driver {
         self.ticks(axis, 4);
     }
 
-    /// Moves the command beyond a soft limit at once, and the shaped position only when the last taps come: the limit lies between the
-    /// first tap's part of the way and all of it.
+    /// Moves the command slowly beyond a soft limit, which the shaped position crosses some ticks later, when the last taps come.
     fn command_beyond_a_soft_limit(&mut self, axis: usize) {
+        // The command begins where the encoder was when the brake opened. The encoder stays there, so that it is near the limit.
+        self.act(axis, Do::Encoder(Moves::Still));
         let fraction = self.fraction(axis);
         // A table of its own: a quarter at once, the rest some ticks later.
         let late = 5 + u64::from(self.below(4));
@@ -234,24 +240,25 @@ impl Driver {
         self.tell(axis, "swap", 1);
         self.tell(axis, "settle", 12);
         self.ticks(axis, 2);
-        // The command was at the encoder's position when the brake opened: it may be many counts from it now.
-        let way = 240 << 8;
+        let way = 60 << 8;
         let back = self.is_odd(axis);
         let sign = if back { -1 } else { 1 };
-        let (limit, far) = (sign * way / 2, -sign * (1 << 29));
+        let (limit, far) = (sign * (way + way / 4), -sign * (1 << 29));
         let [plus, minus] = if back { [far, limit] } else { [limit, far] };
         self.beside(axis, "soft_limit_plus", plus);
         self.beside(axis, "soft_limit_minus", minus);
         self.tell(axis, "homed", 1);
         self.company(axis);
-        // 240 counts in four ticks: the jerks j, -j, -j, j of a tick each make 2 j.
+        // 60 counts in four ticks, as the jerks j, -j, -j, j of a tick each make 2 j. Then 4 counts in each tick: a limit that is crossed
+        // slowly shows a wrong bit of the position.
         let jerk = i64::from(sign) * (i64::from(way) << 24) / 2;
-        for jerk in [jerk, -jerk, -jerk, jerk] {
+        let slow = i64::from(sign) << 33;
+        for jerk in [jerk, -jerk, -jerk, jerk, slow, 0, -slow] {
             self.entry(axis, 1, EntryMotion::Jerk(jerk), false);
         }
         self.entry(axis, 20, EntryMotion::Jerk(0), false);
         self.set_off(axis);
-        self.ticks(axis, 14);
+        self.ticks(axis, 15);
         self.unlimited(axis);
         self.tell(axis, "swap", 0);
         self.ticks(axis, 1);
