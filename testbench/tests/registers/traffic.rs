@@ -266,8 +266,8 @@ fn prop_traffic_on_the_components_breaks_nothing() {
     }
 }
 
-/// Mode 0 is left out: a change to it while a bridge is on is a finding in docs/verification.md, and the mode of a
-/// stage is fixed. The proofs of `pwm` cover the modes of the PWM's component.
+/// Mode 0 is left out: its `b_high` is a direction and not a side of a leg, and the mode of a stage is fixed. The proofs
+/// of `pwm` cover the modes of the PWM's component.
 #[test]
 fn prop_traffic_on_the_pwm_leaves_the_pins_safe() {
     let config = PwmConfig::new(ActiveLow::default(), 4, 3).unwrap();
