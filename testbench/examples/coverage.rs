@@ -4,7 +4,7 @@
 //! ```text
 //! --block NAME    only these blocks; may be given several times
 //! --clocks N      per block (1,000,000): with fewer, more is not reached, and explained nowhere
-//! --write         renews the table in docs/verification.md, or the rows of the block
+//! --write         renews the table in testbench/RESULTS.md, or the rows of the block
 //! ```
 //!
 //! Prints the table, and errors on standard error. Exit status: 0 if every hole is explained and no explanation is

@@ -4,12 +4,12 @@
 //! ```text
 //! --block NAME    only this block                    --mutants N   per block (60)
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
-//! --write         renews the table in docs/verification.md, or the rows of the block
+//! --write         renews the table in testbench/RESULTS.md, or the rows of the block
 //! --wires         each constant and wire of the stage's description instead; --mutants takes so many of them
 //! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
 //! ```
 //!
-//! Prints the table, and a line per block while it works. Exit status: 0 if docs/verification.md lists each
+//! Prints the table, and a line per block while it works. Exit status: 0 if testbench/RESULTS.md lists each
 //! mutant that stays unknown, 1 if one is not listed, 2 if it cannot run, 3 if a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
@@ -178,7 +178,7 @@ fn mutate() -> Result<bool, Error> {
     let unlisted = unlisted(&MARKS.read()?, &rows);
     for mutant in &unlisted {
         eprintln!(
-            "unknown, and not listed in docs/verification.md: {}",
+            "unknown, and not listed in testbench/RESULTS.md: {}",
             mutant.trim_start_matches("- ")
         );
     }
@@ -213,7 +213,7 @@ fn mutate_wires(most: usize, options: &MutationOptions, write: bool) -> Result<b
         .filter(|mutant| !page.contains(mutant))
         .collect();
     for mutant in &unlisted {
-        eprintln!("not found, and not listed in docs/verification.md: {mutant}");
+        eprintln!("not found, and not listed in testbench/RESULTS.md: {mutant}");
     }
     Ok(unlisted.is_empty())
 }

@@ -226,7 +226,7 @@ pub fn crossings(modules: &[Module], folder: &Path) -> Result<Vec<Crossing>, Err
     Ok(pins.filter_map(bit).collect())
 }
 
-/// The table of `docs/verification.md`: pins of axes that have the same are one row.
+/// The table of `testbench/RESULTS.md`: pins of axes that have the same are one row.
 pub fn crossings_table(crossings: &[Crossing]) -> String {
     let mut text =
         "| pin | synchroniser | reads the second flip-flop | other readers |\n|---|---|---|---|\n".to_owned();

@@ -1,4 +1,4 @@
-//! The tables of `docs/verification.md`: each is between two marks, and the program that measures updates it.
+//! The tables of `testbench/RESULTS.md`: each is between two marks, and the program that measures updates it.
 
 use crate::Error;
 
@@ -56,7 +56,7 @@ impl Marks {
     }
 }
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/verification.md");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/RESULTS.md");
 
 fn failed(doing: &'static str) -> impl Fn(std::io::Error) -> Error {
     move |source| Error::File {

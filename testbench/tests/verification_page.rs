@@ -1,18 +1,20 @@
-//! The tables of `docs/verification.md` have a row for every block of the registry: a block that no program was run for is missing there.
+//! The tables of `testbench/RESULTS.md` have a row for every block of the registry: a block that no program was run for is missing there.
+//! `docs/verification.md` names every proof.
 
 use posicast_testbench::blocks::{Block, library, proofs};
 use posicast_testbench::mutation::all;
 
 const PAGE: &str = include_str!("../../docs/verification.md");
+const RESULTS: &str = include_str!("../RESULTS.md");
 
-/// The part of the page below this heading, up to the next of the same level.
-fn section(heading: &str) -> &'static str {
-    let below = PAGE.split_once(&format!("\n## {heading}\n")).unwrap().1;
+/// The part of a page below this heading, up to the next of the same level.
+fn section(page: &'static str, heading: &str) -> &'static str {
+    let below = page.split_once(&format!("\n## {heading}\n")).unwrap().1;
     below.split("\n## ").next().unwrap()
 }
 
 fn missing(heading: &str, rows: impl IntoIterator<Item = String>) -> Vec<String> {
-    let table = section(heading);
+    let table = section(RESULTS, heading);
     rows.into_iter().filter(|row| !table.contains(row)).collect()
 }
 
@@ -37,7 +39,7 @@ fn every_block_but_the_stage_has_its_row_of_netlists() {
 /// A proof has a row with its name in it, or a paragraph of its own.
 #[test]
 fn every_proof_is_on_the_page() {
-    let table = section("Proofs");
+    let table = section(PAGE, "Proofs");
     let tasks = proofs().unwrap();
     let is_there = |name: &str| table.contains(&format!("\n### {name}\n")) || table.contains(&format!("`{name}`"));
     let missing: Vec<&str> = tasks

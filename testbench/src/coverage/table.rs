@@ -1,4 +1,4 @@
-//! The coverage table of `docs/verification.md`, between its marks.
+//! The coverage table of `testbench/RESULTS.md`, between its marks.
 
 use super::explanation::Explanation;
 use super::{Measured, Share};

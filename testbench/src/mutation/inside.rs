@@ -175,7 +175,7 @@ fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Op
     Ok(first.map(|first| found(Some(first.time))))
 }
 
-/// The mutants and what found them, as the table of `docs/verification.md`.
+/// The mutants and what found them, as the table of `testbench/RESULTS.md`.
 pub fn inside_table(fates: &[(NamedMutant<'_>, Option<Found>)]) -> String {
     let mut text = "| mutant | module | found by | first wrong clock |\n|---|---|---|---|\n".to_owned();
     for (mutant, found) in fates {

@@ -64,7 +64,7 @@ pub struct MutationOptions {
 }
 
 impl Default for MutationOptions {
-    /// The settings for `docs/verification.md`, which are those of the blocks' lock-step tests.
+    /// The settings for `testbench/RESULTS.md`, which are those of the blocks' lock-step tests.
     fn default() -> Self {
         Self {
             mutants: 60,

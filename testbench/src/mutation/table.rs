@@ -1,4 +1,4 @@
-//! The results of the mutants as the table of `docs/verification.md`.
+//! The results of the mutants as the table of `testbench/RESULTS.md`.
 //!
 //! The page has a row per block, so that a run of one block updates its own and leaves the others; sums and the list
 //! of unknown mutants follow from the rows.
