@@ -87,7 +87,7 @@ fn check() -> Result<bool, Failure> {
         is_good &= row(block.as_ref(), clocks, &yosys)?;
     }
     if proofs.is_empty() {
-        println!("\nNo properties of `{name}` are stated in testbench/formal: nothing is proven.");
+        println!("\nNo properties of `{name}` are stated in testbench/src: nothing is proven.");
         return Ok(is_good);
     }
     println!("\n| properties | size | result | seconds |\n|---|---|---|---|");

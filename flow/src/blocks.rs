@@ -11,7 +11,9 @@ use posicast_blocks::shaper::{MOTION_WORD_BITS, ShaperConfig, ShaperMotion};
 use posicast_hdl::machine::AxisShaper;
 use posicast_machine::hardware;
 use posicast_machine::machine_file::{AxisSection, Machine};
-use posicast_testbench::blocks::{BenchSizes, Block, ComponentBlock, MachineShapers, benches};
+use posicast_testbench::blocks::{BenchSizes, Block, benches};
+use posicast_testbench::component::ComponentBlock;
+use posicast_testbench::shaper::MachineShapers;
 use std::path::Path;
 
 /// Dead time and minimum pulse of the PWM that is compared where no axis has one.

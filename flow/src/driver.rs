@@ -11,7 +11,9 @@ use posicast_synth::core_file::{self, Core};
 use posicast_synth::driver::{self, AxisData, AxisFamily, DriverFile, StageDriver};
 use posicast_synth::package::Package;
 use posicast_synth::register_documents;
-use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
+use posicast_testbench::blocks::Block;
+use posicast_testbench::component::ComponentBlock;
+use posicast_testbench::linked_stage::LinkedStageBlock;
 
 /// Adds the whole driver where there is a stage, a header and documents for every component's registers, and the
 /// core.

@@ -14,7 +14,7 @@ use crate::{sopc, verilog};
 use posicast_machine::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
-use posicast_testbench::blocks::LinkedStageBlock;
+use posicast_testbench::linked_stage::LinkedStageBlock;
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};

@@ -12,7 +12,9 @@ use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_machine::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
 use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
-use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
+use posicast_testbench::blocks::Block;
+use posicast_testbench::component::ComponentBlock;
+use posicast_testbench::linked_stage::LinkedStageBlock;
 use std::path::Path;
 
 /// Suffix of a component's top module.

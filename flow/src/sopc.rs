@@ -10,7 +10,9 @@ use posicast_hdl::linked_stage::emit_bridge;
 use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, BridgeUnit, Design, Unit};
-use posicast_testbench::blocks::{Block, ComponentBlock, LinkedStageBlock};
+use posicast_testbench::blocks::Block;
+use posicast_testbench::component::ComponentBlock;
+use posicast_testbench::linked_stage::LinkedStageBlock;
 use std::path::Path;
 
 /// Key of the board.

@@ -17,8 +17,10 @@ use crate::replay::Recording;
 use crate::{blocks, command, machine, moves, replay};
 use posicast_machine::spelling::did_you_mean;
 use posicast_synth::package;
-use posicast_testbench::blocks::{Block, DenseLinkBlock, ShortTicksBlock, Sources, StageBlock};
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::linked_stage::DenseLinkBlock;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::stage::{ShortTicksBlock, StageBlock};
 use std::path::{Path, PathBuf};
 
 /// What to compare.

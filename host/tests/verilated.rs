@@ -11,7 +11,8 @@ use posicast_machine::hardware::Hardware;
 use posicast_machine::machine_file;
 use posicast_machine::plan::design_machine;
 use posicast_taps::TapTable;
-use posicast_testbench::blocks::{LinkedStageBlock, Sources};
+use posicast_testbench::blocks::Sources;
+use posicast_testbench::linked_stage::LinkedStageBlock;
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::verilator::Verilated;
 

@@ -9,8 +9,9 @@ use std::process::ExitCode;
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
 use posicast_testbench::Error;
-use posicast_testbench::blocks::{Block, StageBlock};
+use posicast_testbench::blocks::Block;
 use posicast_testbench::crossings::{CROSSINGS_MARKS, crossings, crossings_table};
+use posicast_testbench::stage::StageBlock;
 
 fn main() -> ExitCode {
     match list() {

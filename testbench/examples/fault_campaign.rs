@@ -12,7 +12,8 @@ use std::process::ExitCode;
 use std::{env, io, thread};
 
 use posicast_testbench::Error;
-use posicast_testbench::blocks::{ComponentBlock, Sources};
+use posicast_testbench::blocks::Sources;
+use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::fault_campaign::{Bed, FaultReport, run, run_with_rtl};
 use posicast_testbench::lockstep::Device;
 

@@ -1,4 +1,4 @@
-//! Proves the properties in `testbench/formal` of the blocks:
+//! Proves the properties (`testbench/src/*/*.sv`) of the blocks:
 //! `cargo run -p posicast-testbench --example formal [-- BLOCK…]`.
 //!
 //! Prints a row per proof. Exit status: 0 if all properties are proven and all covers reached, 1 otherwise, 2 if it

@@ -13,7 +13,8 @@ use std::collections::VecDeque;
 
 use posicast_blocks::shaper::ShaperConfig;
 
-use crate::stimuli::{Action, Directed, Fill, Layout, MotionStimuli, Random, Stimuli, cases, corners, motion_cases};
+use crate::shaper::{Action, Directed, Fill, Layout, MotionStimuli, Random, cases, corners, motion_cases};
+use crate::stimuli::Stimuli;
 
 /// Idle clocks between the move's samples.
 const IDLE_CLOCKS: u64 = 5;

@@ -20,7 +20,8 @@ use posicast_blocks::{Direction, Port};
 
 use crate::Error;
 use crate::lockstep::Device;
-use crate::stimuli::{AxisLayout, Layout, MotionStimuli, Stimuli};
+use crate::shaper::{AxisLayout, Layout, MotionStimuli};
+use crate::stimuli::Stimuli;
 use crate::wave::{Heading, Recorder, Signal};
 
 /// Number of idle clocks after a pass, so that each sample's output is visible.

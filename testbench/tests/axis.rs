@@ -5,9 +5,10 @@ use crate::support;
 
 use posicast_blocks::axis::Axis;
 use posicast_blocks::{ClockedBlock, axis};
-use posicast_testbench::blocks::{AxisBlock, Block, Sources};
+use posicast_testbench::axis::AxisBlock;
+use posicast_testbench::axis::{AxisRandom, AxisSafety};
+use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::{self, Instance, LockstepOptions};
-use posicast_testbench::stimuli::{AxisRandom, AxisSafety};
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
 
 /// Changes that make the Verilog unsafe, each with the rule that it violates.

@@ -3,7 +3,7 @@
 use crate::support;
 
 use posicast_blocks::cascade::CascadeConfig;
-use posicast_testbench::blocks::CascadeBlock;
+use posicast_testbench::cascade::CascadeBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn cascade(word_bits: u32, delays: Vec<u32>) -> CascadeBlock {

@@ -3,9 +3,10 @@
 use posicast_hdl::emit::Module;
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
-use posicast_testbench::blocks::{Block, StageBlock};
+use posicast_testbench::blocks::Block;
 use posicast_testbench::crossings::{Crossing, crossings};
 use posicast_testbench::mutation::NamedMutant;
+use posicast_testbench::stage::StageBlock;
 
 /// The stage of the example with one axis, which Yosys reads in half the time.
 fn modules() -> Vec<Module> {

@@ -4,9 +4,11 @@
 
 use crate::support::broken;
 use posicast_blocks::divider::DividerConfig;
-use posicast_testbench::blocks::{Block, DividerBlock, PartBlock, SmallPart, library};
+use posicast_testbench::blocks::{Block, library};
 use posicast_testbench::crosssim::{self, CrosssimOutcome};
+use posicast_testbench::divider::DividerBlock;
 use posicast_testbench::lockstep::report;
+use posicast_testbench::parts::{PartBlock, SmallPart};
 use wavecmp::diff::DiffVerdict;
 
 const CLOCKS: u64 = 3000;

@@ -3,7 +3,7 @@
 use crate::support;
 
 use posicast_blocks::divider::DividerConfig;
-use posicast_testbench::blocks::DividerBlock;
+use posicast_testbench::divider::DividerBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn divider(tick_clocks: u64) -> DividerBlock {

@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::DriveCommandBlock;
+use posicast_testbench::drive_command::DriveCommandBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn block() -> DriveCommandBlock {

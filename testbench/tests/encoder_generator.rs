@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::EncoderGeneratorBlock;
+use posicast_testbench::encoder_generator::EncoderGeneratorBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn encoder_generator() -> EncoderGeneratorBlock {

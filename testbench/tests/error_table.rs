@@ -3,7 +3,9 @@
 use crate::support;
 
 use posicast_blocks::error_table::{ErrorTable, FULL_WEIGHT, Inputs};
-use posicast_testbench::blocks::{self, Block, ErrorTableBlock, Sources};
+use posicast_testbench::blocks;
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::error_table::ErrorTableBlock;
 use posicast_testbench::lockstep::TwoValued;
 use support::{caught, icarus_agrees, million_random_clocks};
 

@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::ExcitationBlock;
+use posicast_testbench::excitation::ExcitationBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn excitation() -> ExcitationBlock {

@@ -2,9 +2,10 @@
 
 use posicast_blocks::Direction;
 use posicast_hdl::emit::Module;
-use posicast_testbench::blocks::{Block, Sources, StageBlock, library_sizes};
+use posicast_testbench::blocks::{Block, Sources, library_sizes};
 use posicast_testbench::crosssim::without_initial_values;
 use posicast_testbench::lockstep::Device;
+use posicast_testbench::stage::StageBlock;
 
 /// Clocks before the reset, in it, and after it.
 const CLOCKS: [u64; 3] = [200, 3, 400];

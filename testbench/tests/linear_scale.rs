@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::LinearScaleBlock;
+use posicast_testbench::linear_scale::LinearScaleBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn block() -> LinearScaleBlock {

@@ -9,7 +9,9 @@ use posicast_blocks::{ClockedBlock, Direction, Port};
 use posicast_machine::hardware;
 use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::plan::design_machine;
-use posicast_testbench::blocks::{self, Block, DenseLinkBlock, LinkedStageBlock, Sources};
+use posicast_testbench::blocks;
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::linked_stage::{DenseLinkBlock, LinkedStageBlock};
 use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::mutation::NamedMutant;
 

@@ -2,8 +2,9 @@
 
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
-use posicast_testbench::blocks::{Block, PartBlock, SmallPart};
+use posicast_testbench::blocks::Block;
 use posicast_testbench::mutation::{Fate, INSIDE, Mutant, MutationOptions, Subject, hunt, named, run, run_with};
+use posicast_testbench::parts::{PartBlock, SmallPart};
 
 fn subject(block: &str) -> Subject {
     named(block).unwrap().swap_remove(0)

@@ -5,7 +5,7 @@ use crate::support;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::sliding_mode::Settings;
-use posicast_testbench::blocks::{PartBlock, SmallPart};
+use posicast_testbench::parts::{PartBlock, SmallPart};
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn bench(part: SmallPart) -> PartBlock {

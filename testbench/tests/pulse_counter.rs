@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::PulseCounterBlock;
+use posicast_testbench::pulse_counter::PulseCounterBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn pulse_counter() -> PulseCounterBlock {

@@ -8,7 +8,7 @@ use posicast_testbench::blocks::Sources;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Device, Instance, LockstepOptions};
-use posicast_testbench::stimuli::{GateSafety, PwmCoverage, PwmRandom};
+use posicast_testbench::pwm::{GateSafety, PwmCoverage, PwmRandom};
 use posicast_testbench::verilator::{Verilated, VerilogSource, lint};
 
 struct Bench {

@@ -9,7 +9,7 @@ use posicast_blocks::pwm::{
 };
 use posicast_hdl::pwm::{emit, name};
 use posicast_testbench::blocks::Sources;
-use posicast_testbench::stimuli::GateSafety;
+use posicast_testbench::pwm::GateSafety;
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::SegmentsBlock;
+use posicast_testbench::segments::SegmentsBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn segments() -> SegmentsBlock {

@@ -5,13 +5,15 @@ use crate::support;
 use posicast_blocks::shaper::{Shaper, ShaperConfig, ShaperMotion as ForMotion, pass_clocks};
 use posicast_hdl::machine::AxisShaper;
 use posicast_taps::{Tap, TapTable};
-use posicast_testbench::blocks::{Block, MachineShapers, ShaperBlock, Sources};
+use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Device, LockstepOptions, TwoValued};
-use posicast_testbench::stimuli::{
-    Action, Coverage, Directed, Layout, MotionStimuli, Random, Stimuli, cases, corners, motion_cases,
+use posicast_testbench::shaper::{
+    Action, Coverage, Directed, Layout, MotionStimuli, Random, cases, corners, motion_cases,
 };
+use posicast_testbench::shaper::{MachineShapers, ShaperBlock};
+use posicast_testbench::stimuli::Stimuli;
 use posicast_testbench::verilator::Verilated;
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
 

@@ -3,7 +3,9 @@
 use crate::support;
 
 use posicast_blocks::sliding_mode::{CONTROL_CLOCKS, Inputs};
-use posicast_testbench::blocks::{self, SlidingModeBlock, Sources};
+use posicast_testbench::blocks;
+use posicast_testbench::blocks::Sources;
+use posicast_testbench::sliding_mode::SlidingModeBlock;
 use support::{assert_match, icarus_agrees, million_random_clocks};
 
 fn sliding_mode() -> SlidingModeBlock {

@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::SpiBridgeBlock;
+use posicast_testbench::spi_bridge::SpiBridgeBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn bridge() -> SpiBridgeBlock {

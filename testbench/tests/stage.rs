@@ -17,9 +17,12 @@ use posicast_machine::motion::{TickLimits, plan_move};
 use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_taps::{Tap, TapTable};
-use posicast_testbench::blocks::{self, Block, ComponentBlock, ShortTicksBlock, Sources, StageBlock};
+use posicast_testbench::blocks;
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::lockstep::{Device, TwoValued};
 use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
+use posicast_testbench::stage::{ShortTicksBlock, StageBlock};
 use posicast_testbench::stage_bench::{StageBench, state};
 use support::{assert_match, caught, icarus_agrees, million_random_clocks};
 
@@ -321,7 +324,7 @@ fn the_clocks_of_a_verdict_drive_every_flag() {
 /// A row that is not exercised enough names the missing flags.
 #[test]
 fn a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
-    let block = posicast_testbench::blocks::SegmentsBlock::new("few", "alone");
+    let block = posicast_testbench::segments::SegmentsBlock::new("few", "alone");
     let mut twin = TwoValued(block.model(1));
     let report = blocks::judge(&block, &mut twin, 100..=100, 1, &mut |_| {}).unwrap();
     assert_eq!(

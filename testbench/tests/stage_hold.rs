@@ -9,7 +9,8 @@ use posicast_machine::machine_file;
 use posicast_machine::motion::{TickLimits, plan_move};
 use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
-use posicast_testbench::blocks::{ComponentBlock, Sources};
+use posicast_testbench::blocks::Sources;
+use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::stage_bench::{StageBench, state};
 
 /// Corner of the path in counts: along X, then X and Y together.

@@ -3,7 +3,7 @@
 use crate::support;
 
 use posicast_blocks::trace::TraceConfig;
-use posicast_testbench::blocks::TraceBlock;
+use posicast_testbench::trace::TraceBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn trace(samples: u64) -> TraceBlock {

@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_testbench::blocks::UartBridgeBlock;
+use posicast_testbench::uart_bridge::UartBridgeBlock;
 use support::{caught, icarus_agrees, million_random_clocks};
 
 fn bridge() -> UartBridgeBlock {

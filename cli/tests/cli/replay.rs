@@ -5,7 +5,8 @@
 use crate::cli::support::{example, json, posicast};
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::{Direction, Port};
-use posicast_testbench::blocks::{Block, DividerBlock};
+use posicast_testbench::blocks::Block;
+use posicast_testbench::divider::DividerBlock;
 use posicast_testbench::lockstep::{self, Instance, LockstepOptions, TwoValued};
 use posicast_testbench::stimuli::Stimuli;
 use posicast_testbench::wave::{Recorder, Signal};

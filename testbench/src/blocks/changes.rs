@@ -6,14 +6,14 @@ use super::Bins;
 use crate::lockstep::Clock;
 
 /// Number of changes of each output.
-pub(super) struct Changes {
+pub(crate) struct Changes {
     names: Vec<String>,
     before: Vec<u64>,
     counts: Vec<u64>,
 }
 
 impl Changes {
-    pub(super) fn new(ports: &[Port]) -> Self {
+    pub(crate) fn new(ports: &[Port]) -> Self {
         let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
         let names: Vec<String> = outputs.map(|port| port.name.clone()).collect();
         Self {

@@ -5,13 +5,24 @@
 
 use posicast_blocks::component::{Component, ComponentPart as Part};
 
-use super::part::SmallPart as Small;
-use super::{
-    AxisBlock, Block, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ErrorTableBlock, ExcitationBlock,
-    LinearScaleBlock, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
-    SlidingModeBlock, TraceBlock,
-};
+use super::Block;
 use crate::Error;
+use crate::axis::AxisBlock;
+use crate::divider::DividerBlock;
+use crate::drive_command::DriveCommandBlock;
+use crate::encoder_generator::EncoderGeneratorBlock;
+use crate::error_table::ErrorTableBlock;
+use crate::excitation::ExcitationBlock;
+use crate::linear_scale::LinearScaleBlock;
+use crate::parts::PartBlock;
+use crate::parts::SmallPart as Small;
+use crate::pulse_counter::PulseCounterBlock;
+use crate::pwm::PwmBlock;
+use crate::registers::RegistersBlock;
+use crate::segments::SegmentsBlock;
+use crate::shaper::ShaperBlock;
+use crate::sliding_mode::SlidingModeBlock;
+use crate::trace::TraceBlock;
 
 /// Names of blocks: the prefix of the modules whose contents depend on the machine, and the instance in a report.
 struct Place<'a> {
@@ -25,7 +36,7 @@ struct Place<'a> {
 ///
 /// # Errors
 /// As [`ShaperBlock::new`].
-pub(super) fn of_component(component: &Component, prefix: &str, axis: &str) -> Result<Vec<Box<dyn Block>>, Error> {
+pub(crate) fn of_component(component: &Component, prefix: &str, axis: &str) -> Result<Vec<Box<dyn Block>>, Error> {
     let instance = format!("{axis}, in the {} component", component.name());
     let place = Place {
         prefix,
@@ -50,7 +61,7 @@ pub(super) fn of_component(component: &Component, prefix: &str, axis: &str) -> R
 ///
 /// # Errors
 /// As [`ShaperBlock::new`].
-pub(super) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dyn Block>>, Error> {
+pub(crate) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dyn Block>>, Error> {
     let shared = Place {
         prefix,
         instance: "in the stage",

@@ -22,7 +22,7 @@ struct Seen {
 
 /// Levels that the outputs of a block have had so far.
 #[derive(Debug, Clone)]
-pub(super) struct Levels {
+pub(crate) struct Levels {
     instance: String,
     outputs: Vec<Seen>,
 }
@@ -30,7 +30,7 @@ pub(super) struct Levels {
 impl Levels {
     /// Creates an empty record for the row `instance` of a block with these ports; `fixed` lists outputs that cannot
     /// change.
-    pub(super) fn new(instance: &str, ports: &[Port], fixed: &[(String, &'static str)]) -> Self {
+    pub(crate) fn new(instance: &str, ports: &[Port], fixed: &[(String, &'static str)]) -> Self {
         let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
         let seen = |port: &Port| Seen {
             name: port.name.clone(),

@@ -19,10 +19,13 @@ use posicast_blocks::stage::{StageAxis, StageConfig, StageErrorTable, StageScale
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::machine::AxisShaper;
 
-use super::shaper::{MOTION, tap_table};
-use super::{BenchSizes, Block, ComponentBlock, ErrorTableBlock, MachineShapers, benches};
+use super::{BenchSizes, Block, benches};
 use crate::Error;
+use crate::component::ComponentBlock;
+use crate::error_table::ErrorTableBlock;
 use crate::formal::refused;
+use crate::shaper::MachineShapers;
+use crate::shaper::{MOTION, tap_table};
 
 /// Clocks per tick of the blocks that have ticks.
 const TICK_CLOCKS: u64 = 5000;
@@ -109,7 +112,7 @@ fn shaper(delays: [u32; 4]) -> Result<ShaperConfig, Error> {
 }
 
 /// Two axes: one with trace memory and test signals, one that is controlled by a linear scale.
-pub(super) fn stage() -> Result<StageConfig, Error> {
+pub(crate) fn stage() -> Result<StageConfig, Error> {
     let axis = |name: &str| -> Result<StageAxis, Error> {
         Ok(StageAxis {
             name: name.to_owned(),

@@ -17,65 +17,20 @@
 //!
 //! A new block adds a file here that implements [`Block`] and has a row in the registry, from which all rungs take it.
 
-mod axis;
-mod cascade;
-mod changes;
-mod component;
-mod divider;
-mod drive_command;
-mod encoder_generator;
-mod error_table;
-mod excitation;
-mod inside;
-mod levels;
-mod library;
-mod linear_scale;
-mod linked_stage;
-mod part;
-mod proofs;
-mod pulse_counter;
-mod pwm;
-mod reached;
-mod registers;
-mod registry;
-mod segments;
-mod shaper;
-mod short_ticks;
-mod sliding_mode;
+pub(crate) mod changes;
+pub(crate) mod inside;
+pub(crate) mod levels;
+pub(crate) mod library;
+pub(crate) mod reached;
+pub(crate) mod registry;
 mod sources;
-mod spi_bridge;
-mod stage;
-mod trace;
-mod uart_bridge;
 
-pub use self::axis::AxisBlock;
-pub use self::cascade::CascadeBlock;
-pub use self::component::ComponentBlock;
-pub use self::divider::DividerBlock;
-pub use self::drive_command::DriveCommandBlock;
-pub use self::encoder_generator::EncoderGeneratorBlock;
-pub use self::error_table::ErrorTableBlock;
-pub use self::excitation::ExcitationBlock;
 pub use self::library::{library, library_named, library_sizes};
-pub use self::linear_scale::LinearScaleBlock;
-pub use self::linked_stage::{DenseLinkBlock, LinkedStageBlock};
-pub use self::part::{PartBlock, SmallPart};
-pub use self::pulse_counter::PulseCounterBlock;
-pub use self::pwm::PwmBlock;
 pub use self::reached::{Reach, ReachedCount};
-pub use self::registers::RegistersBlock;
 pub use self::registry::{
     AreaBudget, AreaRow, BenchSizes, SmallBench, areas, benches, proofs, proofs_named, small_benches,
 };
-pub use self::segments::SegmentsBlock;
-pub use self::shaper::{MachineShapers, ShaperBlock};
-pub use self::short_ticks::ShortTicksBlock;
-pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
-pub use self::spi_bridge::SpiBridgeBlock;
-pub use self::stage::StageBlock;
-pub use self::trace::TraceBlock;
-pub use self::uart_bridge::UartBridgeBlock;
 
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::SimulationError;
@@ -358,7 +313,7 @@ pub fn row_seed(block: &dyn Block, seed: u64) -> u64 {
 }
 
 /// Error for a block that is written from a register map and therefore not in RustHDL's simulator.
-fn not_in_rusthdl(block: &'static str) -> SimulationError {
+pub(crate) fn not_in_rusthdl(block: &'static str) -> SimulationError {
     SimulationError::Refused {
         block,
         reason: "its registers are written from their map, not in RustHDL".to_owned(),
@@ -366,7 +321,7 @@ fn not_in_rusthdl(block: &'static str) -> SimulationError {
 }
 
 /// Converts names and counts to the form of a report.
-fn named<'a>(counts: impl IntoIterator<Item = (&'a str, u64)>) -> Vec<(String, u64)> {
+pub(crate) fn named<'a>(counts: impl IntoIterator<Item = (&'a str, u64)>) -> Vec<(String, u64)> {
     counts
         .into_iter()
         .map(|(name, count)| (name.to_owned(), count))

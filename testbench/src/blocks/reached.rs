@@ -21,7 +21,7 @@ use crate::lockstep::Clock;
 
 /// Per cent of the registers that can be written, and of those that can be read, that a row of a component or a stage must
 /// have seen with a word other than 0.
-pub(super) const REGISTERS_PER_CENT: u64 = 50;
+pub(crate) const REGISTERS_PER_CENT: u64 = 50;
 
 /// RUN, of an axis's `state`.
 const RUN: u64 = 3;
@@ -68,7 +68,7 @@ fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
 
 /// What a block shows at its ports. Several blocks side by side have their names before those of the ports.
 #[derive(Debug, Clone)]
-pub(super) struct AtThePorts {
+pub(crate) struct AtThePorts {
     instance: String,
     valid: Option<usize>,
     /// `tap_write` and `tap_coefficient`.
@@ -95,7 +95,7 @@ struct Bus {
 
 impl AtThePorts {
     /// Counts of the row `instance`, whose ports begin with `prefix`; a row of a component has a `map`.
-    pub(super) fn new(instance: &str, prefix: &str, ports: &[Port], map: Option<&RegisterMap>) -> Self {
+    pub(crate) fn new(instance: &str, prefix: &str, ports: &[Port], map: Option<&RegisterMap>) -> Self {
         let input = |name: &str| place(ports, Direction::Input, &format!("{prefix}{name}"));
         let output = |name: &str| place(ports, Direction::Output, &format!("{prefix}{name}"));
         let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
@@ -226,7 +226,7 @@ struct InsideAxis {
 
 /// What a stage does, whatever its bus is: at the nets inside its model.
 #[derive(Debug, Clone)]
-pub(super) struct InsideAStage {
+pub(crate) struct InsideAStage {
     instance: String,
     axes: Vec<InsideAxis>,
     /// `avs_address`, `avs_read`, `avs_write`, `avs_writedata`, `avs_readdata`, once found.
@@ -249,7 +249,7 @@ const AXIS: [&str; 5] = [
 
 impl InsideAStage {
     /// Counts of the row `instance`, which needs so many moves of each axis, taps of each axis, and per cent of the registers.
-    pub(super) fn new(instance: &str, axes: &[String], map: &RegisterMap, [moves, taps, per_cent]: [u64; 3]) -> Self {
+    pub(crate) fn new(instance: &str, axes: &[String], map: &RegisterMap, [moves, taps, per_cent]: [u64; 3]) -> Self {
         let axis = |name: &String| InsideAxis {
             name: name.clone(),
             nets: Vec::new(),

@@ -16,13 +16,14 @@ use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::Module;
 
-use super::{
-    Block, ComponentBlock, axis, cascade, component, divider, drive_command, encoder_generator, error_table,
-    excitation, linear_scale, part, pulse_counter, pwm, registers, segments, shaper, sliding_mode, spi_bridge, stage,
-    trace, uart_bridge,
-};
+use super::Block;
 use crate::Error;
+use crate::component::ComponentBlock;
 use crate::formal::Task;
+use crate::{
+    axis, cascade, component, divider, drive_command, encoder_generator, error_table, excitation, linear_scale, parts,
+    pulse_counter, pwm, registers, segments, shaper, sliding_mode, spi_bridge, stage, trace, uart_bridge,
+};
 
 /// Every kind of block, in the order of `posicast verify`.
 const REGISTRY: [RegistryRow; 25] = [
@@ -42,38 +43,38 @@ const REGISTRY: [RegistryRow; 25] = [
     excitation::ROW,
     uart_bridge::ROW,
     spi_bridge::ROW,
-    part::TIME_BASE,
-    part::SCHEDULE,
-    part::DIVIDER_SHARE,
-    part::GROUP,
-    part::SAMPLE_SELECT,
-    part::SETTING_BANKS,
+    parts::TIME_BASE,
+    parts::SCHEDULE,
+    parts::DIVIDER_SHARE,
+    parts::GROUP,
+    parts::SAMPLE_SELECT,
+    parts::SETTING_BANKS,
     registers::ROW,
     component::ROW,
     stage::ROW,
 ];
 
 /// Benches of blocks.
-pub(super) type Benches = Vec<Box<dyn Block>>;
+pub(crate) type Benches = Vec<Box<dyn Block>>;
 
 /// A kind of block.
-pub(super) struct RegistryRow {
+pub(crate) struct RegistryRow {
     /// The name that the block has everywhere. Each component and each stage has its own name.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// Makes its benches for a machine: one, or one for each such block of the machine.
-    pub(super) benches: fn(&BenchSizes) -> Result<Benches, Error>,
+    pub(crate) benches: fn(&BenchSizes) -> Result<Benches, Error>,
     /// Makes it at a small size, with a name for the size: it has every path, and few mutants that repeat each other in
     /// the bits of wide words.
-    pub(super) small: fn() -> Result<Vec<SmallBench>, Error>,
+    pub(crate) small: fn() -> Result<Vec<SmallBench>, Error>,
     /// Makes its proofs.
-    pub(super) proofs: fn() -> Result<Vec<Task>, Error>,
+    pub(crate) proofs: fn() -> Result<Vec<Task>, Error>,
     /// Makes the sizes whose area is checked.
-    pub(super) areas: fn() -> Result<Vec<AreaRow>, Error>,
+    pub(crate) areas: fn() -> Result<Vec<AreaRow>, Error>,
 }
 
 impl RegistryRow {
     /// An empty row, for `..RegistryRow::EMPTY`.
-    pub(super) const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         name: "",
         benches: |_| Ok(Vec::new()),
         small: || Ok(Vec::new()),
@@ -141,7 +142,7 @@ pub struct AreaBudget {
 
 impl AreaRow {
     /// Creates the row; the registry adds the block's name.
-    pub(super) fn new(size: &'static str, modules: Vec<Module>) -> Self {
+    pub(crate) fn new(size: &'static str, modules: Vec<Module>) -> Self {
         Self {
             block: "",
             size,
@@ -151,23 +152,23 @@ impl AreaRow {
         }
     }
 
-    pub(super) fn budget(self, luts: u64, flip_flops: u64) -> Self {
+    pub(crate) fn budget(self, luts: u64, flip_flops: u64) -> Self {
         let budget = Some(AreaBudget { luts, flip_flops });
         Self { budget, ..self }
     }
 
-    pub(super) fn note(self, note: &'static str) -> Self {
+    pub(crate) fn note(self, note: &'static str) -> Self {
         Self { note, ..self }
     }
 }
 
 /// Returns the single bench of a row.
-pub(super) fn one(block: impl Block + 'static) -> Benches {
+pub(crate) fn one(block: impl Block + 'static) -> Benches {
     vec![Box::new(block)]
 }
 
 /// Returns the single small size of a row.
-pub(super) fn small(block: impl Block + 'static, size: &'static str) -> Vec<SmallBench> {
+pub(crate) fn small(block: impl Block + 'static, size: &'static str) -> Vec<SmallBench> {
     let block = Box::new(block);
     vec![SmallBench { block, size }]
 }

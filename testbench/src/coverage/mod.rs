@@ -23,7 +23,9 @@ use posicast_blocks::pwm::{ActiveLow, PwmConfig};
 use posicast_system::scratch;
 
 use crate::Error;
-use crate::blocks::{self, Block, PwmBlock, Sources, library};
+use crate::blocks;
+use crate::blocks::{Block, Sources, library};
+use crate::pwm::PwmBlock;
 use crate::stimuli::Stimuli;
 use explanation::{Explanation, Hole};
 use point::{CoveragePoint, PointKind};

@@ -16,8 +16,10 @@ use posicast_blocks::stage::StageConfig;
 use super::NamedMutant;
 use crate::Error;
 use crate::asynchronous;
-use crate::blocks::{self, Block, ShortTicksBlock, Sources, StageBlock};
+use crate::blocks;
+use crate::blocks::{Block, Sources};
 use crate::page::Marks;
+use crate::stage::{ShortTicksBlock, StageBlock};
 
 /// Marks of the table of these mutants.
 pub const INSIDE_MARKS: Marks = Marks {

@@ -17,7 +17,7 @@
 //!   end.
 //! - *Equivalent* is a proof for all inputs and without a bound, from power-up on: no output differs. Block RAM is
 //!   outside the comparison: both must drive it equally, and read the same arbitrary data.
-//! - A mutant that is not equivalent may still break a property of `testbench/formal`, where the block has a file
+//! - A mutant that is not equivalent may still break a property, where the block has a file
 //!   there.
 //! - The rest is *unknown*, and each is listed. Where a search finds an input that distinguishes it from the block,
 //!   the stimuli have a gap.

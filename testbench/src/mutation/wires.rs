@@ -29,8 +29,9 @@ use super::MutationOptions;
 use super::netlist::{SELECT, SELECT_BITS};
 use super::simulation::{self, Kill};
 use crate::Error;
-use crate::blocks::{Block, ShortTicksBlock, StageBlock};
+use crate::blocks::Block;
 use crate::page::Marks;
+use crate::stage::{ShortTicksBlock, StageBlock};
 
 /// Marks of the table of these mutants.
 pub const WIRES_MARKS: Marks = Marks {
@@ -434,7 +435,7 @@ pub fn wires_table(all: usize, fates: &[WireFate], clocks: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::blocks::StageBlock;
+    use crate::stage::StageBlock;
 
     /// Every input of every block of both axes is in the list, and every mutant is in the text.
     #[test]

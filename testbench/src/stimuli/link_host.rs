@@ -16,23 +16,23 @@ const LIMIT: u16 = 300;
 const ADDRESS: usize = 1;
 const READ: usize = 2;
 const WRITE: usize = 3;
-pub(super) const BUSY: usize = 5;
+pub(crate) const BUSY: usize = 5;
 const DROPPED: usize = 6;
 
-pub(super) fn one_in(rng: &mut Xoshiro256PlusPlus, times: u32) -> bool {
+pub(crate) fn one_in(rng: &mut Xoshiro256PlusPlus, times: u32) -> bool {
     rng.random_range(0..times) == 0
 }
 
 /// A word with many zeros.
-pub(super) fn word(rng: &mut Xoshiro256PlusPlus) -> u32 {
+pub(crate) fn word(rng: &mut Xoshiro256PlusPlus) -> u32 {
     let any = rng.next_u32();
     *pick(rng, &[any, any, any & 0xff00_ff00, any & 0xff, any << 24, 0])
 }
 
 /// Makes the frames of a host.
 #[derive(Debug, Clone)]
-pub(super) struct LinkHost {
-    pub(super) address_limit: u16,
+pub(crate) struct LinkHost {
+    pub(crate) address_limit: u16,
     sequence: u8,
     last_frame: Vec<u8>,
     /// Frames to send before random ones.
@@ -41,7 +41,7 @@ pub(super) struct LinkHost {
 
 impl LinkHost {
     /// A host of registers below [`LIMIT`].
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             address_limit: LIMIT,
             sequence: 0,
@@ -99,11 +99,11 @@ impl LinkHost {
     }
 
     /// Whether directed requests are left: nothing of the line or the registers' side changes before they are over.
-    pub(super) fn is_directed(&self) -> bool {
+    pub(crate) fn is_directed(&self) -> bool {
         !self.directed.is_empty()
     }
 
-    pub(super) fn frame(&mut self, rng: &mut Xoshiro256PlusPlus) -> Vec<u8> {
+    pub(crate) fn frame(&mut self, rng: &mut Xoshiro256PlusPlus) -> Vec<u8> {
         if let Some(frame) = self.directed.pop_front() {
             return frame;
         }
@@ -131,7 +131,7 @@ impl LinkHost {
 }
 
 /// Damages a frame, or puts something before it.
-pub(super) fn damage(rng: &mut Xoshiro256PlusPlus, frame: &mut Vec<u8>) {
+pub(crate) fn damage(rng: &mut Xoshiro256PlusPlus, frame: &mut Vec<u8>) {
     let place = rng.random_range(0..frame.len());
     match rng.random_range(0..8) {
         0 => {
@@ -155,7 +155,7 @@ pub(super) fn damage(rng: &mut Xoshiro256PlusPlus, frame: &mut Vec<u8>) {
 /// Requests at the borders of what a bridge takes, with which each conversation begins: sequence numbers that differ in their upper
 /// bits alone, one request with the number 0 twice, addresses at and beside `limit`. Words are written to `address` alone, and to
 /// the last one.
-pub(super) fn border_cases(limit: u16, address: u16) -> Vec<Vec<u8>> {
+pub(crate) fn border_cases(limit: u16, address: u16) -> Vec<Vec<u8>> {
     let last = limit.wrapping_sub(1);
     let read = |address, count| Request::Read { address, count };
     let write = |word| Request::Write {
@@ -198,7 +198,7 @@ pub(super) fn border_cases(limit: u16, address: u16) -> Vec<Vec<u8>> {
 
 /// Tells when a reply is over: the byte 0 after other bytes.
 #[derive(Debug, Clone)]
-pub(super) struct ReplyEnd {
+pub(crate) struct ReplyEnd {
     bit_clocks: f64,
     /// Clocks until the next look at a serial line; `None` between bytes.
     look: Option<f64>,
@@ -210,7 +210,7 @@ pub(super) struct ReplyEnd {
 
 impl ReplyEnd {
     /// For a line with this many clocks per bit, if it is serial.
-    pub(super) fn new(bit_clocks: f64) -> Self {
+    pub(crate) fn new(bit_clocks: f64) -> Self {
         Self {
             bit_clocks,
             look: None,
@@ -222,7 +222,7 @@ impl ReplyEnd {
     }
 
     /// A request is being sent.
-    pub(super) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         let bit_clocks = self.bit_clocks;
         *self = Self {
             over: false,
@@ -231,17 +231,17 @@ impl ReplyEnd {
     }
 
     /// No reply is awaited any more.
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.over
     }
 
     /// Nothing comes at the moment.
-    pub(super) fn is_silent(&self) -> bool {
+    pub(crate) fn is_silent(&self) -> bool {
         self.look.is_none() && !self.began
     }
 
     /// The level of the serial line to the host in a clock.
-    pub(super) fn serial(&mut self, level: bool) {
+    pub(crate) fn serial(&mut self, level: bool) {
         let Some(look) = &mut self.look else {
             if !level {
                 (self.look, self.byte, self.bits) = (Some(1.5 * self.bit_clocks), 0, 0);
@@ -263,7 +263,7 @@ impl ReplyEnd {
     }
 
     /// The level of MISO at a rising edge of the clock.
-    pub(super) fn spi_bit(&mut self, level: bool) {
+    pub(crate) fn spi_bit(&mut self, level: bool) {
         self.byte = self.byte << 1 | u32::from(level);
         self.bits += 1;
         if self.bits == 8 {
@@ -282,17 +282,17 @@ impl ReplyEnd {
 
 /// What a bridge hears in a clock, and its registers' side.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct HeardClock {
-    pub(super) rst: u64,
+pub(crate) struct HeardClock {
+    pub(crate) rst: u64,
     /// The host says something.
-    pub(super) speaks: bool,
-    pub(super) address_limit: u64,
-    pub(super) waits: bool,
+    pub(crate) speaks: bool,
+    pub(crate) address_limit: u64,
+    pub(crate) waits: bool,
 }
 
 /// Counts of the events in a lockstep run of a bridge.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct BridgeCoverage {
+pub(crate) struct BridgeCoverage {
     was_busy: bool,
     /// Words accessed by the request.
     words: u64,
@@ -311,7 +311,7 @@ pub(super) struct BridgeCoverage {
 
 impl BridgeCoverage {
     /// Adds a clock.
-    pub(super) fn observe(&mut self, heard: HeardClock, outputs: &[u64; OUTPUT_PORTS]) {
+    pub(crate) fn observe(&mut self, heard: HeardClock, outputs: &[u64; OUTPUT_PORTS]) {
         let HeardClock { rst, waits, .. } = heard;
         let [reads, writes, busy] = [READ, WRITE, BUSY].map(|output| outputs[output] != 0);
         self.resets += rst;
@@ -335,7 +335,7 @@ impl BridgeCoverage {
     }
 
     /// Returns each event's name and count.
-    pub(super) fn counts(&self) -> [(&'static str, u64); 11] {
+    pub(crate) fn counts(&self) -> [(&'static str, u64); 11] {
         [
             ("resets", self.resets),
             ("resets while busy", self.resets_while_busy),

@@ -6,13 +6,13 @@ use rand::{Rng, RngExt};
 
 /// Taps in the order in which they are written. The memory is kept between loads, so that a load does not allocate.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Table {
-    pub(super) taps: Vec<(i32, u64)>,
+pub(crate) struct Table {
+    pub(crate) taps: Vec<(i32, u64)>,
 }
 
 impl Table {
     /// Creates an empty table with room for the longest table.
-    pub(super) fn with_capacity(taps: usize) -> Self {
+    pub(crate) fn with_capacity(taps: usize) -> Self {
         Self {
             taps: Vec::with_capacity(taps),
         }
@@ -20,7 +20,7 @@ impl Table {
 
     /// Draws a new table of `count` taps with increasing delays below 2^`ring_address_bits` − 1, as far as these
     /// suffice.
-    pub(super) fn draw(&mut self, rng: &mut impl Rng, count: usize, fraction: u32, ring_address_bits: u32) {
+    pub(crate) fn draw(&mut self, rng: &mut impl Rng, count: usize, fraction: u32, ring_address_bits: u32) {
         let one = 1 << fraction;
         let longest = (1u64 << ring_address_bits) - 2;
         let count = count.clamp(1, longest as usize);
@@ -60,7 +60,7 @@ impl Table {
 }
 
 /// Returns one of the choices, all equally likely. `choices` must not be empty.
-pub(super) fn pick<'a, T>(rng: &mut impl Rng, choices: &'a [T]) -> &'a T {
+pub(crate) fn pick<'a, T>(rng: &mut impl Rng, choices: &'a [T]) -> &'a T {
     &choices[rng.random_range(0..choices.len())]
 }
 

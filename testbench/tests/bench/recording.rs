@@ -5,9 +5,10 @@ use std::path::Path;
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_hdl::machine::AxisShaper;
 use posicast_taps::{Tap, TapTable};
-use posicast_testbench::blocks::{Block, MachineShapers};
+use posicast_testbench::blocks::Block;
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::recording::{Move, RecordedMove};
+use posicast_testbench::shaper::MachineShapers;
 use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict};
 
 use crate::bench::waves::{read, times_of_ones};

@@ -5,7 +5,7 @@ use crate::registers::support::{Bench, assert_match};
 use posicast_blocks::registers::RegisterBank;
 use posicast_hdl::registers::emit;
 use posicast_testbench::lockstep::report::LockstepVerdict;
-use posicast_testbench::stimuli::{RegistersCoverage, RegistersRandom};
+use posicast_testbench::registers::{RegistersCoverage, RegistersRandom};
 
 fn bench(from: &str, to: &str) -> Bench {
     Bench::new("registers", &[emit(&everything(), "").unwrap()], from, to)

@@ -8,8 +8,8 @@ use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
 use posicast_blocks::sliding_mode::{Gain, Law, SettingRow, Settings};
 use posicast_hdl::component::emit;
 use posicast_taps::{Tap, TapTable};
+use posicast_testbench::component::ComponentRandom;
 use posicast_testbench::lockstep::report::LockstepVerdict;
-use posicast_testbench::stimuli::ComponentRandom;
 
 pub(crate) fn pulse_counter() -> Component {
     Component::pulse_counter(DividerConfig::new(127).unwrap(), 3, false).unwrap()

@@ -6,7 +6,7 @@
 use posicast_blocks::pwm::ActiveLow;
 use posicast_blocks::{Direction, Port};
 use posicast_testbench::lockstep::Clock;
-use posicast_testbench::stimuli::GateSafety;
+use posicast_testbench::pwm::GateSafety;
 
 /// The pins of an axis, or of a component alone.
 pub(crate) struct Pins {

@@ -1,0 +1,238 @@
+//! The bench of the small blocks that connect others: schedule, divider share, group, time base, sample select, setting
+//! banks.
+
+pub(crate) mod proofs;
+pub(crate) mod stimuli;
+
+pub use self::stimuli::PartRandom;
+
+use posicast_blocks::component::ComponentPart as Model;
+use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::schedule::ScheduleConfig;
+use posicast_blocks::shaper::MOTION_WORD_BITS;
+use posicast_blocks::sliding_mode::Settings;
+use posicast_blocks::{ClockedBlock, Port};
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
+
+use crate::blocks::changes::Changes;
+use crate::blocks::registry::{RegistryRow, one, small};
+use crate::blocks::{Bins, Block};
+use crate::formal::refused;
+use crate::shaper::MOTION;
+use crate::stimuli::Stimuli;
+
+/// The rows of these blocks in the registry.
+pub(crate) const TIME_BASE: RegistryRow = RegistryRow {
+    name: "time_base",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::TimeBase(sizes.tick), &sizes.prefix))),
+    small: || {
+        let ticks = DividerConfig::new(17).map_err(refused)?;
+        Ok(small(
+            PartBlock::new(SmallPart::TimeBase(ticks), ""),
+            "17 clocks per tick",
+        ))
+    },
+    proofs: || {
+        let begins = [(17, "32'd0"), (127, "32'd0"), (17, "32'hfffffff0")];
+        begins
+            .map(|(ticks, begin)| proofs::time_base(ticks, begin))
+            .into_iter()
+            .collect()
+    },
+    ..RegistryRow::EMPTY
+};
+pub(crate) const SCHEDULE: RegistryRow = RegistryRow {
+    name: "schedule",
+    benches: |sizes| {
+        let config = ScheduleConfig::new(500).map_err(refused)?;
+        Ok(one(PartBlock::new(SmallPart::Schedule(config), &sizes.prefix)))
+    },
+    small: || {
+        let config = ScheduleConfig::new(37).map_err(refused)?;
+        Ok(small(
+            PartBlock::new(SmallPart::Schedule(config), ""),
+            "control after 37 clocks",
+        ))
+    },
+    proofs: || [2, 400].map(proofs::schedule).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(crate) const DIVIDER_SHARE: RegistryRow = RegistryRow {
+    name: "divider_share",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::DividerShare(sizes.axes), &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::DividerShare(2), ""), "2 channels")),
+    proofs: || [1, 2, 3, 8].map(proofs::divider_share).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(crate) const GROUP: RegistryRow = RegistryRow {
+    name: "group",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::Group(sizes.axes), &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::Group(2), ""), "2 axes")),
+    proofs: || [2, 4].map(proofs::group).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
+    name: "sample_select",
+    benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(WIDE_SAMPLES, ""), "3 channels of 32 bits")),
+    proofs: || [1, 3].map(proofs::sample_select).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(crate) const SETTING_BANKS: RegistryRow = RegistryRow {
+    name: "setting_banks",
+    benches: |sizes| {
+        Ok(one(PartBlock::new(
+            SmallPart::SettingBanks(sizes.settings),
+            &sizes.prefix,
+        )))
+    },
+    small: || {
+        let part = SmallPart::SettingBanks(Settings::default());
+        Ok(small(PartBlock::new(part, ""), "settings of 0"))
+    },
+    proofs: || Ok(vec![proofs::setting_banks()?]),
+    ..RegistryRow::EMPTY
+};
+
+/// Position, velocity and acceleration, in the widest words.
+const WIDE_SAMPLES: SmallPart = SmallPart::SampleSelect {
+    word_bits: *MOTION_WORD_BITS.end(),
+    channels: MOTION.channels as usize,
+};
+
+/// A block that connects others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SmallPart {
+    /// `schedule`: decides when the controllers start.
+    Schedule(ScheduleConfig),
+    /// `divider_share`: one divider for this many pulse counters.
+    DividerShare(usize),
+    /// `group`: couples this many axes.
+    Group(usize),
+    /// `time_base`: makes ticks of this length.
+    TimeBase(DividerConfig),
+    /// `sample_select`: selects the source of samples.
+    SampleSelect {
+        /// Width of a word.
+        word_bits: u32,
+        /// Number of words per sample.
+        channels: usize,
+    },
+    /// `setting_banks`: the settings of a controller, with these in bank 0.
+    SettingBanks(Settings),
+}
+
+/// A block that connects others, with its name; its stimuli change slowly and fast.
+#[derive(Debug, Clone)]
+pub struct PartBlock {
+    part: SmallPart,
+    model: Model,
+    prefix: String,
+    instance: String,
+}
+
+impl PartBlock {
+    /// Creates the block with the module `PREFIX_NAME`.
+    pub fn new(part: SmallPart, prefix: &str) -> Self {
+        let (model, instance) = match part {
+            SmallPart::Schedule(config) => {
+                let clocks = format!("{} clocks to control", config.control_clocks());
+                (Model::Schedule(config), clocks)
+            }
+            SmallPart::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
+            SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
+            SmallPart::TimeBase(config) => {
+                let clocks = format!("{} clocks per tick", config.tick_clocks());
+                (Model::TimeBase(config), clocks)
+            }
+            SmallPart::SampleSelect { word_bits, channels } => (
+                Model::SampleSelect { word_bits, channels },
+                format!("{channels} x {word_bits} bits"),
+            ),
+            SmallPart::SettingBanks(settings) => (Model::SettingBanks(Box::new(settings)), "alone".to_owned()),
+        };
+        Self {
+            part,
+            model,
+            prefix: prefix.to_owned(),
+            instance,
+        }
+    }
+
+    /// Renames the block to `instance` in the report.
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
+        }
+    }
+
+    fn ports(&self) -> Vec<Port> {
+        self.model.model(0).ports().to_vec()
+    }
+}
+
+impl Block for PartBlock {
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        let prefix = self.prefix.as_str();
+        match &self.part {
+            SmallPart::Schedule(config) => schedule::emit(config, prefix),
+            SmallPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
+            SmallPart::Group(axes) => group::emit(*axes, prefix),
+            SmallPart::TimeBase(config) => time_base::emit(config, prefix),
+            SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
+            SmallPart::SettingBanks(settings) => setting_banks::emit(settings, prefix),
+        }
+    }
+
+    fn top(&self) -> String {
+        let prefix = self.prefix.as_str();
+        match &self.part {
+            SmallPart::Schedule(config) => schedule::name(config, prefix),
+            SmallPart::DividerShare(channels) => divider_share::name(*channels, prefix),
+            SmallPart::Group(axes) => group::name(*axes, prefix),
+            SmallPart::TimeBase(config) => time_base::name(config, prefix),
+            SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
+            SmallPart::SettingBanks(settings) => setting_banks::name(settings, prefix),
+        }
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        self.model.model(seed)
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        match &self.part {
+            SmallPart::Schedule(config) => schedule::simulate(config),
+            SmallPart::DividerShare(channels) => divider_share::simulate(*channels),
+            SmallPart::Group(axes) => group::simulate(*axes),
+            SmallPart::TimeBase(config) => time_base::simulate(config),
+            SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
+            SmallPart::SettingBanks(settings) => setting_banks::simulate(settings),
+        }
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(PartRandom::new(&self.ports(), seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(Changes::new(&self.ports()))
+    }
+
+    fn fixed(&self) -> Vec<(String, &'static str)> {
+        match self.part {
+            SmallPart::Group(1) => vec![("group_stop_0".to_owned(), "no other axis can stop a single one")],
+            _ => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Proofs of supervisor, drive command and PWM as a stage wires them.
+
+use posicast_blocks::component::Component;
+use posicast_blocks::stage::StageAxis;
+use posicast_hdl::component;
+use posicast_hdl::emit::Module;
+
+use crate::Error;
+use crate::axis;
+use crate::blocks::library::stage;
+use crate::formal::{INDUCTION, Task, refused};
+
+/// Blocks of an axis that only give commanded and actual position. They are left out, so that their outputs have any
+/// value.
+const LEFT_OUT: [&str; 9] = [
+    "segments",
+    "motion_shaper",
+    "sliding_mode",
+    "pulse_counter",
+    "linear_scale",
+    "encoder_generator",
+    "error_table",
+    "excitation",
+    "trace",
+];
+
+/// The axes of the stage that the other rungs of verification use: one with the blocks for bring-up, one with a linear
+/// scale.
+pub(crate) fn tasks() -> Result<Vec<Task>, Error> {
+    let stage = stage()?;
+    let component = Component::stage(&stage).map_err(refused)?;
+    let mut modules = component::emit(&component, "stage", "stage")?;
+    for block in LEFT_OUT {
+        let of_block = modules.iter_mut().filter(|module| module.is(block));
+        if of_block.map(empty).count() == 0 {
+            return Err(refused(format!("the stage has no block `{block}`")));
+        }
+    }
+    stage.axes.iter().map(|axis| task(axis, &modules)).collect()
+}
+
+/// `modules` are those of the stage, sub-modules first.
+fn task(axis: &StageAxis, modules: &[Module]) -> Result<Task, Error> {
+    let name = format!("stage_{}", axis.name);
+    let at = modules.iter().position(|module| module.name == name);
+    let at = at.ok_or_else(|| refused(format!("the stage has no `{name}`")))?;
+    let filter_clocks = axis.supervision.filter_clocks;
+    let filter = [("FILTER_CLOCKS", format!("7'd{filter_clocks}"))];
+    let size = format!("axis {}, lines filtered for {filter_clocks} clocks", axis.name);
+    let block = (modules[..=at].to_vec(), modules[at].ports.clone());
+    Ok(Task::new("stage_axis", &size, INDUCTION, block)
+        .macros(&axis::proofs::macros())
+        .properties(&filter, include_str!("stage_axis.sv")))
+}
+
+/// Removes everything but the ports of a module: its outputs are free in every clock. Without a wire Yosys would take
+/// it for an external module.
+pub(crate) fn empty(module: &mut Module) {
+    if let Some((ports, _)) = module.text.split_once("\n);\n") {
+        module.text = format!("{ports}\n);\n    wire left_out = clk;\nendmodule\n\n`default_nettype wire\n");
+    }
+}

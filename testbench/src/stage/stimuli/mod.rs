@@ -1,0 +1,420 @@
+//! Seeded random inputs for a whole stage: a driver that switches on, loads, starts and stops, among random traffic
+//! on all windows; lines that are mostly healthy; encoders that move.
+
+mod driver;
+mod reads;
+
+use posicast_blocks::component::Component;
+use posicast_blocks::registers::{Access, Register, RegisterMap};
+use posicast_blocks::{Direction, Port};
+
+use self::driver::{Driver, Moves, Pins, SCENES};
+use self::reads::{Clears, ReadBack};
+use crate::registers::RegistersRandom;
+use crate::registers::stimuli::{ADDRESS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
+use crate::stimuli::Stimuli;
+use crate::stimuli::table::pick;
+
+/// Number of clocks between changes of the mood: with random writes to any register, and without.
+const MOOD_CLOCKS: [u64; 2] = [6_000, 40_000];
+/// Lines of an axis that are high in normal operation, and how rarely each is low. Lines that stop everything are low
+/// more rarely.
+const LINES: [(&str, u32); 6] = [
+    ("limit_plus_n", 1),
+    ("limit_minus_n", 1),
+    ("drive_ready", 4),
+    ("drive_fault_n", 4),
+    ("fault_n", 8),
+    ("home", 1),
+];
+/// The shared lines of the stage, as in [`LINES`].
+const SHARED_LINES: [(&str, u32); 2] = [("emergency_stop_n", 4), ("pll_locked", 8)];
+/// A reset comes before every so many scenes: what the last one left in any block goes. It is odd, so that each axis had the lead.
+const SCENES_TO_A_RESET: usize = 5;
+/// Number of clocks of the gates' mean that make one step of an encoder that follows them.
+const STEP_CLOCKS: i32 = 48;
+/// Least number of clocks between two steps, so that the encoder's filter passes them.
+const EDGE_CLOCKS: u32 = 12;
+
+/// Settings that hold for a while.
+#[derive(Debug, Clone, Copy)]
+struct Mood {
+    /// Whether random writes go to any register.
+    wild: bool,
+    /// Whether a scene is played; nothing else happens then.
+    scene: bool,
+    /// One fault comes in this many clocks.
+    fault_pace: u32,
+    /// The driver makes one request in this many clocks.
+    request_pace: u32,
+    /// One reset comes in this many clocks.
+    reset_pace: u32,
+}
+
+/// The pins of an axis.
+#[derive(Debug, Clone)]
+struct AxisPins {
+    /// Indices of A, B and Z of the encoder, and of the linear scale if there is one: it moves as the motor does.
+    encoders: [Vec<usize>; 2],
+    /// Indices of the limit switches, + and −.
+    switches: [usize; 2],
+    /// Indices of A's and B's high gate, of the drive's enable and of the brake's release among the outputs.
+    shown: [usize; 4],
+    moves: Moves,
+    count: i32,
+    /// The count at the last reset.
+    origin: i32,
+    /// Sum of the gates' mean since the last step.
+    mean: i32,
+    since_step: u32,
+    invert: bool,
+    /// Whether both lines change at once in the next step.
+    slips: bool,
+}
+
+/// A line and the time for which it is low.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    /// Index of the axis; `None` for a line shared by all.
+    axis: Option<usize>,
+    name: &'static str,
+    at: usize,
+    /// Factor by which it is low more rarely than other lines.
+    pace: u32,
+    low: u32,
+}
+
+/// An endless random mixture of all inputs.
+#[derive(Debug, Clone)]
+pub struct StageRandom {
+    /// Generators that read back the settings and the taps.
+    read_back: [ReadBack; 2],
+    registers: RegistersRandom,
+    driver: Driver,
+    tick_clocks: u32,
+    clock: u64,
+    mood: Mood,
+    mood_ends: u64,
+    /// Number of moods and scenes so far.
+    moods: u32,
+    scenes: usize,
+    /// Clocks left of a reset between two scenes.
+    reset_clocks: u32,
+    /// Offsets of the status words.
+    status: Vec<u64>,
+    clears: Clears,
+    axes: Vec<AxisPins>,
+    lines: Vec<Line>,
+}
+
+fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
+    let mut names = ports.iter().filter(|port| port.direction == direction);
+    names.position(|port| port.name == name)
+}
+
+/// Returns the offsets of the words that show a stage's states, flags, causes and values.
+fn status(map: &RegisterMap) -> Vec<u64> {
+    let shown = |register: &&Register| matches!(register.access, Access::Live | Access::Sticky | Access::Shadow { .. });
+    map.registers()
+        .iter()
+        .filter(shown)
+        .map(|register| register.offset.into())
+        .collect()
+}
+
+impl StageRandom {
+    /// Creates the generator. Equal seeds give equal inputs for equal outputs.
+    pub fn new(component: &Component, axes: &[String], seed: u64) -> Self {
+        let ports = component.composition().ports();
+        let input = |name: &str| place(ports, Direction::Input, name);
+        let of_axis = |axis: &String| {
+            let encoder = |kind: &str| {
+                let pins = ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
+                pins.into_iter().flatten().collect()
+            };
+            let shown = ["a_high", "b_high", "drive_enable", "brake_release"];
+            AxisPins {
+                encoders: [encoder(""), encoder("scale_")],
+                switches: [0, 1].map(|which| input(&format!("{axis}_{}", LINES[which].0)).unwrap_or(0)),
+                shown: shown.map(|pin| place(ports, Direction::Output, &format!("{axis}_{pin}")).unwrap_or(0)),
+                moves: Moves::Still,
+                count: 0,
+                origin: 0,
+                mean: 0,
+                since_step: 0,
+                invert: false,
+                slips: false,
+            }
+        };
+        let of_axes = |(at, axis): (usize, &String)| {
+            let axis = axis.clone();
+            LINES.map(move |(line, pace)| (Some(at), line, format!("{axis}_{line}"), pace))
+        };
+        let shared = SHARED_LINES.map(|(line, pace)| (None, line, line.to_owned(), pace));
+        let lines = shared.into_iter().chain(axes.iter().enumerate().flat_map(of_axes));
+        let line = |(axis, name, port, pace): (Option<usize>, &'static str, String, u32)| {
+            input(&port).map(|at| Line {
+                axis,
+                name,
+                at,
+                pace,
+                low: 0,
+            })
+        };
+        let map = component.map();
+        let read_back = [ReadBack::settings, ReadBack::taps].map(|new| new(map, axes, seed));
+        let own: Vec<u64> = read_back.iter().flat_map(ReadBack::own).collect();
+        Self {
+            registers: RegistersRandom::new(map, ports, seed).without(&own),
+            tick_clocks: map.register("tick_clocks").map_or(1000, |register| register.reset()),
+            driver: Driver::new(map, axes, seed),
+            clock: 0,
+            mood_ends: 0,
+            scenes: 0,
+            reset_clocks: 0,
+            moods: 0,
+            clears: Clears::new(map, axes, seed),
+            status: status(map).into_iter().filter(|offset| !own.contains(offset)).collect(),
+            mood: Mood {
+                wild: false,
+                scene: false,
+                fault_pace: 1,
+                request_pace: 1,
+                reset_pace: 1,
+            },
+            axes: axes.iter().map(of_axis).collect(),
+            lines: lines.filter_map(line).collect(),
+            read_back,
+        }
+    }
+
+    fn one_in(&mut self, clocks: u32) -> bool {
+        self.registers.one_in(clocks)
+    }
+
+    fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        *pick(&mut self.registers.rng, choices)
+    }
+
+    /// Alternates scenes with periods of random traffic, after the first scenes, which come at once.
+    fn new_mood(&mut self) {
+        self.moods += 1;
+        // Each axis leads each scene once before random traffic begins.
+        if self.scenes < SCENES.len() * self.axes.len() || self.moods.is_multiple_of(2) {
+            return self.new_scene();
+        }
+        self.mood = Mood {
+            scene: false,
+            wild: self.one_in(4),
+            fault_pace: self.pick(&[3_000, 12_000, 12_000, 100_000]),
+            request_pace: self.pick(&[3, 30, 30, 300]),
+            reset_pace: self.pick(&[10_000, 1_000_000, 1_000_000, 1_000_000]),
+        };
+        for at in 0..self.axes.len() {
+            self.axes[at].moves = self.pick(&[Moves::Still, Moves::Follows, Moves::Follows, Moves::Walks]);
+            self.axes[at].invert = self.one_in(3);
+        }
+        self.driver.begin_anew();
+    }
+
+    fn new_scene(&mut self) {
+        self.mood = Mood {
+            wild: false,
+            scene: true,
+            fault_pace: u32::MAX,
+            request_pace: u32::MAX,
+            reset_pace: u32::MAX,
+        };
+        for axis in &mut self.axes {
+            axis.invert = false;
+        }
+        self.driver.play(self.scenes);
+        self.scenes += 1;
+        if self.scenes.is_multiple_of(SCENES_TO_A_RESET) {
+            self.reset_clocks = 2;
+        }
+    }
+
+    /// Applies what the scenes require at the pins of an axis.
+    fn pins(&mut self, seen: &[u64]) {
+        for at in 0..self.axes.len() {
+            let axis = &self.axes[at];
+            let [on, released] = [2, 3].map(|pin| seen.get(axis.shown[pin]).is_some_and(|value| value & 1 != 0));
+            for pins in self.driver.sees(at, axis.count - axis.origin, on, released) {
+                match pins {
+                    Pins::Encoder(moves) => self.axes[at].moves = moves,
+                    Pins::Slip => self.axes[at].slips = true,
+                    Pins::Low(name, clocks) => {
+                        let is_meant = |line: &&mut Line| line.name == name && line.axis.is_none_or(|axis| axis == at);
+                        let line = self.lines.iter_mut().find(is_meant);
+                        line.into_iter().for_each(|line| line.low = clocks);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Moves the encoders, one step at a time.
+    fn encoders(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        for at in 0..self.axes.len() {
+            let step = match self.axes[at].moves {
+                Moves::Still => 0,
+                Moves::Walks => {
+                    let walks = self.one_in(40);
+                    let back = self.one_in(3);
+                    i32::from(walks) * if back { -1 } else { 1 }
+                }
+                Moves::Follows => {
+                    let axis = &mut self.axes[at];
+                    let level = |output: usize| seen.get(output).map_or(0, |value| *value as i32 & 1);
+                    axis.mean += level(axis.shown[0]) - level(axis.shown[1]);
+                    let step = i32::from(axis.mean >= STEP_CLOCKS) - i32::from(axis.mean <= -STEP_CLOCKS);
+                    axis.mean -= step * STEP_CLOCKS;
+                    if axis.invert { -step } else { step }
+                }
+            };
+            // Rarely both lines change at once.
+            let slips = !self.mood.scene && self.one_in(300_000);
+            let axis = &mut self.axes[at];
+            let slips = std::mem::take(&mut axis.slips) || slips;
+            axis.since_step += 1;
+            if step != 0 && axis.since_step > EDGE_CLOCKS || slips {
+                axis.count += if slips { 2 } else { step };
+                axis.since_step = 0;
+            }
+            let phase = axis.count & 3;
+            let levels = [phase == 1 || phase == 2, phase >= 2, axis.count & 31 == 0];
+            for places in &axis.encoders {
+                for (place, level) in places.iter().zip(levels) {
+                    inputs[*place] = level.into();
+                }
+            }
+        }
+    }
+
+    fn lines(&mut self, inputs: &mut [u64]) {
+        for at in 0..self.lines.len() {
+            let rarer = self.lines[at].pace * self.axes.len() as u32;
+            if !self.mood.scene && self.one_in(self.mood.fault_pace * rarer) {
+                let tick = self.tick_clocks;
+                self.lines[at].low = self.pick(&[1, 3, 9, 40, tick, 3 * tick, 8 * tick]);
+            }
+            let line = &mut self.lines[at];
+            inputs[line.at] = (line.low == 0).into();
+            line.low = line.low.saturating_sub(1);
+        }
+        for (at, axis) in self.axes.iter().enumerate() {
+            for (bit, place) in axis.switches.into_iter().enumerate() {
+                inputs[place] &= u64::from(!self.driver.switches(at) >> bit & 1);
+            }
+        }
+    }
+
+    /// Makes the driver's next access, if there is one.
+    fn drive(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        self.think(seen);
+        if let Some(word) = self.clears.word() {
+            self.driver.pass(0);
+            inputs[ADDRESS] = word;
+            (inputs[WRITE], inputs[READ]) = (0, 1);
+            return;
+        }
+        if let Some((offset, data)) = self.driver.clock() {
+            self.clears.wrote(offset.into());
+            inputs[ADDRESS] = offset.into();
+            inputs[WRITE_DATA] = data.into();
+            inputs[BYTE_ENABLE] = 0xf;
+            (inputs[WRITE], inputs[READ]) = (1, 0);
+        } else if self.mood.scene && !self.one_in(4) {
+            // The status words show the effect of a scene.
+            let status = std::mem::take(&mut self.status);
+            inputs[ADDRESS] = self.pick(&status);
+            self.status = status;
+            inputs[READ] = 1;
+        }
+    }
+}
+
+/// For a host at a line, whose accesses take hundreds of clocks.
+impl StageRandom {
+    /// Makes `rst` and the pins of a clock, and plans; leaves the bus alone. Time stands still for the axes in the mask
+    /// `waiting`, whose writes are on the line. A mood lasts `longer` times as long as on the bus.
+    pub(crate) fn beside_a_line(&mut self, seen: &[u64], inputs: &mut [u64], waiting: u32, longer: u64) {
+        self.change_mood(longer);
+        self.pins(seen);
+        inputs[0] = self.reset().into();
+        self.encoders(seen, inputs);
+        self.lines(inputs);
+        self.think(seen);
+        self.driver.pass(waiting);
+        self.clock += 1;
+    }
+
+    /// Returns at most so many writes that the driver would make now, and the mask of the axes that they belong to.
+    pub(crate) fn due_writes(&mut self, most: usize) -> (Vec<(u32, u32)>, u32) {
+        self.driver.due_writes(most)
+    }
+
+    /// Whether random writes may go to any register now.
+    pub(crate) fn is_wild(&self) -> bool {
+        self.mood.wild
+    }
+
+    /// Whether the driver is in a sequence of writes to an axis.
+    pub(crate) fn writes(&self, axis: usize) -> bool {
+        self.driver.writes(axis)
+    }
+
+    fn reset(&mut self) -> bool {
+        let between = self.reset_clocks > 0;
+        self.reset_clocks = self.reset_clocks.saturating_sub(1);
+        let resets = between || self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace);
+        if resets {
+            for axis in &mut self.axes {
+                axis.origin = axis.count;
+            }
+        }
+        resets
+    }
+
+    fn change_mood(&mut self, longer: u64) {
+        let is_over = if self.mood.scene {
+            self.driver.is_idle()
+        } else {
+            self.clock >= self.mood_ends
+        };
+        if is_over {
+            self.new_mood();
+            self.mood_ends = self.clock + longer * MOOD_CLOCKS[usize::from(!self.mood.wild)];
+        }
+    }
+
+    fn think(&mut self, seen: &[u64]) {
+        if self.mood.scene {
+            return;
+        }
+        for (at, axis) in self.axes.iter().enumerate() {
+            let on = seen.get(axis.shown[2]).is_some_and(|value| value & 1 != 0);
+            self.driver.plan(at, on, self.mood.request_pace);
+        }
+    }
+}
+
+impl Stimuli for StageRandom {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        self.change_mood(1);
+        self.pins(seen);
+        self.registers.fill(seen, inputs);
+        if !self.mood.wild {
+            inputs[WRITE] = 0;
+        }
+        inputs[0] = self.reset().into();
+        self.encoders(seen, inputs);
+        self.lines(inputs);
+        self.drive(seen, inputs);
+        for read_back in &mut self.read_back {
+            read_back.fill(&self.driver, self.mood.wild, inputs);
+        }
+        self.clock += 1;
+    }
+}
