@@ -1,8 +1,9 @@
 //! Recordings damaged at random, by a seed: what the reader and the comparison must survive.
 //!
-//! A recording with bytes replaced, words of the format at wrong places, or the end of another one, is an error or has a result. The
-//! comparison never panics on it; it does not find that a file differs from itself; and it finds the same for *a* and *b* as for *b* and *a*,
-//! signal by signal: equal numbers of differences, and the values of each first difference the other way round.
+//! Bytes are replaced, words of the format are inserted at wrong places, or the end of another recording is appended. Reading the result
+//! must give an error or a comparison: the comparison never panics; it never finds that a file differs from itself; and it finds the same
+//! for *a* and *b* as for *b* and *a*, signal by signal: equal numbers of differences, and the values of each first difference in the other
+//! order.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -35,15 +36,15 @@ const WORDS: [&[u8]; 16] = [
 ];
 /// Digits of a vector or a single bit.
 const DIGITS: [u8; 4] = *b"01xz";
-/// Number of bytes that a damage removes or inserts, at most.
+/// Largest number of bytes that one damage removes or inserts.
 const MOST_REMOVED: usize = 20;
 const MOST_INSERTED: usize = 5;
-/// Number of damages of a file, at most, and of changed digits.
+/// Largest number of damages of a file, and of changed digits.
 const MOST_DAMAGES: usize = 5;
 /// Largest width that a declaration may get.
 const MOST_WIDTH: u32 = 130;
 
-/// What became of a damaged recording that was survived.
+/// How the program handled a damaged recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Survival {
     /// It still has a result in a comparison.
@@ -52,7 +53,7 @@ pub enum Survival {
     Refused,
 }
 
-/// Damages one of `recordings`, which is chosen by `seed` too, and returns it as it was and as it is now. Equal seeds give equal bytes.
+/// Damages one of `recordings`, which `seed` chooses too. Returns the original and the damaged bytes; equal seeds give equal bytes.
 pub fn damaged(recordings: &[Vec<u8>], seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
     let original = recordings.choose(&mut rng).cloned().unwrap_or_default();
@@ -64,7 +65,7 @@ pub fn damaged(recordings: &[Vec<u8>], seed: u64) -> (Vec<u8>, Vec<u8>) {
         }
     }
     if rng.random_ratio(1, 4) {
-        // The beginning of one file with the end of another.
+        // Join the beginning of one file and the end of another.
         let other = recordings.choose(&mut rng).map_or(&[][..], Vec::as_slice);
         content.truncate(rng.random_range(0..=content.len()));
         content.extend(&other[rng.random_range(0..=other.len())..]);
@@ -205,7 +206,7 @@ struct Findings {
 }
 
 impl Findings {
-    fn of(found: &Comparison) -> Self {
+    fn from_comparison(found: &Comparison) -> Self {
         let differences = found.differences.iter();
         let mut differences: Vec<_> = differences
             .map(|of| (of.count, of.persistent, [format!("{:?}", of.a), format!("{:?}", of.b)]))
@@ -231,7 +232,7 @@ impl Findings {
 
 /// Result or error of a comparison; the outer error is a panic.
 fn findings(a: &Path, b: &Path, options: &DiffOptions) -> Result<Result<Findings, WaveError>, String> {
-    let compare = || diff::compare(a, b, options, &mut |_| {}).map(|found| Findings::of(&found));
+    let compare = || diff::compare(a, b, options, &mut |_| {}).map(|found| Findings::from_comparison(&found));
     catch_unwind(AssertUnwindSafe(compare)).map_err(|cause| {
         let said = cause.downcast_ref::<String>().map(String::as_str);
         let said = said

@@ -1,7 +1,7 @@
 //! A vector that is written in place.
 
-/// Elements, and places for more: to push each onto a vector would read and write its length in memory, one after the
-/// other, which takes longer than the rest of what is done with a change.
+/// Elements with free places behind them. Pushing each onto a vector would read and write its length in memory every
+/// time, which takes longer than the rest of the work for a change.
 #[derive(Debug, Default)]
 pub(crate) struct Pile<T> {
     places: Vec<T>,
@@ -22,7 +22,7 @@ impl<T: Copy + Default> Pile<T> {
         self.count += 1;
     }
 
-    /// Returns the places after the elements: so many, or more.
+    /// Returns the places after the elements, at least `least` of them.
     #[inline]
     pub(crate) fn room(&mut self, least: usize) -> &mut [T] {
         if self.places.len() - self.count < least {
@@ -42,7 +42,7 @@ impl<T: Copy + Default> Pile<T> {
         self.count = self.count.min(count);
     }
 
-    /// Keeps only the elements for which this holds.
+    /// Keeps only the elements for which `keep` returns `true`.
     pub(crate) fn retain(&mut self, keep: impl FnMut(&T) -> bool) {
         self.places.truncate(self.count);
         self.places.retain(keep);

@@ -10,7 +10,7 @@ thread_local! {
 }
 static HOOK: Once = Once::new();
 
-/// Calls, and returns `None` after a panic. Panics of other threads are reported as ever.
+/// Calls `call`; returns `None` if it panicked. Panics of other threads are reported as usual.
 pub(crate) fn caught<T>(call: impl FnOnce() -> T) -> Option<T> {
     HOOK.call_once(|| {
         let before = take_hook();

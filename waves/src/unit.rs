@@ -16,8 +16,7 @@ const UNITS: [(TimescaleUnit, u64); 6] = [
     (TimescaleUnit::FS, 1),
 ];
 
-/// Returns the coarsest unit of which `fs` femtoseconds are a whole number of at least 1, and its number of
-/// femtoseconds.
+/// Returns the coarsest unit that divides `fs` femtoseconds without remainder, and its number of femtoseconds.
 pub fn unit_for(fs: u64) -> (TimescaleUnit, u64) {
     let fitting = UNITS
         .into_iter()

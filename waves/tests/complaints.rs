@@ -16,7 +16,7 @@ fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
 }
 
 #[test]
-fn each_small_pair_gets_the_verdict_that_it_deserves() {
+fn each_small_pair_has_its_verdict() {
     let mut options = DiffOptions::default();
     options.add_tolerance("level=0.001abs").unwrap();
     let mut count = 0;
@@ -107,7 +107,7 @@ fn a_file_that_ends_early_is_not_equal() {
 }
 
 #[test]
-fn a_value_that_is_only_there_between_two_changes_of_the_other_file_is_found() {
+fn a_value_between_two_changes_of_the_other_file_is_found() {
     // At #15 and #16 the second file has another value; the first says nothing at these times.
     let a = vcd(0, "y", &[7; 4]);
     let b = vcd(0, "y", &[7; 4]).replace("#20\n", "#15\nb1 \"\n#16\nb111 \"\n#20\n");

@@ -253,7 +253,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn prop_all_dialects_say_the_same_and_one_changed_digit_is_found(
+    fn prop_all_dialects_compare_equal_and_one_changed_digit_is_found(
         waves in waves(), which: prop::sample::Index, place: prop::sample::Index, dialects in [0..DIALECTS.len(), 0..DIALECTS.len()],
     ) {
         let folder = tempfile::tempdir().unwrap();

@@ -168,7 +168,7 @@ fn nothing_in_common_is_incomparable() {
 }
 
 #[test]
-fn a_file_without_a_timescale_is_said_to_be_in_nanoseconds() {
+fn a_note_says_that_nanoseconds_are_assumed_without_a_timescale() {
     let with = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c");
     let without = with.replace("$timescale 1 ns $end\n", "");
     let notes = |a: &str, b: &str| {
@@ -184,7 +184,7 @@ fn a_file_without_a_timescale_is_said_to_be_in_nanoseconds() {
 }
 
 #[test]
-fn filters_that_leave_nothing_are_the_reason() {
+fn incomparable_names_filters_that_leave_nothing() {
     let text = clocked("t", "#0 0c b1 y #5 1c b10 y #10 0c #15 1c");
     for (only, ignore) in [(Some("nowhere"), None), (None, Some("*")), (None, Some("y"))] {
         let options = DiffOptions {

@@ -21,7 +21,7 @@ fn cut_allowed() -> DiffOptions {
 }
 
 #[test]
-fn golden_packed_files_are_what_is_packed_in_them() {
+fn golden_packed_files_compare_as_their_content() {
     let plain = fixture("waves/verilator.vcd");
     for packed in ["gz", "xz", "zst"] {
         let packed = fixture(&format!("packed/counter.vcd.{packed}"));

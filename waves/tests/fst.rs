@@ -299,7 +299,7 @@ fn long_hundreds_of_thousands_of_names_are_compared() {
 }
 
 #[test]
-fn damage_and_what_is_not_known_are_told_apart() {
+fn damaged_and_unsupported_blocks_give_different_errors() {
     let with = |hierarchy: &[u8]| File::one_bit(hierarchy).refused();
     for (message, what) in [
         (

@@ -101,7 +101,7 @@ fn control_characters_are_space_and_no_endless_word() {
 }
 
 #[test]
-fn what_would_eat_the_memory_is_refused() {
+fn files_that_would_exhaust_memory_are_refused() {
     let wide = GOOD.replace("wire 8 y y", "wire 4294967295 y y");
     assert!(error(wide.as_bytes()).contains("leave out memories"));
 

@@ -63,7 +63,7 @@ fn golden_every_producer_recorded_the_same_counter() {
 }
 
 #[test]
-fn golden_what_is_not_recorded_is_not_compared() {
+fn golden_unrecorded_periods_are_not_compared() {
     for (a, b) in [
         ("icarus.vcd", "icarus_dumpoff.vcd"),
         ("icarus_dumpoff.vcd", "icarus.vcd"),

@@ -67,7 +67,7 @@ fn golden_recordings_compare_as_their_names_say() {
 }
 
 #[test]
-fn golden_a_value_of_another_kind_than_declared_is_compared_as_what_it_is() {
+fn golden_values_of_an_undeclared_kind_are_compared_by_their_actual_kind() {
     for (declared, values) in [
         // MyHDL: enumerations and numbers on real numbers.
         ("real 1", ["sidle", "srun"]),
@@ -500,7 +500,7 @@ fn golden_events_are_compared_by_the_times_at_which_they_happen() {
 }
 
 #[test]
-fn golden_what_producers_write_is_read() {
+fn golden_files_of_every_producer_are_read() {
     let plain = vcd(
         "$var wire 1 ! a $end\n$var wire 4 # v [3:0] $end",
         "#0\n0!\nb0 #\n#5\n1!\nb101 #\n#9\n0!",
@@ -575,7 +575,7 @@ fn a_file_of_first_values_alone_needs_no_end_of_dumpvars() {
 }
 
 #[test]
-fn a_file_without_signals_or_changes_is_said_to_have_none() {
+fn a_note_names_a_file_without_signals_or_changes() {
     for (text, reason) in [
         (
             "$timescale 1ns $end\n$enddefinitions $end\n#0\n".to_owned(),

@@ -125,7 +125,7 @@ fn a_merged_file_has_text_and_vectors_that_were_put_together() {
 }
 
 #[test]
-fn some_signals_are_compared_and_shown_as_all_are() {
+fn a_selection_of_signals_gives_the_same_result_as_all() {
     // The signals that are left out come first, and have values of any kind.
     let others =
         "$var wire 4 0 x0 [3:0] $end\n$var real 64 1 x1 $end\n$var string 1 2 x2 $end\n$var event 1 3 x3 $end\n";
@@ -285,7 +285,7 @@ fn clocked(changes: &[(u64, &str)]) -> String {
 }
 
 #[test]
-fn what_no_sample_sees_is_counted_by_signal() {
+fn changes_between_samples_are_counted_by_signal() {
     // By hand: the values that others replace before the next edge, of both files.
     for (a, b, changes, signals) in [
         (&[(7, "1y")][..], &[(7, "1y")][..], 0, &[][..]),
@@ -330,7 +330,7 @@ fn what_no_sample_sees_is_counted_by_signal() {
 }
 
 #[test]
-fn what_comes_after_the_last_edge_is_named_and_so_is_what_differs_there() {
+fn changes_and_differences_after_the_last_edge_are_named() {
     let files = Files::new(&clocked(&[(36, "1y"), (37, "b1 w")]), &clocked(&[(37, "b1 w")]));
     let comparison = files.compare(&DiffOptions::default());
     assert_eq!(comparison.result, DiffVerdict::Equal, "{comparison}");
@@ -380,7 +380,7 @@ fn what_comes_after_the_last_edge_is_named_and_so_is_what_differs_there() {
 }
 
 #[test]
-fn without_a_clock_what_is_replaced_at_its_own_time_is_counted() {
+fn without_a_clock_values_replaced_at_the_same_time_are_counted() {
     let file = |changes: &str| {
         vcd(
             "$var wire 1 y y $end\n$var wire 8 w w $end",

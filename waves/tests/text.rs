@@ -143,7 +143,7 @@ fn widths_that_differ_are_named() {
 }
 
 #[test]
-fn what_only_one_file_has_is_counted_by_itself() {
+fn signals_of_only_one_file_are_counted_separately() {
     let file = |widths: &[u32]| vcd("1 ns", 1, widths, &[&[7, 3, 4], &[8, 3, 4]], "stage");
     let options = DiffOptions {
         require_all: true,

@@ -29,7 +29,7 @@ impl LateBar {
                 Some(_) => "comparing {wide_bar} {bytes}/{total_bytes} {elapsed}, {eta} left",
                 None => "comparing {spinner} {bytes} {elapsed}",
             };
-            // A template that were wrong would leave the ordinary bar.
+            // With an invalid template, the default bar stays.
             self.bar = Some(match ProgressStyle::with_template(template) {
                 Ok(style) => bar.with_style(style),
                 Err(_) => bar,

@@ -58,16 +58,16 @@ fn text(rows: &[Row], odd: &[(prop::sample::Index, usize)]) -> String {
     text
 }
 
-/// Returns everything that a result says, or its error.
-fn said(path: [&Path; 2], options: &DiffOptions, plainly: bool) -> String {
+/// Returns the whole result as text, or its error.
+fn result_text(path: [&Path; 2], options: &DiffOptions, plainly: bool) -> String {
     let compared = compare_by(path[0], path[1], options, &mut |_| {}, plainly);
     let whole = |mut comparison: Comparison| {
-        // What equal bytes have between the samples is equal, and is not counted.
+        // Changes between samples are not counted in equal bytes, so only reading every change reports them.
         comparison.unsampled = None;
         let counts_changes = |note: &String| {
             ["was not compared", "were not compared"]
                 .iter()
-                .any(|said| note.contains(said))
+                .any(|words| note.contains(words))
         };
         comparison.notes.retain(|note| !counts_changes(note));
         format!("{comparison}\n{comparison:?}")
@@ -99,7 +99,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn prop_following_the_same_bytes_says_what_reading_every_change_says(
+    fn prop_following_equal_bytes_gives_the_same_result(
         rows in rows(),
         edits in edits(),
         odd in prop::collection::vec((any::<prop::sample::Index>(), 0usize..5), 0..2),
@@ -136,8 +136,8 @@ proptest! {
             // Then there are times at which nothing is compared.
             options.ignore.extend(raw.then(|| "t.clk".to_owned()));
         }
-        prop_assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
-        prop_assert_eq!(said([&b, &a], &options, false), said([&b, &a], &options, true));
+        prop_assert_eq!(result_text([&a, &b], &options, false), result_text([&a, &b], &options, true));
+        prop_assert_eq!(result_text([&b, &a], &options, false), result_text([&b, &a], &options, true));
     }
 }
 
@@ -162,7 +162,10 @@ fn stretches_that_are_the_same_are_found() {
         let result = compare_by(&a, &b, &options, &mut |_| reports += 1, false).unwrap();
         assert!(reports > 100, "{reports}");
         assert_eq!(result.differences.len(), 1, "{result}");
-        assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
+        assert_eq!(
+            result_text([&a, &b], &options, false),
+            result_text([&a, &b], &options, true)
+        );
     }
 }
 
@@ -231,7 +234,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn prop_chains_that_are_the_same_say_what_reading_every_change_says(
+    fn prop_skipping_equal_chains_gives_the_same_result(
         rows in rows(),
         edits in edits(),
         blocks in [1usize..60, 1usize..60],
@@ -254,8 +257,8 @@ proptest! {
             let latency = if raw { "w2=7ns" } else { "w2=1" };
             options.add_latency(latency).unwrap();
         }
-        prop_assert_eq!(said([&a, &b], &options, false), said([&a, &b], &options, true));
-        prop_assert_eq!(said([&b, &a], &options, false), said([&b, &a], &options, true));
+        prop_assert_eq!(result_text([&a, &b], &options, false), result_text([&a, &b], &options, true));
+        prop_assert_eq!(result_text([&b, &a], &options, false), result_text([&b, &a], &options, true));
     }
 }
 
@@ -316,7 +319,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn prop_single_bits_differ_at_the_samples_at_which_they_differ_one_by_one(
+    fn prop_counts_of_single_bits_match_a_signal_by_signal_count(
         rows in prop::collection::vec(prop::collection::btree_map(0..BITS, prop::sample::select(vec!['0', '1', 'x']), 0..8), 1..60),
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0..BITS, prop::sample::select(vec!['0', '1', 'x'])), 0..4),
         reversed: bool,

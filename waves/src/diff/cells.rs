@@ -1,8 +1,7 @@
-//! Keeps both values side by side of the pairs that are compared word by word, which are nearly all.
+//! Keeps the two values of a pair side by side, for the pairs that are compared word by word: nearly all.
 //!
-//! A change costs one comparison, and a sample at which all are equal again costs nothing. Changes since the last
-//! sample are noted with the value at that sample. Signals of one bit, of which most designs have the most, and which
-//! change the most, have both values in one byte.
+//! A change costs one comparison, and a sample at which all are equal again costs nothing. Changes since the last sample are noted with the
+//! value at that sample. Most signals of a design have one bit, and they change most often, so one byte holds both their values.
 
 use super::matching::Pair;
 use super::rule::Rule;
@@ -40,7 +39,7 @@ impl NotedBit {
     }
 }
 
-/// A pair of slots of which each has the other as its only partner.
+/// Two slots that are each other's only partner.
 pub(super) struct Partners {
     pub(super) slots: [u32; 2],
     pub(super) width: u32,
@@ -67,8 +66,8 @@ pub(super) struct Cells {
     noted: Vec<Noted>,
 }
 
-/// What a digit of a file does to a cell of one bit, by the cell's digits and, above them, the new one: the digits after
-/// that, and these flags.
+/// Effect of a new digit of a file on a cell of one bit: the cell's digits after it, and these flags. The index has the cell's digits in
+/// its lower four bits and the new digit above them.
 static STEPS: [[u8; 64]; 2] = {
     let mut steps = [[0; 64]; 2];
     let mut at = 0;
@@ -93,19 +92,19 @@ struct Bits<'a> {
     notes: &'a mut [NotedBit],
     count: usize,
     unequal: usize,
-    /// The flag of what is noted.
+    /// Flag that a change must have to be noted.
     noted_if: u8,
 }
 
 impl Bits<'_> {
-    /// Changes the digit of one file; returns `false` if it is no such cell.
+    /// Changes the digit of one file; returns `false` if the cell has more than one bit.
     #[inline(always)] // a call for each change takes as long as the rest of it
     fn set<const SIDE: usize>(&mut self, cell: u32, digit: u8) -> bool {
         let (Some(both), Some(note)) = (self.both.get_mut(cell as usize), self.notes.get_mut(self.count)) else {
             return false;
         };
         let step = STEPS[SIDE][usize::from(*both & 15 | digit << 4) & 63];
-        // It is noted without a branch: in the first place that is left, which counts if there was something to note.
+        // The note is written without a branch to the first free place, and counts only if it is needed.
         *note = NotedBit(cell << 4 | u32::from(*both));
         *both = step & 15;
         self.count += usize::from(step & self.noted_if != 0);
@@ -202,7 +201,7 @@ impl Cells {
     }
 
     fn take_of<const SIDE: usize>(&mut self, mut changes: Changes<'_>, mut other: impl FnMut(u32, Changed<'_>)) {
-        // What the loop needs is in variables of its own: after each byte written, the fields would be read again.
+        // Local copies: the compiler would read the fields again after each byte written.
         let of_slot = &self.of_slot[SIDE][..];
         let cell_of = |slot: u32| of_slot.get(slot as usize).copied().unwrap_or(GENERAL);
         let was_different = self.different > 0;

@@ -81,8 +81,8 @@ impl Engine<'_> {
         }
     }
 
-    /// Counts the next samples up to which nothing changes in either file: they say what the one before said. Returns the times of
-    /// the last of them and of the one before it.
+    /// Counts the next samples up to which nothing changes in either file, so that their result is that of the sample before. Returns the
+    /// times of the last of them and of the one before it.
     fn sample_quiet_edges(&mut self, progress: &mut dyn FnMut(Progress)) -> Option<[u128; 2]> {
         let unit_fs = self.a.unit_fs();
         let is_gathering = self.context.as_ref().is_some_and(Gathering::is_missing_some);

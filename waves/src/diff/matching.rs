@@ -51,7 +51,7 @@ pub(super) struct Matched {
     pub(super) not_compared: Vec<String>,
     /// Slots of each file that are made of bits of others, after those of the file.
     pub(super) derived: [Vec<Derived>; 2],
-    /// Vectors whose bits were placed without a file that says where.
+    /// Vectors whose bit order is assumed, because neither file declares it.
     pub(super) assumed: Vec<String>,
     /// Vectors that both files declare with other indices, or the other way round: first file, second file.
     pub(super) ranges: Vec<(String, [Range; 2])>,
@@ -443,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn tops_are_stripped_when_nothing_else_meets() {
+    fn top_scopes_are_stripped_when_no_full_name_matches() {
         assert_eq!(
             partners(&["model.x.y", "model.clk"], &["TOP.rtl.x.y", "TOP.rtl.clk"], &[]),
             [(Some(0), Some(0)), (Some(1), Some(1))]
@@ -455,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn other_writings_of_one_name_meet_where_there_is_one_candidate() {
+    fn canonical_names_match_a_single_candidate() {
         assert_eq!(
             partners(&["t.a$step", "t.clk"], &["TOP.t.a__step", "TOP.t.clk"], &[]),
             [(Some(0), Some(0)), (Some(1), Some(1))]
@@ -488,7 +488,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_that_meet_nothing_are_errors() {
+    fn maps_that_match_nothing_are_errors() {
         for (from, to) in [("nothing", "t.x"), ("t.x", "nothing"), ("no_*", "t.*"), ("t.*", "no_*")] {
             let maps = [(from.to_owned(), to.to_owned())];
             assert!(Matched::new(&names(&["t.x"]), &names(&["t.x"]), &maps, [1; 2]).is_err());

@@ -137,7 +137,7 @@ fn compare_by(
     }
 }
 
-/// Reads both files once, with signals that hold values of any kind. Returns also those that should have held them.
+/// Reads both files once; the signals in `odd` hold values of any kind. Also returns the signals that should have been among them.
 fn compare_once(
     [a, b]: [&Path; 2],
     options: &DiffOptions,

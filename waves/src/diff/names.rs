@@ -24,16 +24,16 @@ pub(super) struct Entry {
     pub(super) path: String,
     /// Full name.
     pub(super) full: String,
-    /// The first slot, if it is a vector in parts.
+    /// Its slot; that of the first part, if it is a vector in parts.
     pub(super) slot: u32,
     /// Its bits, if it has any.
     pub(super) shape: Option<Shape>,
-    /// Full name of the vector of which it is a part, if the file has that only in parts.
+    /// Full name of the vector it belongs to, if the file has that vector only in parts.
     pub(super) part_of: Option<Box<str>>,
 }
 
 impl Entry {
-    /// Whether it is a vector of which the file has only parts.
+    /// Whether it is a vector that the file has only in parts.
     pub(super) fn is_in_parts(&self) -> bool {
         matches!(self.shape, Some(Shape::Parts(_)))
     }
@@ -192,13 +192,13 @@ impl Names {
     }
 }
 
-/// Returns the parts of a vector, if the file has it in parts: none that holds all the others, and none over another.
+/// Returns the parts of a vector, if the file has it only in parts: no part contains all the others, and no two overlap.
 fn parts(declarations: &Declarations, members: &[usize]) -> Option<Vec<(u32, Range)>> {
     let mut parts = Vec::new();
     for at in members {
         let named = &declarations.names[*at];
         let (vector, range) = named.part.as_ref()?;
-        // A vector that is there once as a whole is no part of anything.
+        // A vector that the file declares once, as a whole, is not a part.
         if members.len() == 1 && *vector == named.path
             || !matches!(declarations.kinds[named.slot as usize], Kind::Bits(_))
         {
@@ -244,7 +244,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_writing_for_all() {
+    fn equivalent_names_have_one_canonical_form() {
         for written in [
             "dut.a$mem[3]",
             "DUT.a__mem(3)",
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_root_and_filters_choose() {
+    fn a_root_and_filters_select_names() {
         let mut declarations = Declarations::default();
         let slot = declarations.add_slot(Kind::Bits(8)).unwrap();
         for (scope, names) in [("tb", ["clk", "y"]), ("dut", ["y", "z"])] {

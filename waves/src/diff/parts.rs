@@ -1,7 +1,7 @@
 //! Vectors that a file has in parts: single bits, or ranges of bits.
 //!
-//! The bits of both files meet by their index. Which place an index has in a vector is what the file says that has the
-//! vector as a whole: of `v [0:3]`, index 0 is the first digit; of `v [3:0]`, the last.
+//! The bits of both files meet by their index. The file that has the vector as a whole determines where an index lies
+//! in it: of `v [0:3]`, index 0 is the first digit; of `v [3:0]`, the last.
 //!
 //! | first file | second file | compared |
 //! |---|---|---|
@@ -78,7 +78,7 @@ pub(super) fn parts_by_slot<'a>(derived: impl Iterator<Item = &'a Derived>, slot
 /// A vector of a file as it is declared.
 #[derive(Debug, Clone)]
 pub(super) enum Shape {
-    /// One signal of this width, with its range if the file says it.
+    /// One signal of this width, with its range if the file declares it.
     Whole {
         slot: u32,
         width: u32,
@@ -89,7 +89,7 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// Returns the range of one signal, if the file says it.
+    /// Returns the range of one signal, if the file declares it.
     pub(super) fn range(&self) -> Option<Range> {
         match self {
             Self::Whole { range, .. } => *range,
@@ -114,7 +114,7 @@ pub(super) enum Meeting {
         common: Vec<Common>,
         /// Bits that only one has.
         only: [Vec<Bits>; 2],
-        /// Whether no file says which index is the first digit.
+        /// Whether neither file says which index is the first digit.
         assumed: bool,
     },
 }
@@ -148,7 +148,7 @@ impl Bits {
         self.bits.len() as u32
     }
 
-    /// Returns the slot of which these are all bits, in its order; `widths` returns a slot's width.
+    /// Returns the slot that consists of exactly these bits, in this order; `widths` returns a slot's width.
     pub(super) fn slot(&self, width: impl Fn(u32) -> u32) -> Option<u32> {
         let (slot, _) = *self.bits.first()?;
         let in_order = self.bits.iter().zip(0..).all(|(bit, at)| *bit == (slot, at));
@@ -210,7 +210,7 @@ pub(super) fn meeting(a: &Shape, b: &Shape) -> Meeting {
             return Meeting::AsDeclared;
         };
         let width = |range: &Range| range.left.abs_diff(range.right);
-        // Of two that end alike, the narrower is extended: more is compared than what they have in common.
+        // If both end with the same index, the narrower is extended, which compares more than their common bits.
         if width(of_a) == width(of_b) || of_a.right == of_b.right {
             return Meeting::AsDeclared;
         }
@@ -231,7 +231,7 @@ pub(super) fn meeting(a: &Shape, b: &Shape) -> Meeting {
     let (Some(of_a), Some(of_b)): (Option<Indexed>, Option<Indexed>) = (maps_a, maps_b) else {
         return Meeting::Apart;
     };
-    // The significance of the bits is that of the file that has a whole.
+    // The file that has the whole vector determines the significance of the bits.
     let ascending = [a, b].into_iter().any(|shape| match shape {
         Shape::Whole { range: Some(range), .. } => range.left < range.right,
         Shape::Whole { slot, .. } => {
@@ -293,8 +293,8 @@ pub(super) fn meeting(a: &Shape, b: &Shape) -> Meeting {
     }
 }
 
-/// Returns the range of a vector that does not say it, from the parts of the other file: descending, if no part says
-/// otherwise.
+/// Returns the range of a vector that is declared without one, from the parts of the other file: descending, unless a
+/// part says otherwise.
 fn assumed_range(width: u32, other: &Shape) -> Option<Range> {
     let Shape::Parts(parts) = other else { return None };
     let ends = || parts.iter().flat_map(|(_, range)| [range.left, range.right]);
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_have_the_place_that_the_whole_gives_them() {
+    fn the_whole_vector_orders_the_bits() {
         for (whole_range, order) in [((3, 0), [0, 1, 2, 3]), ((0, 3), [3, 2, 1, 0])] {
             let Meeting::ByIndex {
                 whole: true, common, ..

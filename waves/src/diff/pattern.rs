@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_wildcard_took_goes_into_the_other_name() {
+    fn captured_text_fills_the_wildcards_of_the_other_name() {
         let (from, to) = (Pattern::new("*.*_reg").unwrap(), Pattern::new("core.*.q_*").unwrap());
         let captured = from.whole("dut.count_reg").unwrap();
         assert_eq!(to.filled(&captured), "core.dut.q_count");

@@ -130,7 +130,7 @@ pub struct Unsampled {
 }
 
 impl Unsampled {
-    /// Returns what is to be said of it.
+    /// Returns the notes for the reader of the result.
     pub(super) fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         let named = |changes: u64, signals: &[String]| {

@@ -174,7 +174,7 @@ impl Rule {
             }
             (Value::Text(a), Value::Text(b)) => a == b,
             (Value::Event(a), Value::Event(b)) => a == b,
-            // No value yet, of which the kind is not known.
+            // Neither has had a value yet, and the kind of one is unknown.
             (Value::Text([0, ..]), Value::Real(None)) | (Value::Real(None), Value::Text([0, ..])) => true,
             (Value::Text([0, ..]), Value::Bits { unknown, .. })
             | (Value::Bits { unknown, .. }, Value::Text([0, ..])) => unknown.iter().any(|word| *word != 0),
@@ -183,7 +183,7 @@ impl Rule {
     }
 
     fn near(&self, a: f64, b: f64) -> bool {
-        // A part of infinity is infinity: no number is within a tolerance of it.
+        // A share of infinity is infinite, so no number may count as within a tolerance of it.
         let within = || {
             self.tolerance
                 .is_some_and(|t| (a - b).is_finite() && (a - b).abs() <= t.limit(a, b, self.lsb()))
@@ -191,7 +191,7 @@ impl Rule {
         a == b || (a.is_nan() && b.is_nan()) || within() || (self.to_16_digits && same_16_digits(a, b))
     }
 
-    /// Returns whether two values that are equal are so only to the digits that a VCD has.
+    /// Returns whether two values that count as equal agree only in the digits that a VCD has.
     pub(super) fn rounds(&self, a: Value<'_>, b: Value<'_>) -> bool {
         let exactly = Self {
             to_16_digits: false,
@@ -200,7 +200,7 @@ impl Rule {
         self.to_16_digits && matches!((a, b), (Value::Real(_), Value::Real(_))) && !exactly.equal(a, b)
     }
 
-    /// Returns by how much two numbers differ, of which at least one is real.
+    /// Returns the distance of two numbers, at least one of which is real.
     pub(super) fn distance(&self, a: Value<'_>, b: Value<'_>) -> Option<f64> {
         let number = |value: Value<'_>| match value {
             Value::Real(real) => real,
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn infinity_is_near_nothing_but_itself() {
+    fn infinity_equals_only_itself() {
         let near = |a: f64, b: f64| {
             let rule = Rule {
                 tolerance: Some(Tolerance::Relative(0.5)),

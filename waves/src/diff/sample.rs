@@ -99,7 +99,7 @@ impl PortMap {
         let block = Names::new(&declared, None, &Filter::new(&[], &[])?, "block's")?;
         let slots = [wave.declarations.kinds.len(), declared.kinds.len()];
         let mut matched = Matched::new(&file, &block, &options.maps, slots)?;
-        // A port of which the file has only some bits is not in the file.
+        // A port counts as missing if the file has only some of its bits.
         matched
             .pairs
             .retain(|pair| pair.b.is_none_or(|slot| (slot as usize) < slots[1]));

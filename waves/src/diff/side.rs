@@ -198,7 +198,7 @@ impl Side {
         }
     }
 
-    /// Takes so many of [`Side::quiet_edges`] for returned.
+    /// Treats the first `count` of [`Side::quiet_edges`] as returned.
     pub(super) fn skip_edges(&mut self, count: usize) {
         self.feed.skip(count);
     }

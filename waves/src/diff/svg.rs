@@ -176,7 +176,7 @@ fn x(time: u128, window: Window) -> f64 {
     NAME_WIDTH + WAVE_WIDTH * part.min(1.0)
 }
 
-/// Returns the end of a long name: it tells more than its scopes.
+/// Returns the end of a long name, which identifies a signal better than its scopes.
 fn tail(name: &str) -> String {
     let room = ((NAME_WIDTH - 30.0) / CHARACTER) as usize;
     let count = name.chars().count();

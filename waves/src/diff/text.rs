@@ -207,7 +207,7 @@ fn column(texts: impl Iterator<Item = String>) -> usize {
     texts.map(|text| text.chars().count()).max().unwrap_or(0)
 }
 
-/// Returns the end of a long text: in names and numbers, the end tells more.
+/// Returns the end of a long text, which is the most specific part of a name or number.
 fn short(text: &str, length: usize) -> String {
     let count = text.chars().count();
     if count <= length {

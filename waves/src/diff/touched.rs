@@ -8,7 +8,7 @@ pub(super) struct Touched {
     pub(super) listed: Listed,
     /// Whether each pair waits for a delayed value to arrive.
     pub(super) waiting: Vec<bool>,
-    /// The pairs that are simpler than that.
+    /// The pairs that are compared word by word.
     pub(super) cells: Cells,
     /// The states beside the values.
     pub(super) states: States,
@@ -58,7 +58,7 @@ pub(super) struct States {
     of: [Vec<u64>; 2],
     /// Number of slots that have one now.
     live: [usize; 2],
-    /// Pairs of which the state of one side, or its value, has changed.
+    /// Pairs whose state or value has changed on one side.
     changed: Listed,
 }
 
@@ -69,7 +69,7 @@ impl States {
         self.live != [0; 2]
     }
 
-    /// Sets the state of a slot of a file that has so many slots. Returns the state before.
+    /// Sets the state of a slot of a file that has `slots` slots. Returns the state before.
     pub(super) fn set(&mut self, side: usize, slot: u32, state: u64, slots: usize) -> u64 {
         let of = &mut self.of[side];
         if of.is_empty() {

@@ -16,7 +16,7 @@ use super::*;
 /// differently.
 type Changes = Vec<Vec<(u64, String)>>;
 
-/// Normalises digits, of which the last is the least significant one; `U`, `W` and `-` are `x`, `H` is 1, `L` is 0.
+/// Normalises digits, the last of which is the least significant; `U`, `W` and `-` become `x`, `H` 1, `L` 0.
 fn plain(digits: &str, width: usize) -> String {
     let digits: String = digits
         .chars()
@@ -153,7 +153,7 @@ fn golden_every_recording_reads_as_by_wellen() {
     let files = fixtures();
     assert!(files.len() >= 8, "{files:?}");
     for path in files {
-        // It assembles single bits to a vector.
+        // The crate assembles single bits to a vector.
         if path.ends_with("modelsim_style.vcd") {
             continue;
         }

@@ -6,8 +6,8 @@
 //!  words                bits                            bits, unknown bits             in the order of their changes
 //! ```
 //!
-//! Most changes are single bits, and then most are known vectors of at most 64 bits: what passes between two threads for
-//! each counts as much as what is done with it.
+//! Most changes are single bits, and most others are known vectors of at most 64 bits. Passing a change between threads costs as much as
+//! processing it, so each takes only a few bytes.
 
 use crate::pile::Pile;
 
@@ -132,8 +132,7 @@ impl Batch {
         found.map_or(0, |at| self.states[at].1)
     }
 
-    /// Returns the changes from `first` to `end`, the words of which begin at `first_word`. `lengths` has the number of
-    /// words of each slot.
+    /// Returns the changes from `first` to `end`, whose words begin at `first_word`. `lengths` has the number of words of each slot.
     #[inline]
     pub(super) fn changes<'a>(
         &'a self,
@@ -200,8 +199,8 @@ impl<'a> Iterator for Changes<'a> {
 
 /// A new value.
 ///
-/// Short values are passed on without a place in memory: to read them from where they were just written to, in other
-/// pieces, would cost more than everything else that happens to a change.
+/// Short values are passed by value: reading them back from memory right after they were written there in other pieces would cost more than
+/// the rest of the work for a change.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Changed<'a> {
     /// The digit of a signal of one bit, as in [`super::digits`].

@@ -23,7 +23,7 @@ const WORD_BYTES: usize = 1 << 20;
 const COMMAND_WORDS: usize = 1 << 10;
 
 const REAL_TYPES: [&str; 5] = ["real", "shortreal", "realtime", "real_parameter", "real_time"];
-/// Types that a scope may have; a scope of one word that is none of them has a name and no type.
+/// Types that a scope may have. If the only word of a `$scope` is not among them, it is the scope's name.
 const SCOPE_TYPES: [&str; 20] = [
     "module",
     "task",
@@ -62,7 +62,7 @@ const UNITS: [(&str, u64); 7] = [
 pub(super) enum Stop {
     /// What is wrong in the current line.
     Wrong(String),
-    /// In what the file ends.
+    /// Where the file ends too early.
     Cut(&'static str),
 }
 
@@ -132,8 +132,7 @@ impl<R: BufRead> Words<'_, R> {
         }
     }
 
-    /// Takes the words of a command up to its `$end`. The first `certain` words are not taken for it: an id code may
-    /// be `$end`.
+    /// Takes the words of a command up to its `$end`. The first `certain` words never count as this end, because an id code may be `$end`.
     fn command(&mut self, certain: usize) -> Result<Vec<String>, Stop> {
         let mut words: Vec<String> = Vec::new();
         loop {
@@ -161,7 +160,7 @@ impl<R: BufRead> Words<'_, R> {
     }
 }
 
-/// Reads a VCD up to the value changes. `line` counts the lines, so that it is that of a problem.
+/// Reads a VCD up to the value changes. `line` counts the lines, for error messages.
 pub(super) fn read<R: BufRead>(
     input: &mut R,
     line: &mut u64,
@@ -341,7 +340,7 @@ mod tests {
 
     /// Returns the declarations, the notes, and what was left unread.
     fn read_slowly(text: &str) -> (Declarations, String) {
-        // It reads one byte at a time, so that every word is cut everywhere.
+        // The buffer of one byte cuts every word at every place.
         let mut inner = io::BufReader::with_capacity(1, text.as_bytes());
         let read = read(&mut inner, &mut 1, Selection::default()).unwrap_or_else(|_| panic!("{text}"));
         let mut rest = String::new();
@@ -367,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unusual_is_read_with_a_note() {
+    fn unusual_declarations_are_read_with_a_note() {
         for (text, path, note) in [
             (
                 "$scope module $end $var wire 1 ! a $end $upscope $end $enddefinitions $end ",
@@ -403,7 +402,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_are_not_wanted_take_no_memory() {
+    fn unwanted_names_take_no_memory() {
         let mut text = "$scope module t $end ".to_owned();
         for at in 0..1000 {
             // The last has the id code of the first.

@@ -7,8 +7,8 @@
 //! | `x`, and what VHDL has beside it: `U`, `W`, `-`; `?` | 0 | 1 |
 //! | `z` | 1 | 1 |
 //!
-//! What a value with one of VHDL's additional states was written as is kept besides ([`state`]), so that the comparison
-//! can say where it took two states for one.
+//! If a value has one of VHDL's additional states, its original states are kept separately ([`state`]), so that the comparison can report
+//! where it treated two different states as equal.
 
 use super::values::hash;
 
@@ -59,8 +59,8 @@ pub(super) fn is_state(byte: u8) -> bool {
     digit != NO_DIGIT && digit & STATE != 0
 }
 
-/// Returns a number that stands for the states of digits, of which one is one of VHDL's additional states: equal for
-/// equal states however many equal ones lead, and never 0.
+/// Returns a number, never 0, for digits among which is one of VHDL's additional states. Equal states give equal numbers, however often the
+/// leading state is repeated.
 pub(super) fn state(digits: &[u8]) -> u64 {
     let plain = digits.to_ascii_uppercase();
     let repeated = plain
@@ -125,8 +125,8 @@ pub(super) fn known_run(data: &[u8], at: usize) -> (u64, usize) {
     (word, end)
 }
 
-/// Each byte of eight that are digits `0`, `1`, `x` or `z`: its bit, whether it is unknown, and what is left of a byte that
-/// is none of these.
+/// Returns, byte by byte, the bits of eight digits `0`, `1`, `x` or `z` and whether they are unknown; the third word is not zero in a byte
+/// that is no such digit.
 #[inline]
 fn eight_mixed(eight: u64) -> [u64; 3] {
     const EACH: u64 = u64::from_le_bytes([1; 8]);
@@ -311,7 +311,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn prop_packing_is_what_a_digit_at_a_time_gives(digits in "[01xzXZULHW-]{1,200}", more in 0u32..100) {
+        fn prop_packing_matches_one_digit_at_a_time(digits in "[01xzXZULHW-]{1,200}", more in 0u32..100) {
             let width = digits.len() as u32 + more;
             let words = width.div_ceil(64) as usize;
             let (mut bits, mut unknown) = (vec![7; words], vec![7; words]);
@@ -336,7 +336,7 @@ mod tests {
         }
 
         #[test]
-        fn prop_a_run_of_known_digits_ends_where_it_ends(digits in "[01]{0,64}", next in 0u8..=255, rest in any::<[u8; 7]>()) {
+        fn prop_known_digits_end_at_another_byte(digits in "[01]{0,64}", next in 0u8..=255, rest in any::<[u8; 7]>()) {
             prop_assume!(!b"01".contains(&next));
             let data = [digits.as_bytes(), &[next], &rest].concat();
             let expected = u64::from_str_radix(&digits, 2).unwrap_or(0);
@@ -344,7 +344,7 @@ mod tests {
         }
 
         #[test]
-        fn prop_a_run_of_digits_ends_where_it_ends(
+        fn prop_a_run_of_digits_ends_at_another_byte(
             digits in "[01xzXZ]{1,64}", next in 0u8..=255, rest in any::<[u8; 7]>(), more in 0u32..64,
         ) {
             prop_assume!(!b"01xzXZ".contains(&next));
@@ -362,7 +362,7 @@ mod tests {
         }
 
         #[test]
-        fn prop_a_decimal_number_ends_where_it_ends(zeros in "0{0,12}", number: u64, next in 0u8..=255, rest in any::<[u8; 17]>()) {
+        fn prop_decimal_number_ends_at_another_byte(zeros in "0{0,12}", number: u64, next in 0u8..=255, rest in any::<[u8; 17]>()) {
             prop_assume!(!next.is_ascii_digit());
             let digits = format!("{zeros}{number}");
             for behind in 0..=rest.len() {
@@ -375,7 +375,7 @@ mod tests {
         }
 
         #[test]
-        fn prop_what_is_no_digit_is_refused(before in "[01]{0,70}", byte in 0u8..=255, after in "[01]{0,70}") {
+        fn prop_other_bytes_are_refused(before in "[01]{0,70}", byte in 0u8..=255, after in "[01]{0,70}") {
             prop_assume!(digit(byte).is_none());
             let digits = [before.as_bytes(), &[byte], after.as_bytes()].concat();
             let words = digits.len().div_ceil(64);

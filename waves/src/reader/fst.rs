@@ -3,8 +3,8 @@
 //! Memory is bounded by the size of a block, which the writer chooses, and not by the length of the file; but a file that is
 //! packed as a whole, as GHDL writes it, is unpacked in memory first ([`super::fst_file`]).
 //!
-//! How a signal's values are written is in a block of its own, and tells its kind: bits, a real number or text. Where that
-//! block is missing, because the writer was stopped, the kind follows from the hierarchy.
+//! A block of its own says how each signal's values are written, and thereby their kind: bits, a real number or text. If that block is
+//! missing because the writer was stopped, the kind follows from the hierarchy.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -206,9 +206,9 @@ impl Declaring {
     }
 }
 
-/// Leaves out of both files the pairs of slots whose changes are the same in them, if the pairs without which nothing is
-/// gained are among them: a comparison would find them equal. With `every_time`, the first file's steps stay those at which
-/// anything changes. With `only_edges`, the first of those pairs is the watched clock, of which only the edges are wanted.
+/// Leaves out of both files the pairs of slots that have the same changes in both, because a comparison would find them equal. Does nothing
+/// unless all `needed` pairs are among them. With `every_time`, the first file still has a step at each time at which anything changes.
+/// With `only_edges`, the first needed pair is the watched clock, and only its edges are wanted.
 pub(super) fn leave_out_same(
     [a, b]: [&mut FstValues; 2],
     pairs: &[[u32; 2]],

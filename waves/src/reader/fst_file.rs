@@ -1,8 +1,8 @@
 //! The bytes of an FST, and the blocks in it.
 //!
-//! A damaged file may say anything of its lengths, and a program that cannot get its memory is ended by the system, so each
-//! length is compared with what the packed bytes can hold before memory is reserved for it. A file that is packed as a
-//! whole, as GHDL writes it, is unpacked here, in memory.
+//! A damaged file may state any length, and the system kills a program that asks for too much memory. So each length is compared with what
+//! the packed bytes can hold before memory is reserved for it. A file that is packed as a whole, as GHDL writes it, is unpacked here, in
+//! memory.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};

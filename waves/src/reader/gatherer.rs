@@ -169,7 +169,7 @@ impl Gatherer {
             let room = changes.room(1);
             let places = room.len();
             for place in room {
-                // First, since where any signal is left out, most are.
+                // Tried first: if any signal is left out, most are.
                 while let Some(next) = lines.left_out(data, at) {
                     at = next;
                 }
@@ -205,7 +205,7 @@ impl Gatherer {
         at
     }
 
-    /// Whether all signals have got their values at the first time, and nothing has happened since.
+    /// Whether all signals got their values at the first time, and nothing has happened since.
     pub(super) fn has_all_values(&self) -> bool {
         let mut has_value = vec![false; self.kinds.len()];
         for change in self.batch.changes.as_slice() {
@@ -286,8 +286,8 @@ impl Gatherer {
         }
     }
 
-    /// Notes that an event happens. Where the file repeats all values, as after a period without recording, it does not tell
-    /// so; what it says of events at its first time is how they begin.
+    /// Notes that an event happens. A dump of all values, such as after a period without recording, does not say whether an event happens;
+    /// at the first time, the file only gives the initial state of its events.
     pub(super) fn put_event(&mut self, slot: u32) {
         let begins = self.first_time.is_none_or(|first| first == self.time);
         if begins || self.in_dump || self.off || self.was_off {
@@ -316,7 +316,7 @@ impl Gatherer {
         }
     }
 
-    /// Makes the current step count although nothing may change in it.
+    /// Makes the current step count even if nothing changes in it.
     pub(super) fn keep_step(&mut self) {
         self.is_kept = true;
     }

@@ -11,7 +11,7 @@ const NAME_BYTES: usize = 1 << 30;
 const DEPTH: usize = 256;
 const TOTAL_BITS: u64 = 1 << 27;
 
-/// Returns what is said of a file with too many signals.
+/// Returns the message for a file with too many signals.
 pub(super) fn too_many_signals() -> String {
     format!("more than {MOST_SIGNALS} signals: dump fewer scopes")
 }
@@ -70,14 +70,14 @@ pub(crate) struct Named {
     pub(crate) path: String,
     /// Slot of its value.
     pub(crate) slot: u32,
-    /// The path without the index, and the declared bits, if it is declared as a part of a vector.
+    /// The path without the index, and the declared bits, if it is declared as part of a vector.
     pub(crate) part: Option<(String, Range)>,
 }
 
-/// Whether a name is wanted, by its path and that of the vector of which it is a part; `None` for one outside of the root.
+/// Decides from the path of a name, and of the vector it is a part of, whether it is wanted; `None` outside of the root.
 pub(crate) type Wanted = Arc<dyn Fn(&str, Option<&str>) -> Option<bool> + Send + Sync>;
 
-/// The names that are wanted of a file; the others take no memory.
+/// The wanted names of a file; the others take no memory.
 #[derive(Clone, Default)]
 pub(crate) struct Selection(pub(crate) Option<Wanted>);
 

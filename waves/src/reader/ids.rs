@@ -134,7 +134,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn prop_the_short_way_gives_the_same_number(id in prop::collection::vec(any::<u8>(), 0..6), behind in any::<[u8; 3]>()) {
+        fn prop_short_ids_have_the_same_number(id in prop::collection::vec(any::<u8>(), 0..6), behind in any::<[u8; 3]>()) {
             let data = [id.as_slice(), &behind, b"\n\n\n\n\n\n\n\n"].concat();
             prop_assert_eq!(short_id_number(&data, 0), id_number(&data, 0));
         }

@@ -1,7 +1,7 @@
 //! Lines of a VCD of the two commonest forms: one bit, `1!` or `x"a`, and a vector of at most 64 bits, `b10x0 $`.
 //!
-//! The time of a comparison goes by the change, so these are recognised from few loads and one table for the id code.
-//! Whatever else a line is, is left to [`super::section`].
+//! The time of a comparison grows with the number of changes, so these forms are recognised with few loads and one table for the id code.
+//! All other lines are left to [`super::section`].
 
 use super::digits::{DIGITS, extended, known_run, mixed_run, run_end};
 use super::header::Kind;
@@ -30,7 +30,7 @@ pub(super) struct Lines {
     one: [u32; 256],
     /// By number, see [`Ids`].
     more: Vec<u32>,
-    /// By character: its part of a number as the first, second or third; beyond all numbers if it is none of an id code.
+    /// By character: its part of a number as the first, second or third; beyond all numbers for a character that no id code may have.
     parts: [[u32; 256]; 3],
     /// Width by slot.
     widths: Vec<u32>,
@@ -63,7 +63,7 @@ pub(super) struct WordLine {
 }
 
 impl Lines {
-    /// `kinds` has the kind by slot; `is_other` tells whose lines are to be taken for others.
+    /// `kinds` has the kind by slot; `is_other` returns whether a slot's lines are always left to the general reader.
     pub(super) fn new(ids: &Ids, kinds: &[Kind], clock: Option<u32>, is_other: impl Fn(u32) -> bool) -> Self {
         let form = |slot: u32| match kinds[slot as usize] {
             _ if is_other(slot) => OTHER,
@@ -111,13 +111,13 @@ impl Lines {
         Some((*self.more.get(number as usize)?, length))
     }
 
-    /// Returns the line of one bit at `at`, if it is one, and eight bytes are there.
+    /// Returns the line at `at` if it changes one bit, and at least eight bytes are left.
     #[inline(always)]
     pub(super) fn bit(&self, data: &[u8], at: usize) -> Option<BitLine> {
         let line = eight(data, at)?;
         let digit = DIGITS[line as u8 as usize];
         if digit > 3 {
-            // It is none, or one of VHDL's, which are noted.
+            // Not a digit, or one of VHDL's states, which must be noted.
             return None;
         }
         let (entry, length) = self.entry(line >> 8)?;
@@ -130,7 +130,7 @@ impl Lines {
         })
     }
 
-    /// Returns the position after the line of digits at `at`, if it changes a signal that is left out, and enough bytes are there.
+    /// Returns the position after the line at `at`, if it changes a signal that is left out, and enough bytes are left.
     #[inline]
     pub(super) fn left_out(&self, data: &[u8], at: usize) -> Option<usize> {
         if !self.has_left_out {
@@ -150,7 +150,7 @@ impl Lines {
         (entry & FORM == LEFT_OUT).then_some(id_at + length + 1)
     }
 
-    /// Returns the line of a vector at `at`, if it is one, and enough bytes are there.
+    /// Returns the line at `at` if it changes a vector, and enough bytes are left.
     #[inline(always)]
     pub(super) fn word(&self, data: &[u8], at: usize) -> Option<WordLine> {
         if *data.get(at)? != b'b' {
@@ -201,7 +201,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn prop_a_line_has_the_slot_and_the_value_that_are_read_byte_by_byte(
+        fn prop_lines_match_reading_byte_by_byte(
             known in prop::collection::btree_set("[!-~]{1,4}", 1..40),
             which: prop::sample::Index,
             first in prop::sample::select(b"01xXzZuU-b#$".to_vec()),

@@ -13,8 +13,8 @@ use super::lines::Lines;
 use super::put::{put_digits, put_real, put_text, real};
 use super::twin::{Twins, read_at};
 
-/// Number of bytes of a piece, and per signal: what is done once for a piece goes by the signal. Fewer in tests, whose
-/// files are short.
+/// Number of bytes of a piece, and additional bytes per signal, because the fixed work for a piece grows with the
+/// number of signals. Less in tests, whose files are short.
 const PIECE: u64 = if cfg!(test) { 200 } else { 1 << 18 };
 const PER_SIGNAL: u64 = if cfg!(test) { 0 } else { 16 };
 const MOST_PIECE: u64 = 1 << 21;
@@ -50,7 +50,7 @@ pub(super) enum Found {
     End,
 }
 
-/// Up to where the values of a piece are wanted.
+/// The end of the period whose latest values are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum UpTo {
     /// Its end, which is quick.
@@ -174,7 +174,7 @@ impl<'a> Worker<'a> {
         let mut at = from;
         loop {
             loop {
-                // First, since where any signal is left out, most are.
+                // Tried first: if any signal is left out, most are.
                 while let Some(next) = self.common.left_out(data, at) {
                     if data[next - 1] != b'\n' {
                         return None;
@@ -296,7 +296,7 @@ impl<'a> Worker<'a> {
                 self.settle_lines(self.open.len());
                 piece.place = end as u64;
             }
-            // A piece without an edge does not tell where the samples are.
+            // The samples of a piece without an edge are not known.
             Some(_) if piece.samples == 0 => return None,
             Some(_) => {}
         }

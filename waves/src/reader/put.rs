@@ -2,7 +2,7 @@
 //!
 //! A value of another kind than its signal is declared with (text on a real number, as MyHDL writes it, or a word wider
 //! than its signal) makes the signal *odd*: the comparison then reads the file again, with a kind that holds any value
-//! ([`Kind::Any`]). An error is only for what is no value at all.
+//! ([`Kind::Any`]). Only text that is not a value at all is an error.
 
 use std::borrow::Cow;
 
@@ -158,7 +158,7 @@ pub(super) fn put_port(gatherer: &mut Gatherer, slot: u32, states: &[u8], streng
     Ok(())
 }
 
-/// Reads a number as producers write it; `None` if it is none.
+/// Reads a number in the forms that producers write; `None` if it is not a number.
 pub(super) fn real(word: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(real) = text.parse() {
@@ -169,14 +169,14 @@ pub(super) fn real(word: &[u8]) -> Option<f64> {
         Some(plain) => (-1.0, plain),
         None => (1.0, text.as_str()),
     };
-    // C's and Microsoft's libraries.
+    // C's and Microsoft's libraries write these.
     if plain.starts_with("nan") || plain.starts_with("1.#qnan") || plain.starts_with("1.#ind") {
         return Some(f64::NAN);
     }
     if plain.starts_with("1.#inf") {
         return Some(sign * f64::INFINITY);
     }
-    // A decimal comma of the writer's locale.
+    // Some writers use the decimal comma of their locale.
     text.replacen(',', ".", 1).parse().ok()
 }
 
@@ -239,7 +239,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn escapes_of_c_are_what_they_stand_for() {
+    fn escapes_of_c_are_replaced() {
         for (written, meant) in [
             (r"50\040NS", &b"50 NS"[..]),
             (r"a\\b\tc\x41\0", b"a\\b\tcA\0"),

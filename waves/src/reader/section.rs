@@ -31,7 +31,7 @@ const BUFFER_BYTES: usize = 1 << 18;
 /// Largest number of bytes of a command: a vector of 2^24 bits, twice over.
 const COMMAND_BYTES: usize = 1 << 25;
 
-/// What becomes of a file that ends in the middle of something.
+/// How a file is treated that ends in the middle of something.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum FileEnd {
     /// It is refused.

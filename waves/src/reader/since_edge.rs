@@ -1,7 +1,7 @@
 //! Tells whether signals change more than once from edge to edge.
 //!
-//! Most designs change signals at one time between two edges, in the order in which they are declared or the other way
-//! round; only where they do not, each change is marked.
+//! Most designs change signals at only one time between two edges, in the order of their declarations or in the reverse order. Each change
+//! is marked only in designs that do not.
 
 use super::batch::Change;
 
@@ -11,7 +11,7 @@ pub(super) struct SinceEdge {
     /// Number of the stretch from edge to edge, and the last one in which each slot changed.
     stretch: u32,
     marks: Vec<u32>,
-    /// Where the changes begin that are not marked yet; they are all different.
+    /// Start of the changes that are not marked yet, all of different slots.
     unmarked: Option<usize>,
     is_busy: bool,
     /// Whether unmarked changes were handed over.

@@ -5,7 +5,7 @@
 //!  piece              values at its end │ number of samples, and their times
 //! ```
 //!
-//! Of a piece, the latest values at its end are enough, except of the last one, which is parsed again, up to its last
+//! For each piece, the latest values at its end are enough; only the last piece is parsed again, up to its last
 //! sample. A piece is parsed without knowledge of what came before it: whether its first change of the clock is an edge is
 //! decided when the pieces are put in order. Only the plainest form of a VCD is read here, with one change per line, as
 //! every simulator writes it. A stretch ends before a piece that has anything else in it, in which the files differ,
@@ -113,10 +113,9 @@ impl Twins {
         Ok([a.resume(place_a, stretch.before)?, b.resume(place_b, stretch.before)?])
     }
 
-    /// Follows the two files from these places as long as they are equal. With a clock, the time at each place is that
-    /// of an edge that has been sampled. `stop` tells by slot whose next change ends the stretch. `apply` is called
-    /// with the latest values before each piece's last sample and their states, `progress` with the progress of the stretch. Returns `None` if
-    /// the stretch is too short.
+    /// Follows the two files from these places as long as they are equal. With a clock, the time at each place is that of an edge that has
+    /// been sampled. `stop` has, by slot, whether its next change ends the stretch. `apply` is called with the latest values before each
+    /// piece's last sample and their states, `progress` with the progress of the stretch. Returns `None` if the stretch is too short.
     pub(crate) fn follow(
         &self,
         places: [u64; 2],

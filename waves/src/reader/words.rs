@@ -1,4 +1,4 @@
-//! Words of a VCD's value changes, and what is said of those that are wrong.
+//! Splits a VCD's value changes into words, and creates the errors for wrong ones.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -62,7 +62,7 @@ pub(super) fn unknown_id(data: &[u8], at: usize, end: usize) -> Fault {
     Fault { at, what }
 }
 
-/// Returns the error of a file that ends too early; `inside` says in what.
+/// Returns the error of a file that ends too early; `inside` says where.
 pub(super) fn truncated(path: &Path, byte: u64, inside: &str) -> WaveError {
     WaveError::Damaged {
         path: path.to_owned(),

@@ -1,10 +1,10 @@
 //! Counts changes that no sample sees: values that others replace before the next edge of the clock, or at the same time.
 //!
-//! A change is a change of value: a value that is written again is none. A signal that changes *n* times from one edge to the next
-//! has *n* - 1 changes that no sample sees, whatever the last value is; after the last edge, all *n*.
+//! Only a new value is a change; a value that is written again is not. If a signal changes *n* times from one edge to the next, no sample
+//! sees *n* - 1 of these changes, whatever the last value is; after the last edge, no sample sees any of the *n*.
 //!
-//! Most designs change each signal once from edge to edge; the reader tells ([`Feed::is_simple_until_edge`]), and only other
-//! stretches are looked at change by change.
+//! Most designs change each signal at most once between two edges. The reader reports this ([`Feed::is_simple_until_edge`]), and only other
+//! stretches are examined change by change.
 //!
 //! [`Feed::is_simple_until_edge`]: crate::reader::Feed::is_simple_until_edge
 
@@ -117,7 +117,7 @@ impl Side {
         }
     }
 
-    /// Returns a pair of which a slot is a part.
+    /// Returns a pair that uses this slot, or a vector that this slot is a part of.
     pub(in crate::diff) fn pair_of(&self, slot: u32) -> Option<u32> {
         let parts = self.parts.get(slot as usize).into_iter().flatten();
         let slots = std::iter::once(slot).chain(parts.map(|part| part.whole));

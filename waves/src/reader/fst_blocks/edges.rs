@@ -1,4 +1,4 @@
-//! The edges of a clock, where nothing else is wanted of it.
+//! Finds the edges of a clock whose other changes are not needed.
 //!
 //! A clock that has the same changes in two FST is equal in both at every sample. It changes more often than all other signals, so
 //! its chain is read by itself, into a bit for each time.
@@ -41,11 +41,11 @@ impl Edges {
             file.read_exact(&mut packed)?;
             unpack_chain(&packed, layout.packing, &mut chain)?;
         }
-        Self::of_chain(&chain, times, watch, before).ok_or_else(|| damaged("the changes of the clock cannot be read"))
+        Self::from_chain(&chain, times, watch, before).ok_or_else(|| damaged("the changes of the clock cannot be read"))
     }
 
     /// As [`Edges::read`], from an unpacked chain; `None` if it cannot be read.
-    fn of_chain(chain: &[u8], times: usize, watch: Watch, before: [u8; 2]) -> Option<Self> {
+    fn from_chain(chain: &[u8], times: usize, watch: Watch, before: [u8; 2]) -> Option<Self> {
         let mut bits = vec![0u64; times.div_ceil(64)];
         let (mut at, mut time) = (0, 0u64);
         let [mut before, mut now] = before;
@@ -88,7 +88,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn prop_edges_are_where_the_last_digit_of_a_time_follows_that_of_the_time_before(
+        fn prop_edges_compare_the_last_digit_of_each_time_with_the_one_before(
             changes in prop::collection::vec((prop_oneof![8 => Just(0u64), 8 => 1u64..4, 1 => 4u64..40_000], 0u8..10), 0..80),
             before in [0u8..4, 0u8..4],
             falling: bool,
@@ -111,7 +111,7 @@ mod tests {
                 time += *step as usize;
                 digits[time] = crate::reader::digits::digit(digit_byte(*digit));
             }
-            let edges = Edges::of_chain(&chain, times, watch, before).unwrap();
+            let edges = Edges::from_chain(&chain, times, watch, before).unwrap();
             // The first time may continue one at which the clock has changed already.
             let [mut last, mut now] = before;
             for (time, digit) in digits.iter().enumerate() {
@@ -124,9 +124,9 @@ mod tests {
             prop_assert_eq!(edges.first, digits.iter().position(Option::is_some));
             prop_assert_eq!(edges.last, now);
             // A change after the last time, or one that is cut off, is damage.
-            prop_assert!(changes.is_empty() || Edges::of_chain(&chain, times - 1, watch, [UNKNOWN; 2]).is_none());
+            prop_assert!(changes.is_empty() || Edges::from_chain(&chain, times - 1, watch, [UNKNOWN; 2]).is_none());
             chain.push(0x80);
-            prop_assert!(Edges::of_chain(&chain, times, watch, before).is_none());
+            prop_assert!(Edges::from_chain(&chain, times, watch, before).is_none());
         }
     }
 }

@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_levels_unpack_by_hand() {
+    fn both_levels_unpack_to_hand_computed_bytes() {
         let unpacked = |packed: &[u8], length| {
             let mut out = b"before".to_vec();
             unpack(packed, length, &mut out).map(|()| out.split_off(6))
@@ -78,7 +78,7 @@ mod tests {
         assert_eq!(long, b"aaaaaaaaaaaaaz");
         // The second level: 9 + 255 + 1 bytes.
         assert_eq!(unpacked(&[1 << 5, b'a', 7 << 5, 255, 1, 0], 266).unwrap(), [b'a'; 266]);
-        // It has no bytes before its own, and no others than it says.
+        // A reference before the beginning, a cut and a wrong length are refused.
         for wrong in [
             &[1, b'a', b'b', 3 << 5, 2][..],
             &[1, b'a', b'b', 3 << 5],

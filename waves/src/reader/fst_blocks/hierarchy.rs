@@ -6,7 +6,7 @@
 //!  252 │ kind │ kind │ text 0 │ number      attribute     253        its end
 //! ```
 //!
-//! Attributes say where something comes from, or which type it has in its language: nothing that is compared.
+//! Attributes give the origin of something or its type in its language; they are not compared.
 
 use std::io::{self, Read};
 

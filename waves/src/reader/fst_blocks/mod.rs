@@ -75,8 +75,8 @@ pub(super) enum Form {
     Text,
 }
 
-/// Returns the number of bits of a port, a value of which is the states of its bits, and, each after a space, as many
-/// strengths of zero and of one; `None` if it cannot be one.
+/// Returns the number of bits of a port; `None` if there can be no port of this length. A value of a port consists of the states of its
+/// bits and, each after a space, as many strengths of zero and of one.
 pub(super) fn port_bits(length: u32) -> Option<u32> {
     let bits = length.checked_sub(2)?;
     (bits > 0 && bits.is_multiple_of(3)).then_some(bits / 3)
@@ -102,7 +102,7 @@ pub(super) struct Blocks {
     /// Times at which recording is switched, and whether it is off then.
     blackouts: VecDeque<(u64, bool)>,
     little_endian: bool,
-    /// For each block, a bit for each time at which something changes that is not read here ([`same`]); or empty.
+    /// For each block, a bit for each time at which a signal changes that is not read here ([`same`]); or empty.
     more_times: Vec<Vec<u64>>,
     /// The signals that change at these times.
     left_out: HashSet<usize>,
@@ -175,7 +175,7 @@ impl Blocks {
         Ok(found)
     }
 
-    /// Makes a step also of each time of which a bit is set, block by block; the signals that change then are left out.
+    /// Makes a step also at each time whose bit is set, block by block; the signals that change there are left out.
     pub(super) fn stop_at(&mut self, more_times: Vec<Vec<u64>>, left_out: HashSet<usize>) {
         (self.more_times, self.left_out) = (more_times, left_out);
     }
@@ -277,8 +277,8 @@ impl Blocks {
         }
     }
 
-    /// Returns the edges of the watched clock in a block, if nothing else is wanted of it. The values before the first block have
-    /// been taken.
+    /// Returns the edges of the watched clock in a block, if only its edges are wanted. The values before the first block must have been
+    /// taken.
     fn edges(
         &mut self,
         layout: &Layout,

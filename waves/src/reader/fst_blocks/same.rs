@@ -44,8 +44,8 @@ struct Both {
     packing: u8,
 }
 
-/// Compares the chains of pairs of handles. `needed` are those without which nothing is gained. Returns `None` if one of
-/// those, or most others, have other changes, or if anything is unusual: the files are then read as they are.
+/// Compares the chains of pairs of handles; the result is useful only if all `needed` pairs have the same changes. Returns `None` if one of
+/// those, or most of the others, have different changes, or if anything is unusual: the files must then be read as they are.
 pub(in crate::reader) fn same(
     [a, b]: [&mut Blocks; 2],
     pairs: &[[usize; 2]],
@@ -265,7 +265,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn prop_single_bits_end_when_change_by_change_they_end(
+        fn prop_last_time_of_single_bits_matches_reading_each_change(
             chain in prop::collection::vec(prop_oneof![30 => 0u8..0x80, 1 => any::<u8>()], 0..300),
             times in 0u64..4000,
         ) {

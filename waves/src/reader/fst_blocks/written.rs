@@ -38,7 +38,7 @@ pub(super) struct Change<'a> {
     pub(super) length: usize,
 }
 
-/// Returns the first change of a chain; `None` if it is cut off, or none.
+/// Returns the first change of a chain; `None` if it is cut off or invalid.
 #[inline(always)] // a call for each change takes as long as the rest of it
 pub(super) fn change(chain: &[u8], form: Form) -> Option<Change<'_>> {
     let mut at = 0;
