@@ -45,8 +45,8 @@ pub struct FoundMode {
 }
 
 impl FoundMode {
-    /// Amplitude in m (rad) with which the mode rings after a jump of the axis's acceleration by `acceleration`, in m/s² (rad/s²):
-    /// `p·a/ω²`, by which modes count.
+    /// Amplitude in m (rad) with which the mode rings after the axis's acceleration jumps by `acceleration`, in m/s² (rad/s²): `p·a/ω²`.
+    /// The weight of a mode is this amplitude.
     pub fn ringing(&self, acceleration: f64) -> f64 {
         self.participation * acceleration / self.mode.omega().powi(2)
     }
@@ -66,9 +66,9 @@ impl FoundMode {
     }
 }
 
-/// Share of all ringing from which on a mode is reported.
+/// Smallest share of all ringing with which a mode is reported.
 pub const LEAST_RINGING: f64 = 0.05;
-/// The same for a mode whose participation is [`LEAST_PARTICIPATION`] of all at least: a peak that is plain to see, although it rings little.
+/// The same for a mode with at least [`LEAST_PARTICIPATION`] of all participation: its peak is plain to see, although it rings little.
 pub const LEAST_RINGING_OF_SEEN: f64 = 0.005;
 /// See [`LEAST_RINGING_OF_SEEN`].
 pub const LEAST_PARTICIPATION: f64 = 0.05;
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn modes_count_by_what_they_ring_with() {
+    fn modes_are_weighted_by_their_ringing() {
         let found = |frequency_hz: f64, participation: f64| FoundMode {
             mode: Mode {
                 frequency_hz,
@@ -114,7 +114,8 @@ mod tests {
             assert!((kept.iter().map(|found| found.participation).sum::<f64>() - 1.0).abs() < 1e-12);
             kept.iter().map(|found| found.mode.frequency_hz).collect()
         };
-        // Kept although 4 % are little; left out because 4 % ring with 0.4 %; kept as a plain peak of 1 %; left out because 6 % ring with 0.1 %.
+        // 12 Hz is kept although its share is only 4 %; 4 % that ring with 0.4 % are left out; 1 % is kept as a plain peak; 6 % that ring
+        // with 0.1 % are left out.
         assert_eq!(frequencies(&[found(90.0, 0.96), found(12.0, 0.04)]), [12.0, 90.0]);
         assert_eq!(frequencies(&[found(40.0, 0.96), found(130.0, 0.04)]), [40.0]);
         assert_eq!(frequencies(&[found(40.0, 0.9), found(120.0, 0.1)]), [40.0, 120.0]);

@@ -1,9 +1,8 @@
 //! Finds modes in an accelerometer log whose excitation is not known.
 //!
-//! Under an excitation with an even spectrum that lasts long, the autocorrelation of a response decays as the machine
-//! does after a release (James, Carne and Lauffer 1995): the modes are those of this decay. Tones in the excitation,
-//! such as a fan's, look like modes, and the shares are rough. Where the sweep is known, [`crate::sweep`] determines
-//! more.
+//! If the excitation has an even spectrum and lasts long, the autocorrelation of a response decays like the machine
+//! after a release (James, Carne and Lauffer 1995): the modes are those of this decay. Tones in the excitation, such as
+//! a fan's, look like modes, and the shares are rough. If the sweep is known, [`crate::sweep`] determines more.
 
 use crate::found::{FoundMode, that_ring};
 use crate::position::{self, FoundInPosition, PositionError, Quantity};
@@ -50,8 +49,7 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
         missing: Vec::new(),
     };
     let decay = position::identify_response(&log, Quantity::Acceleration)?;
-    // For a mode that an acceleration with an even spectrum drives, the square of the share relates to the power as
-    // ζ/ω.
+    // If an acceleration with an even spectrum drives a mode, the square of its share is to its power as ζ is to ω.
     let share = |found: &FoundMode| (found.participation * found.mode.damping / found.mode.omega()).sqrt();
     let modes = decay.modes.iter().map(|found| FoundMode {
         participation: share(found),
@@ -68,7 +66,7 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
 fn correlation(record: &[f64], lags: usize) -> Vec<f64> {
     let mean = record.iter().sum::<f64>() / record.len().max(1) as f64;
     let centred: Vec<f64> = record.iter().map(|x| x - mean).collect();
-    // Zeros after the record keep its end from meeting its beginning.
+    // Zeros after the record keep its end from being correlated with its beginning.
     let length = fast_length(record.len() + lags + 1);
     let transform = Transform::new(length);
     let mut lines = transform.forward(centred);

@@ -1,8 +1,8 @@
 //! Recommends shapers for the modes that were found: their residual within the uncertainty of the modes, and their
 //! cost.
 //!
-//! After a jump of the acceleration by `a`, a mode of participation `p` rings with the amplitude `p·a/ω²`: by this, and not by `p`, a
-//! mode counts.
+//! After the acceleration jumps by `a`, a mode of participation `p` rings with the amplitude `p·a/ω²`. This amplitude, not `p`, is the
+//! weight of a mode.
 
 use crate::found::FoundMode;
 use posicast_machine::plant::free_motion;
@@ -21,7 +21,7 @@ pub struct Judgement {
     pub margin: f64,
     /// Residual for which the kinds with a tolerance are designed.
     pub tolerance: f64,
-    /// Fraction of the unshaped displacement that is considered small enough.
+    /// Fraction of the unshaped displacement that counts as small enough.
     pub enough: f64,
 }
 
@@ -37,7 +37,8 @@ impl Default for Judgement {
 }
 
 impl Judgement {
-    /// Whether a shaper leaves little enough. A kind with a tolerance uses all of it, so the rounding of its design must not decide.
+    /// Whether the residual of a shaper is small enough. A kind with a tolerance uses all of it, so the rounding of its design must not
+    /// decide.
     pub fn is_enough(&self, shaper: &Recommendation) -> bool {
         const ROUNDING: f64 = 1e-6;
         shaper.ratio() <= self.enough * (1.0 + ROUNDING)
@@ -47,11 +48,11 @@ impl Judgement {
 /// A shaper for all modes that were found, with its figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recommendation {
-    /// Kind, which is the same for every mode.
+    /// Kind of shaper, the same for every mode.
     pub kind: ShaperKind,
     /// Residual for which a kind with a tolerance is designed.
     pub tolerance: f64,
-    /// Impulses, which are the convolution of those for each mode.
+    /// Impulses: the convolution of those for each mode.
     pub impulses: ImpulseSequence,
     /// Largest displacement in m (rad) that still vibrates after a jump of the acceleration, with the modes anywhere
     /// in their intervals plus the margin.
@@ -128,8 +129,8 @@ const TRIED: [ShaperKind; 8] = [
     ShaperKind::Zvddd,
 ];
 
-/// Shapers for the modes, the best first: the shortest of those whose residual is small enough, then the others by
-/// their residual. Kinds that do not exist for a mode are left out; without modes the list is empty.
+/// Returns shapers for the modes, the best first: the shortest of those whose residual is small enough, then the others by their residual.
+/// Kinds that do not exist for a mode are left out; without modes the list is empty.
 pub fn recommend(modes: &[FoundMode], judgement: &Judgement) -> Vec<Recommendation> {
     if modes.is_empty() {
         return Vec::new();
@@ -151,10 +152,10 @@ pub fn recommend(modes: &[FoundMode], judgement: &Judgement) -> Vec<Recommendati
     tried
 }
 
-/// A kind for all modes. One with a tolerance uses all of it at the modelled damping, and a little more beside it: it is then designed
-/// for a little less.
+/// Designs a kind for all modes. A kind with a tolerance uses all of it at the modelled damping, and slightly exceeds it at other dampings:
+/// then it is designed again for a smaller tolerance.
 fn judged(modes: &[FoundMode], kind: ShaperKind, judgement: &Judgement) -> Option<Recommendation> {
-    /// By how much a kind with a tolerance may miss it, and how often it is designed anew.
+    /// Largest ratio by which a kind may exceed its tolerance to be designed again, and largest number of designs.
     const NEAR: f64 = 1.1;
     const TRIALS: usize = 4;
     let mut tolerance = judgement.tolerance;
@@ -164,7 +165,7 @@ fn judged(modes: &[FoundMode], kind: ShaperKind, judgement: &Judgement) -> Optio
         if !kind.name().ends_with("ei") || judgement.is_enough(&tried) || misses > NEAR {
             break;
         }
-        // Machine files take a few digits of it.
+        // Rounded down, because machine files have only a few digits.
         tolerance = (1e4 * tolerance / misses).floor().mul_add(1e-4, -1e-4);
         tried = designed(modes, kind, tolerance, judgement)?;
     }
@@ -210,7 +211,7 @@ fn designed(modes: &[FoundMode], kind: ShaperKind, tolerance: f64, judgement: &J
     })
 }
 
-/// Deflection of the modes after a jump of the acceleration by `acceleration` through a shaper: time in s and
+/// Computes the deflection of the modes after a jump of the acceleration by `acceleration` through a shaper: time in s and
 /// deflection in m (rad) at `samples` instants over `duration_s`.
 pub fn deflection(
     modes: &[FoundMode],
@@ -254,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_leaves_little_enough_and_none_that_does_is_shorter() {
+    fn the_first_is_the_shortest_with_a_small_enough_residual() {
         let judgement = Judgement::default();
         let tried = recommend(&[found(40.0, 0.05, 0.7), found(90.0, 0.03, 0.3)], &judgement);
         assert_eq!(tried.len(), TRIED.len());
@@ -269,8 +270,9 @@ mod tests {
     }
 
     #[test]
-    fn at_most_five_percent_is_at_most_five_percent() {
-        // zv leaves 5.081 % of this mode within its interval and margin; another leaves little enough although it is shaped for 5 %.
+    fn a_kind_that_leaves_more_than_five_percent_is_not_enough() {
+        // zv leaves 5.081 % of this mode within its interval and margin; another kind leaves little enough, although its design
+        // allows 5 %.
         let mut mode = found(60.0, 0.02, 1.0);
         mode.frequency_sd_hz = 0.0;
         let judgement = Judgement {
@@ -291,7 +293,7 @@ mod tests {
         assert!(tried[..enough].iter().any(|shaper| shaper.kind == ShaperKind::Ei));
     }
 
-    /// What Klipper's Python makes of a shaper.
+    /// Results of Klipper's Python for a shaper.
     struct OfKlipper {
         name: &'static str,
         amplitudes: &'static [f64],
@@ -344,7 +346,7 @@ mod tests {
     #[test]
     fn the_largest_acceleration_of_printers_is_klippers() {
         for of in &KLIPPER {
-            // They are written with nine digits.
+            // Klipper's amplitudes are written with nine digits.
             let sum: f64 = of.amplitudes.iter().sum();
             let impulses = of
                 .times_s
@@ -399,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn without_margin_zv_leaves_nothing_of_a_mode_that_is_known() {
+    fn without_margin_zv_leaves_no_residual_of_a_known_mode() {
         let mut mode = found(40.0, 0.05, 1.0);
         mode.frequency_sd_hz = 0.0;
         let judgement = Judgement {
@@ -409,7 +411,7 @@ mod tests {
         let zv = recommend(&[mode], &judgement);
         let zv = zv.iter().find(|r| r.kind == ShaperKind::Zv).unwrap();
         assert!(zv.ratio() < 1e-9);
-        // This is half the acceleration times the variance of two impulses half a period apart.
+        // Half the acceleration times the variance of two impulses half a period apart.
         let (a, t) = (zv.impulses.impulses()[1].amplitude, zv.impulses.duration_s());
         assert!((zv.smoothing - 2.5 * a * (1.0 - a) * t * t).abs() < 1e-12);
         let curve = deflection(&[mode], &zv.impulses, 5.0, 0.1, 1001);

@@ -1,4 +1,4 @@
-//! Finds modes in an accelerometer's log of a stop: what rings after it decays freely.
+//! Finds modes in an accelerometer's log of a stop, from the free decay after it.
 //!
 //! ```text
 //!  acceleration    ┌──┐                              rest, acceleration, motion, the stop: not looked at
@@ -6,9 +6,9 @@
 //!                               └─╱  ╲╱  ╲╱            from the last push on: the sum of decaying modes
 //! ```
 //!
-//! The log may begin long before the stop. The latest push is where a sum of decaying modes explains what follows, and no longer
-//! what precedes. After a jump of the axis's acceleration by `a`, a mode of participation `p` rings with the acceleration `p·a`: so the
-//! amplitudes of this decay are participations.
+//! The log may begin long before the stop. The latest push is at the sample from which on a sum of decaying modes explains the log, while
+//! it does not explain what precedes. After the axis's acceleration jumps by `a`, a mode of participation `p` rings with the acceleration
+//! `p·a`, so the amplitudes of this decay are participations.
 
 use crate::found::FoundMode;
 use crate::position::{self, FoundInPosition, LEAST_SAMPLES, PositionError, Quantity};
@@ -22,17 +22,17 @@ pub struct FoundInRingDown {
     pub modes: Vec<FoundMode>,
     /// Name of the sensor direction that was used.
     pub direction: String,
-    /// Time in seconds from the first sample to the one from which on the decay was fitted.
+    /// Time in seconds from the first sample to the first sample of the decay that was fitted.
     pub begin_s: f64,
-    /// Fraction of the power after it that the modes explain.
+    /// Fraction of the power of the decay that the modes explain.
     pub explained: f64,
-    /// Fraction of the whole log's power that is in the decay: little where most of the log is another motion, such as a sweep.
+    /// Fraction of the whole log's power that is in the decay; it is small if most of the log is another motion, such as a sweep.
     pub part: f64,
     /// The decay, with the modes fitted to it.
     pub decay: FoundInPosition,
 }
 
-/// Why a log gives no decay.
+/// Why no decay is found in a log.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum RingDownError {
     /// Two directions ring alike.
@@ -45,17 +45,17 @@ pub enum RingDownError {
     Log(#[from] PositionError),
 }
 
-/// Power of the second direction relative to that of the first from which on it is asked which one counts.
+/// Power of the second direction relative to that of the first above which the user is asked for the direction.
 const ALIKE: f64 = 0.6;
-/// Ratio of the levels whose last crossings are tried as beginnings, and their largest number.
+/// Ratio of the levels whose last crossings are tried as beginnings, and the largest number of levels.
 const LEVELS: f64 = 0.7;
 const TRIED: usize = 10;
-/// The last part of a log, one of this many, in which the machine is taken to be at rest.
+/// The machine counts as being at rest in the last of this many parts of a log.
 const REST: usize = 8;
-/// What a fit may leave, relative to the motion at rest, or to what it is fitted to.
+/// Largest residual of a good fit: relative to the motion at rest, or to the fitted motion.
 const AS_GOOD: f64 = 1.4;
 const SMALL: f64 = 0.02;
-/// Fraction of its beginning to which a decay is followed, and the largest number of samples.
+/// Fraction of its first value down to which a decay is followed, and the largest number of samples.
 const FADED: f64 = 0.02;
 const MOST_SAMPLES: usize = 6000;
 
@@ -129,7 +129,7 @@ fn at_rest(record: &[f64]) -> f64 {
     tail.iter().sum::<f64>() / tail.len().max(1) as f64
 }
 
-/// A record from a sample on until it has faded, and a little longer.
+/// Returns a record from a sample on until the decay has faded, and a little longer.
 fn rung(record: &[f64], begin: usize) -> &[f64] {
     let (rest, first) = (at_rest(record), record.get(begin).copied().unwrap_or_default());
     let faded = record
@@ -140,8 +140,8 @@ fn rung(record: &[f64], begin: usize) -> &[f64] {
     &record[begin..record.len().min(begin + samples)]
 }
 
-/// Samples at which the last decay may begin, the earliest first: where the record is for the last time as far from where it ends as
-/// each of a ladder of levels.
+/// Returns the samples at which the last decay may begin, the earliest first: for each of several decreasing levels, the last sample that
+/// is as far from rest as this level.
 fn beginnings(record: &[f64]) -> Vec<usize> {
     let rest = at_rest(record);
     let largest = record.iter().map(|x| (x - rest).abs()).fold(0.0, f64::max);
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ring_after_a_move_is_found_behind_its_last_push() {
+    fn the_ring_after_a_move_begins_at_its_last_push() {
         for (seed, modes) in [vec![(18.1, 0.05, 1.0)], vec![(24.0, 0.04, 0.6), (61.0, 0.03, 0.4)]]
             .iter()
             .enumerate()
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn amplitudes_of_accelerations_are_participations_and_those_of_positions_are_what_rings() {
+    fn a_decay_gives_participations_for_accelerations_and_positions() {
         let modes = [(24.0f64, 0.04f64, 0.6), (61.0, 0.03, 0.4)];
         let rung = |amplitude: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
             let at = |t: f64| {
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn two_directions_that_ring_alike_are_asked_about() {
+    fn two_directions_that_ring_alike_are_refused_with_a_question() {
         let record = stop(&[(18.1, 0.05, 1.0)], 1);
         let log = AccelerationLog {
             sample_s: SAMPLE_S,

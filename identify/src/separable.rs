@@ -29,8 +29,8 @@ pub(crate) struct Solution {
     pub(crate) square: f64,
     /// Degrees of freedom: number of values minus unknowns and coefficients.
     pub(crate) freedoms: f64,
-    /// Covariance of the unknowns, and of the coefficients at fixed unknowns, for rows of variance 1; `None` where
-    /// the rows do not determine them.
+    /// Covariance of the unknowns, and of the coefficients at fixed unknowns, for rows of variance 1; `None` if the rows do not determine
+    /// them.
     covariance: Option<DMatrix<f64>>,
     linear_covariance: DMatrix<f64>,
     /// Slopes with respect to the unknowns, without the part that the coefficients absorb, and residuals, row by row.
@@ -71,8 +71,8 @@ impl Solution {
     }
 }
 
-/// Standard deviation of a combination of parameters: their covariance times its gradient is `direction`, in which each of so many
-/// stretches of rows pulls by its slopes times its residual.
+/// Standard deviation of a combination of parameters. `direction` is the covariance of the parameters times the gradient of the
+/// combination; each of `stretches` intervals of rows contributes its slopes times its residual.
 pub(crate) fn deviation_over_stretches(
     slopes: &DMatrix<f64>,
     residual: &DVector<f64>,
@@ -89,17 +89,17 @@ pub(crate) fn deviation_over_stretches(
             direction.dot(&pull).powi(2)
         })
         .sum();
-    // Few stretches show less than there is, as few values do of a variance.
+    // Few intervals show too small a variance, as few values do.
     let count = rows.div_ceil(length) as f64;
     (variance * count / (count - 2.0).max(1.0)).sqrt()
 }
 
-/// How long a fit is followed.
+/// Accuracy to which a fit is continued.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Effort {
-    /// Until it is clear how much it explains.
+    /// The fit stops when it is clear how much it explains.
     Rough,
-    /// Until it converges.
+    /// The fit stops when it converges.
     Full,
 }
 
@@ -120,7 +120,7 @@ pub(crate) struct Gram {
 }
 
 impl Gram {
-    /// The matrix of columns; `None` where they are dependent or contain NaN.
+    /// Returns the scaled matrix of columns; `None` if they are dependent or contain NaN.
     pub(crate) fn of(columns: &DMatrix<f64>) -> Option<Self> {
         Self::new(&columns.tr_mul(columns))
     }
@@ -188,7 +188,7 @@ pub(crate) fn square(problem: &impl Separable, unknowns: &[f64]) -> Option<f64> 
     linear(problem, unknowns).map(|linear| linear.residual.norm_squared())
 }
 
-/// The best fit near the given unknowns; `None` where the rows do not determine the coefficients.
+/// Returns the best fit near the given unknowns; `None` if the rows do not determine the coefficients.
 pub(crate) fn refine(problem: &impl Separable, start: &[f64], effort: Effort) -> Option<Solution> {
     let (steps, settled) = effort.limits();
     let mut unknowns = start.to_vec();

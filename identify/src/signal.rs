@@ -28,7 +28,7 @@ pub struct PositionLog {
     pub missing: Vec<Range<usize>>,
 }
 
-/// What a drive was told and where its own motor went, sampled together.
+/// A drive's command and the position of its own motor, sampled together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveLog {
     /// Time between samples in seconds.
@@ -41,7 +41,7 @@ pub struct DriveLog {
     pub missing: Vec<Range<usize>>,
 }
 
-/// What an accelerometer on an axis saw.
+/// Accelerations that a sensor on an axis measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccelerationLog {
     /// Time between samples in seconds.

@@ -132,12 +132,12 @@ mod tests {
     }
 
     #[test]
-    fn lengths_are_products_of_small_primes() {
+    fn fast_lengths_are_products_of_small_primes() {
         assert_eq!([7, 416_000, 419_431].map(fast_length), [8, 419_904, 419_904]);
     }
 
     #[test]
-    fn there_and_back_is_the_signal() {
+    fn inverse_of_the_transform_is_the_signal() {
         let signal: Vec<f64> = (0..30).map(|n| f64::from(n * n % 7)).collect();
         let transform = Transform::new(30);
         let lines = transform.forward(signal.clone());

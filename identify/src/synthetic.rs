@@ -1,7 +1,6 @@
 //! Simulated logs of machines with known modes, to test the methods.
 //!
-//! A machine with modes under a resonance test is simulated exactly from event to event, by closed forms that none of
-//! the methods uses.
+//! A machine with modes under a resonance test is simulated exactly from event to event, by closed forms that no method uses.
 
 use crate::signal::{AccelerationLog, Between, PositionLog};
 use crate::sweep::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAcceleration};
@@ -44,8 +43,7 @@ pub struct Sensor {
     pub step: f64,
     /// Whether the excitation acts only from the next sample on, as in simulations on a grid.
     pub held: bool,
-    /// Deceleration in m/s² after a test that ends in motion, as one with a square wave does: the firmware takes its
-    /// `max_accel`.
+    /// Deceleration in m/s² after a test that ends in motion, such as one with a square wave; the firmware uses its `max_accel`.
     pub stop: f64,
 }
 
@@ -107,8 +105,7 @@ pub fn present_test() -> Sweep {
     }
 }
 
-/// The log of one moving direction, with another direction at rest. There is a square wave beside the sweep where the
-/// sweep names one.
+/// Returns the log of one moving direction, with another direction at rest. The excitation includes a square wave if `sweep` specifies one.
 pub fn resonance_test(truths: &[KnownMode], sweep: &Sweep, sensor: &Sensor, seed: u64) -> AccelerationLog {
     let mut excitation = SweptAcceleration::new(sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
     if let Sweeping::Wave(wave) = sweep.sweeping {
@@ -181,8 +178,8 @@ pub fn step(samples: usize) -> Vec<f64> {
     (0..samples).map(|n| if n < samples / 10 { 0.0 } else { 1.0 }).collect()
 }
 
-/// The log of the position under a command that is held from sample to sample, with noise of this standard deviation. The shares of the modes
-/// are scaled to the sum one.
+/// Returns the log of the position under a command that is held from sample to sample, with noise of this standard deviation. The shares of
+/// the modes are scaled to the sum one.
 ///
 /// # Errors
 /// [`PlantError`] if the shares do not have a positive sum.

@@ -1,4 +1,5 @@
-//! The methods tried on logs of random machines, by a seed: what [`synthetic`](crate::synthetic) makes must be found again.
+//! Tests the methods on logs of random machines, chosen by a seed: the modes that [`synthetic`](crate::synthetic) simulates must be found
+//! again.
 //!
 //! A machine has one to three modes from 20 to 150 Hz, at least 35 % apart, with damping ratios of 0.015 to 0.08 and comparable shares.
 //! Its log is a resonance test with an accelerometer, or positions after a pseudo-random command or a step.
@@ -18,14 +19,14 @@ pub const DAMPING_ERROR: f64 = 0.15;
 /// Largest error of a modal participation.
 pub const PARTICIPATION_ERROR: f64 = 0.05;
 
-/// What was found in some logs.
+/// Results for some logs.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TrialReport {
     /// Number of logs.
     pub logs: u64,
     /// Number of modes of their machines.
     pub modes: u64,
-    /// Number of modes whose stated 95 % interval of the frequency holds the true one.
+    /// Number of modes whose stated 95 % interval of the frequency contains the true one.
     pub frequencies_held: u64,
     /// The same for the damping ratio.
     pub dampings_held: u64,
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_counted_and_named() {
+    fn wrong_results_are_counted_and_named() {
         let truths = [known(30.0, 0.05, 0.6), known(60.0, 0.03, 0.4)];
         let report_of = |list: &[FoundMode]| {
             let mut report = TrialReport::default();

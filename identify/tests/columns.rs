@@ -228,7 +228,7 @@ fn samples_without_times_get_them_from_the_rate() {
 }
 
 #[test]
-fn what_the_columns_leave_open_is_asked_with_the_option_that_decides_it() {
+fn ambiguous_columns_are_refused_with_the_option_that_decides() {
     let flat = |n: usize, g: &[f64; 3]| format!("{:.6},{:.4},{:.4},{:.4}", n as f64 / RATE_HZ, g[0], g[1], g[2] - 1.0);
     // Without gravity, three axes may be positions; so may one or two, and two sensors are two.
     for (text, accelerations, position) in [
@@ -328,7 +328,7 @@ fn what_the_columns_leave_open_is_asked_with_the_option_that_decides_it() {
 }
 
 #[test]
-fn spectra_and_packed_files_are_refused_with_the_way_to_a_log() {
+fn spectra_and_packed_files_are_refused_with_a_remedy() {
     let rows = |header: &str| {
         let rows: Vec<String> = (0..100)
             .map(|n| format!("{n}.5,1.6e+03,8.5e+03,2.9e+03,1.3e+04"))

@@ -48,7 +48,7 @@ fn units_separators_and_other_columns_are_understood() {
 }
 
 #[test]
-fn what_spreadsheets_make_of_a_log_is_read() {
+fn logs_saved_by_spreadsheets_are_read() {
     let one = |n: usize| (n as f64 * 0.001, n / 50, n * n % 17);
     let plain = rows("time,command_mm,response_mm", |n| {
         format!("{:.3},{},{}", one(n).0, one(n).1, one(n).2)
@@ -69,7 +69,7 @@ fn what_spreadsheets_make_of_a_log_is_read() {
 }
 
 #[test]
-fn what_oscilloscopes_and_other_programs_write_is_read() {
+fn logs_of_oscilloscopes_and_other_programs_are_read() {
     let one = |n: usize| [n as f64 * 0.001, (n / 50) as f64, (n * n % 17) as f64];
     let with = |header: &str, separator: &str, factors: [f64; 3]| {
         rows(header, |n| {
@@ -131,7 +131,7 @@ fn what_oscilloscopes_and_other_programs_write_is_read() {
 }
 
 #[test]
-fn a_drive_and_its_motor_are_told_from_a_command_and_its_response() {
+fn drive_logs_and_position_logs_are_distinguished() {
     let text = |header: &str| {
         rows(header, |n| {
             format!("{},{},{},{}", n as f64 * 1e-3, n % 7, n * n % 13, n % 3)
@@ -151,7 +151,7 @@ fn a_drive_and_its_motor_are_told_from_a_command_and_its_response() {
 }
 
 #[test]
-fn a_trace_of_the_stage_is_the_scale_behind_the_motor() {
+fn a_trace_of_the_stage_is_read_as_motor_and_scale() {
     let text = rows("time_s,captured_position,deviation", |n| {
         format!("{},{},{}", n as f64 * 1e-4, n, n % 3)
     });
@@ -165,7 +165,7 @@ fn a_trace_of_the_stage_is_the_scale_behind_the_motor() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_line_and_column() {
+fn errors_name_line_and_column() {
     let good = |n: usize| format!("{},{},{}", n as f64 * 0.01, n / 50, n % 7);
     let with = |line: usize, bad: &str| {
         rows("time,command,response", |n| {
@@ -215,7 +215,7 @@ fn what_is_wrong_is_said_with_its_line_and_column() {
 }
 
 #[test]
-fn gaps_irregular_times_dead_and_saturated_columns_are_mended_and_said() {
+fn defects_are_mended_with_a_remark() {
     let gap = rows("time,response", |n| {
         format!("{},{}", if n < 30 { n } else { n + 10 }, n % 7)
     });

@@ -85,7 +85,7 @@ fn slow_modes_are_found_where_the_log_shows_them() {
 
 /// A mode turns the phase by half a turn, which looks like a clock that is wrong by 54 ppm over this sweep.
 #[test]
-fn the_phase_of_a_mode_is_no_error_of_the_clock() {
+fn the_phase_of_a_mode_is_not_taken_for_a_clock_error() {
     let truths = [known(20.0, 0.03, 0.1), known(90.0, 0.04, 0.9)];
     for seed in 0..3 {
         let log = resonance_test(&truths, &Sweep::default(), &sensor(0.4), seed);
@@ -105,7 +105,7 @@ fn the_phase_of_a_mode_is_no_error_of_the_clock() {
 
 /// At 100 Hz, a quarter of the rate, the sensor shows the third harmonic as the sweep itself.
 #[test]
-fn what_a_slow_sensor_aliases_onto_the_sweep_is_no_mode() {
+fn aliases_of_a_slow_sensor_are_not_modes() {
     let truths = [known(70.0, 0.05, 0.9)];
     let log = resonance_test(&truths, &Sweep::default(), &sensor(0.1), 1);
     let found = sweep::identify(&log, &Sweep::default()).unwrap();
@@ -121,7 +121,7 @@ fn what_a_slow_sensor_aliases_onto_the_sweep_is_no_mode() {
 /// 5.83 Hz is the seventh harmonic of the square wave beside the sweep. It rings with `0.05/5.833²`, the other mode with `0.9/70²`: 8.0 times
 /// as much.
 #[test]
-fn a_mode_at_a_harmonic_of_the_square_wave_is_found_or_said_not_to_be_visible() {
+fn a_mode_at_a_harmonic_of_the_square_wave_is_found_or_reported_invisible() {
     let truths = [known(5.833, 0.05, 0.05), known(70.0, 0.05, 0.9)];
     for (sample_hz, is_found) in [(400.0, false), (800.0, true)] {
         let sensor = Sensor {

@@ -102,7 +102,7 @@ fn identify(log: &DriveLog) -> FoundAtMotor {
 }
 
 #[test]
-fn a_torque_drive_and_its_motor_tell_the_mode_with_the_motor_held() {
+fn a_torque_drive_log_gives_the_mode_with_the_motor_held() {
     let train = train(TORQUE);
     let found = identify(&shaken(train, 1024, 1e-9, 0.0, &mut Noise::new(0)));
     check(&found, &train, 0.003, 0.02);
@@ -123,7 +123,7 @@ fn a_torque_drive_and_its_motor_tell_the_mode_with_the_motor_held() {
 }
 
 #[test]
-fn friction_that_sticks_does_not_hide_it_while_the_axis_moves() {
+fn sticking_friction_does_not_hide_the_mode_of_a_moving_axis() {
     let train = sticky(train(TORQUE));
     for ticks in [512, 1024] {
         let found = identify(&shaken(train, ticks, 1e-6, 0.1, &mut Noise::new(2)));
@@ -150,7 +150,7 @@ fn stated_intervals_hold_the_truth_at_the_motor() {
 
 /// The thesis's drive, whose velocity loop leaves a mode of 128.3 Hz beside the held one of 131.1 Hz.
 #[test]
-fn a_velocity_drive_and_its_motor_tell_it_too() {
+fn a_velocity_drive_log_gives_the_mode_with_the_motor_held() {
     let winding = Winding {
         inductance_h: 0.05,
         resistance_ohm: 1.0,
@@ -179,7 +179,7 @@ fn a_velocity_drive_and_its_motor_tell_it_too() {
 }
 
 #[test]
-fn a_rigid_motor_and_a_stiff_drive_and_a_drive_at_rest_are_said_as_such() {
+fn remarks_name_rigid_motor_stiff_drive_and_idle_drive() {
     let mut source = Noise::new(5);
     let drive = pseudo_random(1000, 10);
     let mut velocity = 0.0;

@@ -100,7 +100,7 @@ fn with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() {
 }
 
 #[test]
-fn several_modes_close_and_weak_ones_are_told_apart() {
+fn close_and_weak_modes_are_distinguished() {
     let machines = [
         vec![(mode(40.0, 0.03), 0.6), (mode(75.0, 0.05), 0.4)],
         vec![(mode(50.0, 0.03), 0.5), (mode(54.0, 0.03), 0.5)],
@@ -120,7 +120,7 @@ fn several_modes_close_and_weak_ones_are_told_apart() {
 }
 
 #[test]
-fn a_free_decay_tells_frequency_and_damping() {
+fn a_free_decay_gives_frequency_and_damping() {
     for truth in [mode(12.0, 0.02), mode(0.4, 0.005), mode(80.0, 0.1)] {
         let sample_s = 0.02 / truth.frequency_hz;
         let mut noise = Noise::new(9);
@@ -234,7 +234,7 @@ fn no_mode_is_invented() {
 }
 
 #[test]
-fn a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sample() {
+fn a_measured_motion_drives_the_mode_along_straight_lines() {
     // The motor moves smoothly, and the scale is behind a mode, 20 times finer than the log, so that nothing is held.
     let truth = stage()[0];
     let fine_s = 1e-5;
@@ -252,7 +252,7 @@ fn a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sample() {
 }
 
 #[test]
-fn golden_least_squares_are_the_models_of_the_stage() {
+fn golden_least_squares_match_the_models_of_the_stage() {
     // From golden/xy_stage.json, `arx_zoh`, at 0.5 ms.
     let expected = [
         [
@@ -290,7 +290,7 @@ fn golden_least_squares_are_the_models_of_the_stage() {
 }
 
 #[test]
-fn instruments_take_the_bias_away() {
+fn instruments_remove_the_bias() {
     // Notes, section 9: 1 % noise of the sensor moves the damping by about 1 % (X) and 5 % (Y); instrumental
     // variables leave 0.2 %.
     for truth in stage() {
@@ -327,7 +327,7 @@ fn forgetting_follows_a_mode_that_moves() {
 }
 
 #[test]
-fn a_mode_that_moves_during_a_log_is_said() {
+fn a_mode_that_moves_during_a_log_gives_a_remark() {
     let command = pseudo_random(2000, 2);
     let [mut first, second] = [100.0, 104.0].map(|hz| log(&[(mode(hz, 0.05), 1.0)], &command, 1e-3, 0.01, hz as u64));
     let steady = position::identify(&first).unwrap();
@@ -353,7 +353,7 @@ fn a_mode_that_moves_during_a_log_is_said() {
 }
 
 #[test]
-fn logs_that_cannot_be_are_refused() {
+fn impossible_logs_are_refused() {
     let good = log(&[(stage()[0], 1.0)], &step(100), 1e-3, 0.0, 0);
     let short = PositionLog {
         command: Vec::new(),

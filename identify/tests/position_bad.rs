@@ -69,7 +69,7 @@ fn an_axis_that_follows_late_has_no_mode() {
 }
 
 #[test]
-fn a_tone_that_does_not_decay_is_no_mode() {
+fn a_tone_that_does_not_decay_is_not_a_mode() {
     let tone = |n: usize| 0.05 * (MODE.omega() * n as f64 * 1e-3).sin();
     let command = pseudo_random(1500);
     for (command, response) in [
@@ -118,7 +118,7 @@ fn a_log_shorter_than_a_period_says_how_long_it_should_be() {
 }
 
 #[test]
-fn what_is_before_a_blow_is_left_out() {
+fn samples_before_a_blow_are_left_out() {
     let struck = (0..2000).map(|n: usize| n.checked_sub(500).map_or(0.0, ring));
     let found = identify(&log(Vec::new(), noisy(struck, 0.01, 4)));
     let [only] = found.modes[..] else { panic!("{found:?}") };
@@ -143,7 +143,7 @@ fn a_dead_sensor_is_refused() {
 }
 
 #[test]
-fn a_step_that_has_died_away_by_half_of_the_log_is_not_said_to_move() {
+fn a_step_that_decays_in_half_of_the_log_does_not_seem_to_move() {
     let truth = Mode {
         frequency_hz: 131.0,
         damping: 0.158,

@@ -45,7 +45,7 @@ fn identify(log: &PositionLog) -> FoundInPosition {
 }
 
 #[test]
-fn noise_that_rings_is_no_mode() {
+fn ringing_noise_is_not_a_mode() {
     let step: Vec<f64> = (0..1000).map(|n| if n < 100 { 0.0 } else { 1.0 }).collect();
     for seed in 0..3 {
         let noise = narrow(1000, seed);
@@ -98,7 +98,7 @@ fn noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_intervals
 }
 
 #[test]
-fn a_decay_in_noise_that_rings_elsewhere_is_told() {
+fn a_decay_is_found_in_noise_that_rings_elsewhere() {
     let truth = Mode {
         frequency_hz: 20.0,
         damping: 0.03,

@@ -133,7 +133,7 @@ fn a_log_of_something_else_is_refused() {
 }
 
 #[test]
-fn a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
+fn a_log_that_begins_within_the_sweep_gives_the_modes_it_covers() {
     let truths = [known(60.0, 0.04, 1.0)];
     let mut log = resonance_test(&truths, &quick(), &Sensor::default(), 5);
     for (_, record) in &mut log.directions {
@@ -145,7 +145,7 @@ fn a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
 }
 
 #[test]
-fn a_sweep_of_which_the_log_has_neither_end_is_refused() {
+fn a_log_with_neither_end_of_the_sweep_is_refused() {
     // The shaking from 30 to 85 Hz at 2 Hz/s is also that of one from 5 to 135 Hz at 1 Hz/s, at twice its frequencies and in one direction.
     let driven = Sweep {
         start_hz: 30.0,
@@ -165,7 +165,7 @@ fn a_sweep_of_which_the_log_has_neither_end_is_refused() {
 }
 
 #[test]
-fn no_mode_is_told_of_frequencies_that_the_log_does_not_have() {
+fn no_mode_is_reported_at_frequencies_the_log_lacks() {
     let truths = [known(30.0, 0.04, 0.6), known(90.0, 0.03, 0.4)];
     let mut log = resonance_test(&truths, &quick(), &Sensor::default(), 5);
     for (_, record) in &mut log.directions {
@@ -194,7 +194,7 @@ fn a_clock_that_drifts_is_set_by_the_sweep() {
 }
 
 #[test]
-fn a_log_that_is_mostly_noise_tells_what_it_can() {
+fn modes_are_found_in_a_log_that_is_mostly_noise() {
     let truths = [known(45.0, 0.05, 1.0)];
     let sensor = Sensor {
         noise: 15.0,

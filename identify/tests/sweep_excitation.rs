@@ -52,12 +52,12 @@ fn both_tests_tell_the_modes(rates_hz: &[f64]) {
 }
 
 #[test]
-fn both_tests_of_the_firmware_tell_the_modes_at_400_and_800_hz() {
+fn both_firmware_tests_give_the_modes_at_400_and_800_hz() {
     both_tests_tell_the_modes(&[400.0, 800.0]);
 }
 
 #[test]
-fn long_both_tests_of_the_firmware_tell_the_modes_at_1600_and_3200_hz() {
+fn long_both_firmware_tests_give_the_modes_at_1600_and_3200_hz() {
     both_tests_tell_the_modes(&[1600.0, 3200.0]);
 }
 
@@ -70,7 +70,7 @@ fn case() -> AccelerationLog {
 
 /// A rigid machine under Klipper's present test from 5 to 40 Hz, by a generator that is not ours.
 #[test]
-fn the_square_wave_of_a_rigid_machines_log_is_no_mode() {
+fn the_square_wave_in_a_rigid_machines_log_is_not_a_mode() {
     let sweep = Sweep {
         end_hz: 40.0,
         ..Sweep::default()
@@ -96,7 +96,7 @@ fn the_square_wave_of_a_rigid_machines_log_is_no_mode() {
 }
 
 #[test]
-fn a_wave_of_another_size_is_told_by_the_log() {
+fn a_wave_of_another_size_is_found_in_the_log() {
     let wave = SquareWave {
         acceleration: 0.25,
         period_s: 1.57,
@@ -205,7 +205,7 @@ fn the_first_frequency_is_that_at_which_the_motion_begins() {
 }
 
 #[test]
-fn a_log_that_is_shorter_than_a_test_with_a_square_wave_is_no_reason_to_stop() {
+fn a_log_shorter_than_a_test_with_a_square_wave_is_analysed() {
     let described = |end_hz: f64| Sweep {
         start_hz: 11.0,
         end_hz,

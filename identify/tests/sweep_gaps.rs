@@ -28,7 +28,7 @@ fn without(log: &AccelerationLog, mut keep: impl FnMut(usize, f64) -> bool) -> (
 }
 
 #[test]
-fn missing_rows_cost_what_they_would_have_told() {
+fn missing_rows_cost_only_their_own_information() {
     let truths = [known(28.0, 0.04, 0.5), known(60.0, 0.05, 0.5)];
     let sensor = Sensor {
         sample_s: 1.0 / 800.0,
@@ -121,7 +121,7 @@ fn a_long_gap_hides_its_frequencies_and_no_others() {
 }
 
 #[test]
-fn missing_rows_of_a_position_log_are_no_end_of_it() {
+fn missing_rows_do_not_end_a_position_log() {
     let truths = [known(24.0, 0.04, 0.7), known(55.0, 0.03, 0.3)];
     let log = position_log(&truths, &pseudo_random(4000, 4), 1e-3, 0.002, 3).unwrap();
     for share in [0.0003, 0.01] {

@@ -104,13 +104,13 @@ fn right_or_remarked(seeds: impl IntoIterator<Item = u64>) {
 
 /// A first frequency that is not whole (3), and a pole at the first frequency that is no mode (65).
 #[test]
-fn what_a_log_tells_of_an_unusual_sweep_is_right_or_remarked() {
+fn results_for_an_unusual_sweep_are_right_or_remarked() {
     right_or_remarked([3, 65]);
 }
 
 /// First frequencies beside the usual one with the usual rate and end (49), and lower ones that are as like (26); a last one that a mode rings
 /// beyond (39).
 #[test]
-fn long_what_a_log_tells_of_other_unusual_sweeps_is_right_or_remarked() {
+fn long_results_for_other_unusual_sweeps_are_right_or_remarked() {
     right_or_remarked([26, 39, 49]);
 }

@@ -18,13 +18,13 @@ pub(super) struct Column {
     pub(super) values: Vec<f64>,
 }
 
-/// A log as it is in its file, in SI units where its names give units.
+/// The columns of a log as its file has them; in SI units if their names give units.
 pub(super) struct Table {
     pub(super) times_s: Vec<f64>,
     /// Line of each row in the file.
     pub(super) lines: Lines,
     pub(super) columns: Vec<Column>,
-    /// What is to be said of columns that are not used.
+    /// Remarks on columns that are not used.
     pub(super) remarks: Vec<Remark>,
     /// Name of the column of times, if it does not state its unit.
     pub(super) plain_time: Option<String>,
@@ -54,7 +54,7 @@ impl Lines {
     }
 }
 
-/// Lines before the header that are none of it, at most.
+/// Largest number of lines before the header.
 const PREAMBLE: usize = 64;
 
 /// Reads header and rows.
@@ -173,7 +173,7 @@ pub(super) fn read(text: &[u8], options: &ReadOptions) -> Result<Table, LogError
     })
 }
 
-/// Takes over what plain rows have.
+/// Adds the values of plain rows.
 fn take(plain: PlainRows, fields: &[Use], times: &mut Vec<f64>, columns: &mut [Column], said: &mut Said) {
     for (used, values) in fields.iter().zip(plain.values) {
         match used.target {
@@ -185,7 +185,7 @@ fn take(plain: PlainRows, fields: &[Use], times: &mut Vec<f64>, columns: &mut [C
     }
 }
 
-/// Times of day, which begin anew at midnight.
+/// Reads times of day, which restart at midnight.
 #[derive(Default)]
 struct Clock {
     was_read: bool,
@@ -205,8 +205,8 @@ impl Clock {
     }
 }
 
-/// The header, and whether the present record is then the first row. Lines of remarks before the header are passed by, and what instruments
-/// write there of themselves.
+/// Returns the header, and whether the current record is the first row. Skips the lines before the header, and keeps the settings that
+/// instruments write there.
 fn header(records: &mut Records<'_>, said: &mut Said, options: &ReadOptions) -> Result<(Vec<Name>, bool), LogError> {
     let mut passed: Vec<(bool, Vec<Name>)> = Vec::new();
     let mut found = None;
@@ -262,7 +262,8 @@ fn header(records: &mut Records<'_>, said: &mut Said, options: &ReadOptions) -> 
     Ok((header, has_row))
 }
 
-/// Of the lines above the first row, the last with as many fields; one of units belongs to the line before it.
+/// Of the lines above the first row, returns the last that has as many fields. If that is a line of units, its units go to the line before
+/// it.
 fn above(mut passed: Vec<(bool, Vec<Name>)>, row: &ByteRecord) -> Option<Vec<Name>> {
     let fits = |names: &Vec<Name>| names.len() == row.len() || names.len() == row.len() + 1;
     let mut last = passed.iter().rposition(|(is_remark, names)| !is_remark && fits(names));
@@ -291,7 +292,7 @@ fn above(mut passed: Vec<(bool, Vec<Name>)>, row: &ByteRecord) -> Option<Vec<Nam
     last.map(|at| passed.swap_remove(at).1)
 }
 
-/// The names of `--columns`, with unused columns behind them.
+/// Returns the names of `--columns`, followed by unused columns.
 fn given_names(given: &[String], fields: usize) -> Result<Vec<Name>, LogError> {
     let unused = || Name {
         text: "-".into(),
@@ -336,7 +337,7 @@ fn names_of(record: &ByteRecord) -> Vec<Name> {
         .iter()
         .map(|field| Name::of(&String::from_utf8_lossy(field)))
         .collect();
-    // Some loggers write the header as a remark that says so.
+    // Some loggers write the header as a remark.
     if names
         .first()
         .is_some_and(|name| matches!(name.text.as_str(), "headers" | "header" | "columns" | "fields"))
@@ -353,7 +354,7 @@ fn with_unit(name: &Name, unit: &str) -> Name {
     }
 }
 
-/// Adds the units of a line below the header to its names, as `(ms)` or `second`; whether it is one.
+/// Adds the units of a line below the header, such as `(ms)` or `second`, to the header's names; returns whether it is such a line.
 fn with_units(header: &mut [Name], units: &ByteRecord) -> bool {
     let units = names_of(units);
     let more: Vec<Name> = header

@@ -19,13 +19,13 @@ pub(super) enum Meaning {
     /// Command of a drive.
     Drive,
     Acceleration,
-    /// Only the letter of an axis: an acceleration or a position.
+    /// Only the letter of an axis, for an acceleration or a position.
     Axis,
-    /// A length or an angle under a name of its own.
+    /// A length or an angle under another name.
     Length,
 }
 
-/// A column's name, and what it says.
+/// A column's name, and its meaning.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Name {
     /// The name in lower case, its words joined by `_`.
@@ -35,7 +35,7 @@ pub(super) struct Name {
     pub(super) factor: Option<f64>,
 }
 
-/// Columns of one meaning: how they are called, and the units that their names may end in.
+/// The names of the columns with one meaning, and the units with which these names may end.
 struct Known {
     meaning: Meaning,
     names: &'static [&'static str],
@@ -57,7 +57,7 @@ const LENGTH_UNITS: [(&str, f64); 12] = [
     ("volt", 1.0),
 ];
 
-/// The first of the length units that are lengths or angles, and nothing else.
+/// Number of the first length units that have no other meaning than a length or an angle.
 const LENGTHS: usize = 9;
 
 const TIME_UNITS: [(&str, f64); 15] = [
@@ -78,7 +78,7 @@ const TIME_UNITS: [(&str, f64); 15] = [
     ("min", 60.0),
 ];
 
-/// Whatever a drive is told; only how it moves counts.
+/// Units of a drive's command. The scale does not matter, only how the command changes.
 const DRIVE_UNITS: [(&str, f64); 9] = [
     ("n", 1.0),
     ("nm", 1.0),
@@ -94,7 +94,7 @@ const DRIVE_UNITS: [(&str, f64); 9] = [
 /// Standard acceleration of free fall in m/s².
 pub(super) const GRAVITY: f64 = 9.806_65;
 
-/// The number of units of [`ACCELERATION_UNITS`] that are accelerations and nothing else.
+/// Number of the first [`ACCELERATION_UNITS`] that have no other meaning than an acceleration.
 const ACCELERATIONS: usize = 31;
 
 const ACCELERATION_UNITS: [(&str, f64); 37] = [
@@ -129,7 +129,7 @@ const ACCELERATION_UNITS: [(&str, f64); 37] = [
     ("milli_g", 1e-3 * GRAVITY),
     ("millig", 1e-3 * GRAVITY),
     ("ug", 1e-6 * GRAVITY),
-    // What the sensor's converter gives: the modes do not depend on its scale.
+    // These are raw values of the sensor's converter; the modes do not depend on their scale.
     ("counts", 1.0),
     ("count", 1.0),
     ("raw", 1.0),
@@ -255,7 +255,7 @@ const KNOWN: [Known; 11] = [
     },
 ];
 
-/// Names that say their unit themselves.
+/// Names that include their unit.
 const TIMES_WITH_UNIT: [(&str, f64); 9] = [
     ("seconds_elapsed", 1.0),
     ("seconds", 1.0),
@@ -271,7 +271,7 @@ const TIMES_WITH_UNIT: [(&str, f64); 9] = [
 /// The directions of an accelerometer, by the names that printer firmware gives them.
 const DIRECTIONS: [&str; 3] = ["accel_x", "accel_y", "accel_z"];
 
-/// Other names for them, but for the letter of the direction.
+/// Other names for the directions, without the letter of the direction.
 const OTHER_DIRECTIONS: [(&str, &str); 23] = [
     ("acceleration_", "_axis"),
     ("acceleration_", ""),
@@ -298,7 +298,7 @@ const OTHER_DIRECTIONS: [(&str, &str); 23] = [
     ("", "_acc"),
 ];
 
-/// Other names of an axis of which nothing else is said, but for its letter.
+/// Other names of an axis that consist of its letter and no quantity.
 const OTHER_AXES: [(&str, &str); 7] = [
     ("", "_axis"),
     ("axis_", ""),
@@ -310,10 +310,10 @@ const OTHER_AXES: [(&str, &str); 7] = [
 ];
 
 impl Name {
-    /// What a field of a header says: `Accel X (m/s²)` is the acceleration `accel_x_m_s2`.
+    /// Interprets a field of a header: `Accel X (m/s²)` is the acceleration `accel_x_m_s2`.
     pub(super) fn of(field: &str) -> Self {
         let text = canonical(&plain(field));
-        // Of `x-axis` alone it is not known whether it is a direction or the abscissa of an oscilloscope.
+        // `x-axis` alone may be a direction or the abscissa of an oscilloscope.
         let is_direction = text != "x_axis" && !text.starts_with("x_axis_");
         let as_axis = is_direction.then(|| axis(&text)).flatten();
         if let Some((meaning, factor)) = as_axis.or_else(|| known(&text)).or_else(|| bracketed(field)) {
@@ -337,7 +337,7 @@ impl Name {
         text.chars().next().filter(|letter| matches!(letter, 'x' | 'y' | 'z'))
     }
 
-    /// Whether the name says that its column is one of a spectrum.
+    /// Whether the name is that of a column of a spectrum.
     pub(super) fn is_spectral(&self) -> bool {
         const BEGINNINGS: [&str; 5] = ["psd", "fft", "amplitude_spectr", "power_spectr", "magnitude_db"];
         self.meaning == Some(Meaning::Frequency) || BEGINNINGS.iter().any(|begin| self.text.starts_with(begin))
@@ -359,7 +359,7 @@ fn plain(name: &str) -> String {
     words.collect::<Vec<_>>().join("_")
 }
 
-/// A name, that of a direction as the firmware has it: `acc_x_g` is `accel_x_g`.
+/// Replaces another name of a direction by the firmware's: `acc_x_g` becomes `accel_x_g`.
 fn canonical(name: &str) -> String {
     for (letter, direction) in ["x", "y", "z"].into_iter().zip(DIRECTIONS) {
         for (before, behind) in OTHER_DIRECTIONS {
@@ -371,7 +371,7 @@ fn canonical(name: &str) -> String {
     name.to_owned()
 }
 
-/// The rest of a name behind these three, if it is empty or begins a new word.
+/// Returns the rest of a name after these three parts, if it is empty or begins a new word.
 fn between<'a>(name: &'a str, before: &str, letter: &str, behind: &str) -> Option<&'a str> {
     let rest = name.strip_prefix(before)?.strip_prefix(letter)?.strip_prefix(behind)?;
     (rest.is_empty() || rest.starts_with('_')).then_some(rest)
@@ -397,35 +397,35 @@ fn factor(units: &[(&str, f64)], unit: &str) -> Option<f64> {
     units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor)
 }
 
-/// A unit that is an acceleration, or a length or an angle.
-fn of_unit(unit: &str) -> Option<(Meaning, Option<f64>)> {
+/// Interprets a unit of acceleration, length or angle.
+fn meaning_of_unit(unit: &str) -> Option<(Meaning, Option<f64>)> {
     if let Some(factor) = factor(&ACCELERATION_UNITS[..ACCELERATIONS], unit) {
         return Some((Meaning::Acceleration, Some(factor)));
     }
     factor(&LENGTH_UNITS[..LENGTHS], unit).map(|factor| (Meaning::Length, Some(factor)))
 }
 
-/// A name that is only the letter of an axis, with or without a unit.
+/// Interprets a name that is only the letter of an axis, with or without a unit.
 fn axis(name: &str) -> Option<(Meaning, Option<f64>)> {
     ["x", "y", "z"].into_iter().find_map(|letter| {
         let forms = [("", "")].into_iter().chain(OTHER_AXES);
         let rest = forms.filter_map(|(before, behind)| between(name, before, letter, behind));
         rest.filter_map(|rest| match rest.strip_prefix('_') {
             None => Some((Meaning::Axis, None)),
-            Some(unit) => of_unit(unit),
+            Some(unit) => meaning_of_unit(unit),
         })
         .next()
     })
 }
 
-/// A name that is not known, but has its unit in brackets: `Channel 1 [g]`.
+/// Interprets an unknown name with its unit in brackets: `Channel 1 [g]`.
 fn bracketed(field: &str) -> Option<(Meaning, Option<f64>)> {
     let field = field.trim().trim_end_matches([')', ']']);
     let (_, unit) = field.rsplit_once(['(', '['])?;
-    of_unit(&plain(unit))
+    meaning_of_unit(&plain(unit))
 }
 
-/// Whether a field is nothing but a unit.
+/// Whether a field contains only a unit.
 pub(super) fn is_unit(field: &str) -> bool {
     let unit = plain(field);
     let tables = [&TIME_UNITS[..], &LENGTH_UNITS, &DRIVE_UNITS, &ACCELERATION_UNITS];

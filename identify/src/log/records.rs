@@ -60,7 +60,7 @@ impl<'a> Records<'a> {
         (&self.text[self.begin..], self.line)
     }
 
-    /// Passes by so many bytes from the present record on, which are so many lines.
+    /// Skips this many bytes from the current record on, which are this many lines.
     pub(super) fn skip_lines(&mut self, bytes: usize, lines: usize) {
         self.begin += bytes;
         self.line += lines as u64;

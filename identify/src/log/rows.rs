@@ -1,8 +1,9 @@
-//! Reads rows that have nothing but numbers, as almost all rows of a log: several times as fast as a reader of any CSV, and on two cores.
+//! Reads rows that contain only numbers, as almost all rows of a log do. This is several times as fast as a general CSV reader, and uses
+//! two cores.
 //!
-//! A row is plain if it is a line with as many fields as the header, without quotes, whose first field and used fields are finite
-//! numbers. The first line that is not ends the plain rows, and the general reader goes on from there, so that a log
-//! means the same whichever of the two reads it.
+//! A row is plain if it is a line with as many fields as the header, without quotes, and if its first field and its used fields are finite
+//! numbers. The plain rows end at the first other line. The general reader continues there, so both readers interpret a log in the same
+//! way.
 
 use super::text::number;
 use super::uses::Use;
@@ -14,11 +15,11 @@ pub(super) struct PlainRows {
     pub(super) values: Vec<Vec<f64>>,
     /// Number of rows.
     pub(super) rows: usize,
-    /// Number of bytes of the text that they take.
+    /// Number of bytes of the text that the rows take.
     pub(super) bytes: usize,
 }
 
-/// What plain rows look like.
+/// The format of plain rows.
 #[derive(Clone, Copy)]
 pub(super) struct Layout<'a> {
     pub(super) separator: u8,
@@ -51,7 +52,7 @@ pub(super) fn plain(text: &[u8], layout: Layout<'_>) -> PlainRows {
     first
 }
 
-/// The same on one core; there is room for the rows of `room` bytes.
+/// The same on one core; reserves memory for the rows of `room` bytes.
 fn one_after_another(text: &[u8], layout: Layout<'_>, room: usize) -> PlainRows {
     let length = memchr::memchr(b'\n', text).map_or(text.len(), |end| end + 1);
     let capacity = room / length.max(2) + room / length.max(2) / 16 + 16;
@@ -70,7 +71,7 @@ fn one_after_another(text: &[u8], layout: Layout<'_>, room: usize) -> PlainRows 
     PlainRows { values, rows, bytes }
 }
 
-/// Adds the values of a line, if it is plain. Those of one that is not may be added in part.
+/// Adds the values of a line if it is plain; of another line, some values may be added.
 fn is_plain<'a>(line: &'a [u8], layout: Layout<'_>, fields: &mut Vec<&'a [u8]>, values: &mut [Vec<f64>]) -> bool {
     let line = line.strip_suffix(b"\r").unwrap_or(line);
     fields.clear();
@@ -101,8 +102,8 @@ const TENS: [f64; 16] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
 ];
 
-/// A finite number. Where its digits are an exact number and so is the power of ten, their quotient is the nearest to the decimal
-/// number, as any right reader gives it (Clinger 1990).
+/// Parses a finite number. If its digits and its power of ten are both exact in an `f64`, their quotient is the nearest to the decimal
+/// number, as any correct parser returns it (Clinger 1990).
 fn value(field: &[u8]) -> Option<f64> {
     let field = field.trim_ascii();
     let (is_negative, unsigned) = match field {
@@ -160,7 +161,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn numbers_are_those_of_the_standard_library(digits in 0u64..u64::MAX, places in 0usize..20, sign in "[-+]?") {
+        fn numbers_match_the_standard_library(digits in 0u64..u64::MAX, places in 0usize..20, sign in "[-+]?") {
             let text = format!("{sign}{digits:0width$}", width = places + 1);
             let (whole, part) = text.split_at(text.len() - places);
             let text = format!("{whole}.{part}");
@@ -169,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn other_numbers_are_those_of_the_general_reader() {
+    fn other_numbers_match_the_general_reader() {
         for text in [
             "", "-", ".", "-.5", "5.", "1e3", "nan", "inf", "1.2.3", "+4", "0,5", " 7 ", "1_0", "-0",
         ] {
@@ -183,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_rows_end_before_the_first_line_that_is_not() {
+    fn plain_rows_end_before_the_first_other_line() {
         for (rest, expected) in [
             ("3,x,0\n", 3),
             ("3,0\n", 2),
@@ -206,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn two_threads_read_what_one_does() {
+    fn two_threads_read_the_same_as_one() {
         let rows = |broken: usize| -> String {
             (0..60_000)
                 .map(|n| {

@@ -4,16 +4,16 @@ use super::Remark;
 use super::columns::{Column, Lines};
 use super::names::Meaning;
 
-/// The only value of a column that has only one.
+/// Returns the value of a constant column.
 pub(super) fn dead(values: &[f64]) -> Option<f64> {
     let first = *values.first()?;
     values.iter().all(|value| *value == first).then_some(first)
 }
 
-/// Number of consecutive samples at an extreme that is not a coincidence.
+/// Number of consecutive samples at an extreme that is too large for a coincidence.
 const ROW_AT_EXTREME: usize = 4;
 
-/// Runs of a response at its largest or smallest value, far from where it rests.
+/// Finds runs of a response at its largest or smallest value, far from where it rests.
 pub(super) fn saturated(column: &Column, lines: &Lines, range: std::ops::Range<usize>) -> Option<Remark> {
     let values = &column.values[range.clone()];
     if matches!(column.meaning, Meaning::Command | Meaning::Drive) || dead(values).is_some() {

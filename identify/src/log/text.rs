@@ -1,9 +1,9 @@
-//! The text of a log: its encoding, what separates its fields, numbers and times of day, and what its remarks say.
+//! The text of a log: its encoding, its separator, its numbers and times of day, and the settings in its remarks.
 
 use super::LogError;
 use std::borrow::Cow;
 
-/// First bytes of files that are no text, and what they are.
+/// First bytes of files that are not text, and the format of these files.
 const PACKED: [(&[u8], &str); 4] = [
     (&[0x1f, 0x8b], "compressed by gzip: unpack it first (gunzip)"),
     (
@@ -17,7 +17,7 @@ const PACKED: [(&[u8], &str); 4] = [
     (b"BZh", "compressed by bzip2: unpack it first (bunzip2)"),
 ];
 
-/// The text in UTF-8, without a mark of the order of bytes; spreadsheets write UTF-16 too.
+/// Returns the text in UTF-8, without a byte order mark; spreadsheets also write UTF-16.
 pub(super) fn in_utf8(text: &[u8]) -> Result<Cow<'_, [u8]>, LogError> {
     if let Some((_, what)) = PACKED.iter().find(|(magic, _)| text.starts_with(magic)) {
         return Err(LogError::Packed(what));
@@ -39,14 +39,14 @@ pub(super) fn in_utf8(text: &[u8]) -> Result<Cow<'_, [u8]>, LogError> {
     Ok(text)
 }
 
-/// What separates the fields, and the text to be read with it. It is the one that divides most of the first lines into
-/// numbers; a comma may stand in numbers beside the others, and runs of spaces become tabulators. A first line `sep=;` says it.
+/// Returns the separator of the fields, and the text to be read with it. The separator is the one that divides most of the first lines into
+/// numbers. Commas may be decimal commas beside the other separators, and runs of spaces become tabulators. A first line `sep=;` decides.
 pub(super) fn separator(text: &[u8]) -> (u8, Cow<'_, [u8]>) {
     const LOOKED_AT: usize = 96;
     if let Some(rest) = text.strip_prefix(b"sep=")
         && let [separator, rest @ ..] = rest
     {
-        // The line stays as an empty one, so that lines are counted as an editor does.
+        // The line stays as an empty one, so that line numbers match those of an editor.
         return (*separator, Cow::Borrowed(rest));
     }
     let lines = || text.split(|byte| *byte == b'\n').take(LOOKED_AT);
@@ -67,7 +67,7 @@ pub(super) fn separator(text: &[u8]) -> (u8, Cow<'_, [u8]>) {
             best = (rows, Some(separator));
         }
     }
-    // Without rows of numbers it is what the lines contain.
+    // Without rows of numbers, the characters in the lines decide.
     let contained = || {
         let has = |separator: u8| lines().any(|line| !is_remark(line) && line.contains(&separator));
         [b';', b'\t', b',', b' '].into_iter().find(|separator| has(*separator))
@@ -87,12 +87,12 @@ fn unquoted(field: &[u8]) -> &[u8] {
         .unwrap_or(field)
 }
 
-/// Whether a line begins as remarks do.
+/// Whether a line begins like a remark.
 pub(super) fn is_remark(line: &[u8]) -> bool {
     matches!(line.first(), Some(b'#' | b';' | b'%')) || line.starts_with(b"//")
 }
 
-/// Each run of spaces within a line as one tabulator.
+/// Replaces each run of spaces within a line by one tabulator.
 fn tabbed(text: &[u8]) -> Vec<u8> {
     let words = |line: &[u8]| {
         let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
@@ -102,14 +102,14 @@ fn tabbed(text: &[u8]) -> Vec<u8> {
     lines.join(&b'\n')
 }
 
-/// A finite number, with a decimal point, or with a decimal comma where commas do not separate fields.
+/// Parses a finite number with a decimal point, or with a decimal comma if commas do not separate fields.
 pub(super) fn number(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?;
     let value: f64 = text.parse().or_else(|_| text.replace(',', ".").parse()).ok()?;
     value.is_finite().then_some(value)
 }
 
-/// Seconds since midnight of a time of day such as `2026-01-31 12:00:01.250`, or of minutes and seconds.
+/// Converts a time of day such as `2026-01-31 12:00:01.250`, or minutes and seconds, to seconds since midnight.
 pub(super) fn time_of_day(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?;
     let clock = text.trim_end_matches(['Z', 'z']).rsplit([' ', 'T']).next()?;
@@ -127,7 +127,7 @@ pub(super) fn time_of_day(field: &[u8]) -> Option<f64> {
 /// Length of a day in seconds.
 pub(super) const DAY_S: f64 = 86_400.0;
 
-/// What lines beside the samples say of all of them.
+/// Settings of the whole recording, from lines beside the samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Said {
     /// Samples per second.
@@ -137,7 +137,7 @@ pub(super) struct Said {
 }
 
 impl Said {
-    /// Adds what a line says, such as `Rate 1344, overflows 0` or `# data_rate = 2000 Hz`.
+    /// Adds the settings in a line such as `Rate 1344, overflows 0` or `# data_rate = 2000 Hz`.
     pub(super) fn hear(&mut self, line: &str) {
         let line = line.to_lowercase();
         let after = |word: &str| {
@@ -147,7 +147,7 @@ impl Said {
             let (value, unit) = rest.split_at(end.unwrap_or(rest.len()));
             Some((value.parse::<f64>().ok()?, unit))
         };
-        // A feed rate or a baud rate is none of the samples'.
+        // A feed rate or a baud rate is not the rate of the samples.
         const RATES: [&str; 9] = [
             "samplerate",
             "sample rate",
@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn separators_are_those_of_the_rows_whatever_remarks_contain() {
+    fn separators_follow_from_the_rows_whatever_remarks_contain() {
         let cases: [(&str, u8); 7] = [
             ("time,x\n0,1\n1,2\n", b','),
             (";Title, logger\n;Headers, time,Ax\n0.003,799\n0.013,805\n", b','),
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn times_of_day_and_what_lines_say() {
+    fn times_of_day_and_settings_in_remarks_are_read() {
         assert_eq!(time_of_day(b"2026-01-31 12:00:01.250"), Some(43_201.25));
         assert_eq!(time_of_day(b"2026-01-31T00:00:01,5Z"), Some(1.5));
         assert_eq!(time_of_day(b"01:02.5"), Some(62.5));

@@ -1,24 +1,24 @@
-//! Makes a uniform time grid of the times of the rows, in which rows may be missing.
+//! Makes a uniform time grid from the times of the rows, even if rows are missing.
 
 use super::columns::Table;
 use super::{LogError, Remark};
 use std::ops::Range;
 
-/// A step further than this from a whole number of samples is off.
+/// A step counts as off if it is further than this from a whole number of samples.
 const OFF: f64 = 0.25;
-/// Fraction of the steps that are off from which on the times count as irregular, not as regular with rows missing.
+/// Fraction of steps off the grid above which the times count as irregular, not as regular with missing rows.
 const IRREGULAR: f64 = 0.05;
 /// Steps longer than this many samples are gaps of an irregular log.
 const GAP_OF_IRREGULAR: f64 = 3.0;
-/// Fraction of the steps that are long from which on times that keep to a uniform grid were only rounded.
+/// Fraction of long steps above which times that keep to a uniform grid were only rounded, and have no gaps.
 const ROUNDED: f64 = 0.005;
 /// Samples that deviate by less than this, in samples, are kept where they are.
 const REGULAR: f64 = 0.1;
 /// Number of missing rows for each row, above which only the longest part without a gap is used.
 const MOST_MISSING: f64 = 3.0;
 
-/// Root mean square of the steps' deviations from their mean, in samples, beyond which it is not known what a command
-/// was between two rows.
+/// Root mean square of the steps' deviations from their mean, in samples, above which the command between two rows is
+/// unknown.
 const WAVERING: f64 = 0.1;
 
 /// The rows that are used, and their position on a uniform grid.
@@ -33,15 +33,15 @@ pub(super) struct Grid {
     place: Place,
 }
 
-/// Where the samples of the grid lie between the rows.
+/// Position of the grid's samples between the rows.
 enum Place {
     /// Each row is a sample.
     Rows,
-    /// For each sample the row before it, and the fraction of the way to the next row; whether rows are samples.
+    /// For each sample, the row before it and the fraction of the way to the next row; and whether rows are samples.
     Between(Vec<(u32, f32)>, bool),
 }
 
-/// What a column is between two rows.
+/// Course of a column between two rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Course {
     /// It goes straight from one to the next.
@@ -62,7 +62,7 @@ impl Grid {
         Some(self.wavers).filter(|(deviation, _)| *deviation > WAVERING)
     }
 
-    /// Values of all rows on the grid.
+    /// Returns the values of all rows on the grid.
     pub(super) fn of(&self, mut values: Vec<f64>, course: Course) -> Vec<f64> {
         match &self.place {
             Place::Rows => {
@@ -86,7 +86,7 @@ impl Grid {
     }
 }
 
-/// The grid of a log; defects that were mended are added to `remarks`.
+/// Returns the grid of a log; defects that were mended are added to `remarks`.
 pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, LogError> {
     let times = &table.times_s;
     for row in 1..times.len() {
@@ -98,7 +98,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
             });
         }
     }
-    let steps = Steps::of(times);
+    let steps = Steps::from_times(times);
     let all = steps.indices(times);
     let missing = all.last().map_or(0, |last| last + 1).saturating_sub(times.len());
     let range = match missing as f64 > MOST_MISSING * times.len() as f64 {
@@ -163,7 +163,7 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     })
 }
 
-/// What the steps from row to row tell.
+/// Properties of the steps from row to row.
 struct Steps {
     sample_s: f64,
     is_irregular: bool,
@@ -171,7 +171,7 @@ struct Steps {
 }
 
 impl Steps {
-    fn of(times: &[f64]) -> Self {
+    fn from_times(times: &[f64]) -> Self {
         let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let off = |steps: &[f64], usual: f64| {
             let is_off = |step: &&f64| {
@@ -250,7 +250,7 @@ impl Steps {
     }
 }
 
-/// The remark on the samples that are missing.
+/// Returns the remark on missing samples.
 fn gaps(table: &Table, range: &Range<usize>, indices: &[usize], sample_s: f64, samples: usize) -> Remark {
     let steps = || indices.windows(2).map(|pair| pair[1] - pair[0] - 1);
     let line = |row: usize| table.lines.of(range.start + row);
@@ -267,7 +267,7 @@ fn gaps(table: &Table, range: &Range<usize>, indices: &[usize], sample_s: f64, s
     }
 }
 
-/// The rows before and after each sample, where rows are samples.
+/// The rows before and after each sample, if rows are samples.
 fn between_indices(indices: &[usize]) -> Vec<(u32, f32)> {
     let mut places = Vec::with_capacity(indices.last().map_or(0, |last| last + 1));
     for (row, pair) in indices.windows(2).enumerate() {
@@ -278,7 +278,7 @@ fn between_indices(indices: &[usize]) -> Vec<(u32, f32)> {
     places
 }
 
-/// The rows before and after each sample, where they are not equally spaced.
+/// The rows before and after each sample, if rows are not equally spaced.
 fn between_times(times: &[f64], sample_s: f64, samples: usize) -> Vec<(u32, f32)> {
     let mut row = 0;
     let place = |n: usize| {

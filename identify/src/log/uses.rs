@@ -1,10 +1,10 @@
-//! Decides which columns of a header are used, and as what. What a header leaves open is asked, not guessed.
+//! Decides which columns of a header are used, and as what. If a header is ambiguous, the user is asked; nothing is guessed.
 
 use super::columns::Column;
 use super::names::{GRAVITY, Meaning, Name};
 use super::{LogError, ReadOptions, Remark};
 
-/// What the values of a field are.
+/// Meaning of the values of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Target {
     Time,
@@ -22,22 +22,22 @@ pub(super) struct Use {
     pub(super) factor: f64,
 }
 
-/// What is used of a header.
+/// The fields of a header that are used.
 pub(super) struct Uses {
     pub(super) fields: Vec<Use>,
     pub(super) columns: Vec<Column>,
     pub(super) remarks: Vec<Remark>,
-    /// Whether the rows have numbers and no times.
+    /// Whether the rows are numbered and have no times.
     pub(super) is_numbered: bool,
-    /// What is asked if the values do not decide what the columns of axes are.
+    /// The question to the user if the values do not decide what the columns of axes are.
     pub(super) question: Option<LogError>,
 }
 
-/// What a log was taken as.
+/// Kinds of logs, for messages.
 const OF_ACCELEROMETER: &str = "that of an accelerometer";
 const OF_COMMAND: &str = "that of a position command and its response";
 
-/// Decides for a header.
+/// Decides the use of each field of a header.
 pub(super) fn uses(header: &[Name], options: &ReadOptions) -> Result<Uses, LogError> {
     let of = |meaning: Meaning| -> Vec<usize> {
         let fields = (0..header.len()).filter(|field| meaning_in(header, *field) == Some(meaning));
@@ -109,8 +109,8 @@ impl Uses {
     }
 }
 
-/// Meaning of a field among the others: `x-axis` is the abscissa of an oscilloscope, but beside a time or `y-axis` a direction; a name
-/// that is empty is that of an index only in front.
+/// Returns the meaning of a field beside the others. `x-axis` is the abscissa of an oscilloscope, but a direction beside a time or
+/// `y-axis`; an empty name is an index only if it comes first.
 fn meaning_in(header: &[Name], field: usize) -> Option<Meaning> {
     let name = &header[field];
     let is_other = |other: &Name| {
@@ -125,7 +125,7 @@ fn meaning_in(header: &[Name], field: usize) -> Option<Meaning> {
     name.meaning
 }
 
-/// The column of the time. Of several it is the only one whose name states a unit.
+/// Returns the column of the time. Of several, it is the only one whose name states a unit.
 fn time(header: &[Name], times: &[usize]) -> Result<Option<usize>, LogError> {
     let stated: Vec<usize> = times
         .iter()
@@ -154,7 +154,7 @@ fn texts(header: &[Name]) -> Vec<String> {
     header.iter().map(|name| name.text.clone()).collect()
 }
 
-/// Adds the columns of what was measured; says what the log was taken as.
+/// Adds the columns of measured quantities; returns the kind of log, for messages.
 fn measured(header: &[Name], of: &impl Fn(Meaning) -> Vec<usize>, uses: &mut Uses) -> Result<&'static str, LogError> {
     let accelerations = of(Meaning::Acceleration);
     if !accelerations.is_empty() {
@@ -176,7 +176,7 @@ fn measured(header: &[Name], of: &impl Fn(Meaning) -> Vec<usize>, uses: &mut Use
             ([only], []) if is_driven => responses.push(*only),
             ([], []) => return Err(missing("response", header)),
             ([], _) => return Err(question(header, &lengths)),
-            _ => return of_axes(header, &axes, uses),
+            _ => return use_axes_by_letter(header, &axes, uses),
         }
     }
     let (kept, taken): (&[&[usize]], _) = if !deviations.is_empty() {
@@ -201,9 +201,9 @@ fn measured(header: &[Name], of: &impl Fn(Meaning) -> Vec<usize>, uses: &mut Use
     Ok(taken)
 }
 
-/// Columns of which only the letter of the axis is known. RepRapFirmware writes accelerations in g beside `Sample`; else the values of
-/// three directions may decide, and one or two are asked about.
-fn of_axes(header: &[Name], axes: &[usize], uses: &mut Uses) -> Result<&'static str, LogError> {
+/// Uses columns whose names give only the letter of the axis. RepRapFirmware writes accelerations in g beside `Sample`. Otherwise the
+/// values of three directions may decide, and the user is asked about one or two.
+fn use_axes_by_letter(header: &[Name], axes: &[usize], uses: &mut Uses) -> Result<&'static str, LogError> {
     let is_recorder = uses.is_numbered && header.iter().any(|name| name.text == "sample");
     let is_one_sensor = same_letter(header, axes).is_none();
     if !is_one_sensor || (!is_recorder && axes.len() != 3) {
@@ -220,7 +220,7 @@ fn of_axes(header: &[Name], axes: &[usize], uses: &mut Uses) -> Result<&'static 
     Ok(OF_ACCELEROMETER)
 }
 
-/// Two fields of the same direction.
+/// Returns two fields of the same direction.
 fn same_letter(header: &[Name], fields: &[usize]) -> Option<(usize, usize)> {
     fields.iter().enumerate().find_map(|(n, one)| {
         let letter = header[*one].letter()?;
@@ -231,7 +231,7 @@ fn same_letter(header: &[Name], fields: &[usize]) -> Option<(usize, usize)> {
     })
 }
 
-/// Asks what the columns are, with the options that decide it.
+/// Returns the question what the columns are, with the options that answer it.
 fn question(header: &[Name], open: &[usize]) -> LogError {
     let row = |column: &dyn Fn(usize) -> String| {
         let columns = (0..header.len()).map(|field| match meaning_in(header, field) {
@@ -273,7 +273,7 @@ fn question(header: &[Name], open: &[usize]) -> LogError {
     }
 }
 
-/// Unit of an acceleration, by what the three directions measure together where nothing moves.
+/// Returns the unit of accelerations for which the three directions together measure gravity while nothing moves.
 fn unit_by_gravity(columns: &[Column]) -> Option<(&'static str, f64, f64)> {
     /// Largest relative error of a sensor that is not calibrated.
     const TOLERANCE: f64 = 0.12;
@@ -297,16 +297,16 @@ fn unit_by_gravity(columns: &[Column]) -> Option<(&'static str, f64, f64)> {
     unit.map(|(name, factor)| (*name, *factor, measured))
 }
 
-/// Gives accelerations without a unit theirs, and decides whether columns of axes are accelerations.
+/// Determines the unit of accelerations without one, and decides whether columns of axes are accelerations.
 ///
 /// # Errors
-/// The question that remains open.
+/// The question that remains for the user.
 pub(super) fn decide(
     columns: &mut [Column],
     remarks: &mut Vec<Remark>,
     question: Option<LogError>,
 ) -> Result<(), LogError> {
-    /// Printer firmware writes mm/s² without saying so.
+    /// Printer firmware writes mm/s² without naming the unit.
     const OF_FIRMWARE: (&str, f64) = ("mm/s²", 1e-3);
     let is_open =
         |column: &Column| matches!(column.meaning, Meaning::Acceleration | Meaning::Axis) && column.factor.is_none();

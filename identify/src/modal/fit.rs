@@ -38,7 +38,7 @@ impl Lateness {
 }
 
 impl Phase {
-    /// The lateness; zero where nothing is known.
+    /// Returns the lateness; zero if the phase is not known.
     pub(crate) fn lateness(self) -> Lateness {
         match self {
             Self::Free => Lateness::default(),
@@ -49,15 +49,15 @@ impl Phase {
 
 /// Range of damping ratios of a fit.
 const DAMPING: (f64, f64) = (2e-4, 2.0);
-/// Smallest half width `ζ·f` of a pole, over the distance of the points: a narrower one is between them.
+/// Smallest half width `ζ·f` of a pole, over the distance of the points: a narrower pole lies between two points.
 const NARROWEST: f64 = 0.25;
-/// Ratio to a bound from which on a pole is not at it.
+/// Smallest ratio to a bound for a pole that does not count as being at it.
 const OFF_BOUND: f64 = 1.1;
 
 /// Largest ratio of the static value to that of the lowest point.
 const STILL: f64 = 5.0;
 
-/// The smallest damping ratio that points tell of a pole at a frequency.
+/// Smallest damping ratio that the points can resolve for a pole at a frequency.
 fn least_damping(points: &[ResponsePoint], frequency_hz: f64) -> f64 {
     let above = points.partition_point(|point| point.frequency_hz < frequency_hz);
     let first = above.min(points.len().saturating_sub(1)).saturating_sub(1);
@@ -69,7 +69,7 @@ fn least_damping(points: &[ResponsePoint], frequency_hz: f64) -> f64 {
     DAMPING.0.max(NARROWEST * distance_hz / frequency_hz)
 }
 
-/// Whether a pole is off the bounds of the fit, and no narrower than the points resolve.
+/// Whether a pole is away from the bounds of the fit, and wide enough for the points to resolve it.
 pub(crate) fn is_resolved(points: &[ResponsePoint], pole: &Pole) -> bool {
     pole.damping > OFF_BOUND * least_damping(points, pole.frequency_hz) && pole.damping * OFF_BOUND < DAMPING.1
 }
@@ -83,11 +83,11 @@ pub(crate) struct Fit {
     pub(crate) phase: Phase,
     /// Static share of each pole, and its standard deviation.
     pub(crate) shares: Vec<(f64, f64)>,
-    /// Static value: that of the axis and of all poles; 1 where nothing is known of the phase.
+    /// Static value of the axis and all poles; 1 if the phase is not known.
     pub(crate) still: f64,
     /// Standard deviations of each pole's frequency in Hz and damping ratio.
     pub(crate) deviations: Vec<(f64, f64)>,
-    /// Standard deviation of the bend of the lateness in seconds; infinite where nothing is known of the phase.
+    /// Standard deviation of the bend of the lateness in seconds; infinite if the phase is not known.
     pub(crate) bend_deviation_s: f64,
     /// Sum of squares of the residuals divided by their standard deviations.
     pub(crate) square: f64,
@@ -176,7 +176,7 @@ fn top_hz(points: &[ResponsePoint]) -> f64 {
     points.last().map_or(1.0, |point| point.frequency_hz)
 }
 
-/// The fit of poles to points. The unknowns are `ln f` and `ln ζ` of each pole, and delay and bend where the phase is
+/// The fit of poles to points. The unknowns are `ln f` and `ln ζ` of each pole, and delay and bend if the phase is
 /// known.
 struct Poles<'a> {
     points: &'a [ResponsePoint],
@@ -220,8 +220,8 @@ impl<'a> Poles<'a> {
         (poles.collect(), phase)
     }
 
-    /// Complex coefficients of a pole: of its displacement, and of its velocity.
-    fn of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> (Complex<f64>, Complex<f64>) {
+    /// Returns the complex coefficients of a pole's displacement and velocity.
+    fn coefficients_of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> (Complex<f64>, Complex<f64>) {
         let half = coefficients.len() / 2;
         let at = |column: usize| match self.is_free {
             true => Complex::new(coefficients[column], coefficients[column + half]),
@@ -257,7 +257,7 @@ impl Separable for Poles<'_> {
             let turn = phase.lateness().turn(frequency_hz, self.top_hz);
             for (k, pole) in poles.iter().enumerate() {
                 let (below, ratio) = denominator(pole, frequency_hz);
-                let (still, moving) = self.of_pole(coefficients, k);
+                let (still, moving) = self.coefficients_of_pole(coefficients, k);
                 let above = still + I * moving * ratio;
                 let by_ratio =
                     I * moving / below - above * Complex::new(-2.0 * ratio, 2.0 * pole.damping) / (below * below);
@@ -299,12 +299,12 @@ pub(crate) fn square(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> 
     separable::square(&problem, &problem.unknowns(poles, phase))
 }
 
-/// The best fit near the given poles. `None` where the points do not determine the unknowns.
+/// Returns the best fit near the given poles; `None` if the points do not determine the unknowns.
 pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, effort: Effort) -> Option<Fit> {
     let problem = Poles::new(points, phase);
     let solution = separable::refine(&problem, &problem.unknowns(poles, phase), effort)?;
     let (poles, phase) = problem.poles(&solution.unknowns);
-    // A remainder that the noise of the points does not explain counts as more noise.
+    // A remainder beyond the noise of the points counts as additional noise.
     let row = solution.reduced_square().max(1.0).sqrt();
     let deviations = poles.iter().enumerate().map(|(k, pole)| {
         (
@@ -313,7 +313,7 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
         )
     });
     let shares = (0..poles.len()).map(|k| {
-        let (still, _) = problem.of_pole(&solution.coefficients, k);
+        let (still, _) = problem.coefficients_of_pole(&solution.coefficients, k);
         (still.norm(), solution.linear_deviation(2 * k, row))
     });
     Some(Fit {
@@ -327,7 +327,7 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
             Phase::Late(_) => {
                 let of_poles: f64 = (0..poles.len()).map(|k| solution.coefficients[2 * k]).sum();
                 let still = of_poles + solution.coefficients[2 * poles.len()];
-                // Poles far below the points cancel each other at them, and say nothing of what is still.
+                // Poles far below the points cancel each other there, and so do not determine the static value.
                 let lowest = problem
                     .values(&solution.fitted)
                     .first()
@@ -374,7 +374,7 @@ impl<'a> Gains<'a> {
         }
     }
 
-    /// What a pole with a share of 1 explains beside its moving part, if nothing else explains it.
+    /// Returns what a pole with a share of 1 explains beside its moving part, if nothing else explains it.
     pub(super) fn of_unit_share(&self, pole: &Pole) -> f64 {
         let (mut cc, mut rr, mut cr) = (0.0, 0.0, 0.0);
         for (point, turn) in self.points.iter().zip(&self.turns) {
@@ -388,9 +388,9 @@ impl<'a> Gains<'a> {
         cc - cr * cr / rr.max(f64::MIN_POSITIVE)
     }
 
-    /// The gain of a pole with both its coefficients.
+    /// Returns the gain of a pole with both its coefficients.
     pub(super) fn of(&self, pole: &Pole) -> f64 {
-        // These are the products of the two columns `c` and `r`, and those with the residual.
+        // Products of the two columns `c` and `r`, and of each with the residual.
         let (mut cc, mut rr, mut cr) = (0.0, 0.0, Complex::new(0.0, 0.0));
         let (mut c_rest, mut r_rest) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
         for ((point, rest), turn) in self.points.iter().zip(&self.residual).zip(&self.turns) {

@@ -9,8 +9,8 @@
 //! the frequency, because clocks drift. The fit is a weighted, separable least-squares fit: for given frequencies,
 //! damping ratios and `τ` the other unknowns follow linearly (Golub and Pereyra 1973, in the form of Kaufman 1975).
 //!
-//! Where the phase is not known, the coefficients are complex and the rest is a polynomial with complex coefficients:
-//! the poles are then found whatever the phase of the excitation is.
+//! If the phase is not known, the coefficients are complex and the rest is a polynomial with complex coefficients: the
+//! poles are then found for any phase of the excitation.
 
 mod fit;
 mod select;
@@ -35,7 +35,7 @@ pub struct ResponsePoint {
 }
 
 impl ResponsePoint {
-    /// Two frequencies in Hz whose mean equals that over the point's frequencies up to the third power of their
+    /// Returns two frequencies in Hz that have the same mean as the point's frequencies, up to the third power of their
     /// spread.
     fn nodes_hz(&self) -> [f64; 2] {
         [self.frequency_hz - self.spread_hz, self.frequency_hz + self.spread_hz]

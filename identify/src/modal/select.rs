@@ -7,11 +7,11 @@ use crate::parallel::both;
 use crate::separable::Effort;
 use std::ops::Range;
 
-/// Largest number of poles that are searched.
+/// Largest number of poles that are sought.
 const MOST: usize = 8;
-/// Damping ratios at which a further pole is searched.
+/// Damping ratios at which a further pole is sought.
 const TRIED_DAMPING: [f64; 3] = [0.01, 0.04, 0.15];
-/// Ratio of neighbouring frequencies at which it is searched.
+/// Ratio of neighbouring frequencies at which it is sought.
 const TRIED_STEP: f64 = 1.015;
 /// The search uses every point with this stride.
 const STRIDE: usize = 3;
@@ -21,12 +21,12 @@ const NEAR: f64 = 0.2;
 /// chance.
 const LEAST_GAIN: f64 = 80.0;
 
-/// Adds poles that explain the points, one after the other. `None` where there are too few points for a pole.
+/// Adds poles that explain the points, one after the other; `None` if there are too few points for a pole.
 pub(crate) fn select(points: &[ResponsePoint], phase: Phase) -> Option<Fit> {
     Some(grown(points, refine(points, &[], phase, Effort::Rough)?))
 }
 
-/// A fit with the further poles that the points need.
+/// Returns a fit with the further poles that the points need.
 pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
     let (mut kept, mut fit, mut idle) = (fit.clone(), fit, 0);
     while fit.poles.len() < MOST && idle < 2 {
@@ -45,9 +45,9 @@ pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
     kept
 }
 
-/// A fit without unnecessary poles: those that explain, beside the others, no more than noise might.
+/// Returns a fit without unnecessary poles, which explain no more beside the others than noise might.
 pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
-    /// Multiple of what a pole must explain from which on a rough fit without it tells that it is necessary.
+    /// Multiple of the required gain above which a rough fit without a pole shows that the pole is necessary.
     const FAR: f64 = 20.0;
     let mut kept = fit;
     loop {
@@ -56,7 +56,7 @@ pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
             let mut poles = kept.poles.clone();
             poles.remove(k);
             let rough = refine(points, &poles, kept.phase, Effort::Rough)?;
-            // What is far from enough when it has nearly converged will not be enough.
+            // A fit that misses by far when it has nearly converged will still miss after converging.
             if rough.square - kept.square > FAR * least_gain {
                 return None;
             }
@@ -104,26 +104,26 @@ fn added(poles: &[Pole], pole: Pole) -> Vec<Pole> {
     poles
 }
 
-/// Share of all ringing for which [`Visible::from_hz`] is told.
+/// Share of all ringing for which [`Visible::from_hz`] is reported.
 pub const TOLD_RINGING: f64 = 0.05;
 
-/// What a log would have shown of further modes below the lowest.
+/// Further modes below the lowest that the log would have shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Visible {
-    /// Frequency in Hz from which on a mode would have been found that rings with [`TOLD_RINGING`] of what all ring with that were.
+    /// Frequency in Hz above which a mode would have been found if it rang with [`TOLD_RINGING`] of the ringing of all modes found.
     pub from_hz: f64,
-    /// Frequency in Hz below that at which a mode must ring most to be found.
+    /// Frequency in Hz, at most `from_hz`, at which a mode must ring most to be found.
     pub least_at_hz: f64,
-    /// What it must ring with there, over what all ring with that were found.
+    /// Ringing that a mode needs at that frequency to be found, over that of all modes found.
     pub least_ringing: f64,
 }
 
-/// What points would have shown beside these modes, of a further one; `None` without modes. The slower a mode is, the smaller the share of the
-/// response that rings as much, and the weaker its excitation.
+/// Returns which further mode the points would have shown beside these modes; `None` without modes. The slower a mode is, the smaller is
+/// its share of the response for the same ringing, and the weaker is its excitation.
 pub(crate) fn visible(points: &[ResponsePoint], fit: &Fit, modes: &[FoundMode]) -> Option<Visible> {
     /// Damping ratio of the mode that would have been found.
     const DAMPING: f64 = 0.04;
-    /// Distance of the frequencies that are looked at.
+    /// Ratio of neighbouring frequencies that are examined.
     const STEP: f64 = 1.02;
     let whole: f64 = modes.iter().map(|found| found.ringing(1.0)).sum();
     modes.first()?;

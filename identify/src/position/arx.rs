@@ -5,8 +5,8 @@
 //! p = root of z^n + a_1·z^(n−1) + … + a_n,    s = ln(p)/T,    ω = |s|,    ζ = −Re s/|s|
 //! ```
 //!
-//! Least squares are exact without noise, and biased by noise of the sensor: the more samples there are in a period,
-//! the larger is the bias. Instrumental variables remove it: commands and responses that the model itself predicts,
+//! Without noise, least squares are exact. Noise of the sensor biases them, the more so the more samples there are in a
+//! period. Instrumental variables remove the bias: commands and responses that the model itself predicts,
 //! filtered by `1/A` (Young's refined method).
 
 use crate::separable::Gram;
@@ -83,8 +83,8 @@ pub fn with_instruments(log: &PositionLog, order: usize) -> Result<ArxModel, Arx
     Ok(model)
 }
 
-/// The log reduced to 4 to 15 samples per period of `frequency_hz`, where it has more: means of as many samples, of
-/// command and response.
+/// Returns the log reduced to 4 to 15 samples per period of `frequency_hz`, if it has more: means of equally many
+/// samples of the command and of the response.
 pub fn decimated(log: &PositionLog, frequency_hz: f64) -> PositionLog {
     const SAMPLES_PER_PERIOD: f64 = 10.0;
     let joined = ((1.0 / (frequency_hz * log.sample_s * SAMPLES_PER_PERIOD)) as usize).max(1);

@@ -9,8 +9,8 @@
 //!
 //! A motor that its drive pushes also moves as a rigid body ([`RigidBody`]): its position has the integrals of the command too.
 //!
-//! This is the zero-order hold without approximation. Rows are means over `decimation` samples, of the response and of these columns
-//! alike, so that nothing of the relation is lost.
+//! This is the zero-order hold without approximation. Rows are means over `decimation` samples, of the response and of these columns alike,
+//! so the relation between them stays exact.
 
 use super::Quantity;
 use super::memory::NoiseMemory;
@@ -30,13 +30,13 @@ pub(super) struct HeldModes<'a> {
     measured: DVector<f64>,
     /// Memory of the noise, which has been removed from rows and columns.
     memory: Option<NoiseMemory>,
-    /// Rows that are ignored: they are zero in all columns. Empty where all rows count.
+    /// Rows that are ignored; they are zero in all columns. Empty if all rows count.
     clipped: Vec<bool>,
     body: Option<RigidBody>,
     quantity: Quantity,
 }
 
-/// How a motor moves as a whole: `1/s` and `1/(s(s + rate))` of its drive's command.
+/// Motion of a motor as a whole: `1/s` and `1/(s(s + rate))` of its drive's command.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RigidBody {
     /// Rate in 1/s at which viscous friction takes its velocity.
@@ -44,7 +44,8 @@ pub(super) struct RigidBody {
 }
 
 impl RigidBody {
-    /// Samples of the command that act at once, or nearly so: what is faster than the samples, such as a current loop.
+    /// Number of samples of the command that act at once or nearly so: parts of the machine faster than the samples, such as a current
+    /// loop.
     pub(super) const TAPS: usize = 4;
 
     /// Columns of a held input: its integral; and that behind `1/(s + rate)`.
@@ -81,7 +82,7 @@ fn decay_integral(rate: f64, time_s: f64) -> f64 {
 fn decay_integral_twice(rate: f64, time_s: f64) -> f64 {
     let decays = rate * time_s;
     if decays < 1e-4 {
-        // The difference would be rounding.
+        // Here the difference would consist of rounding errors.
         return time_s * time_s * (0.5 - decays / 6.0);
     }
     (time_s - decay_integral(rate, time_s)) / rate
@@ -93,8 +94,8 @@ const DAMPING: (f64, f64) = (1e-5, 0.98);
 const STEP: f64 = 1e-6;
 
 impl<'a> HeldModes<'a> {
-    /// The samples of a log in `range`, in rows of `decimation` samples; rows with a sample that is missing do not count. The command is
-    /// left out where it does not change in the range.
+    /// The samples of a log in `range`, in rows of `decimation` samples; rows with a missing sample do not count. The command is left out
+    /// if it does not change in the range.
     pub(super) fn new(log: &'a PositionLog, range: Range<usize>, decimation: usize) -> Self {
         let mut missing = vec![false; range.len()];
         for gap in within(&log.missing, range.clone()) {
@@ -103,7 +104,7 @@ impl<'a> HeldModes<'a> {
         Self::with_filled(log, range, decimation).without(&missing)
     }
 
-    /// The same, in which what is missing counts with the value that fills it.
+    /// The same, but missing samples count with the values that fill them.
     pub(super) fn with_filled(log: &'a PositionLog, range: Range<usize>, decimation: usize) -> Self {
         let response = &log.response[range.clone()];
         let command = log.command.get(range).filter(|command| moves(command));
@@ -123,7 +124,7 @@ impl<'a> HeldModes<'a> {
         this
     }
 
-    /// Ignores the rows that contain a sample that `clipped` marks; the modes continue to move during them.
+    /// Ignores the rows with a sample that `clipped` marks; the modes continue to move during these rows.
     pub(super) fn without(mut self, clipped: &[bool]) -> Self {
         if clipped.contains(&true) {
             let rows = clipped.chunks_exact(self.decimation).map(|row| row.contains(&true));
@@ -140,7 +141,7 @@ impl<'a> HeldModes<'a> {
         self
     }
 
-    /// The same for a response that is another quantity.
+    /// The same for a response of another quantity.
     pub(super) fn of(self, quantity: Quantity) -> Self {
         Self { quantity, ..self }
     }
@@ -158,7 +159,7 @@ impl<'a> HeldModes<'a> {
         self.body.is_some()
     }
 
-    /// Makes the rows that do not count zero, in one column after the other.
+    /// Sets the rows that do not count to zero, in one column after the other.
     pub(super) fn zero_clipped(&self, columns: &mut [f64]) {
         for (value, clipped) in columns.iter_mut().zip(self.clipped.iter().cycle()) {
             if *clipped {
@@ -173,7 +174,7 @@ impl<'a> HeldModes<'a> {
         1.0 - clipped as f64 / self.len().max(1) as f64
     }
 
-    /// The rows without what the past of the noise predicts.
+    /// Removes from the rows what the past of the noise predicts.
     pub(super) fn whitened(&self, memory: NoiseMemory) -> Self {
         Self {
             measured: DVector::from_vec(memory.whitened(self.measured.as_slice())),
@@ -190,7 +191,7 @@ impl<'a> HeldModes<'a> {
         }
     }
 
-    /// Makes columns of rows, each without what the past of the noise predicts.
+    /// Makes columns of rows, and removes from each what the past of the noise predicts.
     fn columns(&self, mut columns: Vec<f64>) -> DMatrix<f64> {
         let rows = self.len();
         self.zero_clipped(&mut columns);
@@ -224,7 +225,7 @@ impl<'a> HeldModes<'a> {
         self.measured.len()
     }
 
-    /// Number of coefficients of a mode: two of the forced motion, where there is one, and two of the free motion.
+    /// Number of coefficients of a mode: two of the forced motion, if there is any, and two of the free motion.
     pub(super) fn per_mode(&self) -> usize {
         if self.is_forced() { 4 } else { 2 }
     }
@@ -302,7 +303,7 @@ impl<'a> HeldModes<'a> {
         self.columns(columns)
     }
 
-    /// Those of a motor: taps of the command and its integrals, and the motion of before the log with a force that stays.
+    /// The columns of a motor: taps of the command and its integrals, then the motion from before the log under a constant force.
     fn body_columns(&self, command: &[f64], body: RigidBody) -> Vec<f64> {
         let samples = self.samples();
         let command: Vec<f64> = command[..samples].iter().map(|u| u - command[0]).collect();
@@ -334,8 +335,8 @@ impl<'a> HeldModes<'a> {
         }
     }
 
-    /// Participation of a mode, except for a factor of all: the static gain of a forced one. A free one is taken as excited by a jump of
-    /// the acceleration, after which the amplitudes of the accelerations are participations.
+    /// Participation of a mode, up to a factor that all modes share: the static gain if it is forced. A free mode counts as excited by a
+    /// jump of the acceleration, after which the amplitudes of the accelerations are participations.
     pub(super) fn participation(&self, mode: &Mode, strength: f64) -> f64 {
         match (self.is_forced(), self.quantity) {
             (true, _) | (false, Quantity::Acceleration) => strength,

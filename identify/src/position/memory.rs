@@ -5,8 +5,8 @@
 //! n(k) = −a_1·n(k−1) − … − a_p·n(k−p) + e(k)     e without a memory
 //! ```
 //!
-//! A fit that takes its rows as independent confuses such noise with a mode, and finds too small an uncertainty for a
-//! true one. The fit is therefore made on rows filtered by `1 + a_1·z⁻¹ + … + a_p·z⁻ᵖ` (generalised least squares),
+//! A fit that treats its rows as independent confuses such noise with a mode, and understates the uncertainty of a
+//! true mode. The fit is therefore made on rows filtered by `1 + a_1·z⁻¹ + … + a_p·z⁻ᵖ` (generalised least squares),
 //! and every mode must explain more than noise with its own memory would. The coefficients are found by Burg's
 //! method, the order by Schwarz's criterion.
 
@@ -30,11 +30,11 @@ const LONGEST_FORCED: usize = 8;
 const LONGEST_FREE: usize = 4;
 /// Number of rows needed per coefficient.
 const ROWS_PER_COEFFICIENT: usize = 12;
-/// Twice the logarithm of the likelihood ratio above which noise is taken to have a memory.
+/// Twice the logarithm of the likelihood ratio above which noise counts as having a memory.
 const HAS_MEMORY: f64 = 20.0;
 
 impl NoiseMemory {
-    /// The model of order at most `longest` that fits the noise best.
+    /// Returns the model of order at most `longest` that fits the noise best.
     pub(super) fn of(noise: &[f64], longest: usize) -> Self {
         let rows = noise.len();
         let longest = longest.min(rows / ROWS_PER_COEFFICIENT);
@@ -81,7 +81,7 @@ impl NoiseMemory {
         rows as f64 * (first / self.variance()).ln() > HAS_MEMORY
     }
 
-    /// A signal without what the past of the noise predicts, with rows of equal variance.
+    /// Removes from a signal what the past of the noise predicts; its rows then have equal variance.
     pub(super) fn whitened(&self, signal: &[f64]) -> Vec<f64> {
         let longest = self.predictors.len() - 1;
         let row = |k: usize| {
@@ -101,8 +101,8 @@ struct Level {
 }
 
 impl Level {
-    /// Modes and noise that fit each other.
-    fn of(problem: &HeldModes<'_>, modes: &[Mode]) -> Option<Self> {
+    /// Fits the modes and the noise together.
+    fn fitted(problem: &HeldModes<'_>, modes: &[Mode]) -> Option<Self> {
         let longest = longest(problem);
         let plain = refine(problem, &HeldModes::unknowns(modes), Effort::Rough)?;
         let residual = problem.measured() - &plain.fitted;
@@ -115,7 +115,7 @@ impl Level {
         })
     }
 
-    /// As many modes of a fit as explain more than noise does, the strongest first.
+    /// Keeps the modes of a fit that explain more than noise does, adding the strongest first.
     fn with_the_strongest(problem: &HeldModes<'_>, found: &Found) -> Option<Self> {
         let width = problem.per_mode();
         let strength = |k: usize| {
@@ -126,9 +126,9 @@ impl Level {
         };
         let mut order: Vec<usize> = (0..found.modes.len()).collect();
         order.sort_by(|a, b| strength(*b).total_cmp(&strength(*a)));
-        let mut level = Self::of(problem, &[])?;
+        let mut level = Self::fitted(problem, &[])?;
         for k in order {
-            let more = Self::of(problem, &[&level.modes[..], &[found.modes[k]]].concat())?;
+            let more = Self::fitted(problem, &[&level.modes[..], &[found.modes[k]]].concat())?;
             if more.explained_beyond(&level, problem) > LEAST_GAIN {
                 level = more;
             }
@@ -136,18 +136,18 @@ impl Level {
         Some(level)
     }
 
-    /// Amount by which this leaves less than another, in variances of the noise.
+    /// Amount by which this level leaves less than another, in variances of the noise.
     fn explained_beyond(&self, other: &Self, problem: &HeldModes<'_>) -> f64 {
         problem.len() as f64 * (other.memory.variance() / self.memory.variance()).ln()
     }
 
-    /// The level without the mode that is missed least, and the amount by which it is missed, in variances of the
+    /// Returns the level without the mode that contributes least, and how much that mode explains, in variances of the
     /// noise.
     fn with_one_less(&self, problem: &HeldModes<'_>) -> Option<(f64, Self)> {
         let levels = (0..self.modes.len()).filter_map(|left_out| {
             let mut modes = self.modes.clone();
             modes.remove(left_out);
-            Self::of(problem, &modes)
+            Self::fitted(problem, &modes)
         });
         let best = levels.min_by(|a, b| a.memory.variance().total_cmp(&b.memory.variance()))?;
         Some((self.explained_beyond(&best, problem), best))
@@ -162,8 +162,8 @@ fn longest(problem: &HeldModes<'_>) -> usize {
     }
 }
 
-/// Fits modes beside noise with a memory, and returns the fit with the problem that it solves; where the noise has no
-/// memory the rows are unchanged.
+/// Fits modes beside noise with a memory, and returns the fit with the problem that it solves; if the noise has no
+/// memory, the rows are unchanged.
 pub(super) fn beside_noise<'a>(problem: HeldModes<'a>, modes: &[Mode]) -> Option<(HeldModes<'a>, Found)> {
     let solution = refine(&problem, &HeldModes::unknowns(modes), Effort::Full)?;
     let power = problem.measured().variance() * problem.len() as f64;
@@ -180,9 +180,9 @@ pub(super) fn beside_noise<'a>(problem: HeldModes<'a>, modes: &[Mode]) -> Option
             solution,
         },
     )?;
-    // The remaining modes are those that noise cannot explain; others may appear once its memory is removed.
+    // The remaining modes are those that noise cannot explain; others may appear after its memory is removed.
     let found = search(&problem.whitened(level.memory), &level.modes)?;
-    let mut level = Level::of(&problem, &found.modes)?;
+    let mut level = Level::fitted(&problem, &found.modes)?;
     while let Some((missed, less)) = level.with_one_less(&problem) {
         if missed > LEAST_GAIN {
             break;
@@ -201,7 +201,7 @@ mod tests {
     use crate::synthetic::Noise;
 
     #[test]
-    fn the_memory_of_noise_is_found_and_taken_away() {
+    fn the_memory_of_noise_is_found_and_removed() {
         let mut source = Noise::new(1);
         let mut noise = vec![0.0, 0.0];
         for k in 2..4000 {

@@ -1,8 +1,8 @@
 //! Finds modes in a position log (time, command, response), or in the free decay of a response.
 //!
-//! The method minimises the output error of modes under a held command. It is unbiased under sensor noise and exact
-//! without it, for steps, decays, pseudo-random commands and chirps. [`arx`] has the models of equations (2-1) to
-//! (2-4) of the XY stage; their result is compared with it.
+//! The method minimises the output error of modes under a held command. It is unbiased under sensor noise, and exact without noise, for
+//! steps, decays, pseudo-random commands and chirps. [`arx`] has the models of equations (2-1) to (2-4) of the XY stage, whose result is
+//! compared with that of this method.
 
 pub mod arx;
 mod held;
@@ -27,10 +27,9 @@ use thiserror::Error;
 pub struct FoundInPosition {
     /// The modes, sorted by frequency.
     pub modes: Vec<FoundMode>,
-    /// Whether the command drove the modes; else they decay freely.
+    /// Whether the command drove the modes; otherwise they decay freely.
     pub is_forced: bool,
-    /// Number of samples in a row of the fit: the fastest mode has 4 to 15 rows per period, where the log has that
-    /// many samples.
+    /// Number of samples in a row of the fit: the fastest mode has 4 to 15 rows per period, if the log has that many samples.
     pub decimation: usize,
     /// Time in seconds from the first sample to the first row, and from row to row.
     pub row_s: f64,
@@ -203,16 +202,16 @@ pub enum PositionRemark {
 
 /// Smallest number of samples of a log.
 pub const LEAST_SAMPLES: usize = 24;
-/// Number of rows in which modes are searched.
+/// Number of rows in which modes are sought.
 const SEARCH_ROWS: usize = 3000;
-/// Rows per period of the fastest mode in the last fit, where the log has that many samples.
+/// Rows per period of the fastest mode in the last fit, if the log has that many samples.
 const ROWS_PER_PERIOD: f64 = 8.0;
 /// Largest number of rows of the last fit.
 const MOST_ROWS: usize = 30_000;
-/// Damping ratio from which on a pole does not count as a vibration.
+/// Smallest damping ratio of a pole that does not count as a vibration.
 const NO_VIBRATION: f64 = 0.6;
-/// Share of the response below which a mode must be sure to be reported, with a relative deviation of its damping and periods in the log
-/// that make it so.
+/// Share of the response below which a mode is reported only if it is certain, and the largest relative deviation of its damping and the
+/// smallest number of its periods in the log that make it certain.
 const LEAST_SHARE: f64 = 0.05;
 const SURE_DAMPING: f64 = 0.2;
 const SURE_PERIODS: f64 = 5.0;
@@ -234,19 +233,19 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     identify_response(log, Quantity::Position)
 }
 
-/// What a response is.
+/// Physical quantity of a response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Quantity {
     Position,
     Acceleration,
 }
 
-/// The same for a response that is another quantity: it decides what the amplitudes of a free decay are.
+/// As [`identify`], for a response of this quantity, which decides how the amplitudes of a free decay are interpreted.
 pub(crate) fn identify_response(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition, PositionError> {
     check(log)?;
     let (response_unit, command_unit) = (largest(&log.response), largest(&log.command));
     let in_units = |values: &[f64], unit: f64| values.iter().map(|value| value / unit).collect::<Vec<f64>>();
-    let found = of_size_one(
+    let found = identify_scaled(
         &PositionLog {
             command: in_units(&log.command, command_unit),
             response: in_units(&log.response, response_unit),
@@ -271,20 +270,20 @@ pub(crate) fn identify_response(log: &PositionLog, quantity: Quantity) -> Result
     })
 }
 
-/// The largest magnitude of a signal; 1 where that is 0.
+/// Returns the largest magnitude of a signal; 1 for a signal of zeros.
 fn largest(values: &[f64]) -> f64 {
     let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// The modes of a log whose largest command and response are 1, so that its squares are finite whatever its units.
-fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition, PositionError> {
+/// Finds the modes of a log scaled to a largest command and response of 1, so that its squares are finite in any unit.
+fn identify_scaled(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition, PositionError> {
     let begin = match held::moves(&log.command) {
         true => 0,
         false => onset(&log.response),
     };
     if begin > 0 && log.response.len() >= begin + LEAST_SAMPLES {
-        let mut found = of_size_one(
+        let mut found = identify_scaled(
             &PositionLog {
                 command: Vec::new(),
                 response: log.response[begin..].to_vec(),
@@ -306,16 +305,16 @@ fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition,
     };
     let mut found = search(&problem(0..samples, coarse), &[]);
     if coarse > 1 {
-        // A mode that is too fast for the rows of the whole log is searched where the command first moves.
+        // A mode too fast for the rows of the whole log is sought where the command first moves.
         let first = log.command.windows(2).position(|pair| pair[0] != pair[1]).unwrap_or(0);
         let begin = first.min(samples - SEARCH_ROWS);
         let fast = search(&problem(begin..begin + SEARCH_ROWS, 1), &[]);
         let slow = found
             .as_ref()
-            .map_or(0, |found| told(&problem(0..samples, coarse), found).len());
+            .map_or(0, |found| reported_modes(&problem(0..samples, coarse), found).len());
         if fast
             .as_ref()
-            .is_some_and(|fast| told(&problem(begin..begin + SEARCH_ROWS, 1), fast).len() > slow)
+            .is_some_and(|fast| reported_modes(&problem(begin..begin + SEARCH_ROWS, 1), fast).len() > slow)
         {
             found = fast;
         }
@@ -329,7 +328,7 @@ fn of_size_one(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition,
     let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
     let last = problem(0..samples, decimation);
     let (fitted_rows, found) = beside_noise(last, &modes).ok_or(PositionError::Short(samples))?;
-    let modes = told(&fitted_rows, &found);
+    let modes = reported_modes(&fitted_rows, &found);
     let last = HeldModes::with_filled(log, 0..samples, decimation);
     let solution = &found.solution;
     let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
@@ -381,13 +380,13 @@ fn check(log: &PositionLog) -> Result<(), PositionError> {
     Ok(())
 }
 
-/// Stretches of a log in which something decays.
+/// Number of intervals of a log that are longer than the memory of something that decays.
 fn stretches(decay: f64, seconds: f64) -> usize {
     (seconds * decay / MEMORY).clamp(STRETCHES.0, STRETCHES.1) as usize
 }
 
-/// The modes of a fit that are vibrations and are fixed by it.
-fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
+/// Returns the modes of a fit that are vibrations, and that the fit determines.
+fn reported_modes(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     let solution = &found.solution;
     let row = (solution.reduced_square() / problem.counted()).sqrt();
     let width = problem.per_mode();
@@ -420,7 +419,7 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     };
     let kept: Vec<(FoundMode, f64)> = all.into_iter().filter(|(found, _)| is_vibration(found)).collect();
     let whole: f64 = kept.iter().map(|(_, strength)| strength).sum();
-    // A drift looks like a slow mode of little strength, which would ring most of all.
+    // A drift looks like a slow mode of little strength, which would seem to ring most.
     let is_sure = |found: &FoundMode| {
         found.damping_sd < SURE_DAMPING * found.mode.damping.max(0.01)
             && found.mode.frequency_hz * seconds > SURE_PERIODS
@@ -435,8 +434,8 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     that_ring(modes.collect())
 }
 
-/// Reasons why a fit's results are not modes.
-fn not_told(problem: &HeldModes<'_>, found: &Found) -> Vec<PositionRemark> {
+/// Returns why the modes of a fit are not reported.
+fn reasons_not_reported(problem: &HeldModes<'_>, found: &Found) -> Vec<PositionRemark> {
     /// Number of periods above which a motion is more than a drift.
     const SOME_OF_A_PERIOD: f64 = 0.3;
     let seconds = problem.row_s() * problem.len() as f64;
@@ -466,7 +465,7 @@ fn remarks(
 ) -> Vec<PositionRemark> {
     const FEW_PERIODS: f64 = 3.0;
     const FEW_SAMPLES: f64 = 3.0;
-    let mut remarks = not_told(problem, found);
+    let mut remarks = reasons_not_reported(problem, found);
     if modes.is_empty() {
         if remarks.is_empty() {
             remarks.push(match problem.is_forced() {
@@ -498,7 +497,7 @@ fn remarks(
     remarks
 }
 
-/// Whether the strongest mode differs between the first and the second half of a log.
+/// Returns a remark if the strongest mode differs between the first and the second half of a log.
 fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Option<PositionRemark> {
     const DEVIATIONS: f64 = 5.0;
     const LEAST: f64 = 0.005;
@@ -511,7 +510,7 @@ fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Opt
     let in_part = |range| {
         let part = HeldModes::new(log, range, problem.decimation()).with_memory_of(problem);
         let solution = separable::refine(&part, &start, Effort::Full)?;
-        // A part in which it does not ring fits noise, at any frequency and as surely as it likes.
+        // A part in which the mode does not ring fits noise instead, at any frequency and with any apparent certainty.
         let still = separable::refine(&part, &others, Effort::Full)?;
         let explained = (still.square - solution.square) / solution.reduced_square();
         if explained < 2.0 * LEAST_GAIN {
@@ -526,7 +525,7 @@ fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Opt
     is_certain.then_some(PositionRemark::Moves { from_hz, to_hz })
 }
 
-/// Result of the XY stage's models for a log with one mode, where it differs.
+/// Returns a remark if the XY stage's models give another result for a log with one mode.
 fn beside(log: &PositionLog, mode: &Mode) -> Option<PositionRemark> {
     const FREQUENCY: f64 = 0.05;
     const DAMPING: f64 = 0.5;

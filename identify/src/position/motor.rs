@@ -1,15 +1,16 @@
-//! Modes of what hangs on a motor, from what its drive was told and where the motor's own encoder says it went.
+//! Finds the modes of a load that hangs on a motor, from the command of the drive and the position that the motor's own encoder reports.
 //!
 //! ```text
 //!  drive u ─► motor x ──/\/\/\── load         x/u = r₁/s + r₂/(s(s + a)) + Σ modes
 //! ```
 //!
-//! A torque drive moves motor and load as one (`r₂`), a velocity drive integrates (`r₁`). In the poles of `x/u` motor and load swing
-//! against each other: the *free* modes, with a torque drive; or what a velocity loop makes of them. In its zeros the motor stands still while the load swings,
-//! whatever the drive does: the modes with the **motor held**, which a position loop shows to its shaper. They are found as the zeros of a
-//! model that is fitted like any other ([`super`]). A force that stays, such as dry friction while the motor moves one way, is in the fit.
+//! A torque drive moves motor and load as one (`r₂`), a velocity drive integrates (`r₁`). At the poles of `x/u`, motor and load swing
+//! against each other: these are the *free* modes with a torque drive, and what a velocity loop makes of them with a velocity drive. At the
+//! zeros, the motor stands still while the load swings, whatever the drive does: these are the modes with the **motor held**, which a
+//! position loop shows to its shaper. They are found as the zeros of a model that is fitted like any other ([`super`]). The fit includes a
+//! constant force, such as dry friction while the motor moves one way.
 //!
-//! How much of the mass swings in a held mode follows from the apparent mass `u/(s²x)`, whose poles the held modes are.
+//! The share of the mass that swings in a held mode follows from the apparent mass `u/(s²x)`, whose poles are the held modes.
 
 use super::held::{HeldModes, RigidBody};
 use super::memory::beside_noise;
@@ -26,22 +27,23 @@ use nalgebra::{Complex, DMatrix, DVector};
 use posicast_shaper::mode::Mode;
 use std::f64::consts::TAU;
 
-/// What drive and motor tell.
+/// Modes found from the drive's command and the motor's position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundAtMotor {
-    /// The modes with the motor held, and how the motion of the motor was fitted. Participations are shares of the mass that swings.
+    /// The modes with the motor held, and the fit of the motor's motion. Participations are shares of the mass that swings.
     pub held: FoundInPosition,
-    /// What rings while nothing holds the motor, by frequency: free modes of a torque drive, those of its loop with a velocity drive.
+    /// Vibrations while nothing holds the motor, by frequency: the free modes with a torque drive, those of the velocity loop with a
+    /// velocity drive.
     pub free: Vec<Mode>,
-    /// Whether the command acts as a force; else as a velocity.
+    /// Whether the command acts as a force; otherwise it acts as a velocity.
     pub is_force: bool,
-    /// Samples by which the motor is later than the command; below 0 where a row has the command of the tick before.
+    /// Number of samples by which the motor is later than the command; negative if a row has the command of the tick before.
     pub delay: isize,
 }
 
 /// Delays in samples that are tried.
 const DELAYS: std::ops::RangeInclusive<isize> = -2..=6;
-/// Rates of viscous friction that are tried, over the reciprocal of the log's length: from none to what stops a motor within a part of it.
+/// Rates of viscous friction that are tried, times the length of the log: from none to a rate that stops a motor within a part of the log.
 const RATES: [f64; 8] = [0.0, 0.03, 0.1, 0.3, 0.6, 1.0, 3.0, 10.0];
 
 /// Finds the modes with the motor held.
@@ -60,14 +62,14 @@ pub fn identify(log: &DriveLog) -> Result<FoundAtMotor, PositionError> {
         missing: log.missing.clone(),
     };
     check(&log)?;
-    let mut found = of_size_one(&log)?;
+    let mut found = identify_scaled(&log)?;
     found.held.noise *= length;
     let rows = [&mut found.held.response, &mut found.held.fitted];
     rows.into_iter().flatten().for_each(|x| *x = start + *x * length);
     Ok(found)
 }
 
-/// A log whose command comes so many samples later.
+/// Returns a log whose command comes `delay` samples later.
 fn later(log: &PositionLog, delay: isize) -> PositionLog {
     let (samples, by) = (log.response.len(), delay.unsigned_abs());
     let (command, response) = match delay >= 0 {
@@ -82,7 +84,7 @@ fn later(log: &PositionLog, delay: isize) -> PositionLog {
     }
 }
 
-fn of_size_one(log: &PositionLog) -> Result<FoundAtMotor, PositionError> {
+fn identify_scaled(log: &PositionLog) -> Result<FoundAtMotor, PositionError> {
     let samples = log.response.len() - DELAYS.end().unsigned_abs();
     if samples < LEAST_SAMPLES {
         return Err(PositionError::Short(log.response.len()));
@@ -112,7 +114,7 @@ fn of_size_one(log: &PositionLog) -> Result<FoundAtMotor, PositionError> {
         let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or(0.0, |(_, rate)| rate)
     };
-    // What does not decay in the first fit stands for the friction that is not in it yet.
+    // Poles that do not decay in the first fit stand for the friction, which this fit does not include yet.
     let vibrations = |found: Option<Found>| {
         let mut modes = found.map_or(Vec::new(), |found| found.modes);
         modes.retain(|mode| !is_tone(mode, true, seconds));
@@ -134,7 +136,7 @@ fn of_size_one(log: &PositionLog) -> Result<FoundAtMotor, PositionError> {
     let fitted = plain.basis(&found.solution.unknowns) * &found.solution.coefficients;
     let noise = ((plain.measured() - &fitted).norm_squared() / found.solution.freedoms).sqrt();
     let model = Model::new(&problem, &found, rate / seconds);
-    let modes = told(&problem, &found, &model);
+    let modes = reported_modes(&problem, &found, &model);
     let is_force = model.is_force();
     let mut free = found.modes;
     free.retain(|mode| mode.damping < NO_VIBRATION);
@@ -165,9 +167,9 @@ fn decimation(log: &PositionLog, samples: usize, coarse: usize, modes: &[Mode]) 
     wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1))
 }
 
-/// Whether a motor moves both ways, fast enough for dry friction to matter.
+/// Whether a motor moves in both directions fast enough for dry friction to matter.
 fn turns_round(way: &[f64]) -> bool {
-    /// Part of the largest velocity that is rest.
+    /// Fraction of the largest velocity below which the motor counts as being at rest.
     const REST: f64 = 0.1;
     let velocities: Vec<f64> = way.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let fastest = largest(&velocities);
@@ -175,21 +177,21 @@ fn turns_round(way: &[f64]) -> bool {
     goes(1.0) && goes(-1.0)
 }
 
-/// Periods in a log at which a motor moves as a whole.
+/// Number of periods in a log of the frequency at which a motor moves as a whole.
 const SLOW_PERIODS: f64 = 5.0;
 
-/// A fitted motion of a motor as a function of s, and how surely it is known.
+/// A fitted motion of a motor as a function of s, with its uncertainty.
 struct Model {
     /// Logarithms of frequency and damping ratio of each mode, then the coefficients.
     parameters: Vec<f64>,
     modes: usize,
     per_mode: usize,
     rate: f64,
-    /// Frequency in rad/s that is slow beside the modes.
+    /// Frequency in rad/s far below those of the modes.
     slow: f64,
-    /// Of the parameters, for rows of variance 1; `None` where the rows do not fix them.
+    /// Covariance of the parameters for rows of variance 1; `None` if the rows do not determine them.
     covariance: Option<DMatrix<f64>>,
-    /// Derivatives of the rows by the parameters, and what the fit leaves of them.
+    /// Derivatives of the rows with respect to the parameters, and the residual of the fit.
     slopes: DMatrix<f64>,
     residual: DVector<f64>,
     /// Standard deviation of a row.
@@ -214,7 +216,7 @@ fn plus(a: &[f64], b: &[f64]) -> Polynomial {
     (0..a.len().max(b.len())).map(|n| at(a, n) + at(b, n)).collect()
 }
 
-/// Roots, by the eigenvalues of the companion matrix.
+/// Returns the roots, as eigenvalues of the companion matrix.
 fn roots(polynomial: &[f64]) -> Vec<Complex<f64>> {
     const NOTHING: f64 = 1e-13;
     let size = largest(polynomial);
@@ -250,13 +252,13 @@ impl Model {
         }
     }
 
-    /// Frequency in rad/s of the fastest mode: the unit in which s is of size one.
+    /// Frequency in rad/s of the fastest mode, which is the unit of a scaled s.
     fn fastest(&self) -> f64 {
         let frequencies = (0..self.modes).map(|k| TAU * self.parameters[2 * k].exp());
         frequencies.fold(0.0, f64::max)
     }
 
-    /// What `r₁/s` and `r₂/(s(s + a))` are multiplied by, and what acts at once.
+    /// Returns the factors `r₁` and `r₂` of the rigid motion, and the gain of what acts at once.
     fn rigid(&self, parameters: &[f64]) -> [f64; 3] {
         let rest = &parameters[(2 + self.per_mode) * self.modes..];
         let at = |n: usize| rest.get(n).copied().unwrap_or(0.0);
@@ -264,13 +266,13 @@ impl Model {
         [at(RigidBody::TAPS), at(RigidBody::TAPS + 1), at_once]
     }
 
-    /// Whether the motor moves rather as under a force, a few times in the log.
+    /// Whether the command acts more like a force than like a velocity at the slow frequency.
     fn is_force(&self) -> bool {
         let [velocity, force, _] = self.rigid(&self.parameters);
         force.abs() > (velocity * Complex::new(self.rate, self.slow)).norm()
     }
 
-    /// Numerator of the model over s of size one: `unit` rad/s.
+    /// Numerator of the model as a polynomial in s in units of `unit` rad/s.
     fn numerator(&self, parameters: &[f64], unit: f64) -> Polynomial {
         let (rate, [velocity, force, at_once]) = (self.rate / unit, self.rigid(parameters));
         let (velocity, force) = (velocity / unit, force / (unit * unit));
@@ -289,7 +291,7 @@ impl Model {
             let omega = omega / unit;
             let coefficients = &parameters[2 * self.modes + self.per_mode * k..];
             let (along, across) = (coefficients[0], coefficients[1]);
-            // ω/(s − p), real and imaginary part of what it does to a real input.
+            // ω/(s − p): real and imaginary part of its response to a real input.
             let damped = omega * (1.0 - damping * damping).max(0.0).sqrt();
             let own = [omega * (along * damping * omega + across * damped), omega * along];
             plus(&sum, &times(&times(&own, &[0.0, rate, 1.0]), &others(Some(k))))
@@ -307,7 +309,7 @@ impl Model {
         zeros.filter(|zero| zero.im > 0.0).map(|zero| zero * unit).collect()
     }
 
-    /// The zero near another one, for parameters that are a little off.
+    /// Finds the zero near another one, for parameters that differ a little.
     fn zero_near(&self, parameters: &[f64], near: Complex<f64>) -> Complex<f64> {
         let unit = self.fastest();
         let polynomial = self.numerator(parameters, unit);
@@ -317,7 +319,7 @@ impl Model {
         }) * unit
     }
 
-    /// Mass that swings in a held mode, over that which the drive moves; of a velocity drive in a unit of its own.
+    /// Mass that swings in a held mode, relative to the mass that the drive moves; with a velocity drive, in an arbitrary unit.
     fn mass(&self, zero: Complex<f64>) -> f64 {
         let unit = self.fastest();
         let at = zero / unit;
@@ -340,7 +342,7 @@ impl Model {
     fn deviations(&self, zero: Complex<f64>, seconds: f64) -> [f64; 2] {
         /// Step of a derivative, in standard deviations.
         const STEP: f64 = 1e-3;
-        /// And relative to the parameter, at most.
+        /// Largest step relative to the parameter.
         const LARGEST_STEP: f64 = 1e-4;
         let Some(covariance) = &self.covariance else {
             return [f64::INFINITY; 2];
@@ -350,7 +352,7 @@ impl Model {
         let mut gradients = [0, 1].map(|_| DVector::zeros(self.parameters.len()));
         for n in 0..self.parameters.len() {
             let deviation = STEP * self.row * covariance[(n, n)].max(0.0).sqrt();
-            // What the rows do not fix must not carry the zero away.
+            // Parameters that the rows do not determine must not move the zero far away.
             let step = deviation.min(
                 LARGEST_STEP
                     * if n < 2 * self.modes {
@@ -389,11 +391,12 @@ fn value_and_slope(polynomial: &[f64], at: Complex<f64>) -> (Complex<f64>, Compl
     polynomial.iter().rev().fold((zero, zero), step)
 }
 
-/// The zeros that are vibrations and are fixed by the fit.
-fn told(problem: &HeldModes<'_>, found: &Found, model: &Model) -> Vec<FoundMode> {
-    /// How far above the free modes a held one may be: below them with a torque drive, beside them with a velocity drive.
+/// Returns the zeros that are vibrations, and that the fit determines.
+fn reported_modes(problem: &HeldModes<'_>, found: &Found, model: &Model) -> Vec<FoundMode> {
+    /// Largest ratio of a held mode's frequency to that of the fastest free mode: held modes are below the free ones with a torque drive,
+    /// beside them with a velocity drive.
     const ABOVE: f64 = 1.3;
-    /// Smallest part of the mass of a mode that rings much for its mass, because it is slow.
+    /// Smallest share of the mass for a mode that rings much for its mass, because it is slow.
     const LEAST_MASS: f64 = 0.015;
     if found.modes.is_empty() || !problem.is_forced() {
         return Vec::new();
@@ -425,7 +428,7 @@ fn told(problem: &HeldModes<'_>, found: &Found, model: &Model) -> Vec<FoundMode>
     let whole: f64 = kept.iter().map(|(_, mass)| mass).sum();
     let rings = |(found, mass): &(FoundMode, f64)| mass / found.mode.omega().powi(2);
     let all: f64 = kept.iter().map(rings).sum();
-    // A pole of noise has a zero beside it, with next to no mass.
+    // A pole that fits noise has a zero beside it with almost no mass.
     let one = if model.is_force() { whole.max(1.0) } else { whole };
     kept.retain(|mode| mode.1 >= LEAST_SHARE * one || (mode.1 >= LEAST_MASS * one && rings(mode) >= LEAST_SHARE * all));
     let modes = kept.into_iter().map(|(found, mass)| FoundMode {

@@ -21,7 +21,7 @@ pub struct RecursiveArx {
     responses: Vec<f64>,
 }
 
-/// Initial variance of parameters of which nothing is known.
+/// Initial variance of unknown parameters.
 const UNKNOWN: f64 = 1e5;
 
 impl RecursiveArx {
@@ -38,7 +38,7 @@ impl RecursiveArx {
         }
     }
 
-    /// Takes the next sample: the response as it is before the command of the same sample acts.
+    /// Takes the next sample: the response before the command of the same sample acts.
     pub fn take(&mut self, command: f64, response: f64) {
         if self.responses.len() == self.order {
             let past = self.responses.iter().map(|y| -y).chain(self.commands.iter().copied());
@@ -47,7 +47,8 @@ impl RecursiveArx {
             let gain = &spread / (self.forgetting + regressor.dot(&spread));
             self.parameters += &gain * (response - regressor.dot(&self.parameters));
             let next = (&self.covariance - gain * spread.transpose()) / self.forgetting;
-            // Rounding must not make the covariance asymmetric, because it then grows into an invalid one.
+            // Rounding must not make the covariance asymmetric, because the asymmetry would grow until the covariance
+            // is invalid.
             self.covariance = (&next + next.transpose()) * 0.5;
         }
         self.responses.insert(0, response);

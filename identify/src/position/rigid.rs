@@ -11,7 +11,8 @@ use posicast_shaper::mode::Mode;
 /// Longest delay that is tried, in samples.
 const LONGEST_DELAY: usize = 64;
 
-/// Delay in samples of an axis that follows its command rigidly, if that explains a log as well as modes do.
+/// Returns the delay in samples of an axis that follows its command rigidly, if this explains a log as well as modes
+/// do.
 ///
 /// ```text
 /// y(k) = g·u(k−delay) + h·u(k−delay−1) + offset
@@ -55,11 +56,11 @@ pub(super) fn rigid_delay(
 
 /// Sample at which a response that was at rest begins to ring; 0 if it rings from the start.
 pub(super) fn onset(response: &[f64]) -> usize {
-    /// Fractions of the largest distance from the first samples: above the first the ringing begins, below the second
-    /// the response is at rest.
+    /// Fractions of the largest distance from the first samples: above the first the ringing begins; below the second
+    /// the response counts as at rest.
     const BEGINS: f64 = 0.3;
     const IS_QUIET: f64 = 0.06;
-    /// Number of samples at rest needed to find a beginning, and largest fraction of the log that they may be.
+    /// Number of samples at rest needed to find a beginning, and largest fraction of the log before it.
     const QUIET: usize = 16;
     const MOST: f64 = 0.75;
     let Some(first) = response.get(..QUIET) else {
@@ -78,7 +79,7 @@ pub(super) fn onset(response: &[f64]) -> usize {
     if !is_quiet {
         return 0;
     }
-    // From its first reversal on the machine moves freely.
+    // From its first reversal on, the machine moves freely.
     let way = (response[begin] - level).signum();
     let turn = response[begin..]
         .windows(2)
@@ -86,12 +87,12 @@ pub(super) fn onset(response: &[f64]) -> usize {
     begin + turn.unwrap_or(0)
 }
 
-/// Marks the samples of a response that are at its extremes again and again, where the true value is beyond them.
-/// Empty where there are no such samples, or where they are most of the log, as for an axis that moves back and forth
+/// Marks the samples of a response that are at its extremes again and again, because the true value lies beyond them.
+/// Marks none if there are no such samples, or if they are most of the log, as for an axis that moves back and forth
 /// between two positions.
 pub(super) fn clipped(response: &[f64]) -> Vec<bool> {
-    /// Number of consecutive samples that is not a coincidence, number of such runs, and largest fraction of a log
-    /// that they may be.
+    /// Number of consecutive samples at an extreme that is too large for a coincidence, number of such runs, and
+    /// largest fraction of the samples of a log at its extremes.
     const LEAST: usize = 4;
     const RUNS: usize = 3;
     const MOST: f64 = 0.6;
@@ -114,7 +115,7 @@ pub(super) fn clipped(response: &[f64]) -> Vec<bool> {
 
 /// Whether a mode of a fit is a tone: it keeps its amplitude where nothing drives it, or has no damping at all.
 pub(super) fn is_tone(mode: &Mode, is_forced: bool, seconds: f64) -> bool {
-    /// Damping ratio that no machine has, and decrease of the amplitude during a log that shows a decay.
+    /// Damping ratio below that of any machine, and smallest decrease of the amplitude during a log that shows a decay.
     const UNDAMPED: f64 = 1e-4;
     const DECREASE: f64 = 0.1;
     match is_forced {

@@ -5,11 +5,12 @@ use crate::separable::{Effort, Gram, Separable, Solution, refine};
 use nalgebra::{DMatrix, DVector};
 use posicast_shaper::mode::Mode;
 
-/// Largest number of modes that are searched.
+/// Largest number of modes that are sought.
 const MOST: usize = 6;
-/// Damping ratios at which a further mode is looked for; the last only beside a motor, whose modes a drive damps.
+/// Damping ratios at which a further mode is sought; the last only beside a motor, because drives damp its modes.
 const TRIED_DAMPING: [f64; 3] = [0.015, 0.08, 0.3];
-/// Periods in the log of the slowest mode that is looked for; beside a motor, whose motion as a whole is as slow.
+/// Number of periods in the log of the slowest mode that is sought; more beside a motor, whose motion as a whole is as
+/// slow.
 const LEAST_PERIODS: f64 = 2.0;
 const LEAST_PERIODS_OF_MOTOR: f64 = 4.0;
 /// Distance of the frequencies at which it is looked for.
@@ -28,8 +29,8 @@ pub(super) struct Found {
     pub(super) solution: Solution,
 }
 
-/// Adds modes that explain the rows, one after the other, to those that are known. `None` where there are too few
-/// rows for a mode.
+/// Adds modes that explain the rows, one after the other, to the known ones; `None` if there are too few rows for a
+/// mode.
 pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
     let mut kept = refine(problem, &HeldModes::unknowns(known), Effort::Rough)?;
     let mut now = kept.clone();
@@ -57,7 +58,7 @@ pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
 
 fn with_one_more(problem: &HeldModes<'_>, fit: &Solution) -> Option<Solution> {
     let (gain, found) = strongest(problem, fit)?;
-    // The gain is that of the best mode that was tried; at its optimum the mode may explain several times as much.
+    // The gain is that of the best mode tried; at its optimum, the mode may explain several times as much.
     if gain < 0.25 * LEAST_GAIN * fit.reduced_square() {
         return None;
     }

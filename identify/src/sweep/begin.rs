@@ -21,7 +21,7 @@ pub(super) struct Begun {
     pub(super) start_s: f64,
 }
 
-/// The description of a sweep, in its likeliest order, placed in the log.
+/// Places the description of a sweep in the log, with the likeliest order of its quarters.
 pub(super) fn begin(grid: &Grid, response: &Lines, sweep: &Sweep) -> Option<Begun> {
     let mut best: Option<(f64, Begun)> = None;
     for order in QuarterOrder::ALL {
@@ -56,11 +56,11 @@ pub(super) fn placed(grid: &Grid, begun: &Begun, start_s: f64) -> Lines {
     }
 }
 
-/// Fits poles without knowledge of the phase, then finds the lateness that matches them.
+/// Fits poles without knowledge of the phase, then finds the lateness that fits them.
 pub(super) fn timed(points: &[ResponsePoint]) -> Option<Fit> {
     const TRIED_S: f64 = 0.25e-3;
     const TRIED: i32 = 60;
-    // For start values a third of the points is as good, and takes a third of the time.
+    // A third of the points is as good for start values, and takes a third of the time.
     let points = &modal::thinned(points, 3);
     let free = modal::select(points, Phase::Free)?;
     let delays = (-TRIED..=TRIED).map(|n| Lateness {
@@ -70,7 +70,7 @@ pub(super) fn timed(points: &[ResponsePoint]) -> Option<Fit> {
     modal::refine(points, &free.poles, best(points, &free, delays)?, Effort::Full)
 }
 
-/// The lateness that explains most.
+/// Returns the fit with the lateness that explains most.
 fn best(points: &[ResponsePoint], free: &Fit, tried: impl Iterator<Item = Lateness>) -> Option<Phase> {
     let squares = tried.filter_map(|late| {
         let phase = Phase::Late(late);
@@ -79,11 +79,11 @@ fn best(points: &[ResponsePoint], free: &Fit, tried: impl Iterator<Item = Latene
     squares.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, phase)| phase)
 }
 
-/// Steps of the search for the start in samples, and how many on either side.
+/// Number of steps of the search for the start on either side, and their size in samples.
 const SOUGHT_STEPS: [(i32, f64); 3] = [(6, 0.1), (4, 0.025), (4, 0.006)];
 
-/// The start at which the samples of an excitation explain most of a response on the lines that count: where most edges are between
-/// few samples, those tell it better than the phase does.
+/// Returns the start at which the samples of an excitation explain most of a response on the lines that count. If most edges lie between a
+/// few samples, the samples give the start more exactly than the phase does.
 pub(super) fn sought(
     grid: &Grid,
     response: &Lines,

@@ -1,7 +1,7 @@
-//! Chooses among descriptions that a log may be of.
+//! Chooses among the sweep descriptions that fit a log.
 //!
-//! Where a sweep begins or ends otherwise than was described, its first or last pulses are missing or too many, and the transfer function
-//! has ripples beside that end which no mode explains. So descriptions are compared by what the modes leave of each there.
+//! If a sweep begins or ends otherwise than described, its first or last pulses are missing or too many, and the transfer function has
+//! ripples beside that end, which no mode explains. So descriptions are compared by the residual of the modes there.
 
 use super::transfer::Band;
 use super::{FoundInSweep, SweepError};
@@ -10,17 +10,17 @@ use crate::parallel::both;
 /// Smallest width in Hz of the parts of a band that are compared, and number of points in each.
 const PART_HZ: f64 = 1.0;
 const PART_POINTS: f64 = 20.0;
-/// Width of what is compared beside the end in which two descriptions differ, in Hz, and over the band that a sweep passes while it shakes a
-/// frequency (`√rate`).
+/// Width of the range that is compared beside the end in which two descriptions differ: in Hz, and over the band that a sweep passes while
+/// it shakes a frequency (`√rate`).
 const BESIDE_HZ: f64 = 6.0;
 const BESIDE: f64 = 6.0;
-/// Sum of the logarithms of the ratios of what two descriptions leave in each part from which on the second is likelier than the first, which
-/// is the more usual one: by chance, that of a part differs by 0.3.
+/// The second description, which is the less usual one, counts as likelier above this sum of the logarithms of the ratios of their
+/// residuals in each part. By chance, the logarithm of a part differs by 0.3.
 const LIKELIER: f64 = 2.5;
-/// The same for an earlier end beside a square wave: what follows it is not known then, and so cannot speak against it.
+/// The same for an earlier end beside a square wave: the motion after that end is then unknown, and so cannot contradict it.
 const LIKELIER_EARLIER: f64 = 10.0;
 
-/// The likeliest of what is found by some descriptions, the more usual ones first, and of what was found before.
+/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first.
 pub(super) fn likelier(
     before: Option<FoundInSweep>,
     sweeps: &[super::Sweep],
@@ -29,7 +29,7 @@ pub(super) fn likelier(
     let mut best = before;
     for (n, pair) in sweeps.chunks(2).enumerate() {
         let (second, first) = both(|| pair.get(1).map(&described), || described(&pair[0]));
-        // The others rise in the same way, and would explain as little.
+        // The other descriptions rise in the same way, and would explain as little.
         if n == 0 && matches!(first, Err(SweepError::Unrelated(_))) {
             return best;
         }
@@ -50,7 +50,7 @@ fn least_gain(first: &FoundInSweep, second: &FoundInSweep) -> f64 {
     }
 }
 
-/// By how much the second leaves less than the first: the sum of the logarithms of the ratios, over parts of the band.
+/// Returns by how much the second residual is smaller than the first: the sum of the logarithms of the ratios, over parts of the band.
 fn gain(first: &FoundInSweep, second: &FoundInSweep) -> f64 {
     let mut common = Band {
         low_hz: first.covered.low_hz.max(second.covered.low_hz),
@@ -75,7 +75,7 @@ fn gain(first: &FoundInSweep, second: &FoundInSweep) -> f64 {
     ratios.map(|(a, b)| (a / b).ln()).sum()
 }
 
-/// The mean square that the modes leave of a transfer function, in equal parts of a band.
+/// Mean square of the residual that the modes leave of a transfer function, in equal parts of a band.
 fn left(found: &FoundInSweep, band: &Band, parts: usize) -> Vec<f64> {
     let mut sums = vec![(0.0, 0usize); parts];
     for (point, fitted) in found.transfer.points.iter().zip(&found.fitted) {

@@ -1,18 +1,18 @@
 //! The band in which a slow sensor aliases the third harmonic of a sweep onto the sweep itself.
 //!
-//! Samples at the rate `r` show `3f` at `|r − 3f|`, which is `f` where `f = r/4`: there the third harmonic looks like the sweep at the same
-//! time. Elsewhere it comes earlier or later, and counts as noise. What the aliased part's subtraction leaves of it,
-//! about a thousandth of the sweep, would be taken for narrow modes.
+//! Samples at the rate `r` show `3f` at `|r − 3f|`, which is `f` if `f = r/4`: there the third harmonic looks like the sweep at the same
+//! time. Elsewhere it comes earlier or later, and counts as noise. Subtracting the aliased part leaves about a thousandth of the sweep,
+//! which would look like narrow modes.
 
 use super::transfer::Band;
 use crate::modal::{Fit, ResponsePoint};
 
 /// Half the width of the band, as a fraction of its frequency.
 const HALF_WIDTH: f64 = 0.04;
-/// Root mean square of what is left, over the noise, from which on it is more than noise.
+/// Root mean square of the residual, over the noise, above which it is more than noise.
 const LEFT: f64 = 1.3;
 
-/// The band for a sensor with a sample each so many seconds.
+/// Returns the band for a sensor with `fine_s` seconds between its samples.
 pub(super) fn crossing(fine_s: f64) -> Band {
     let middle_hz = 0.25 / fine_s;
     Band {
@@ -30,7 +30,7 @@ pub(super) fn outside(points: &[ResponsePoint], band: &Band) -> Vec<ResponsePoin
     points.iter().filter(|point| !is_within(band, point)).copied().collect()
 }
 
-/// Counts as noise what a fit of the other points leaves within the band.
+/// Counts the residual of a fit of the other points as noise within the band.
 pub(super) fn weighed(points: &mut [ResponsePoint], band: &Band, fit: &Fit) {
     let within = points
         .iter()

@@ -31,15 +31,15 @@ pub struct Sweep {
     pub sweeping: Sweeping,
 }
 
-/// Whether a square wave of acceleration is added to a sweep.
+/// The square wave of acceleration that is added to a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Sweeping {
-    /// The log tells.
+    /// The log decides.
     #[default]
     FromLog,
     /// There is none, as in Klipper before December 2024 or with `sweeping_period: 0`.
     Off,
-    /// There is this one.
+    /// This wave is added.
     Wave(SquareWave),
 }
 
@@ -53,7 +53,7 @@ pub struct SquareWave {
 }
 
 impl Default for SquareWave {
-    /// That of Klipper: 400 mm/s² and 1.2 s.
+    /// Klipper's wave: 400 mm/s² and 1.2 s.
     fn default() -> Self {
         Self {
             acceleration: 0.4,
@@ -93,7 +93,7 @@ pub enum QuarterOrder {
     Mirrored,
     /// `+ − + −`: always in one direction, twice as fast.
     Alternating,
-    /// `+ + − −`: a square wave that begins with its full half.
+    /// `+ + − −`: a square wave that begins with a full half period.
     Square,
 }
 
@@ -153,7 +153,7 @@ pub struct SweptAcceleration {
     end_s: f64,
 }
 
-/// Frequency in Hz by which the last half period may be above the end of the sweep, as the firmware has it.
+/// Frequency in Hz by which the last half period may exceed the end of the sweep, as in the firmware.
 const END_HZ: f64 = 1e-6;
 
 impl SweptAcceleration {
@@ -170,7 +170,7 @@ impl SweptAcceleration {
                 }
                 Rise::QuarterPeriod | Rise::HalfPeriod | Rise::Period => 0.25 / frequency,
             };
-            // The firmware ends with a half period.
+            // The firmware ends with a complete half period.
             let quarters_at_end = match rise {
                 Rise::HalfPeriod => 2,
                 _ => 4,
@@ -231,7 +231,7 @@ impl SweptAcceleration {
         begins_s.sort_by(f64::total_cmp);
         begins_s.dedup();
         let end_s = begins_s.pop().unwrap_or(0.0);
-        let mut walks = [Walk::of(self), Walk::of(other)];
+        let mut walks = [Walk::new(self), Walk::new(other)];
         let stretches = begins_s.iter().map(|&begin_s| Stretch {
             begin_s,
             acceleration: walks.iter_mut().map(|walk| walk.acceleration(begin_s)).sum(),
@@ -243,10 +243,10 @@ impl SweptAcceleration {
         }
     }
 
-    /// The same with a stop at this deceleration in m/s² behind it, where it ends in motion.
+    /// Returns the same acceleration, followed by a stop at this deceleration in m/s² if it ends in motion.
     #[must_use]
     pub fn with_stop(mut self, deceleration: f64) -> Self {
-        let velocity = Walk::of(&self).velocity(self.end_s);
+        let velocity = Walk::new(&self).velocity(self.end_s);
         if velocity.abs() > 1e-9 {
             self.stretches.push(Stretch {
                 begin_s: self.end_s,
@@ -275,7 +275,7 @@ impl SweptAcceleration {
 
     /// The acceleration at the instants `start_s + n·sample_s`, in m/s².
     pub fn samples(&self, start_s: f64, sample_s: f64, samples: usize) -> Vec<f64> {
-        let mut walk = Walk::of(self);
+        let mut walk = Walk::new(self);
         (0..samples)
             .map(|n| walk.acceleration(start_s + n as f64 * sample_s))
             .collect()
@@ -283,7 +283,7 @@ impl SweptAcceleration {
 
     /// The integral of the acceleration at these instants, and the integral of that, in m/s and m.
     pub fn integrals(&self, start_s: f64, sample_s: f64, samples: usize) -> [Vec<f64>; 2] {
-        let mut walk = Walk::of(self);
+        let mut walk = Walk::new(self);
         let velocities: Vec<f64> = (0..samples)
             .map(|n| walk.velocity(start_s + n as f64 * sample_s))
             .collect();
@@ -308,10 +308,10 @@ impl SweptAcceleration {
         [velocities, positions]
     }
 
-    /// Means of the acceleration over the sample around each of these instants, which contain hardly anything of what
-    /// the samples alias into the band.
+    /// Means of the acceleration over the sample around each of these instants, which contain almost nothing of what the samples alias into
+    /// the band.
     pub fn means(&self, start_s: f64, sample_s: f64, samples: usize) -> Vec<f64> {
-        let mut walk = Walk::of(self);
+        let mut walk = Walk::new(self);
         let mut before = walk.velocity(start_s - 0.5 * sample_s);
         let mut mean = |n: usize| {
             let after = walk.velocity(start_s + (n as f64 + 0.5) * sample_s);
@@ -330,7 +330,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn of(excitation: &'a SweptAcceleration) -> Self {
+    fn new(excitation: &'a SweptAcceleration) -> Self {
         Self { excitation, index: 0 }
     }
 
@@ -429,7 +429,7 @@ mod tests {
     ];
 
     #[test]
-    fn sweep_and_square_wave_are_those_of_klippers_generator() {
+    fn sweep_and_square_wave_match_klippers_generator() {
         let sweep = Sweep {
             end_hz: 6.5,
             ..Sweep::default()
@@ -450,7 +450,7 @@ mod tests {
         }
         assert_eq!(pieces[KLIPPER.len()].1, 0.0);
         // The stop brings the axis to rest.
-        let velocity = |e: &SweptAcceleration| Walk::of(e).velocity(f64::INFINITY);
+        let velocity = |e: &SweptAcceleration| Walk::new(e).velocity(f64::INFINITY);
         assert!(velocity(&both).abs() > 1e-3);
         assert!(velocity(&both.clone().with_stop(3.0)).abs() < 1e-12);
     }
@@ -467,7 +467,7 @@ mod tests {
             let coarse = excitation.means(-0.01 + 0.5e-5 * 99.0, 1e-3, 900);
             for (n, mean) in coarse.iter().enumerate() {
                 let direct: f64 = fine[n * 100..(n + 1) * 100].iter().sum::<f64>() / 100.0;
-                // An edge may be up to half a fine sample away from its place.
+                // An edge may be off its place by up to half a fine sample.
                 assert!(
                     (direct - mean).abs() < 0.02 * sweep.end_hz * 0.06,
                     "{rise:?} {n} {direct} {mean}"

@@ -1,8 +1,8 @@
 //! Finds the description of a sweep in a log.
 //!
 //! A sweep is a straight line in time and frequency: `t = start_s + (f − start_hz)/rate`. The group delay of the log's transform, from the
-//! phase between neighbouring lines, gives the time at which each frequency was strongest. Harmonics lie on other lines, which cover
-//! less of the time. Where the line begins and ends, the sweep does; the first frequency follows from the phase as well.
+//! phase between neighbouring lines, gives the time at which each frequency was strongest. Harmonics lie on other lines, which cover less
+//! of the time. The ends of the line are those of the sweep; the first frequency also follows from the phase.
 
 use super::excitation::Sweep;
 use super::first::{Range, starts_in};
@@ -11,29 +11,29 @@ use super::record::Grid;
 use super::reduce::{KEPT_HZ, Reduced};
 use super::transfer::{Band, Lines};
 
-/// Highest frequency of a sweep that is looked for, over the rate of the samples; that in Hz is what is kept of every log.
+/// Highest frequency of a sweep that is sought, over the rate of the samples; its limit in Hz is [`KEPT_HZ`].
 const HIGHEST_PART: f64 = 0.47;
 
 /// `max_freq` of Klipper before December 2024 in Hz: 10 m/s² at 75 mm/s² per Hz.
 const KLIPPERS_OLD_END_HZ: f64 = 1e4 / 75.0;
 
-/// What a log tells of its sweep without trying any.
+/// Properties of a log's sweep that are known without trying any description.
 pub(super) struct Course {
     pub(super) lines: Lines,
     delays: Vec<Delay>,
     pub(super) line: Line,
-    /// Rate of the line as it was measured, and as it is taken.
+    /// Rate of the line as measured, and the rate that is used.
     raw_rate_hz_per_s: f64,
     pub(super) rate_hz_per_s: f64,
     /// Lowest frequency on the line.
     lowest_hz: f64,
-    /// Times from the start of the grid at which the motion begins, where the log shows that, and at which it stops.
+    /// Times from the start of the grid at which the motion begins, if the log shows that, and at which it stops.
     begins_s: Option<f64>,
     pub(super) end_s: f64,
     highest_hz: f64,
 }
 
-/// The course of the sweep in the direction with the most power; `None` where it shows no line.
+/// Finds the course of the sweep in the direction with the most power; `None` if it shows no line.
 pub(super) fn course(log: &Reduced<'_>) -> Option<Course> {
     let band = Band {
         low_hz: 0.5,
@@ -51,7 +51,7 @@ pub(super) fn course(log: &Reduced<'_>) -> Option<Course> {
     let raw_rate_hz_per_s = 1.0 / line.slope;
     let rate_hz_per_s = round_rate(raw_rate_hz_per_s, log.seconds());
     let line = with_rate(&inliers, rate_hz_per_s);
-    // A mode's lateness may take the first delays off the line.
+    // The lateness of a mode may move the first delays off the line.
     let known = inliers.get(inliers.len() / 4).unwrap_or(first);
     Some(Course {
         begins_s: record.begins_s(line.time_s(known.frequency_hz), log.sample_s()),
@@ -69,7 +69,7 @@ pub(super) fn course(log: &Reduced<'_>) -> Option<Course> {
 impl Course {
     /// Whether a sweep rises like this one, to the same frequency.
     pub(super) fn is_of(&self, sweep: &Sweep) -> bool {
-        /// How far rate and end may be off.
+        /// Largest relative difference of the rates, and largest difference of the ends in Hz.
         const RATE: f64 = 0.02;
         const HZ: f64 = 1.0;
         (self.rate_hz_per_s / sweep.rate_hz_per_s - 1.0).abs() < RATE
@@ -82,21 +82,21 @@ impl Course {
         (self.rate_hz_per_s / sweep.rate_hz_per_s - 1.0).abs() < OFF
     }
 
-    /// Whether nothing tells that the motion begins at another frequency than this.
+    /// Whether the motion may begin at this frequency: nothing shows another one.
     pub(super) fn may_begin_at(&self, start_hz: f64) -> bool {
-        /// How far it may be off, in Hz: the slowest pulses are the weakest.
+        /// Largest difference in Hz, because the slowest pulses are the weakest.
         const HZ: f64 = 2.0;
         self.begins_hz().is_none_or(|hz| (hz - start_hz).abs() < HZ)
     }
 
-    /// The frequency at which the line is when the motion begins.
+    /// The frequency of the line when the motion begins.
     fn begins_hz(&self) -> Option<f64> {
         self.begins_s
             .map(|begins_s| (begins_s - self.line.start_s) / self.line.slope)
     }
 
-    /// The same course with a round rate near the measured one, where it is not that already: in a short sweep, the lateness of a slow mode
-    /// turns the line.
+    /// Returns the same course with a round rate near the measured one, unless the rate is round already. The lateness of a slow mode turns
+    /// the line of a short sweep.
     pub(super) fn at_round_rate(&self) -> Option<Self> {
         let round = round_half(self.raw_rate_hz_per_s, TURNED)?;
         (round != self.rate_hz_per_s).then(|| Self {
@@ -108,10 +108,10 @@ impl Course {
         })
     }
 
-    /// Sweeps that the log may be of, by their first frequency, the likeliest first: those that begin with the motion, then those that begin
-    /// where the line does.
+    /// Sweeps that the log may contain, by their first frequency, the likeliest first: those that begin with the motion, then those that
+    /// begin with the line.
     pub(super) fn by_start(&self) -> Vec<Sweep> {
-        /// Number of each that are tried.
+        /// Largest number of either that is tried.
         const TRIED: usize = 4;
         let by_motion = self.begins_hz().filter(|hz| *hz > 0.5).map(Range::Around);
         let by_line = Range::LowerThan(self.lowest_hz);
@@ -129,12 +129,12 @@ impl Course {
         sweeps.filter(|sweep| sweep.end_hz > sweep.start_hz).collect()
     }
 
-    /// The same sweep with other last frequencies that the log may be of: what rings after the end hides it.
+    /// The same sweep with other possible last frequencies, because ringing after the end hides it.
     pub(super) fn by_end(&self, sweep: &Sweep) -> Vec<Sweep> {
-        /// Time in seconds that the motion may seem to go on, and least distance in Hz that is tried.
+        /// Time in seconds for which the motion may seem to continue, and smallest distance in Hz that is tried.
         const RINGS_S: f64 = 0.8;
         const LEAST_HZ: f64 = 0.8;
-        /// Largest number that are tried, and distance between them.
+        /// Largest number of frequencies that are tried, and their distance.
         const TRIED: usize = 6;
         const STEP_HZ: f64 = 0.5;
         let raw = self.raw_end_hz(sweep.start_hz);
@@ -160,7 +160,7 @@ impl Course {
         }
     }
 
-    /// The last frequency of a sweep with this first one, which ends half a period after it reached that.
+    /// The last frequency of a sweep with this first one, which ends half a period after it reached the last frequency.
     fn raw_end_hz(&self, start_hz: f64) -> f64 {
         let raw = (self.end_s - self.line.start_s) / self.line.slope;
         raw - 0.5 * self.rate_hz_per_s / raw.max(start_hz)
@@ -180,22 +180,23 @@ impl Course {
     }
 }
 
-/// By how much a rate may be off a multiple of 0.5 Hz/s to be taken for that, as a mode bends the line, and by how much to be tried as that.
+/// Relative distance of a rate from a multiple of 0.5 Hz/s up to which it is taken for that multiple, because a mode bends the line, and up
+/// to which the multiple is tried.
 const BENT: f64 = 0.012;
 const TURNED: f64 = 0.04;
 
-/// A rate, or the round one that it is likely to be.
+/// Returns a rate, or the round rate that is likely meant.
 fn round_rate(raw: f64, seconds: f64) -> f64 {
     round_half(raw, BENT).unwrap_or_else(|| snapped(raw, &[0.1, 0.05], (3e-3 + 0.2 / seconds) * raw))
 }
 
-/// The multiple of 0.5 Hz/s that a rate is off by less than this.
+/// Returns the multiple of 0.5 Hz/s that differs from the rate by a smaller fraction than `off`.
 fn round_half(raw: f64, off: f64) -> Option<f64> {
     let half = (raw / 0.5).round() * 0.5;
     (half > 0.0 && (half / raw - 1.0).abs() < off).then_some(half)
 }
 
-/// A number, or the multiple of one of these steps that is within a tolerance of it, the first where several are.
+/// Returns the first multiple of one of these steps within a tolerance of a number, or else the number.
 fn snapped(number: f64, steps: &[f64], tolerance: f64) -> f64 {
     let multiples = steps.iter().map(|step| (number / step).round() * step);
     let near = multiples

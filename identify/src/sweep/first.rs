@@ -8,7 +8,7 @@ use super::wave::spectrum;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Lines whose size is not far above the usual one: the harmonics of a square wave would outweigh the sweep.
+/// Limits the size of lines far above the usual size: otherwise the harmonics of a square wave would outweigh the sweep.
 fn clipped(lines: &[Complex<f64>]) -> Vec<Complex<f64>> {
     const FAR: f64 = 2.5;
     let usual = middle(lines.iter().map(|line| line.norm()).collect());
@@ -16,18 +16,18 @@ fn clipped(lines: &[Complex<f64>]) -> Vec<Complex<f64>> {
     lines.iter().map(clip).collect()
 }
 
-/// Where a first frequency is looked for.
+/// Range in which the first frequency is sought.
 #[derive(Clone, Copy)]
 pub(super) enum Range {
-    /// Around that at which the motion begins: an antiresonance or a slow mode's phase hides the beginning of the line, but not that
-    /// something moves.
+    /// Around the frequency at which the motion begins: an antiresonance or a slow mode's phase hides the beginning of the line, but not
+    /// that something moves.
     Around(f64),
-    /// From below the lowest frequency on the line, as the slowest pulses are the weakest.
+    /// From below the lowest frequency on the line, because the slowest pulses are the weakest.
     LowerThan(f64),
 }
 
-/// First frequencies of a sweep along a line, the likeliest first: those whose first pulses, beginning on the line, are like the log's
-/// lines around it. The axis follows them, so that the ratio of the two is real.
+/// First frequencies of a sweep along a line, the likeliest first: those whose first pulses, beginning on the line, resemble the log's
+/// lines around it most. The axis follows these pulses, so the ratio of the two is real.
 pub(super) fn starts_in(course: &Course, range: &Range) -> Vec<f64> {
     /// Half the range around the lowest frequency, how much lower it may be, and half the range of the lines that are compared, in Hz.
     const RANGE_HZ: f64 = 2.0;
@@ -36,13 +36,13 @@ pub(super) fn starts_in(course: &Course, range: &Range) -> Vec<f64> {
     /// Half the range around the beginning of the motion, in Hz and in seconds.
     const AROUND_HZ: f64 = 0.12;
     const AROUND_S: f64 = 0.15;
-    /// Delay in seconds that is tried on either side, and its step.
+    /// Largest delay in seconds that is tried on either side, and its step.
     const TRIED_S: f64 = 0.08;
     const STEP_S: f64 = 2e-3;
-    /// Likeness over the best's from which on a round number is as good, in the wide range and in the small one.
+    /// Likeness, relative to the best, above which a round number counts as equally good, in the wide range and in the small one.
     const AS_LIKE: f64 = 0.97;
     const AS_LIKE_AROUND: f64 = 0.93;
-    /// The same for the usual one.
+    /// The same for the usual first frequency.
     const NEARLY: f64 = 0.8;
     let Course { lines, line, .. } = course;
     let (rate, end_s) = (course.rate_hz_per_s, course.end_s);
@@ -116,7 +116,7 @@ pub(super) fn starts_in(course: &Course, range: &Range) -> Vec<f64> {
         );
     }
     let best = tried.iter().map(|(_, like)| *like).fold(0.0, f64::max);
-    // The usual one comes first, then those on the coarser steps.
+    // The usual frequency comes first, then those on the coarser steps.
     let usual = Sweep::default().start_hz;
     let is_usual = tried
         .iter()

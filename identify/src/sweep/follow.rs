@@ -22,19 +22,19 @@ const LEAST_TOLD: f64 = 0.8;
 /// Bend in seconds above which a log is followed again with a corrected clock: the fit compensates a smaller one.
 const BEND_S: f64 = 3e-3;
 
-/// Bend, over the period of the highest frequency, above which it is none that modes cause: a mode turns the phase by half a turn, which
-/// looks like a bend of one period, and two do it twice.
+/// Bend, over the period of the highest frequency, above which modes cannot cause it: a mode turns the phase by half a turn, which looks
+/// like a bend of one period, and two modes double it.
 const HALF_TURNS: f64 = 1.6;
 
 /// Number of standard deviations by which a bend must exceed zero.
 const CERTAIN: f64 = 6.0;
 
-/// Range in which an error of the clock is searched.
+/// Range in which an error of the clock is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Look {
     /// Up to a tenth of a percent.
     Everywhere,
-    /// Only as far as the fit moves by itself.
+    /// Only as far as the fit moves without a search.
     Near,
     /// The clock is not corrected.
     Nowhere,
@@ -42,7 +42,7 @@ pub(super) enum Look {
 
 /// Result of following a log with one clock.
 pub(super) enum Pass {
-    /// Its clock has this relative error.
+    /// The clock has this relative error.
     Drifts(f64),
     Ended(Box<FoundInSweep>),
 }
@@ -50,14 +50,14 @@ pub(super) enum Pass {
 /// Follows the log whose clock is assumed to run faster than that of the sweep by the factor `clock`.
 ///
 /// # Errors
-/// [`SweepError`] where there are no modes that can be determined.
+/// [`SweepError`] if no modes can be determined.
 pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look) -> Result<Pass, SweepError> {
     let band = Band {
         low_hz: sweep.start_hz * (1.0 + MARGIN),
         high_hz: sweep.end_hz * (1.0 - MARGIN),
     };
-    // A clock that is fast by ε sees f later by ε·f/rate, and takes it for f/(1 + ε), which was due earlier by as
-    // much: together this is the group delay, which is twice the bend.
+    // A clock that is fast by ε sees f later by ε·f/rate and takes it for f/(1 + ε), which was due earlier by as much. The sum is the group
+    // delay, which is twice the bend.
     let error = |bend_s: f64| bend_s * sweep.rate_hz_per_s / band.high_hz;
     let mut grid = Grid::new(log, clock, band);
     let (sample_s, fine_s, seconds) = (grid.sample_s(), grid.fine_s(), log.seconds() / clock);
@@ -97,7 +97,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     };
     let moved = wave.map(|wave| SweptAcceleration::square_wave(&wave, begun.excitation.duration_s()));
     if wave.is_some() {
-        // The axis then stops in a way that is not known.
+        // The axis then stops in an unknown way.
         let end = (begun.start_s + begun.excitation.duration_s() - STOP_S) / sample_s;
         record.forget_from(end.max(0.0) as usize);
     }
@@ -117,7 +117,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     let rough_placed = Placed::new(&grid, (smooth, pulses), &begun.excitation, first, begun.start_s);
     let rough = measure(&grid, &mut record, &rough_placed, band, seen(begun.start_s));
     let (explained_alone, rough) = (rough.explained, rough.transfer);
-    // The wave's amplitude is known as the sensor shows it, that of the sweep as it was described.
+    // The wave's amplitude is known as the sensor shows it; that of the sweep only from its description.
     let mut gain = 1.0;
     if explained_alone < LEAST_EXPLAINED {
         return Err(SweepError::Unrelated(explained_alone));
@@ -131,7 +131,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     if bends && look != Look::Nowhere {
         return Ok(Pass::Drifts(error(late.bend_s)));
     }
-    // The aliased part is known only once the start is known to a small part of a sample.
+    // The aliased part is known only after the start is known to a small part of a sample.
     let mut start_s = begun.start_s + late.delay_s;
     if fine_s * SLOW_HZ > 1.0 {
         let (response, _) = grid.lines(&record);
@@ -209,16 +209,15 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
 
 /// Rate of the samples in Hz below which the start is sought on the samples.
 const SLOW_HZ: f64 = 600.0;
-/// Ratio, as a logarithm, up to which the gain of sweep and square wave is the same.
+/// Largest logarithm of the ratio for which the gains of sweep and square wave count as equal.
 const SAME_GAIN: f64 = 0.03;
-/// Part of a sample to which the start must be known, where samples are few and where they are many, and the number of times that it is
-/// mended.
+/// Part of a sample to which the start must be known, if samples are few and if they are many, and the largest number of corrections.
 const START_SAMPLES: f64 = 0.01;
 const START_FAST: f64 = 0.05;
 const START_TURNS: usize = 3;
-/// Time in seconds of a sweep that a log may lack to count as whole.
+/// Time in seconds of a sweep that a log may lack and still count as whole.
 const CUT_S: f64 = 0.3;
-/// Time in seconds before the end of a sweep with a square wave from which on the motion is not known: the firmware brakes.
+/// Time in seconds before the end of a sweep with a square wave from which on the motion is unknown, because the firmware brakes.
 const STOP_S: f64 = 0.05;
 
 /// The direction with the most power in the band.
@@ -243,10 +242,12 @@ fn strongest(log: &Reduced<'_>, grid: &Grid) -> Option<Strongest> {
     directions.max_by(|a, b| a.response.power().total_cmp(&b.response.power()))
 }
 
-/// The part of the band at which the log has the axis shaken. The harmonics of the sweep shake it above, but too little to be trusted.
+/// Returns the part of the band in which the axis is shaken during the log. The harmonics of the sweep shake it above, but too little to be
+/// trusted.
 ///
 /// # Errors
-/// [`SweepError::Piece`]: the division of the transforms needs a log from rest to rest, and one that has neither end rests on nothing.
+/// [`SweepError::Piece`]: dividing the transforms needs a log from rest to rest, and a log with neither end of the sweep has no rest at
+/// all.
 fn covered(sweep: &Sweep, band: &Band, begun: &Begun, start_s: f64, seconds: f64) -> Result<Band, SweepError> {
     let after = |time_s: f64| sweep.start_hz + sweep.rate_hz_per_s * time_s.max(0.0);
     let (low_hz, high_hz) = (after(-start_s), after(seconds - start_s));

@@ -8,12 +8,13 @@ use std::f64::consts::TAU;
 /// Bandwidth in Hz, and number of lines, over which a group delay is averaged.
 const AVERAGED_HZ: f64 = 0.3;
 const AVERAGED_LINES: usize = 8;
-/// Coherence from which on a group delay counts.
+/// Smallest coherence of a group delay that counts.
 const COHERENT: f64 = 0.5;
 /// Rates in Hz/s that are tried, and the ratio of neighbours.
 const RATES: (f64, f64) = (0.05, 25.0);
 const NEXT_RATE: f64 = 1.004;
-/// Intervals of the log that a line should cover, and the fraction that it must.
+/// Number of intervals of the log in which the coverage of a line is counted, and the smallest fraction that it must
+/// cover.
 const INTERVALS: usize = 100;
 const LEAST_COVERED: f64 = 0.3;
 
@@ -42,7 +43,7 @@ impl Line {
     }
 }
 
-/// The line of this rate that is in the middle of delays.
+/// Returns the line of this rate with the median start of the delays.
 pub(super) fn with_rate(delays: &[Delay], rate_hz_per_s: f64) -> Line {
     let starts_s = delays
         .iter()
@@ -100,9 +101,9 @@ pub(super) fn line(delays: &[Delay], grid: &Grid, seconds: f64) -> Option<(Line,
         for (intercept, delay, _) in &mut intercepts {
             *intercept = delay.time_s - delay.frequency_hz * slope;
         }
-        // From one rate to the next the order hardly changes.
+        // The order changes little from one rate to the next.
         insertion_sort(&mut intercepts);
-        // The intervals that the delays within the tolerance cover, as a window moves over the intercepts.
+        // Counts the intervals that the delays within the tolerance cover, while a window moves over the intercepts.
         let mut counts = [0u32; INTERVALS + 1];
         let (mut covered, mut begin) = (0usize, 0);
         for (end, (intercept, _, interval)) in intercepts.iter().enumerate() {
@@ -115,7 +116,7 @@ pub(super) fn line(delays: &[Delay], grid: &Grid, seconds: f64) -> Option<(Line,
                 covered -= usize::from(*slot == 0);
                 begin += 1;
             }
-            // Of lines that cover as much, that with more delays is better.
+            // Of lines that cover equally much, the one with more delays is better.
             let score = covered as f64 + 1e-3 * (end - begin) as f64;
             if best.as_ref().is_none_or(|(most, _)| score > *most) {
                 let start_s = 0.5 * (intercepts[begin].0 + intercept);
@@ -135,7 +136,7 @@ pub(super) fn line(delays: &[Delay], grid: &Grid, seconds: f64) -> Option<(Line,
     Some((line, inliers))
 }
 
-/// Sorts what is almost sorted by its first value.
+/// Sorts values that are almost sorted by their first component.
 fn insertion_sort<T>(values: &mut [(f64, Delay, T)]) {
     for end in 1..values.len() {
         let mut at = end;
@@ -148,7 +149,7 @@ fn insertion_sort<T>(values: &mut [(f64, Delay, T)]) {
 
 /// The longest run of delays that are on a line, with small interruptions.
 fn run(delays: &[Delay], is_on: impl Fn(&Delay) -> bool) -> Vec<Delay> {
-    /// Frequencies in Hz that a run may lack, and as a fraction.
+    /// Gap in Hz that a run may have, and as a fraction of the frequency.
     const LACKS_HZ: f64 = 6.0;
     const LACKS: f64 = 0.3;
     let (mut longest, mut now): (Vec<Delay>, Vec<Delay>) = (Vec::new(), Vec::new());
@@ -167,9 +168,9 @@ fn run(delays: &[Delay], is_on: impl Fn(&Delay) -> bool) -> Vec<Delay> {
     if now.len() > longest.len() { now } else { longest }
 }
 
-/// The line through delays, by least squares in which those far off count less.
+/// Fits a line to delays by least squares, in which distant delays count less.
 fn straight(delays: &[Delay]) -> Option<Line> {
-    /// Distance in seconds from which on a delay counts less: a mode delays its frequencies.
+    /// Distance in seconds above which a delay counts less, because a mode delays its frequencies.
     const FAR_S: f64 = 0.02;
     if delays.len() < 8 {
         return None;

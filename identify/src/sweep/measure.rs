@@ -1,5 +1,5 @@
-//! Measures the transfer function of a log under an excitation that is known: divides the transforms, fills what was not measured,
-//! by turns until nothing changes.
+//! Measures the transfer function of a log under a known excitation: divides the transforms and fills the missing samples in turn, until
+//! nothing changes.
 
 use super::excitation::SweptAcceleration;
 use super::record::{Grid, Record};
@@ -10,35 +10,35 @@ use nalgebra::Complex;
 pub(super) struct Placed {
     pulses: Lines,
     pulses_sampled: Vec<Complex<f64>>,
-    /// What the integrals of the pulses alias: modes show it where the samples are few.
+    /// Aliases of the integrals of the pulses, which modes show if the samples are few.
     integrals: Vec<Lines>,
     wave: Option<PlacedWave>,
 }
 
-/// Rate of the samples in Hz from which on integrals alias nothing that matters.
+/// Rate of the samples in Hz above which the aliases of the integrals do not matter.
 const FAST_HZ: f64 = 1500.0;
 
 struct PlacedWave {
     lines: Lines,
     sampled: Vec<Complex<f64>>,
-    /// Its amplitude over that of `lines`.
+    /// Amplitude of the wave, relative to that of `lines`.
     gain: f64,
-    /// Power of each line over that of the pulses around it.
+    /// Power of each line relative to that of the pulses around it.
     outweighs: Vec<f64>,
 }
 
-/// What a log tells of an excitation.
+/// Measured transfer function, with the quality of the measurement.
 pub(super) struct Measured {
     pub(super) transfer: Transfer,
     /// Fraction of the log's power that the excitation explains before anything is filled.
     pub(super) explained: f64,
-    /// Bands that the axis was shaken at while too little was measured.
+    /// Bands in which the axis was shaken while too many samples are missing.
     pub(super) unseen: Vec<Band>,
 }
 
 impl Placed {
-    /// The pulses, of which the lines and those of their samples are known, and the square wave beside them with a factor; both begin `start_s` after
-    /// the start of the grid.
+    /// Places the pulses, given by their lines and those of their samples, and the square wave beside them with its gain. Both begin
+    /// `start_s` after the start of the grid.
     pub(super) fn new(
         grid: &Grid,
         (lines, pulses_sampled): (Lines, Vec<Complex<f64>>),
@@ -83,10 +83,10 @@ impl Placed {
         }
     }
 
-    /// Lines at which the pulses outweigh the square wave. At its harmonics the wave is so strong that the least error of its period or
+    /// Lines at which the pulses outweigh the square wave. At its harmonics the wave is so strong that the smallest error of its period or
     /// of a clock would look like a mode.
     pub(super) fn trusted(&self) -> Vec<bool> {
-        /// Power of the wave over that of the pulses up to which a line counts.
+        /// Largest power of the wave relative to that of the pulses for a line that counts.
         const WEAK: f64 = 0.1;
         match &self.wave {
             None => vec![true; self.pulses.values.len()],
@@ -95,7 +95,7 @@ impl Placed {
     }
 }
 
-/// Power of each line of a wave over the mean of the pulses' around it.
+/// Power of each line of a wave, over the mean power of the pulses around it.
 fn outweighs(wave: &Lines, pulses: &Lines) -> Vec<f64> {
     /// Lines on either side over which the pulses are averaged.
     const NEAR: usize = 8;
@@ -108,13 +108,13 @@ fn outweighs(wave: &Lines, pulses: &Lines) -> Vec<f64> {
     (0..powers.len()).map(ratio).collect()
 }
 
-/// What an excitation on the samples may leave, over what one between them leaves, to be that which acted.
+/// Residual of an excitation on the samples, relative to that of one between them, below which the excitation acted on the samples.
 const HELD: f64 = 0.8;
-/// Most turns, and change of what was not measured, over the record, below which a turn is the last.
+/// Largest number of turns, and the relative change of the missing samples below which a turn is the last.
 const TURNS: usize = 30;
 const SETTLED: f64 = 1e-3;
 
-/// The transfer function; `seen` tells of a frequency how much of what it shook was measured.
+/// Measures the transfer function; `seen` returns the fraction of what a frequency shook that was measured.
 pub(super) fn measure(
     grid: &Grid,
     record: &mut Record,
@@ -139,8 +139,8 @@ pub(super) fn measure(
             estimate(&division, &seen)
         };
         let between = || divide(&excitation, &folded);
-        // A real axis is excited at the time of the sweep; a simulated one often only from the next sample on, by all
-        // that the samples alias.
+        // A real axis is excited at the time of the sweep; a simulated one often only from the next sample on, by everything that
+        // the samples alias.
         let found = match on_samples {
             None => {
                 let (between, held) = (between(), divide(&samples, &[]));

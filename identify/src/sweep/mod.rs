@@ -1,7 +1,7 @@
 //! Finds modes in an accelerometer log of a resonance test.
 //!
-//! The log does not contain the excitation. It is known by its description ([`Sweep`]); what the description leaves
-//! open, the time at which it began and the order of its quarter periods, is found by trying.
+//! The log does not contain the excitation. Its description ([`Sweep`]) is known; what the description leaves open, the start time and the
+//! order of its quarter periods, is found by trying.
 
 mod begin;
 mod choose;
@@ -36,21 +36,22 @@ use thiserror::Error;
 pub struct FoundInSweep {
     /// The modes, sorted by frequency.
     pub modes: Vec<FoundMode>,
-    /// Frequencies of narrow poles at the ends of what is covered, in Hz: they may be modes, or errors of the transfer function's ends.
+    /// Frequencies in Hz of narrow poles at the ends of the covered band: they may be modes, or errors at the ends of the transfer
+    /// function.
     pub doubtful_hz: Vec<f64>,
     /// Name of the sensor direction that was used.
     pub direction: String,
-    /// The sweep that was taken.
+    /// The sweep that was used.
     pub sweep: Sweep,
     /// Whether it was estimated from the log.
     pub is_estimated: bool,
-    /// Gain of the sensor's acceleration over that of the sweep at the lowest frequencies: 1 where `acceleration_per_hz` is right.
+    /// Gain of the sensor's acceleration relative to that of the sweep at the lowest frequencies: 1 if `acceleration_per_hz` is right.
     pub static_gain: f64,
-    /// The square wave beside the sweep, where there is one.
+    /// The square wave beside the sweep, if there is one.
     pub wave: Option<SquareWave>,
-    /// Bands that the axis was shaken at while samples are missing: modes there are not seen.
+    /// Bands in which the axis was shaken while samples are missing: modes there are not found.
     pub unseen: Vec<Band>,
-    /// Time from the first sample to the start of the sweep, in seconds; negative where the log begins later.
+    /// Time from the first sample to the start of the sweep, in seconds; negative if the log begins later.
     pub start_s: f64,
     /// Relative amount by which the log's clock runs faster than that of the sweep: 1e-4 is 10 ms in 100 s. 0 where
     /// it was not corrected.
@@ -59,20 +60,20 @@ pub struct FoundInSweep {
     pub order: QuarterOrder,
     /// Way in which the frequency rises that fits the log.
     pub rise: Rise,
-    /// The frequencies at which the log has the axis shaken; modes outside are not reported.
+    /// The frequencies at which the axis was shaken during the log; modes outside are not reported.
     pub covered: Band,
-    /// What the log would have shown of further modes below the lowest; `None` without modes.
+    /// Further modes below the lowest that the log would have shown; `None` without modes.
     pub visible: Option<Visible>,
     /// The measured transfer function.
     pub transfer: Transfer,
     /// The fitted transfer function, at the same points.
     pub fitted: Vec<Complex<f64>>,
-    /// Sum of squares of the residuals relative to the noise: 1 where only noise is left.
+    /// Sum of squares of the residuals relative to the noise: 1 if only noise is left.
     pub reduced_square: f64,
 }
 
 impl FoundInSweep {
-    /// Whether a mode's resonance reaches beyond what is covered, so that only one side of it was measured.
+    /// Whether a mode's resonance reaches beyond the covered band, so that only one side of it was measured.
     pub fn is_at_end(&self, found: &FoundMode) -> bool {
         let Mode { frequency_hz, damping } = found.mode;
         let half_hz = damping * frequency_hz;
@@ -80,7 +81,7 @@ impl FoundInSweep {
     }
 }
 
-/// Why the sweep gives no modes of a log.
+/// Why no modes of a sweep are found in a log.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
     /// There are too few samples.
@@ -94,7 +95,7 @@ pub enum SweepError {
     /// The description of the sweep is invalid.
     #[error("a sweep from {} to {} Hz at {} Hz/s with {} m/s² per Hz is not possible: all must be finite and above 0, the second frequency above the first and below half the rate of the samples", .0.start_hz, .0.end_hz, .0.rate_hz_per_s, .0.acceleration_per_hz)]
     Description(Sweep),
-    /// No direction follows the sweep.
+    /// No direction follows the sweep; the value is the fraction that the sweep explains.
     #[error("no direction of the sensor follows the sweep: it explains {:.1} % of the log at most", 100.0 * .0)]
     Unrelated(f64),
     /// The log has neither end of the sweep.
@@ -117,7 +118,7 @@ const PASSES: usize = 4;
 /// Finds the modes that the sweep excited.
 ///
 /// # Errors
-/// [`SweepError`] where there are none that can be determined.
+/// [`SweepError`] if no modes can be determined.
 pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, SweepError> {
     long_enough(log)?;
     check(sweep, log.sample_s)?;
@@ -149,19 +150,19 @@ fn identify_reduced(log: &Reduced<'_>, sweep: &Sweep) -> Result<FoundInSweep, Sw
             }
         }
     }
-    // The clock's error does not converge, so nothing shows that the clock is wrong.
+    // The clock's error does not converge, so there is no evidence that the clock is wrong.
     match followed(log, sweep, 1.0, Look::Nowhere)? {
         Pass::Ended(found) => Ok(*found),
         Pass::Drifts(_) => Err(SweepError::Empty),
     }
 }
 
-/// Finds the modes and the sweep that excited them: the usual one, or what the log itself tells of another.
+/// Finds the modes and the sweep that excited them: the usual sweep, or another that the log itself shows.
 ///
 /// # Errors
-/// [`SweepError`] where neither gives modes that can be determined.
+/// [`SweepError`] if neither gives modes that can be determined.
 pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
-    /// What the usual sweep must explain for others not to be tried.
+    /// Fraction that the usual sweep must explain for no others to be tried.
     const EXPLAINED: f64 = 0.85;
     long_enough(log)?;
     let usual = Sweep::default();

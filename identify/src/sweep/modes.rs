@@ -1,4 +1,4 @@
-//! Which poles of a fit are modes of the machine.
+//! Decides which poles of a fit are modes of the machine.
 
 use super::transfer::{Band, Transfer};
 use crate::found::{FoundMode, LEAST_PARTICIPATION, that_ring};
@@ -6,7 +6,7 @@ use crate::modal::{self, Fit, ResponsePoint};
 use nalgebra::Complex;
 use posicast_shaper::mode::Mode;
 
-/// Fraction of the transfer function's power, above its noise's, that a fit explains.
+/// Returns the fraction of the transfer function's power, above that of its noise, that a fit explains.
 pub(super) fn told(transfer: &Transfer, fit: &Fit) -> f64 {
     let weighted = |value: Complex<f64>, deviation: f64| (value / deviation).norm_sqr();
     let points = || transfer.points.iter().zip(&fit.values);
@@ -24,21 +24,21 @@ const LEAST_OF_AXIS: f64 = 0.003;
 /// Number of standard deviations by which a share must exceed zero.
 const SIGNIFICANT: f64 = 6.0;
 
-/// Distance, as a fraction of the frequency, up to which what is cut off by a gap can look like a faint mode beside the band that the gap hides.
+/// Distance from a gap, as a fraction of the frequency, up to which the part that the gap cuts off can look like a faint mode.
 const EDGE: f64 = 0.1;
 
-/// Poles of a fit that are modes of the machine, and those of which that is doubtful.
+/// Poles of a fit that are modes of the machine, and doubtful ones.
 pub(super) struct Told {
     pub(super) modes: Vec<FoundMode>,
     pub(super) doubtful: Vec<FoundMode>,
 }
 
 /// Distance to an end of the band, and half width `ζ·f` of a pole, both over the band that a sweep passes while it shakes a frequency
-/// (`√rate`), below which it is not told from an error of the transfer function's end.
+/// (`√rate`), below which the pole cannot be distinguished from an error at the transfer function's end.
 const NEAR_END: f64 = 0.5;
 const NARROW: f64 = 0.125;
 
-/// The modes of a fit within a band, without those that too few samples saw, of a sweep that rises by so many Hz per second.
+/// Returns the modes of a fit within a band, without those that too few samples show, for a sweep that rises by `rate_hz_per_s`.
 pub(super) fn modes(fit: &Fit, points: &[ResponsePoint], band: &Band, unseen: &[Band], rate_hz_per_s: f64) -> Told {
     let whole: f64 = fit.shares.iter().map(|(share, _)| share.max(0.0)).sum();
     let told = |k: &usize| {

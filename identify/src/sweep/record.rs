@@ -1,8 +1,8 @@
-//! The samples of a log on the grid of a transform, in which those that were not measured are filled by what the machine would have shown.
+//! The samples of a log on the grid of a transform; missing samples are filled with what the machine would have shown.
 //!
-//! The grid begins before the log and ends after it, because the machine rings beyond the log. What is beyond it, and what is missing in
-//! it, is found together with the transfer function: by turns, this follows from the filled record, and the filling from this
-//! (expectation and maximisation: Dempster, Laird and Rubin 1977).
+//! The grid begins before the log and ends after it, because the machine rings beyond the log. The samples beyond the log and those missing
+//! in it are found together with the transfer function: in turn, the transfer function follows from the filled record, and the filling from
+//! the transfer function (expectation and maximisation: Dempster, Laird and Rubin 1977).
 
 use super::excitation::SweptAcceleration;
 use super::reduce::{Filter, Reduced};
@@ -29,12 +29,12 @@ pub(super) struct Grid {
     /// Number of lines for each independent one.
     dense: usize,
     band: Band,
-    /// Whether the log ends within the sweep: nothing is then known of what is beyond it, and the excitation ends with it.
+    /// Whether the log ends within the sweep: the motion beyond the log is then unknown, and the excitation ends with the log.
     is_cut: bool,
 }
 
-/// Rate of the sensor in Hz below which the lines are twice as dense as they are independent. What the samples alias into low
-/// frequencies comes up to a whole log later than what belongs there; on lines as far apart as they are independent it looks constant.
+/// Rate of the sensor in Hz below which the lines are twice as dense as independent lines. What the samples alias into low frequencies
+/// comes up to a whole log later than what belongs there; on lines as far apart as independent ones it looks constant.
 const SLOW_HZ: f64 = 1500.0;
 
 /// One direction of a log.
@@ -81,12 +81,12 @@ impl Grid {
         self.is_cut
     }
 
-    /// Those of all lines that lie in the band of the grid.
+    /// Returns those of `all` lines that lie in the band of the grid.
     pub(super) fn band_of(&self, all: &[Complex<f64>]) -> Lines {
         self.cut(all, self.band)
     }
 
-    /// An excitation, without what is beyond a log that ends within it.
+    /// Removes the part of an excitation that is beyond a log that ends within it.
     fn within_log(&self, mut excitation: Vec<f64>) -> Vec<f64> {
         if self.is_cut {
             excitation[..self.before].fill(0.0);
@@ -138,7 +138,7 @@ impl Grid {
         (self.cut(&all, self.band), all)
     }
 
-    /// Those of all lines that lie in a band.
+    /// Returns those of `all` lines that lie in a band.
     pub(super) fn cut(&self, all: &[Complex<f64>], band: Band) -> Lines {
         let resolution_hz = 1.0 / self.seconds();
         let first = (band.low_hz / resolution_hz).ceil() as usize;
@@ -151,14 +151,14 @@ impl Grid {
         }
     }
 
-    /// What the grid's filter makes of an excitation that begins `start_s` after the start of the grid.
+    /// Response of the grid's filter to an excitation that begins `start_s` after the start of the grid.
     fn driven(&self, excitation: &SweptAcceleration, start_s: f64, averages: bool) -> Vec<Complex<f64>> {
         let times = (-start_s, self.fine_s);
         let samples = self.filter.of_excitation(excitation, times, self.length, averages);
         self.transform.forward(self.within_log(samples))
     }
 
-    /// Lines of an excitation that begins `start_s` after the start of the grid, without what its samples alias into the band.
+    /// Lines of an excitation that begins `start_s` after the start of the grid, without the aliases of its samples.
     pub(super) fn excitation(&self, excitation: &SweptAcceleration, start_s: f64) -> Lines {
         let all = self.driven(excitation, start_s, true);
         let mut lines = self.cut(&all, self.band);
@@ -172,19 +172,19 @@ impl Grid {
         lines
     }
 
-    /// All lines of the samples of an excitation, with everything that they alias.
+    /// All lines of the samples of an excitation, with their aliases.
     pub(super) fn sampled(&self, excitation: &SweptAcceleration, start_s: f64) -> Vec<Complex<f64>> {
         self.driven(excitation, start_s, false)
     }
 
-    /// What the samples of the first and the second integral of an excitation alias into the band, given its lines without that.
+    /// Aliases in the band of the samples of an excitation's first and second integral, given its lines without aliases.
     pub(super) fn folded_integrals(&self, excitation: &SweptAcceleration, lines: &Lines, start_s: f64) -> [Lines; 2] {
         let integrals = excitation.integrals(-start_s, self.sample_s, self.length);
         let mut power = 0;
         integrals.map(|integral| {
             power += 1;
             let ends = integral.last().copied().unwrap_or(0.0);
-            // The integral of the integral need not end where it began: what it is at the end, it becomes in a straight line.
+            // The integral of the integral need not end where it began; a straight line accounts for the difference.
             let step = ends / self.length as f64;
             let closed: Vec<f64> = integral.iter().enumerate().map(|(n, x)| x - step * n as f64).collect();
             let all = self.transform.forward(closed);
@@ -220,7 +220,7 @@ impl Grid {
 }
 
 impl Record {
-    /// Takes the samples from `begin` on as not measured.
+    /// Counts the samples from `begin` on as missing.
     pub(super) fn forget_from(&mut self, begin: usize) {
         let begin = begin.min(self.values.len());
         self.unknown.retain(|gap| gap.start < begin);
@@ -259,13 +259,13 @@ impl Record {
         1.0 - lost / (to - from).max(1.0)
     }
 
-    /// Time in seconds, from the start of the grid, at which a motion begins that is there at `known_s`: the first tenth of a second with more than the
-    /// quietest before has, and no pause since; `None` where the log has no quiet before.
+    /// Finds the time in seconds, from the start of the grid, at which a motion begins that is present at `known_s`: the first tenth of a
+    /// second with more power than the quietest before, without a pause since. `None` if the log has no quiet part before.
     pub(super) fn begins_s(&self, known_s: f64, sample_s: f64) -> Option<f64> {
-        /// Duration of what is compared, and of the longest pause, at which the sensor may stand still.
+        /// Duration in seconds of the parts that are compared, and of the longest pause, in which the sensor may stand still.
         const COMPARED_S: f64 = 0.1;
         const PAUSE_S: f64 = 0.8;
-        /// Power over that of the quietest from which on it is motion.
+        /// Power relative to the quietest part above which a part contains motion.
         const MOVES: f64 = 4.0;
         /// Number of parts after the beginning whose power is compared with that before.
         const AFTER: usize = 5;
@@ -295,15 +295,15 @@ impl Record {
         let mean = |powers: &[f64]| powers.iter().sum::<f64>() / powers.len().max(1) as f64;
         let (before, after) = powers.split_at(begins);
         let after = &after[..after.len().min(AFTER)];
-        // A sweep that is there from the first sample on grows, and does not begin.
+        // A sweep that is present from the first sample on grows but does not begin.
         let has_begun = !before.is_empty() && !after.is_empty() && mean(after) > MOVES * mean(before);
         has_begun.then(|| (first + begins * width) as f64 * sample_s)
     }
 
-    /// Time in seconds, from the start of the grid, at which a motion of about this frequency stops that goes on until about `expected_s`: the last
-    /// period that has more of it than the rest afterwards.
+    /// Finds the time in seconds, from the start of the grid, at which a motion of about this frequency stops that continues until about
+    /// `expected_s`: the last period with more power than the rest afterwards.
     pub(super) fn stops_s(&self, expected_s: f64, frequency_hz: f64, sample_s: f64) -> f64 {
-        /// Power over that of the rest, as a part of the motion's, and time around the expected one that is searched.
+        /// Smallest power above that of the rest, as a fraction of the motion's, and the time around the expected end that is searched.
         const PART: f64 = 0.35;
         const AROUND_S: (f64, f64) = (1.0, 15.0);
         let sample = |time_s: f64| ((time_s / sample_s).max(0.0) as usize).min(self.values.len());
@@ -313,7 +313,7 @@ impl Record {
             sample(expected_s + AROUND_S.1).min(known),
         );
         let searched = self.values.get(first..last).unwrap_or_default();
-        // Slow modes ring on after the end. The second difference over half a period leaves little of them.
+        // Slow modes continue to ring after the end. The second difference over half a period leaves little of them.
         let half = ((0.5 / (frequency_hz * sample_s)).round() as usize).max(1);
         let fast = searched.windows(2 * half + 1);
         let powers: Vec<f64> = fast
@@ -323,19 +323,19 @@ impl Record {
         let sums: Vec<f64> = powers.windows(period).map(|few| few.iter().sum()).collect();
         let usual = ((AROUND_S.0 / sample_s) as usize).min(sums.len());
         let before = sums[..usual].iter().sum::<f64>() / usual.max(1) as f64;
-        // Periods of the rest differ by chance: their mean counts.
+        // Periods of the rest differ by chance, so their mean is used.
         let rest = sums[usual..]
             .chunks(4 * period)
             .map(|few| few.iter().sum::<f64>() / few.len() as f64);
         let rest = rest.fold(before, f64::min);
         let moving = sums.iter().rposition(|sum| *sum > rest + PART * (before - rest));
-        // The difference is there until half a period after the motion, and a period with this part of it begins before its end.
+        // The difference lasts until half a period after the motion, and a period with this fraction of it begins before its end.
         let end = moving.map_or(0.0, |window| window as f64 + (PART * period as f64).max(1.0));
         (first as f64 + end) * sample_s
     }
 
-    /// Fills the samples that were not measured; the root mean square of the change, over that of the record.
-    /// What is beyond the log is left at zero where `is_cut`.
+    /// Fills the missing samples; leaves those beyond the log at zero if `is_cut`. Returns the root mean square of the change, relative to
+    /// that of the record.
     pub(super) fn fill(&mut self, predicted: &[f64], is_cut: bool) -> f64 {
         let offset = self.mean(|value, n| value - predicted[n]);
         let (mut change, mut square) = (0.0, 0.0);

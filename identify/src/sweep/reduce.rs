@@ -1,8 +1,8 @@
 //! Reduces the rate of a log to what its band needs: a log of 3,200 samples per second has four times as many as a sweep up to 135 Hz.
 //!
-//! Each sample that is kept is the mean of those around it, weighted by a low-pass filter of symmetrical taps (a sinc with a Kaiser
-//! window). What the filter makes of an excitation follows from its edges, because each adds a step, and the answer of the filter to a
-//! step is the sum of its taps. So log and excitation pass the same filter, and what the sensor's own samples alias is kept.
+//! Each sample that is kept is the mean of those around it, weighted by a low-pass filter with symmetrical taps (a sinc with a Kaiser
+//! window). The response of the filter to an excitation follows from its edges: each adds a step, and the response to a step is the sum of
+//! the taps. So log and excitation pass the same filter, and the aliases of the sensor's own samples are kept.
 
 use super::excitation::SweptAcceleration;
 use crate::parallel::both;
@@ -12,10 +12,10 @@ use std::ops::Range;
 
 /// Highest frequency in Hz that is kept of every log.
 pub(super) const KEPT_HZ: f64 = 320.0;
-/// Frequency up to which the filter passes, and from which on it stops, over the reduced rate.
+/// Frequencies up to which the filter passes and above which it stops, relative to the reduced rate.
 const PASSED: f64 = 0.4;
 const STOPPED: f64 = 0.6;
-/// By how much it stops, in dB: what it lets pass then differs from the log by 3e-5.
+/// Attenuation of the stopped frequencies in dB: their remainder changes the log by 3e-5.
 const STOP_DB: f64 = 90.0;
 
 /// A low-pass filter that keeps one of `factor` samples.
@@ -25,12 +25,12 @@ pub(super) struct Filter {
     /// Number of taps on either side of the middle.
     half: usize,
     taps: Vec<f64>,
-    /// Sums of the first taps, from none to all.
+    /// Sums of the first taps: of none, of one, and so on up to all.
     sums: Vec<f64>,
 }
 
 impl Filter {
-    /// The filter that keeps one of `factor` samples; for 1, that which changes nothing.
+    /// Returns the filter that keeps one of `factor` samples; for 1, the filter that changes nothing.
     pub(super) fn new(factor: usize) -> Self {
         let taps = match factor {
             0 | 1 => vec![1.0],
@@ -53,7 +53,7 @@ impl Filter {
         }
     }
 
-    /// That for a log whose frequencies up to this one matter.
+    /// Returns the filter for a log whose frequencies up to `highest_hz` matter.
     fn up_to(highest_hz: f64, sample_s: f64) -> Self {
         Self::new((PASSED / (highest_hz * sample_s)).min(64.0) as usize)
     }
@@ -69,15 +69,15 @@ impl Filter {
         windows.map(|window| product(window, &self.taps)).collect()
     }
 
-    /// The sum of all taps up to `steps` samples after the middle, at an edge that came as long ago: what the filter makes of an edge that
-    /// acts from the next sample on.
-    fn of_sampled_edge(&self, steps: f64) -> f64 {
+    /// Response of the filter to an edge `steps` samples ago that acts from the next sample on: the sum of all taps up to `steps` samples
+    /// after the middle.
+    fn response_to_sampled_edge(&self, steps: f64) -> f64 {
         let taps = (steps.floor() + self.half as f64 + 1.0).max(0.0) as usize;
         self.sums.get(taps).copied().unwrap_or(1.0)
     }
 
     /// The same for an edge that acts at once on a sensor which averages over a sample.
-    fn of_edge(&self, steps: f64) -> f64 {
+    fn response_to_edge(&self, steps: f64) -> f64 {
         let at = steps + self.half as f64 + 0.5;
         let taps = at.max(0.0) as usize;
         match (self.sums.get(taps), self.taps.get(taps)) {
@@ -86,8 +86,8 @@ impl Filter {
         }
     }
 
-    /// What the filter makes of an excitation: `length` samples that are kept, the first `first_s` after the excitation began, of a sensor
-    /// with one sample each `fine_s`. The sensor averages over a sample, or it does not.
+    /// Response of the filter to an excitation: `length` samples that are kept, the first `first_s` after the excitation began, of a sensor
+    /// with `fine_s` seconds between samples. `averages` tells whether the sensor averages over a sample.
     pub(super) fn of_excitation(
         &self,
         excitation: &SweptAcceleration,
@@ -109,8 +109,8 @@ impl Filter {
             let (mut value, mut level) = (before, before);
             for (at, acceleration) in edges[settled..].iter().take_while(|(at, _)| *at <= now + reach) {
                 let part = match averages {
-                    true => self.of_edge(now - at),
-                    false => self.of_sampled_edge(now - at),
+                    true => self.response_to_edge(now - at),
+                    false => self.response_to_sampled_edge(now - at),
                 };
                 value += (acceleration - level) * part;
                 level = *acceleration;
@@ -180,7 +180,8 @@ pub(super) struct Reduced<'a> {
 }
 
 impl<'a> Reduced<'a> {
-    /// The log with its frequencies up to this one. Where samples are missing all are kept, because a missing one would cost all around it.
+    /// Returns the log with its frequencies up to `highest_hz`. If samples are missing, all are kept, because a missing one would spoil all
+    /// around it.
     pub(super) fn new(log: &'a AccelerationLog, highest_hz: f64) -> Self {
         let filter = match log.missing.is_empty() {
             true => Filter::up_to(highest_hz.max(KEPT_HZ), log.sample_s),
@@ -220,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_filter_passes_its_band_and_stops_what_would_alias() {
+    fn the_filter_passes_its_band_and_stops_aliases() {
         for factor in [2, 4, 7] {
             let filter = Filter::new(factor);
             let gain = |cycles: f64| -> f64 {
@@ -259,7 +260,7 @@ mod tests {
             for (kept, driven) in kept.iter().zip(&driven) {
                 assert!((kept - driven).abs() < 1e-12, "{factor} {kept} {driven}");
             }
-            // Means over a sample are those of a hundred times as many samples.
+            // Means over a sample equal those of a hundred times as many samples.
             let many = excitation.samples(-before_s - 0.495 * fine_s, 0.01 * fine_s, 100 * samples);
             let means: Vec<f64> = many.chunks(100).map(|few| few.iter().sum::<f64>() / 100.0).collect();
             let driven = filter.of_excitation(&excitation, (first_s, fine_s), kept.len(), true);

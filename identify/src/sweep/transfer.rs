@@ -55,8 +55,8 @@ pub struct Band {
 /// Lines whose excitation is below this fraction of the mean are not used.
 const EXCITED: f64 = 1e-3;
 
-/// Delay of the response in seconds, and its sharpness: the largest value of the impulse response over its root mean
-/// square. The record is treated as periodic.
+/// Delay of the response in seconds, and its sharpness: the largest value of the impulse response over its root mean square. The record is
+/// treated as periodic.
 pub(super) fn delay(response: &Lines, excitation: &Lines) -> (f64, f64) {
     let mean = excitation.values.iter().map(Complex::norm_sqr).sum::<f64>() / excitation.values.len().max(1) as f64;
     // Only the phase is used: a resonance would outweigh the rest, and has a delay of its own.
@@ -89,8 +89,8 @@ pub(super) fn delay(response: &Lines, excitation: &Lines) -> (f64, f64) {
     (late_s, largest.1 / square.sqrt().max(f64::MIN_POSITIVE))
 }
 
-/// Additional delay in seconds for each multiple of the highest frequency, as a clock causes that drifts against that
-/// of the sweep. The delay must be about right for the middle of the band.
+/// Additional delay in seconds for each multiple of the highest frequency, as caused by a clock that drifts against that of the sweep. The
+/// delay must be about right for the middle of the band.
 pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
     /// Spacing of the frequencies, and of the bends, that are tried.
     const RESOLUTION_HZ: f64 = 0.25;
@@ -125,7 +125,7 @@ pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
     let best = tried
         .map(|bend_s| (sharpness(bend_s), bend_s))
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    // A slightly sharper result is chance, and modes are not quite straight.
+    // A slightly sharper result is a coincidence, and the phase of modes is not quite straight.
     best.filter(|(sharpest, _)| *sharpest > 1.15 * straight)
         .map_or(0.0, |(_, bend_s)| bend_s)
 }
@@ -143,7 +143,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// One without points.
+    /// Returns a transfer function without points.
     pub(super) fn empty() -> Self {
         Self {
             points: Vec::new(),
@@ -152,7 +152,7 @@ impl Transfer {
         }
     }
 
-    /// The points of a band.
+    /// Returns only the points in a band.
     pub(super) fn within(mut self, band: &Band) -> Self {
         self.points
             .retain(|point| (band.low_hz..=band.high_hz).contains(&point.frequency_hz));
@@ -167,21 +167,22 @@ const LEAST_LINES: usize = 5;
 /// Number of neighbours on either side whose noise is averaged.
 const NOISE_NEIGHBOURS: usize = 10;
 
-/// Fraction of the samples at which a frequency shakes the axis, over that of the whole log, below which nothing is said of it.
+/// Fraction of the samples at which a frequency shakes the axis, relative to that of the whole log, below which this frequency is not
+/// reported.
 const LEAST_SEEN: f64 = 0.6;
 
-/// What is divided.
+/// Transforms that are divided, with their aliases.
 #[derive(Clone, Copy)]
 pub(super) struct Division<'a> {
     pub(super) response: &'a Lines,
     pub(super) excitation: &'a Lines,
-    /// What the samples of the excitation, and of its integrals, alias into the band; empty where that is not known.
+    /// Aliases in the band of the samples of the excitation and of its integrals; empty if unknown.
     pub(super) folded: &'a [Lines],
     /// Lines that count.
     pub(super) trusted: &'a [bool],
 }
 
-/// A transfer function line by line, as straight pieces.
+/// A transfer function line by line, in straight pieces.
 pub(super) struct Estimate {
     pieces: Vec<Piece>,
     /// Fraction of the response's power in the band that the excitation explains, 0 to 1.
@@ -194,12 +195,12 @@ pub(super) struct Estimate {
 struct Piece {
     lines: std::ops::Range<usize>,
     fitted: Straight,
-    /// Sum of squares that it leaves, and degrees of freedom.
+    /// Sum of squares of the residual, and degrees of freedom.
     rest: f64,
     freedoms: f64,
     /// Number of lines for each independent one.
     dense: f64,
-    /// Fraction of the samples at which the axis is shaken at these frequencies that were measured.
+    /// Fraction of the samples at which these frequencies shake the axis that were measured.
     seen: f64,
 }
 
@@ -208,7 +209,7 @@ impl Estimate {
         self.pieces.iter().filter(|piece| piece.seen >= self.least_seen)
     }
 
-    /// The transfer function of each line of the band. What was not seen lies between its neighbours.
+    /// Returns the transfer function at each line of the band; at lines that were not measured, interpolated between neighbours.
     pub(super) fn lines(&self, excitation: &Lines) -> Vec<Complex<f64>> {
         let seen: Vec<&Piece> = self.seen().collect();
         let mut next = 0;
@@ -247,7 +248,7 @@ impl Estimate {
         if weight > 0.0 { sum / weight } else { 1.0 }
     }
 
-    /// The points of the pieces that were seen.
+    /// Returns the points of the pieces that were measured.
     pub(super) fn transfer(&self) -> Transfer {
         let variance = |piece: &Piece| piece.rest / piece.freedoms / piece.seen;
         let seen: Vec<&Piece> = self.seen().collect();
@@ -276,7 +277,7 @@ impl Estimate {
         }
     }
 
-    /// The bands of which too little was measured.
+    /// Returns the bands in which too little was measured.
     pub(super) fn unseen(&self, excitation: &Lines) -> Vec<Band> {
         let mut bands: Vec<Band> = Vec::new();
         let mut joins = false;
@@ -298,7 +299,7 @@ impl Estimate {
     }
 }
 
-/// Divides the lines of a band; `seen` tells of a frequency how much of what it shook was measured.
+/// Divides the lines of a band; `seen` returns the fraction of what a frequency shook that was measured.
 pub(super) fn estimate(division: &Division<'_>, seen: impl Fn(f64) -> f64) -> Estimate {
     let Division {
         response,
@@ -343,7 +344,7 @@ pub(super) fn estimate(division: &Division<'_>, seen: impl Fn(f64) -> f64) -> Es
     }
 }
 
-/// The fractions of the aliased parts that a response contains, by least squares on what a transfer function leaves.
+/// Fractions of the aliased parts that a response contains, by least squares on the residual of a transfer function.
 fn shown(groups: &[std::ops::Range<usize>], division: &Division<'_>) -> Vec<f64> {
     let Division {
         response,
@@ -358,7 +359,7 @@ fn shown(groups: &[std::ops::Range<usize>], division: &Division<'_>) -> Vec<f64>
         return Vec::new();
     }
     for group in groups {
-        // What a smooth transfer function would take of each part is taken from it.
+        // The part that a smooth transfer function would explain is removed from each.
         let rest = |values: &[Complex<f64>]| {
             let fitted = straight(group.clone(), values, excitation);
             let rest = group
@@ -368,7 +369,7 @@ fn shown(groups: &[std::ops::Range<usize>], division: &Division<'_>) -> Vec<f64>
         };
         let left = rest(&response.values);
         let columns: Vec<Vec<Complex<f64>>> = folded.iter().map(|part| rest(&part.values)).collect();
-        // Each group counts by what it leaves, so that a resonance does not outweigh the rest.
+        // The weight of a group is the reciprocal of its residual, so that a resonance does not outweigh the rest.
         let weight = 1.0 / left.iter().map(Complex::norm_sqr).sum::<f64>().max(f64::MIN_POSITIVE);
         let product = |a: &[Complex<f64>], b: &[Complex<f64>]| {
             weight * a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum::<f64>()
@@ -386,7 +387,7 @@ fn shown(groups: &[std::ops::Range<usize>], division: &Division<'_>) -> Vec<f64>
     }
 }
 
-/// Ranges of lines that count, each for a point.
+/// Ranges of lines that count, one for each point.
 fn groups(lines: &Lines, trusted: &[bool]) -> Vec<std::ops::Range<usize>> {
     let mut groups = Vec::new();
     let mut begin = 0;
@@ -397,7 +398,7 @@ fn groups(lines: &Lines, trusted: &[bool]) -> Vec<std::ops::Range<usize>> {
             break;
         }
         match trusted[begin..end].iter().rposition(|trusted| !trusted) {
-            // A straight line over lines that are left out would be drawn from one side of them.
+            // A straight line over omitted lines would be determined from one side only.
             Some(last) => begin += last + 1,
             None => {
                 groups.push(begin..end);

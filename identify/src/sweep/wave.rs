@@ -6,17 +6,17 @@ use super::transfer::{Band, Lines};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Fraction of the sweep's lowest frequency up to which it is looked for.
+/// Highest frequency at which the wave is sought, as a fraction of the sweep's lowest frequency.
 const BELOW: f64 = 0.9;
-/// Energy of the wave over the median of a line below the sweep: noise has a few times as much by chance.
+/// Smallest energy of the wave, relative to the median of a line below the sweep; noise reaches a few times the median by chance.
 const LEAST_ENERGY: f64 = 200.0;
-/// Ratio of what the wave explains with its phase, to what it would explain with any.
+/// Smallest ratio of what the wave explains with its phase to what it would explain with the best phase.
 const IN_PHASE: f64 = 0.8;
-/// Fraction of the energy of the best period that the usual one must have to be taken.
+/// Smallest fraction of the best period's energy with which the usual period is chosen.
 const USUAL: f64 = 0.8;
 
-/// The square wave in a log whose lines are all given, with those of the sweep's pulses, which begin `start_s` after the start of the grid
-/// and end `end_s` later; `None` where there is none.
+/// Finds the square wave in a log. `all` are the log's lines and `pulses` those of the sweep's pulses, which begin `start_s` after the
+/// start of the grid and end `end_s` later. Returns `None` if there is no wave.
 pub(super) fn find(
     grid: &Grid,
     all: &[Complex<f64>],
@@ -41,7 +41,7 @@ pub(super) fn find(
     let least = LEAST_ENERGY * *median;
     let tried = |period_s: f64| Tried::new(&lines, grid, period_s, start_s, end_s);
     let usual = tried(SquareWave::default().period_s);
-    // The strongest line is the wave's first, and its frequency is known to a line.
+    // The strongest line is the wave's first harmonic, so its frequency is known to the distance of a line.
     let off = |part: f64| 1.0 / (peak_hz + part * lines.resolution_hz);
     let coarse = (-10..=10).map(|n| tried(off(0.1 * f64::from(n))));
     let best = coarse.max_by(|a, b| a.energy.total_cmp(&b.energy))?;
@@ -59,7 +59,7 @@ pub(super) fn find(
     })
 }
 
-/// How much a square wave of some period explains.
+/// A square wave of some period, and how much it explains.
 struct Tried {
     period_s: f64,
     acceleration: f64,
@@ -88,13 +88,13 @@ impl Tried {
     }
 }
 
-/// Lines of a square wave that ends `end_s` after its start, as [`spectrum`] has them. All edges between the second and the last are half a period
-/// apart and of alternating sign, so that their sum is that of a geometric series: a period below the sweep may have thousands.
+/// Lines of a square wave that ends `end_s` after its start, in the form of [`spectrum`]. All edges between the second and the last are
+/// half a period apart and alternate in sign, so their sum is that of a geometric series: a period below the sweep may have thousands.
 fn wave_spectrum(wave: &SquareWave, lines: &Lines, sample_s: f64, start_s: f64, end_s: f64) -> Vec<Complex<f64>> {
     let mut edges_s = wave.edges_s();
     let (first_s, second_s) = (edges_s.next().unwrap_or(end_s), edges_s.next().unwrap_or(end_s));
     let half_s = 0.5 * wave.period_s;
-    // The wave has those edges that come before its end.
+    // The wave has only the edges before its end.
     let later = ((end_s - second_s) / half_s).ceil().max(0.0);
     let is_positive = match (first_s < end_s, later % 2.0 == 0.0) {
         (false, _) => true,
@@ -152,14 +152,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lines_of_a_square_wave_are_those_of_its_edges() {
+    fn lines_of_a_square_wave_match_the_sum_over_its_edges() {
         let lines = Lines {
             first: 2,
             resolution_hz: 0.0125,
             dense: 1,
             values: vec![Complex::new(0.0, 0.0); 400],
         };
-        // A period of 1.6 s has its harmonics on lines; the last three end before the third, the second and the first edge.
+        // A period of 1.6 s has its harmonics on lines; the last three waves end before the third, the second and the first edge.
         for (period_s, end_s) in [
             (1.6, 60.0),
             (1.6, 60.4),
