@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_goes_on_without_a_renewal_is_an_error() {
+    fn reading_on_without_a_renewal_is_an_error() {
         let mut reader = Allowance::new(io::repeat(1), 10);
         let mut buffer = [0; 8];
         assert_eq!(reader.read(&mut buffer).unwrap(), 8);

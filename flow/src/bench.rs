@@ -21,7 +21,8 @@ use std::thread;
 /// Largest number of blocks that are built and simulated at a time: a build takes up to a gigabyte.
 const MOST_AT_ONCE: usize = 2;
 
-/// Factor by which a row may run longer than usual, where it has not exercised all that a verdict speaks of.
+/// Factor by which a row may run longer than usual, while its stimuli have not exercised everything that a verdict
+/// covers.
 const MOST_TIMES_LONGER: u64 = 10;
 
 /// Simulator of the hardware.
@@ -83,9 +84,9 @@ fn names_verilator() -> bool {
 }
 
 impl Simulator {
-    /// The simulator that was asked for, else the best that is installed.
+    /// Returns the requested simulator, or else the best that is installed.
     ///
-    /// A Verilator that `$VERILATOR` names, or that fails to run, is an error, and does not count as not installed.
+    /// A Verilator that `$VERILATOR` names, or that fails to run, gives an error instead of counting as missing.
     pub(crate) fn choose(asked: Option<Self>, observer: &dyn Observer) -> Result<Self, Failure> {
         if IS_STATIC && asked == Some(Self::Verilator) {
             return Err(Failure::from(miette::miette!(
@@ -125,13 +126,13 @@ impl Simulator {
     }
 
     /// Fewest and most clocks of a block's lock step by default: as many as the simulator does in a few seconds, and
-    /// more until the stimuli have exercised what a verdict speaks of.
+    /// more until the stimuli have exercised everything that a verdict covers.
     fn default_cycles(self, block: &dyn Block) -> RangeInclusive<u64> {
         let fewest = self.usual_cycles().max(block.least_clocks());
         fewest..=MOST_TIMES_LONGER * fewest
     }
 
-    /// Says where the simulator runs a block at other sizes than those of its Verilog.
+    /// Reports blocks that the simulator runs at other sizes than those of their Verilog.
     pub(crate) fn say_sizes<'a>(self, blocks: impl Iterator<Item = &'a dyn Block>, observer: &dyn Observer) {
         for block in blocks.filter(|_| self == Self::Rusthdl) {
             if let Some(sizes) = block.simulated_as() {
@@ -169,7 +170,7 @@ pub(crate) struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// Fewest and most clocks to compare: the number that was asked for, or the default range.
+    /// Fewest and most clocks to compare: the requested number, or the default range.
     fn clocks(&self, simulator: Simulator) -> RangeInclusive<u64> {
         match self.cycles {
             Some(cycles) => cycles..=cycles,
@@ -181,7 +182,7 @@ impl Bench<'_> {
 /// A simulator, and the blocks that it is to run.
 pub(crate) type Needs<'a> = (Simulator, Vec<(&'a dyn Block, &'a Sources)>);
 
-/// Refuses to begin where one of these tools is missing: each is named once.
+/// Returns an error if one of these tools is missing; it names each missing tool once.
 pub(crate) fn require_installed(tools: impl IntoIterator<Item = MissingTool>) -> Result<(), Failure> {
     let mut missing: Vec<MissingTool> = Vec::new();
     for tool in tools {
@@ -195,8 +196,8 @@ pub(crate) fn require_installed(tools: impl IntoIterator<Item = MissingTool>) ->
     }
 }
 
-/// Refuses to begin where a tool is missing that one of these blocks needs: all of them are named, each once.
-/// `with_directed`: also those of the blocks' directed tests, which [`compare_all`] runs.
+/// Returns an error if a tool that one of these blocks needs is missing; it names each missing tool once.
+/// `with_directed` includes the tools of the blocks' directed tests, which [`compare_all`] runs.
 pub(crate) fn require_tools(needs: &[Needs<'_>], with_directed: bool) -> Result<(), Failure> {
     let mut missing = Vec::new();
     for (simulator, blocks) in needs {
@@ -213,7 +214,8 @@ pub(crate) fn require_tools(needs: &[Needs<'_>], with_directed: bool) -> Result<
     require_installed(missing)
 }
 
-/// What Verilator's simulations of these blocks need and is not installed. Who has them all built needs no compiler.
+/// Returns the missing tools for Verilator's simulations of these blocks. No compiler is needed if all of them are
+/// built.
 fn missing_builders<'a>(mut blocks: impl Iterator<Item = (&'a dyn Block, &'a Sources)>) -> Vec<MissingTool> {
     let missing = verilator::missing_tools();
     if missing.is_empty() || blocks.all(|(block, sources)| matches!(sources.is_built(block), Ok(true))) {
@@ -271,7 +273,7 @@ pub(crate) fn compare_all(
     }
 }
 
-/// What was compared before an error ended the command, in a sentence.
+/// Returns a sentence about the comparisons that were done before an error ended the command.
 fn until_then(reports: &[LockstepReport], all: usize) -> String {
     let of_row = |row: &BlockReport| {
         let found = match (row.mismatches, row.not_exercised.len()) {

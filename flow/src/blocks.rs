@@ -16,9 +16,9 @@ use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::shaper::MachineShapers;
 use std::path::Path;
 
-/// Dead time and minimum pulse of the PWM that is compared where no axis has one.
+/// Dead time and minimum pulse of the PWM that is compared if no axis has one.
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
-/// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
+/// The shaper for motion that is compared if no axis has one: position, velocity and acceleration share a table.
 const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
     modulo: false,
@@ -29,8 +29,8 @@ pub(crate) fn shapers(machine: &Machine, shapers: Vec<AxisShaper>, words: &Words
     MachineShapers::new(&machine.name, shapers, command::on_the_ports(machine, words)).map_err(bench::failure)
 }
 
-/// The other blocks: none for a machine that has only shapers, else every block of the library. `path` is the machine
-/// file.
+/// Returns the other blocks: none for a machine that has only shapers, otherwise every block of the library. `path` is
+/// the machine file.
 pub(crate) fn others(
     report: &DesignReport<'_>,
     shapers: &[AxisShaper],
@@ -69,7 +69,7 @@ pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<d
     Ok(blocks)
 }
 
-/// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
+/// Returns the PWMs of the machine, each with the axes that use it; a default PWM if no axis has one.
 fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Failure> {
     let mut found: Vec<(PwmConfig, String)> = Vec::new();
     for axis in &machine.axes {
@@ -94,7 +94,7 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
     Ok(found)
 }
 
-/// Names of the axes for which `has` is true, or `alone` where there are none.
+/// Names of the axes for which `has` is true, or `alone` if there are none.
 fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
     let names: Vec<&str> = machine
         .axes

@@ -8,10 +8,10 @@ pub trait WordChoice: Copy + Send + Sync + 'static {
     /// The word of a value.
     fn word(self) -> &'static str;
 
-    /// What it stands for, in a few words.
+    /// A description in a few words.
     fn about(self) -> &'static str;
 
-    /// The value of a word.
+    /// Returns the value of a word; `None` for any other word.
     #[must_use]
     fn of_word(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|value| value.word() == word)

@@ -40,12 +40,12 @@ pub(crate) fn words(
         let settle = settle_s(shaper_s, axis.modes.iter().map(|m| m.mode));
         let (positions, counts_per_unit) = match &points {
             Some(points) => (
-                resample(&points.of_axes[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
+                resample(&points.of_axes[index], sample_hz, settle).map_err(|e| axis_failure(axis, e))?,
                 axis.loop_counts_per_file_unit(),
             ),
             None => {
-                let profile = of.profile(axis).map_err(|e| of_axis(axis, e))?;
-                let positions = profile.samples(sample_hz, settle).map_err(|e| of_axis(axis, e))?;
+                let profile = of.profile(axis).map_err(|e| axis_failure(axis, e))?;
+                let positions = profile.samples(sample_hz, settle).map_err(|e| axis_failure(axis, e))?;
                 (positions, axis.loop_counts_per_unit())
             }
         };
@@ -54,7 +54,7 @@ pub(crate) fn words(
             true => modulo_words(&positions, counts_per_unit, bits, fraction, &tables.table),
             false => command_words(&positions, counts_per_unit, bits, fraction),
         };
-        words.push(of_positions.map_err(|e| of_axis(axis, e))?);
+        words.push(of_positions.map_err(|e| axis_failure(axis, e))?);
     }
     let longest = words.iter().map(Vec::len).max().unwrap_or(0);
     for of_axis in &mut words {
@@ -71,7 +71,7 @@ pub(crate) fn on_the_ports(machine: &Machine, words: &Words) -> Words {
     words.iter().map(of_axis).collect()
 }
 
-fn of_axis(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
+fn axis_failure(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
     Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
 }
 
@@ -83,7 +83,8 @@ struct Points {
     of_axes: Vec<Vec<(f64, f64)>>,
 }
 
-/// Says where a command asks for more than the machine file allows. It is simulated all the same: what happens beyond a limit is worth a look.
+/// Warns if a command exceeds the limits of the machine file. It is simulated nevertheless, because the behaviour beyond a limit is worth a
+/// look.
 fn warn_of_limits(machine: &Machine, path: &Path, points: &Points, observer: &dyn Observer) {
     for (axis, of_axis) in machine.axes.iter().zip(&points.of_axes) {
         let Some(limits) = &axis.limits else {
@@ -119,7 +120,7 @@ fn warn_of_limits(machine: &Machine, path: &Path, points: &Points, observer: &dy
     }
 }
 
-/// Says where a command jumps: to its first point, from where the axis stands at reset, and to rest, from a motion in which it ends.
+/// Warns if a command jumps: from the reset position to its first point, or to rest from the motion in which it ends.
 fn warn_of_jumps(machine: &Machine, path: &Path, points: &Points, observer: &dyn Observer) {
     let path = path.display();
     for (axis, of_axis) in machine.axes.iter().zip(&points.of_axes) {
@@ -148,7 +149,7 @@ fn warn_of_jumps(machine: &Machine, path: &Path, points: &Points, observer: &dyn
     }
 }
 
-/// Refuses a column that is there twice, or is most likely a misspelt one, and says which others are not used.
+/// Refuses a duplicate or probably misspelt column, and reports other columns that are not used.
 fn check_columns(
     machine: &Machine,
     path: &Path,

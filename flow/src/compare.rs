@@ -14,7 +14,7 @@ use std::path::Path;
 /// Parses a percentage by which frequencies may be off.
 ///
 /// # Errors
-/// What is allowed, for any other text.
+/// Returns the allowed values for any other text.
 pub fn band(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(percent) if (0.0..=90.0).contains(&percent) => Ok(percent),
@@ -74,7 +74,7 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
             least there: what the best shaper without negative amplitudes leaves in the duration of a smooth kind\n"
 }
 
-/// The tolerance of an axis's modes, by which its kinds are judged.
+/// The tolerances of an axis's modes, by which its kinds are judged.
 fn tolerance(comparison: &KindComparison) -> String {
     let texts: Vec<String> = comparison
         .tolerances

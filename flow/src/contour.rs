@@ -1,4 +1,4 @@
-//! `posicast simulate --contour`: a path of two axes, and how far shapers make them leave it.
+//! `posicast simulate --contour`: a path of two axes, and the deviation from it that shapers cause.
 
 mod file;
 mod report;
@@ -22,27 +22,27 @@ use std::rc::Rc;
 
 /// Default speed along a path, as a fraction of the slower axis's limit.
 const PART_OF_VELOCITY: f64 = 0.4;
-/// Default size of a circle or square, as a fraction of the smaller travel, and in m where there is no travel.
+/// Default size of a circle or square, as a fraction of the smaller travel, and in m if there is no travel.
 const PART_OF_TRAVEL: f64 = 0.25;
 const SIZE_M: f64 = 0.02;
-/// Number of strokes after which the progress of reading is looked at.
+/// Number of strokes between two looks at the progress of reading.
 const STROKES_LOOK: u32 = 1024;
 /// File name extensions of G-code.
 const GCODE_ENDINGS: [&str; 9] = ["gcode", "gco", "gc", "g", "nc", "ngc", "tap", "cnc", "bgcode"];
 
-/// How bends of the path are passed.
+/// How the axes pass bends of the path.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Corners {
-    /// How far the path could cut a corner to pass it within the acceleration, in the unit of the first axis, which gives its speed
-    /// (junction deviation); 0: stop at every bend; `None`: 0.01 mm, as grbl.
+    /// Distance by which a cut corner could miss the bend if it were passed within the acceleration (junction deviation), which determines
+    /// the speed, in the unit of the first axis; 0: stop at every bend; `None`: 0.01 mm, as grbl.
     pub tolerance: Option<f64>,
-    /// Angle in degrees above which a bend of the path is a stop; 180: the tolerance alone decides, as in the firmware of printers;
-    /// `None`: 45.
+    /// Angle in degrees above which the axes stop at a bend of the path; 180: only the tolerance decides, as in printer firmware; `None`:
+    /// 45.
     pub stop_angle_deg: Option<f64>,
 }
 
 impl Corners {
-    /// The options with their values, as on a command line.
+    /// The options that were given, with their values, as on a command line.
     pub(crate) fn given(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let options = [
             ("corner-tolerance", self.tolerance),
@@ -99,7 +99,7 @@ enum Path2d<'a> {
 }
 
 impl PathOptions {
-    /// Refuses the options of a path where there is none. The parser takes them beside an option that excludes `--contour`.
+    /// Refuses the options of a path if there is none. The parser accepts them beside an option that excludes `--contour`.
     pub(crate) fn only_with_a_path(&self) -> Result<(), Failure> {
         let given = [
             ("--radius", self.radius.is_some()),
@@ -165,7 +165,7 @@ impl PathOptions {
         planned.map_err(|error| path.failure(&error))
     }
 
-    /// The path, which is read as often as it is needed; `speed` is in the unit of the first axis per second.
+    /// Returns the path, which is read as often as needed; `speed` is in the unit of the first axis per second.
     fn read<'a>(&'a self, machine: &Machine, speed: Option<f64>) -> Result<DrivenPath<'a>, Failure> {
         let two_axes =
             |error: ContourError| refused("--contour", &error.to_string(), "take a machine with two linear axes");
@@ -261,7 +261,7 @@ impl DrivenPath<'_> {
         })
     }
 
-    /// Plans the path once without driving it, so that everything that is wrong with it is found.
+    /// Plans the path once without driving it, to find all errors in it.
     fn survey(&self, machine: &Machine, observer: &dyn Observer) -> Result<Survey, Failure> {
         let bytes = Rc::default();
         let mut bar = Late::new(observer, "reading the path", self.file().map_or(0, |file| file.bytes));

@@ -53,7 +53,7 @@ impl AxisControl {
         placed.collect()
     }
 
-    /// Texts of the warnings, each with the key that it is about.
+    /// Texts of the warnings, each with its key.
     fn warnings(&self) -> Vec<(&'static str, String)> {
         let of_law = self.of_axis.derived.warnings.iter();
         let of_law = of_law.map(|warning| (warning.key(), warning.to_string()));
@@ -112,7 +112,7 @@ impl AxisControl {
             });
             places.collect::<Vec<_>>()
         };
-        // Where the curve leaves the picture it is cut: the part that comes back is a curve of its own.
+        // The curve is cut where it leaves the picture: the part that returns is a curve of its own.
         let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
         for (x, y) in points {
             match (near(x, y), parts.last_mut()) {

@@ -51,7 +51,7 @@ use given_move::MoveReport;
 pub(crate) use sensitivity::sensitivity_panels;
 use together::TogetherReport;
 
-/// What to design, and what to show of it.
+/// Options of a design and its output.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file.
@@ -60,11 +60,11 @@ pub struct Options {
     pub plot: Option<PathBuf>,
     /// Whether a file that posicast did not write is replaced; never one that is read.
     pub force: bool,
-    /// Whether what the integer taps of every axis leave at most is certified, over the whole bands of its modes.
+    /// Whether the largest residual of the integer taps of every axis is certified, over the whole bands of its modes.
     pub certify: bool,
-    /// Whether it is shown what more duration buys an optimal shaper.
+    /// Whether the benefit of longer durations for optimal shapers is shown.
     pub front: bool,
-    /// Distance of a move, in the axis's unit, which is compared with one whose jerk time is a period of a mode.
+    /// Distance of a move, in the axis's unit, that is compared with a move whose jerk time is a period of a mode.
     pub distance: Option<PerAxis>,
     /// What the front does with the document.
     pub form: ResultForm,
@@ -73,7 +73,7 @@ pub struct Options {
 /// Designs the shapers of a machine.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, designed or written.
+/// [`Failure`] for files that cannot be read, designed or written.
 pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
     let machine = machine::read(&options.machine)?.machine;
     let mut outputs = OutputFiles::new(options.force);
@@ -83,7 +83,7 @@ pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
         plot::check_name("--plot", path)?;
     }
     one_document(&outputs, options.form)?;
-    // A board that `generate` would refuse is reported here too.
+    // Refuse here a board that `generate` would refuse.
     sopc::board(&machine, &options.machine)?;
     let mut report = DesignReport::new(&machine, &options.machine)?;
     report.certify = options.certify;
@@ -120,7 +120,7 @@ pub struct DesignReport<'a> {
     /// The hardware that is built for it.
     pub hardware: Hardware<'a>,
     pub(crate) controllers: Vec<Option<AxisControl>>,
-    /// Whether every axis is certified, and not just those of `optimal`.
+    /// Whether every axis is certified, not only those of `optimal`.
     certify: bool,
     /// The machine file, or the folder that contains it.
     path: &'a Path,
@@ -130,7 +130,7 @@ impl<'a> DesignReport<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     ///
     /// # Errors
-    /// [`Failure`] with the key of the file that is to blame.
+    /// [`Failure`] with the key of the file that causes it.
     pub fn new(machine: &'a Machine, path: &'a Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|error| machine::of_design(machine, &error, path))?;
         let hardware = Hardware::of(machine, &design).map_err(|error| machine::of_hardware(&error, path))?;
@@ -145,15 +145,15 @@ impl<'a> DesignReport<'a> {
         })
     }
 
-    /// Refuses a machine of which a shaper cannot be built.
+    /// Refuses a machine if one of its shapers cannot be built.
     ///
     /// # Errors
-    /// [`Failure`] with the key of the file that is to blame.
+    /// [`Failure`] with the key of the file that causes it.
     pub fn check_shapers(&self) -> Result<(), Failure> {
         hardware::shapers(self.machine, &self.hardware, self.path).map(drop)
     }
 
-    /// Tells the front of problems of tables and controllers, and of guards that an axis lacks.
+    /// Reports problems of tables and controllers, and missing guards of axes.
     pub(crate) fn warn(&self, observer: &dyn Observer) {
         let mut warnings = beyond_tolerance(self.machine, &self.design);
         warnings.extend(guards::missing(self.machine));
@@ -247,16 +247,16 @@ struct AxisReport<'a> {
     place: usize,
     axis: &'a AxisSection,
     tables: &'a AxisTables,
-    /// What is certified of it, where that is asked for.
+    /// Its certificate, if it is requested.
     certificate: Option<CertificateReport<'a>>,
-    /// Whether its delay is made equal to that of others.
+    /// Whether its delay is made equal to that of other axes.
     in_stage: bool,
     modes: Vec<ModeFigures>,
     convolution: ConvolutionFigures,
     /// Why its shaper cannot be built, or cannot run at the sample rate.
     misfit: Option<&'a HardwareError>,
     control: Option<&'a AxisControl>,
-    /// Its table family, where its modes move.
+    /// Its table family, if its modes move.
     family: Option<FamilyReport<'a>>,
     /// Its error table.
     error_table: Option<ErrorTableReport<'a>>,
@@ -413,7 +413,7 @@ impl AxisReport<'_> {
         text
     }
 
-    /// The effect of the modes' shapers on each other, where there are several.
+    /// The effect of the modes' shapers on each other, if there are several.
     fn convolution_text(&self) -> String {
         let mut text = String::new();
         if !self.convolution.cross_gains.is_empty() {
@@ -523,7 +523,7 @@ impl AxisReport<'_> {
 fn findings_text(findings: &Findings) -> String {
     let mut text = String::new();
     match findings {
-        // Its certificate says what was found.
+        // The certificate has the findings of these kinds.
         Findings::None | Findings::Optimal(_) => {}
         Findings::Periodic(found) => {
             let _ = writeln!(text, "\n  periodic at {:.6} Hz; all solutions:", found.system_hz);

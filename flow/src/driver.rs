@@ -15,8 +15,7 @@ use posicast_testbench::blocks::Block;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
 
-/// Adds the whole driver where there is a stage, a header and documents for every component's registers, and the
-/// core.
+/// Adds the whole driver if there is a stage, a header and documents for every component's registers, and the core.
 pub(crate) fn add(
     package: &mut Package,
     machine: &Machine,
@@ -29,7 +28,7 @@ pub(crate) fn add(
         let header = driver::component_header(&block.top(), block.component().map());
         add(&header.path, &header.text)?;
     }
-    for file in stage.into_iter().flat_map(|stage| of_stage(machine, stage)) {
+    for file in stage.into_iter().flat_map(|stage| stage_driver_files(machine, stage)) {
         add(&file.path, &file.text)?;
     }
     for block in components.iter().chain(stage.map(|stage| &stage.block)) {
@@ -60,7 +59,7 @@ fn core_files(
     })
 }
 
-fn of_stage(machine: &Machine, stage: &Stage) -> Vec<DriverFile> {
+fn stage_driver_files(machine: &Machine, stage: &Stage) -> Vec<DriverFile> {
     let axes = machine.axes.iter().map(|axis| AxisData {
         unit: axis.unit,
         counts_per_unit: axis.loop_counts_per_file_unit(),

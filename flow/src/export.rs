@@ -1,4 +1,4 @@
-//! `posicast export`: the designed impulses in the form in which other controllers and programs take them.
+//! `posicast export`: the designed impulses in the formats that other controllers and programs read.
 
 mod arrays;
 mod firmware;
@@ -13,20 +13,21 @@ use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_machine::plan::{AxisTables, MachineDesign, design_machine};
 use std::path::PathBuf;
 
-/// What to export, and how.
+/// Options of an export.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file.
     pub machine: PathBuf,
-    /// ResultForm of the output.
+    /// Format of the output.
     pub to: ExportFormat,
     /// Version of the firmware, such as `3.5`, `v0.13.0-633` or `2026-03-31`; `None`: the newest.
     pub firmware_version: Option<String>,
     /// Only the axes of these names; all without any name.
     pub axes: Vec<String>,
-    /// Whether, where the firmware cannot take the design, the one of its own shapers that leaves least is written.
+    /// Whether the firmware's own shaper with the smallest residual is written if the firmware cannot use the design.
     pub closest: bool,
-    /// File to write, of its own; one that posicast did not write is never replaced. `None`: the text is returned.
+    /// A new file to write, or an export to replace; a file that posicast did not write is never replaced. `None`: the
+    /// text is returned.
     pub output: Option<PathBuf>,
 }
 
@@ -96,7 +97,7 @@ impl WordChoice for ExportFormat {
 }
 
 impl ExportFormat {
-    /// How a comment begins; `None` without comments.
+    /// The beginning of a comment; `None` without comments.
     fn comment(self) -> Option<&'static str> {
         match self {
             ExportFormat::Klipper | ExportFormat::Kalico | ExportFormat::Numpy => Some("#"),
@@ -108,10 +109,10 @@ impl ExportFormat {
     }
 }
 
-/// Exports the impulses of a machine's design. Returns the text where no file is named.
+/// Exports the impulses of a machine's design. Returns the text if no file is named.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, designed, told to the firmware, or written.
+/// [`Failure`] for files that cannot be read, designed or written, and for designs that the firmware cannot use.
 pub fn export(options: &Options, observer: &dyn Observer) -> Result<Option<String>, Failure> {
     let path = options.machine.as_path();
     let place = place::Place::claim(options.to, options.output.as_deref(), path)?;
@@ -219,7 +220,7 @@ impl Selected<'_> {
     }
 }
 
-/// Numbers with as many digits as tell them from their neighbours.
+/// Numbers with enough digits to distinguish them from their neighbours.
 fn list(numbers: &[f64], separator: &str) -> String {
     let texts: Vec<String> = numbers.iter().map(|number| format!("{number:?}")).collect();
     texts.join(separator)

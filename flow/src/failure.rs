@@ -4,14 +4,14 @@ use miette::Diagnostic;
 use std::fmt;
 use std::path::Path;
 
-/// Why a step stopped; the kind determines the exit status of a command.
+/// Why a step stopped. The kind of failure determines the exit status of a command.
 #[derive(Debug)]
 pub enum Failure {
-    /// A check failed: exit status 1. The result has it in detail; this is the closing line.
+    /// A check failed: exit status 1. This is the closing line; the result has the details.
     Check(String),
     /// Bad usage or input: exit status 2.
     Input(miette::Report),
-    /// A tool that was asked for is missing: exit status 3.
+    /// A tool that the user named is missing: exit status 3.
     MissingTool(miette::Report),
 }
 
@@ -26,7 +26,7 @@ impl Failure {
         Self::Input(miette::Report::from_err(error))
     }
 
-    /// An error of the system while `doing` something with a file or folder, which the error itself does not name.
+    /// An error of the system while `doing` something with a file or folder. The error itself does not name the file.
     pub fn of_file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.display().to_string();
         move |error| {
@@ -38,7 +38,7 @@ impl Failure {
         }
     }
 
-    /// The failure with its message prefixed by the file that it is about.
+    /// Puts the name of the file before the message of the failure.
     #[must_use]
     pub fn in_file(self, path: &Path) -> Self {
         match self {
@@ -85,13 +85,13 @@ impl Failure {
     }
 }
 
-/// A message with those of its causes.
+/// Returns a message with those of its causes.
 #[must_use]
 pub fn with_causes(report: &miette::Report) -> String {
     let mut message = report.to_string();
     for cause in report.chain().skip(1) {
         let cause = cause.to_string();
-        // An error whose text contains its cause already must not repeat it.
+        // Some error texts already contain their causes, which must not be repeated.
         if !message.contains(&cause) {
             message.push_str(": ");
             message.push_str(&cause);

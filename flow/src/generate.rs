@@ -19,7 +19,7 @@ use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What to generate.
+/// Options of the generation.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file.
@@ -33,7 +33,7 @@ pub struct Options {
 /// Writes a machine's Verilog, its components and its Quartus projects into a folder.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, designed, built or written.
+/// [`Failure`] for files that cannot be read, designed, built or written.
 pub fn generate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
     let path = options.machine.as_path();
     let file = machine::read(path)?;
@@ -60,7 +60,7 @@ pub fn generate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Do
     Ok(Outcome::passed(document, text))
 }
 
-/// Adds the machine's Verilog, and what describes it to tools, systems and drivers. Returns the paths of the Verilog.
+/// Adds the machine's Verilog, and its descriptions for tools, systems and drivers. Returns the paths of the Verilog.
 pub(crate) fn add(
     package: &mut Package,
     (file, path): (&MachineFile, &Path),
@@ -78,14 +78,14 @@ pub(crate) fn add(
     Ok(sources)
 }
 
-/// What was generated, and where.
+/// The files that were generated, and their folder.
 #[derive(Serialize)]
 pub struct Document {
     name: String,
     folder: String,
     top: Vec<String>,
     files: Vec<String>,
-    /// What the line of the stage is called, where it has one.
+    /// Name of the stage's line, if it has one.
     #[serde(skip)]
     line: Option<&'static str>,
 }
@@ -122,7 +122,7 @@ impl Document {
         files.collect()
     }
 
-    /// Number of files by folder, the top modules, and what to do next.
+    /// Number of files by folder, the top modules, and the next step.
     fn text(&self) -> String {
         let folder = Path::new(&self.folder);
         let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
@@ -165,7 +165,7 @@ pub(crate) fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
     folders.chain(alone).collect()
 }
 
-/// Tells the front which files of an earlier run were removed, and which of its evidence was kept.
+/// Reports which files of an earlier run were removed, and which of its evidence was kept.
 pub(crate) fn tell(committed: &Committed, observer: &dyn Observer) {
     let note = |what: &str, files: &[String]| {
         if !files.is_empty() {

@@ -1,4 +1,4 @@
-//! Guards that an axis lacks because the machine file does not ask for them, and what can happen without them.
+//! Warns about guards that an axis lacks because the machine file does not request them, and about the consequences.
 
 use crate::warning::Warning;
 use posicast_machine::control::{LostSign, lost_sign};
@@ -8,7 +8,7 @@ use posicast_shaper::unit::trimmed;
 /// A following error of fewer counts than this is most likely meant in another unit.
 const LEAST_COUNTS: f64 = 4.0;
 
-/// A guard, whether a file has it, and what can happen without it.
+/// A guard, whether a file has it, and the possible consequences without it.
 struct Guard {
     key: &'static str,
     is_set: fn(&AxisSection, &LimitsSection) -> bool,
@@ -60,7 +60,7 @@ pub(crate) fn missing(machine: &Machine) -> Vec<Warning> {
     loops.flat_map(of_axis).collect()
 }
 
-/// A warning where the following error is so small that the encoder's own steps exceed it.
+/// A warning if the encoder's own steps exceed the following error, which is too small.
 fn tight(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     let limit = limits.following_error?;
     let counts = limit * axis.loop_counts_per_unit();
@@ -76,7 +76,7 @@ fn tight(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     })
 }
 
-/// A warning where neither the following error nor the encoder monitor detects a feedback of the wrong sign.
+/// A warning if neither the following error nor the encoder monitor detects a feedback of the wrong sign.
 fn sign(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     let remedy = match lost_sign(axis) {
         _ if limits.following_error.is_some() => return None,

@@ -32,9 +32,9 @@ pub(crate) struct Built<'a> {
     /// The blocks of the axes as components, ready for a system with a processor. Their top modules are
     /// `<machine>_<axis>_<block>_avalon`.
     pub(crate) components: Vec<ComponentBlock>,
-    /// All axes behind one agent, where every loop is complete.
+    /// All axes behind one agent, if every loop is complete.
     pub(crate) stage: Option<Stage>,
-    /// The stage with its line to a host, where the machine file has one. Its top module is `<machine>_link`.
+    /// The stage with its line to a host, if the machine file has one. Its top module is `<machine>_link`.
     pub(crate) link: Option<LinkedStageBlock>,
 }
 
@@ -58,8 +58,8 @@ pub(crate) fn shapers(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -
 }
 
 impl<'a> Built<'a> {
-    /// The hardware of a report's machine, which the file at `path` describes. Where the shapers do not suit a stage
-    /// there is none, and a warning says so.
+    /// The hardware of a report's machine, which the file at `path` describes. If the shapers do not suit a stage,
+    /// there is none, and a warning is given.
     pub(crate) fn new(report: &DesignReport<'a>, path: &Path, observer: &dyn Observer) -> Result<Self, Failure> {
         let (machine, hardware) = (report.machine, &report.hardware);
         let refused = |error: HardwareError| of_hardware(&error, path);
@@ -135,7 +135,7 @@ fn linked(machine: &Machine, link: &LinkSection, stage: &Stage, path: &Path) -> 
 }
 
 impl Stage {
-    /// Its Verilog modules. Axis names for which two modules would have the same name are an error of the machine
+    /// Its Verilog modules. If two modules would get the same name from the axis names, this is an error of the machine
     /// file at `path`.
     fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         self.block.modules().map_err(|error| {

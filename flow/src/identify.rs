@@ -26,28 +26,28 @@ pub use document::Document;
 pub use excitation::{LogExcitation, positive, sweep};
 pub use log_file::LogOptions;
 
-/// What to identify, and what to write of it.
+/// Options of the identification and its output.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Log in CSV.
     pub log: PathBuf,
     /// The machine file to write, with the modes found and the first shaper of the list.
     pub output: Option<PathBuf>,
-    /// The machine file into whose axis the modes are put; `None`: a template.
+    /// The machine file whose axis gets the modes; `None`: a template.
     pub machine: Option<PathBuf>,
     /// Name of the axis in the machine file; `None`: that of the sensor's direction, or the first.
     pub axis: Option<String>,
-    /// Kind of machine of the template; `None`: what the modes suit.
+    /// Kind of machine of the template; `None`: chosen by the modes.
     pub kind: Option<MachineKind>,
     /// The SVG file into which fit, shapers and ringing are drawn.
     pub plot: Option<PathBuf>,
-    /// What is known of the excitation.
+    /// Knowledge about the excitation.
     pub excitation: LogExcitation,
-    /// What the log's file leaves open.
+    /// Information that the log's file lacks.
     pub log_options: LogOptions,
     /// Jump of the acceleration by which shapers are judged, in m/s² or rad/s².
     pub acceleration: f64,
-    /// Change of the frequencies in percent that a shaper must stand beside what the log leaves open.
+    /// Change of the frequencies in percent that a shaper must tolerate in addition to the uncertainty of the log.
     pub margin_percent: f64,
     /// Whether a file that posicast did not write is replaced; never one that is read.
     pub force: bool,
@@ -58,7 +58,7 @@ pub struct Options {
 /// Finds the modes in a log.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, understood or written. A log without a mode is no error but [`Outcome::failed`].
+/// [`Failure`] for files that cannot be read, understood or written. A log without a mode is not an error but gives [`Outcome::failed`].
 pub fn identify(options: &Options) -> Result<Outcome<Document>, Failure> {
     let mut outputs = OutputFiles::new(options.force);
     outputs.input("the log", &options.log);
@@ -107,10 +107,10 @@ pub fn identify(options: &Options) -> Result<Outcome<Document>, Failure> {
     })
 }
 
-/// Writes a machine file with the modes of a log, found with default settings, and returns what it says.
+/// Writes a machine file with the modes of a log, found with default settings, and returns the report.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, understood or written, and for a log without a mode.
+/// [`Failure`] for files that cannot be read, understood or written, and for a log without a mode.
 pub fn new_machine(log: &Path, file: &Path, kind: Option<MachineKind>) -> Result<String, Failure> {
     const OPTIONS: &str = "`posicast identify LOG -o FILE` has the options --columns, --rate and --direction";
     let reading = read(log, &LogOptions::default()).map_err(|failure| failure.or_help(OPTIONS))?;

@@ -1,7 +1,7 @@
-//! The steps of posicast as functions: each takes typed options and gives one document, and the same in words.
+//! The steps of posicast as functions: each takes typed options and returns one document, and the same content as text.
 //!
-//! A front calls them: the command line does. Nothing here reads arguments, prints, or draws a progress bar: what a step wants to
-//! say while it works goes to the front's [`Observer`].
+//! A front, such as the command line, calls them. Nothing here reads arguments, prints, or draws a progress bar: messages of a step go to
+//! the front's [`Observer`].
 
 mod allowance;
 mod bench;
@@ -57,9 +57,9 @@ pub struct Outcome<D> {
     pub document: D,
     /// The result for people: lines, with colours as escape sequences.
     pub text: String,
-    /// Whether a file that the options name is the standard output, so that the text belongs elsewhere.
+    /// Whether an output file of the step is the standard output, so that the text belongs elsewhere.
     pub is_beside_a_file: bool,
-    /// Why a check of the step failed; `None` where all hold.
+    /// Why a check of the step failed; `None` if all hold.
     pub failed: Option<String>,
 }
 
@@ -74,7 +74,7 @@ impl<D> Outcome<D> {
         }
     }
 
-    /// The same of a step that wrote these files.
+    /// The same result, for a step that wrote these files.
     pub(crate) fn beside(self, outputs: &OutputFiles) -> Self {
         Self {
             is_beside_a_file: outputs.take_standard_output(),

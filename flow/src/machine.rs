@@ -1,4 +1,4 @@
-//! Reads the machine file, and names the key of it that is to blame for an error.
+//! Reads the machine file, and finds the key that causes an error.
 
 use crate::failure::Failure;
 use posicast_machine::hardware::HardwareError;
@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Largest size in bytes. A machine file is a page of text; anything far beyond is another file named by mistake.
+/// Largest size in bytes. A machine file is a page of text, so anything far larger is a wrong file.
 const LARGEST_FILE_BYTES: u64 = 1 << 20;
 
 /// A machine file, read and validated.
@@ -21,7 +21,7 @@ pub struct MachineFile {
     pub text: String,
     /// The machine that it describes.
     pub machine: Machine,
-    /// Names and texts of the files beside it that it names.
+    /// Names and texts of the other files that it names.
     pub beside: Vec<(String, String)>,
 }
 
@@ -53,7 +53,7 @@ pub fn read(path: &Path) -> Result<MachineFile, Failure> {
     })
 }
 
-/// Why a file has no text.
+/// Why a file cannot be read as text.
 #[derive(Debug, thiserror::Error)]
 enum Unreadable {
     #[error("{0}")]
@@ -69,7 +69,7 @@ enum Unreadable {
 }
 
 impl Unreadable {
-    /// Describes the first byte that is not UTF-8, which comes after `valid` others, by the words before it.
+    /// Describes the first byte that is not UTF-8, which follows `valid` valid bytes, by the words before it.
     fn encoding(bytes: &[u8], valid: usize) -> Self {
         const SHOWN: usize = 20;
         let before = String::from_utf8_lossy(&bytes[..valid]);
@@ -101,7 +101,7 @@ fn text_of(path: &Path) -> Result<String, Unreadable> {
             "{found} bytes found, at most {LARGEST_FILE_BYTES} allowed"
         )));
     }
-    // The length above is 0 for a device or a pipe: these may go on for ever.
+    // The length above is 0 for a device or a pipe, which may have no end.
     let file = File::open(path).map_err(said)?;
     let mut bytes = Vec::new();
     if file
@@ -123,7 +123,7 @@ pub fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
     parse_beside(path, text, &RefCell::default())
 }
 
-/// The same; what is read beside it goes to `read`, as names and texts, each once.
+/// The same; adds the names and texts of other files that it reads to `read`, each once.
 fn parse_beside(path: &Path, text: &str, read: &RefCell<Vec<(String, String)>>) -> Result<Machine, Failure> {
     let beside = |name: &str| {
         let text = text_of(&path.with_file_name(name)).map_err(|found| format!("cannot be read: {found}"))?;
@@ -152,7 +152,7 @@ pub fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Display) ->
 
 /// `:LINE` of a key, to follow the file's name.
 fn line_of(file: &Path, axis: usize, key: &str) -> String {
-    // The file was read before; if it is gone, the key alone must do.
+    // If the file has disappeared since it was read, the key alone is given.
     let text = std::fs::read_to_string(file).unwrap_or_default();
     machine_file::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"))
 }

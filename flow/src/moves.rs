@@ -13,8 +13,8 @@ use std::str::FromStr;
 pub struct Motion {
     /// The command: a CSV file with columns `time_s` and `position`, in the axis's unit; `None`: a move of each axis.
     pub command: Option<PathBuf>,
-    /// Distance of the move, in the axis's unit; `None`: what reaches the velocity limit, at least 5 mm or 5 mrad, at most half of
-    /// the travel.
+    /// Distance of the move, in the axis's unit; `None`: a distance at which the axis reaches the velocity limit, at least 5 mm or 5 mrad,
+    /// at most half of the travel.
     pub distance: Option<PerAxis>,
     /// Speed of the move, in the axis's unit per second; `None`: the velocity limit.
     pub speed: Option<PerAxis>,
@@ -47,7 +47,7 @@ impl Motion {
         command.into_iter().chain(figures).collect()
     }
 
-    /// The move of each axis. With a command file, moves are only for the closed loop.
+    /// The move of each axis. If there is a command file, only the closed loop has moves.
     pub(crate) fn moves(&self, machine: &Machine, closed_loop: bool) -> Result<Vec<AxisMove>, Failure> {
         for (option, figures) in [("--move", &self.distance), ("--speed", &self.speed)] {
             let Some(figures) = figures else {
@@ -116,10 +116,10 @@ impl PerAxis {
         }
     }
 
-    /// Refuses names of axes that the machine does not have; `option` is what named them.
+    /// Refuses names of axes that the machine does not have; `option` is the option with these names.
     ///
     /// # Errors
-    /// [`Failure`] with the name, and with those of the machine.
+    /// [`Failure`] with the unknown name, and the names of the machine's axes.
     pub fn only_for(&self, machine: &Machine, option: &str) -> Result<(), Failure> {
         let Self::Named(figures) = self else {
             return Ok(());
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_is_for_all_axes_or_for_those_that_are_named() {
+    fn a_figure_is_for_all_axes_or_for_named_ones() {
         assert_eq!("-4e-3".parse(), Ok(PerAxis::All(-0.004)));
         let named = PerAxis::Named(vec![("x".to_owned(), 40.0), ("y".to_owned(), -20.0)]);
         assert_eq!("x=40, y=-20".parse(), Ok(named));

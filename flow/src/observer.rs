@@ -1,4 +1,4 @@
-//! What a step tells its front while it works.
+//! Messages and progress from a step to its front.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ pub trait Observer: Sync {
     /// A message for the user, in lines; a warning begins with `warning:`, a note with `note:`.
     fn say(&self, message: &str);
 
-    /// A part of the work begins, which is called `what` and has this many steps; `None` where their number is not known.
+    /// A part of the work begins: `what` is its name, and `steps` the number of its steps if that is known.
     fn begin(&self, what: &str, steps: Option<u64>) -> Box<dyn WorkProgress>;
 }
 
@@ -19,7 +19,7 @@ pub trait WorkProgress: Send + Sync {
     /// This many steps are done in all.
     fn reach(&self, done: u64);
 
-    /// The part that is being done has another name.
+    /// The current part gets another name.
     fn rename(&self, what: &str);
 }
 

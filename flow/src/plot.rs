@@ -25,14 +25,13 @@ type Drawn = Result<(), Box<dyn std::error::Error>>;
 /// Style of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Look {
-    /// Wide and pale, for a curve on which another is expected to lie: it is seen on both sides of that.
+    /// Wide and pale, for a curve that another is expected to cover: it stays visible on both sides.
     Under,
     /// Grey, for a curve with which others are compared.
     Reference,
     /// A colour of its own, which no other curve of the panel has.
     Own,
-    /// Dashed on top, in a shade of the colour of the curve before: another form of the same quantity, which may
-    /// lie exactly on it.
+    /// Dashed on top, in a shade of the colour of the curve before: another form of the same quantity, which may cover it exactly.
     Dashed,
     /// Dashed and dark red, for a level that must not be exceeded.
     Limit,
@@ -49,39 +48,39 @@ pub struct Curve {
 }
 
 impl Curve {
-    fn of(look: Look, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+    fn with_look(look: Look, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         let name = name.into();
         Self { name, points, look }
     }
 
     /// A curve in a colour of its own.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self::of(Look::Own, name, points)
+        Self::with_look(Look::Own, name, points)
     }
 
-    /// A curve on which another is expected to lie.
+    /// A curve that another is expected to cover.
     pub fn under(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self::of(Look::Under, name, points)
+        Self::with_look(Look::Under, name, points)
     }
 
     /// Another form of the curve before it.
     pub fn beside(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self::of(Look::Dashed, name, points)
+        Self::with_look(Look::Dashed, name, points)
     }
 
     /// Single points.
     pub fn dots(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self::of(Look::Dots, name, points)
+        Self::with_look(Look::Dots, name, points)
     }
 
     /// A reference curve.
     pub fn reference(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self::of(Look::Reference, name, points)
+        Self::with_look(Look::Reference, name, points)
     }
 
     /// A level that must not be exceeded.
     pub fn limit(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self::of(Look::Limit, name, points)
+        Self::with_look(Look::Limit, name, points)
     }
 }
 
@@ -121,7 +120,7 @@ pub struct Note {
     pub text: String,
     /// The point, in the values of the axes.
     pub at: (f64, f64),
-    /// When the name is written beside the point; the page's pointer shows it in any case.
+    /// When the name is written beside the point; the page's pointer always shows it.
     pub writing: Writing,
 }
 
@@ -130,13 +129,13 @@ pub struct Note {
 pub enum Writing {
     /// Also on top of something else.
     Always,
-    /// Where there is room for it.
+    /// If there is room for it.
     WhereFree,
-    /// Not at all: only the pointer shows it.
+    /// Never: only the pointer shows it.
     Never,
 }
 
-/// The unit of the time axis for a plot of this duration: the one that gives at least two of it.
+/// Returns the unit of the time axis for a plot of this duration: the largest in which it is at least 2.
 pub fn time_axis(duration_s: f64) -> ShownUnit {
     time_unit(duration_s / 2.0)
 }
@@ -159,7 +158,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
     /// Shown range of the vertical axis; `None`: everything. Curves are cut at its ends.
     pub y_range: Option<(f64, f64)>,
-    /// Whether the vertical axis counts something: only whole numbers are then written beside it.
+    /// Whether the vertical axis counts something: its labels are then whole numbers.
     pub y_is_whole: bool,
     /// A band drawn under the curves.
     pub band: Option<Corridor>,
@@ -176,8 +175,8 @@ const PANEL_SIZE: (u32, u32) = (900, 400);
 const MARGIN: i32 = 16;
 const TITLE_SIZE: i32 = 18;
 const TEXT_SIZE: i32 = 13;
-// Colours that stay apart for colour-blind readers (Okabe and Ito; their yellow, which is faint on white, is left out), one for
-// each mode that an axis may have.
+// Colours that colour-blind readers can distinguish (Okabe and Ito, without their yellow, which is faint on white), one for each mode that
+// an axis may have.
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -191,7 +190,7 @@ const COLOURS: [RGBColor; 8] = [
 const GREY: RGBColor = RGBColor(140, 140, 140);
 const DARK_RED: RGBColor = RGBColor(170, 0, 0);
 const BAND: RGBColor = RGBColor(222, 240, 222);
-/// Colour of the ends of a band, which show it where it is thin.
+/// Colour of the ends of a band, which keep a thin band visible.
 const BAND_END: RGBColor = RGBColor(120, 180, 120);
 const GRID: RGBColor = RGBColor(225, 225, 225);
 /// Width in pixels of a curve under another, and how pale it is.
@@ -207,7 +206,7 @@ const OTHER_FORMATS: [&str; 11] = [
     "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps",
 ];
 
-/// Refuses a file name for a plot whose extension is that of another picture format.
+/// Refuses a file name for a plot with the extension of another picture format.
 pub fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
     let extension = path
         .extension()
@@ -304,7 +303,7 @@ mod tests {
         };
         let colour = |colour: RGBColor| format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2);
         let wide = drawn((-5.0, 5.0));
-        // The sample of the legend, and the whole picture.
+        // One is the sample in the legend; the other covers the whole picture.
         assert_eq!(wide.matches(&colour(BAND)).count(), 2, "{wide}");
         assert!(wide.contains("±1 count: more than is shown"));
         let thin = drawn((-1e-6, 1e-6));

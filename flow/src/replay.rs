@@ -18,16 +18,16 @@ use wavecmp::diff::{DiffOptions, Reset};
 /// The recording of stimuli, and how its names are read.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
-    /// A VCD or FST, whose inputs go into RTL and model, and whose outputs are compared; `None`: no recording.
+    /// A VCD or FST whose inputs drive RTL and model, and whose outputs are compared; `None`: no recording.
     pub stimulus: Option<PathBuf>,
     /// `A=B`: scope or signal A of the recording is B of the block, whose scope is its top module; with * in both, a pattern.
     pub map: Vec<String>,
-    /// The scope of the recording below which its names are looked for.
+    /// The scope of the recording that contains the names.
     pub root: Option<String>,
     /// The recorded clock; `None`: the only `clk` or `clock`.
     pub clock: Option<String>,
-    /// `NAME[=0|1]`: the signal from whose release on recorded outputs are compared; `none`: from the first edge; `None`: the only
-    /// reset found.
+    /// `NAME[=0|1]`: recorded outputs are compared after the release of this signal; `none`: from the first edge on; `None`: the only reset
+    /// found.
     pub reset: Option<String>,
 }
 
@@ -51,7 +51,7 @@ impl Recording {
 #[derive(Debug, Serialize)]
 pub(crate) struct Replayed {
     file: PathBuf,
-    /// Number of clocks that were replayed, and number of those in which recorded outputs were compared.
+    /// Number of clocks that were replayed, and of clocks in which recorded outputs were compared.
     clocks: u64,
     compared: u64,
     /// Inputs that are not in the file and were held at 0.
@@ -64,7 +64,7 @@ pub(crate) struct Replayed {
     /// Inputs in the file, and outputs of the model, that never changed in the clocks that were compared.
     unchanged_inputs: Vec<String>,
     unchanged_outputs: Vec<String>,
-    /// What else the recording does not exercise of what a verdict on the block would speak of.
+    /// Other things that a verdict on the block covers and that the recording does not exercise.
     not_exercised: Vec<String>,
     /// Number of clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
     unknown_input_clocks: u64,
@@ -80,12 +80,12 @@ impl Replayed {
         &self.missing_inputs
     }
 
-    /// What the recording does not exercise: taps, banks, levels of flags.
+    /// Taps, banks and levels of flags that the recording does not exercise.
     pub(crate) fn not_exercised(&self) -> &[String] {
         &self.not_exercised
     }
 
-    /// How much of the block's outputs the recording moves, for the line of the verdict.
+    /// How many of the block's outputs the recording changes, for the line of the verdict.
     pub(crate) fn summary(&self) -> String {
         let changed = self.outputs - self.unchanged_outputs.len();
         let mut text = format!(
@@ -141,8 +141,8 @@ impl Replayed {
     }
 }
 
-/// Replays the recording, for at most this many clocks, into the block that has most in common with it, in each of these
-/// simulators, and returns a report for each.
+/// Replays the recording, for at most `most_clocks` clocks, into the block that has most ports in it, in each of these simulators, and
+/// returns a report for each.
 pub(crate) fn run(
     blocks: &[(Box<dyn Block>, Sources)],
     file: &Path,
@@ -179,7 +179,7 @@ pub(crate) fn run(
             .run(block, device.as_mut(), &extent, seed)
             .map_err(bench::failure)?;
         reports.push(report.0);
-        // It is the model's, and so the same for each.
+        // The model determines this, so it is the same for each simulator.
         exercised = report.1;
     }
     let replayed = Replayed {
@@ -206,7 +206,7 @@ pub(crate) fn run(
     Ok((reports, replayed))
 }
 
-/// Refuses a recording without an input that carries data, or without an output, because it would compare nothing.
+/// Refuses a recording without a data input or without an output, because nothing would be compared.
 fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Failure> {
     let ports = block.model(0).ports().to_vec();
     let lacks_all = |direction: Direction, missing: &[String]| {
@@ -261,7 +261,7 @@ fn choose<'a>(
                     best.push((block, sources, replay));
                 }
             }
-            // This block has no port for a map, but another one may.
+            // Another block may have the port of a map that this one lacks.
             Err(error @ Error::Wave(WaveError::Option(_))) => refused = refused.or(Some(error)),
             Err(error) => return Err(bench::failure(error)),
         }

@@ -1,8 +1,8 @@
 //! `posicast run`: goes the whole way from the machine file to the verdict.
 //!
-//! design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. Later steps
-//! use what an earlier one has decided: the tap table is made once. The folder appears when everything is done, also
-//! after a failed check: it holds all that `generate` writes, and the evidence with it.
+//! The steps are: design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. Later steps use
+//! the decisions of earlier ones: the tap table is made once. The folder appears at the end, also after a failed check: it contains all
+//! files that `generate` writes, and the evidence.
 
 mod advice;
 mod checks;
@@ -50,10 +50,10 @@ use waves::Waves;
 pub use options::{Detail, Options};
 pub use report::{Document, schema};
 
-/// Goes the whole way: design, Verilog, simulation, comparison, estimate, verdict.
+/// Runs all steps: design, Verilog, simulation, comparison, estimate, verdict.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, built, simulated or written, and for a tool that is missing. A failed check is no error but
+/// [`Failure`] for files that cannot be read, built, simulated or written, and for a missing tool. A failed check is not an error but gives
 /// [`Outcome::failed`].
 pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
     let path = options.machine.as_path();
@@ -75,9 +75,9 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
         sources: Sources::found(files),
     };
     rtl.require_tools(plan.simulator)?;
-    let (lockstep, waves) = of_shapers(options, (&design, &plan), &rtl, &axes, &mut package, observer)?;
+    let (lockstep, waves) = compare_shapers(options, (&design, &plan), &rtl, &axes, &mut package, observer)?;
     let estimate = estimate(&plan, machine, rtl.sources.files(), observer)?;
-    let closed_loop = of_stage(options, (machine, &plan), &rtl, observer)?;
+    let closed_loop = run_stage(options, (machine, &plan), &rtl, observer)?;
 
     let mut checks = Vec::from_iter(checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?);
     checks.push(checks::moves(machine, &axes));
@@ -123,7 +123,7 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
     })
 }
 
-/// What a run will do, found before anything long begins.
+/// Decisions about a run, made before anything long begins.
 struct Plan {
     /// The move of each axis.
     moves: Vec<AxisMove>,
@@ -136,7 +136,7 @@ struct Plan {
     /// Names and contents of the copies of files that options name.
     inputs: Vec<(String, Vec<u8>)>,
     simulator: Simulator,
-    /// What estimates the area, where it is installed.
+    /// The tool that estimates the area, if it is installed.
     yosys: Option<Yosys>,
 }
 
@@ -178,7 +178,7 @@ impl Plan {
     }
 }
 
-/// The Verilog of a run, and what it is the Verilog of.
+/// The Verilog of a run, and the blocks that it describes.
 struct Rtl<'a> {
     /// The shapers of all axes.
     top: &'a MachineShapers,
@@ -199,7 +199,7 @@ impl Rtl<'_> {
             .collect()
     }
 
-    /// Refuses a run for which a tool is missing: it is named before anything is simulated, and not by the last step that needs it.
+    /// Refuses a run for which a tool is missing, before anything is simulated and not only in the step that needs it.
     fn require_tools(&self, simulator: Simulator) -> Result<(), Failure> {
         let stage = self.built.stage.as_ref().filter(|_| simulator == Simulator::Verilator);
         let simulated = std::iter::once(self.top as &dyn Block).chain(stage.map(|stage| &stage.block as &dyn Block));
@@ -221,7 +221,7 @@ fn opened(options: &Options, file: &MachineFile, plan: &Plan) -> Result<Package,
 }
 
 /// The shapers in lock step with their model, and the waveforms of the move.
-fn of_shapers(
+fn compare_shapers(
     options: &Options,
     (design, plan): (&DesignReport<'_>, &Plan),
     rtl: &Rtl<'_>,
@@ -242,7 +242,7 @@ fn of_shapers(
 }
 
 /// The stage on its simulated machine.
-fn of_stage<'a>(
+fn run_stage<'a>(
     options: &'a Options,
     (machine, plan): (&'a Machine, &'a Plan),
     rtl: &'a Rtl<'a>,
@@ -289,11 +289,11 @@ fn add_report(package: &mut Package, report: &RunReport<'_>, document: &Document
     add("report.html", &page)
 }
 
-/// Opens Yosys; where it is not installed, warns that there will be no estimate.
+/// Opens Yosys; if it is not installed, warns that there will be no estimate.
 fn installed_yosys(observer: &dyn Observer) -> Result<Option<Yosys>, Failure> {
     match Yosys::installed() {
         Ok(yosys) => Ok(Some(yosys)),
-        // One that a variable names was asked for.
+        // A variable names this Yosys, so the user requested it.
         Err(error @ YosysError::Missing(_))
             if std::env::var_os("POSICAST_YOSYS").is_some_and(|name| !name.is_empty()) =>
         {
@@ -308,7 +308,7 @@ fn installed_yosys(observer: &dyn Observer) -> Result<Option<Yosys>, Failure> {
     }
 }
 
-/// The area of the machine's top, where Yosys is installed.
+/// The area of the machine's top, if Yosys is installed.
 fn estimate(
     plan: &Plan,
     machine: &Machine,

@@ -24,7 +24,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::diff::SAMPLE_CLOCK;
 
-/// What to simulate.
+/// Options of a simulation.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file.
@@ -45,16 +45,16 @@ pub struct Options {
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum Simulated {
-    /// Of a command, as a waveform.
+    /// Result of a command, as a waveform.
     Command(Document),
-    /// Of a path of two axes.
+    /// Result of a path of two axes.
     Contour(contour::Document),
 }
 
 /// Simulates a command or a path.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, designed, simulated or written.
+/// [`Failure`] for files that cannot be read, designed, simulated or written.
 pub fn simulate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Simulated>, Failure> {
     let machine = machine::read(&options.machine)?.machine;
     if options.path.contour.is_some() {

@@ -23,7 +23,7 @@ const LINK_KEY: &str = "link";
 /// The board that the machine file at `path` names.
 ///
 /// # Errors
-/// [`Failure`] with the line, for a board that is not known or whose device is of another family than the file's.
+/// [`Failure`] with the line, for an unknown board, or one whose device is of another family than the file's.
 pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Failure> {
     let Some(name) = machine.target.as_ref().and_then(|target| target.board.as_deref()) else {
         return Ok(None);

@@ -1,6 +1,6 @@
-//! Colours of texts for people: of verdicts, and of the word with which a message begins.
+//! Colours of texts for people: of verdicts, and of the first word of a message.
 //!
-//! They are escape sequences; a front leaves them out where nobody sees them.
+//! They are escape sequences, which a front removes if nobody would see them.
 
 use anstyle::{AnsiColor, Style};
 
@@ -9,7 +9,7 @@ const BOLD_GREEN: Style = GREEN.bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 const YELLOW: Style = AnsiColor::Yellow.on_default();
 
-/// Style for what holds.
+/// Style for a condition that holds.
 pub fn good(text: &str) -> String {
     styled(GREEN, text)
 }
@@ -19,17 +19,17 @@ pub fn passed(text: &str) -> String {
     styled(BOLD_GREEN, text)
 }
 
-/// Style for what does not hold.
+/// Style for a condition that does not hold.
 pub fn bad(text: &str) -> String {
     styled(RED, text)
 }
 
-/// Style for what is doubtful.
+/// Style for a doubtful result.
 pub fn doubtful(text: &str) -> String {
     styled(YELLOW, text)
 }
 
-/// Words with which a line of a message or verdict may begin, with their colours.
+/// First words of a line of a message or verdict, with their colours.
 const BEGINNINGS: [(&str, Style); 7] = [
     ("warning:", YELLOW),
     ("error:", RED),
@@ -40,7 +40,7 @@ const BEGINNINGS: [(&str, Style); 7] = [
     ("NO VERDICT", YELLOW),
 ];
 
-/// A line with its first word coloured, if that is one of [`BEGINNINGS`].
+/// Returns a line with its first word coloured, if that is one of [`BEGINNINGS`].
 pub fn message(line: &str) -> String {
     let known = BEGINNINGS.iter().find(|(beginning, _)| line.starts_with(beginning));
     known.map_or_else(

@@ -1,4 +1,4 @@
-//! `posicast synth`: estimates the resources that a machine's Verilog takes of a device.
+//! `posicast synth`: estimates the resources that a machine's Verilog needs on a device.
 
 mod clock;
 
@@ -20,21 +20,21 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// What to estimate.
+/// Options of an estimate.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file, or a folder that [`generate`](crate::generate) or [`run`](crate::run) wrote.
     pub source: PathBuf,
     /// Device family; `None`: the machine file's, else `cyclone5`.
     pub family: Option<Family>,
-    /// Top modules whose clock is estimated by place and route on an open family as a proxy: minutes for a stage.
+    /// Top modules whose clock is estimated by place and route on an open family as a proxy, which takes minutes for a stage.
     pub clock: Vec<String>,
 }
 
 /// Estimates the logic cells, registers, memory and multipliers of a machine's Verilog.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read or mapped, and for a tool that is missing. A device that is too small is no error but
+/// [`Failure`] for files that cannot be read or mapped, and for a missing tool. A device that is too small is not an error but gives
 /// [`Outcome::failed`].
 pub fn synth(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
     let (machine, files, _scratch) = sources(&options.source, observer)?;
@@ -76,7 +76,7 @@ pub fn synth(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docum
     })
 }
 
-/// Lets Yosys map the top module of this name, which the front calls `what`.
+/// Lets Yosys map the top module of this name; the front shows it as `what`.
 pub(crate) fn mapped(
     yosys: &Yosys,
     files: &[PathBuf],
@@ -88,7 +88,7 @@ pub(crate) fn mapped(
     yosys.estimate(files, top, family)
 }
 
-/// Resources of which the device has too little for this top, and by how much.
+/// Resources of the device that are too few for this top, with the missing amounts.
 fn lacks(estimate: &Estimate) -> Vec<String> {
     let lack = |excess: &Excess<'_>| {
         let Excess {
@@ -178,7 +178,7 @@ pub(crate) fn text(estimate: &Estimate) -> String {
     text
 }
 
-/// Yosys, and what places and routes if a clock is asked for; where both are missing, both are named.
+/// Returns Yosys, and the tools for place and route if a clock is requested; the error names all missing tools.
 pub(crate) fn tools(with_clock: bool) -> Result<(Yosys, Option<PlaceAndRoute>), Failure> {
     let (yosys, router) = (
         Yosys::installed(),
@@ -208,7 +208,7 @@ mod tests {
     use posicast_synth::yosys::EstimateMethod;
 
     #[test]
-    fn what_is_lacking_says_by_how_much_and_where() {
+    fn lacking_resources_are_named_with_their_amounts() {
         let of = |cells| Resources {
             cells,
             ..Resources::default()

@@ -1,4 +1,4 @@
-//! The templates of machine files, and the replacement of a value in one.
+//! The templates of machine files, and the replacement of values in them.
 
 use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::unit::AxisUnit;
@@ -59,7 +59,7 @@ impl MachineKind {
     }
 }
 
-/// Table of a machine file in which a key is.
+/// Table of a machine file that contains a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum At {
     /// Before the first table.
@@ -78,7 +78,7 @@ pub struct MachineDraft {
 }
 
 impl MachineDraft {
-    /// The template, for a machine with the name of the file where that is a valid name.
+    /// Creates a draft from the template. The machine gets the name of the file if that is a valid name.
     pub fn new(kind: MachineKind, file: &Path) -> Self {
         let draft = Self {
             kind,
@@ -115,12 +115,12 @@ impl MachineDraft {
         machine_file::parse("answer", &self.text)
     }
 
-    /// The value of a key as it stands in the file; empty where there is none.
+    /// Returns the value of a key as it is written in the file; empty if there is none.
     pub fn value(&self, at: At, key: &str) -> &str {
         self.place(at, key).map_or("", |place| &self.text[place])
     }
 
-    /// The file with another value; its comment stays in its column where there is room.
+    /// Returns the file with another value; its comment stays in its column if there is room.
     pub fn with(&self, at: At, key: &str, value: &str) -> Self {
         let mut text = self.text.clone();
         if let Some(place) = self.place(at, key) {
@@ -163,10 +163,11 @@ impl MachineDraft {
     }
 }
 
-/// Lines that the user has to fill in are marked by this word.
+/// This word marks the lines that the user has to fill in.
 const MARK: &str = "MEASURE";
 
-/// What is left to measure in the text of a machine file, to stand before the next command; empty where nothing is.
+/// Describes what remains to be measured for a machine file, as an introduction to the next command; empty if nothing
+/// remains.
 pub fn to_measure(text: &str) -> String {
     let is_marked = |line: &&str| line.contains(&format!("# {MARK}"));
     match text.lines().filter(is_marked).count() {
@@ -176,7 +177,8 @@ pub fn to_measure(text: &str) -> String {
     }
 }
 
-/// A text in TOML quotes. Characters that TOML would have to escape are left out, because no name has them.
+/// Returns a text in TOML quotes. Characters that TOML would have to escape are left out, because no name contains
+/// them.
 pub fn quoted(text: &str) -> String {
     let plain: String = text
         .chars()
@@ -205,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_replaced_where_it_stands_and_nothing_else() {
+    fn only_the_value_of_a_key_is_replaced() {
         for (kind, name) in MachineKind::ALL {
             let draft = MachineDraft::new(kind, Path::new("machine.toml"));
             let mut machine = draft.machine().unwrap();

@@ -11,7 +11,7 @@ use std::path::Path;
 /// Writes a text with a seal into a file with a name that the user gave, completely or not at all.
 ///
 /// # Errors
-/// [`Failure`] that names the file, where it cannot be written.
+/// [`Failure`] that names the file, if it cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
     let name = match path == Path::new("-") {
         true => Path::new("standard output"),
@@ -75,7 +75,7 @@ impl UnitDocument {
     }
 }
 
-/// A fraction as percent, with enough digits to tell it from zero.
+/// Formats a fraction as percent, with enough digits to distinguish it from zero.
 pub fn percent(fraction: f64) -> String {
     let percent = 100.0 * fraction;
     if percent == 0.0 || percent.abs() >= 0.01 {
@@ -85,12 +85,12 @@ pub fn percent(fraction: f64) -> String {
     }
 }
 
-/// Characters of a cell that are seen: escape sequences of colours are not.
+/// Number of visible characters of a cell, without escape sequences of colours.
 fn seen(cell: &str) -> usize {
     strip_str(cell).to_string().chars().count()
 }
 
-/// A table for people: columns as wide as their widest cell, numbers right-aligned by the caller's choice.
+/// A table for people: columns are as wide as their widest cell, and the caller chooses which are right-aligned.
 pub struct Table {
     right: Vec<bool>,
     rows: Vec<Vec<String>>,

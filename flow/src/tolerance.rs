@@ -10,7 +10,7 @@ use posicast_shaper::design::Findings;
 /// which changes the residual of kinds that leave one by design.
 const BETWEEN_SAMPLES: f64 = 0.05;
 
-/// The key of what decides.
+/// The key that determines the residual.
 const KEY: &str = "axis.shaper";
 
 /// Number of modes for which a shaper is made: those of axes whose shaper has more than one impulse.
@@ -20,7 +20,7 @@ pub(crate) fn shaped_modes(machine: &Machine, design: &MachineDesign) -> usize {
     shaped.map(|(axis, _)| axis.modes.len()).sum()
 }
 
-/// The modes whose residual with the integer taps exceeds their tolerance, each with what to do.
+/// Warns about the modes whose residual with the integer taps exceeds their tolerance, with a remedy for each.
 pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec<Warning> {
     let mut beyond = Vec::new();
     for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
@@ -66,7 +66,8 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
     beyond
 }
 
-/// The mode that exceeds its tolerance most, where all stay within [`BETWEEN_SAMPLES`]; `None` if none does.
+/// Describes the mode that exceeds its tolerance most, if all stay within [`BETWEEN_SAMPLES`]; `None` if none exceeds
+/// it.
 pub(crate) fn just_above_tolerance(machine: &Machine, design: &MachineDesign) -> Option<String> {
     let axes = machine.axes.iter().zip(&design.axes);
     let shaped = axes.filter(|(_, tables)| tables.design.impulses.impulses().len() > 1);

@@ -23,7 +23,7 @@ use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::stage::{ShortTicksBlock, StageBlock};
 use std::path::{Path, PathBuf};
 
-/// What to compare.
+/// Options of a comparison.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file, or a folder that [`generate`](crate::generate) or [`run`](crate::run) wrote.
@@ -32,14 +32,14 @@ pub struct Options {
     pub simulator: Option<Simulator>,
     /// Only the blocks of these names, such as `pulse_counter`; all without any name.
     pub blocks: Vec<String>,
-    /// Clocks to compare in every row, with a recording at most; `None`: as many as the simulator does in some seconds, and more
-    /// where it takes more to see every tap, bank and flag.
+    /// Clocks to compare in every row, with a recording at most this many; `None`: as many as the simulator does in some seconds, and more
+    /// if it takes more to exercise every tap, bank and flag.
     pub cycles: Option<u64>,
     /// Seed of the random stimuli.
     pub seed: u64,
-    /// Whether both simulators judge Verilog of the folder that was edited; without this it is no match.
+    /// Whether both simulators judge edited Verilog of the folder; otherwise it is no match.
     pub edited: bool,
-    /// Whether the text also has what the clocks of each row reached.
+    /// Whether the text also shows what the clocks of each row reached.
     pub with_reached: bool,
     /// Recorded stimuli.
     pub recording: Recording,
@@ -51,7 +51,7 @@ pub const DEFAULT_SEED: u64 = 1;
 /// Compares the RTL with the bit-exact model, clock by clock, block by block.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read or simulated, and for a tool that is missing. A difference is no error but
+/// [`Failure`] for files that cannot be read or simulated, and for a missing tool. A difference is not an error but gives
 /// [`Outcome::failed`].
 pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
     let mut job = Job::new(&options.source, &options.blocks, options.edited, observer)?;
@@ -86,7 +86,7 @@ pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
         None => {
             job.require_tools(simulator, second)?;
             let report = job.lockstep(simulator, options.cycles, options.seed, observer);
-            // An edited machine file may make ports that do not fit; the edit is then reported first.
+            // An edited machine file may lead to ports that do not fit; the edit is then reported first.
             let mut report = report.inspect_err(|_| {
                 job.folder
                     .iter()
@@ -146,13 +146,13 @@ pub(crate) struct Job {
     /// Name of the machine.
     pub(crate) machine: String,
     pub(crate) blocks: Vec<(Box<dyn Block>, Sources)>,
-    /// The differences between the files of the folder and what posicast generates, where the source is a folder.
+    /// The differences between the files of the folder and those that posicast generates, if the source is a folder.
     folder: Option<Folder>,
 }
 
 impl Job {
-    /// The blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` is that
-    /// of [`Folder`].
+    /// Returns the blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` is that of
+    /// [`Folder`].
     pub(crate) fn new(
         source: &Path,
         names: &[String],
@@ -167,7 +167,7 @@ impl Job {
             (machine::read(source)?.machine, source.to_owned(), None)
         };
         let report = DesignReport::new(&machine, source)?;
-        // A move that does not fit the words is an error of `run`; a lock step can do without it.
+        // A move that does not fit the words is an error of `run`, but a lock step does not need it.
         let words =
             command::words(&machine, &report.design, None, &moves::by_default(&machine), observer).unwrap_or_default();
         let built = Built::new(&report, source, observer)?;
@@ -225,13 +225,13 @@ impl Job {
         })
     }
 
-    /// Why the folder's files are no match whatever a simulation says; `None` where they may be one.
+    /// Why the folder's files are no match whatever a simulation shows; `None` if they may be one.
     pub(crate) fn folder_fails(&self) -> Option<String> {
         let folder = self.folder.as_ref().filter(|folder| folder.fails());
         folder.map(Folder::text)
     }
 
-    /// Removes blocks that RustHDL's simulator cannot run, with a note; it is an error if nothing is left.
+    /// Removes blocks that RustHDL's simulator cannot run, with a note; returns an error if nothing is left.
     fn keep_what_is_rusthdl(&mut self, observer: &dyn Observer) -> Result<(), Failure> {
         let all = std::mem::take(&mut self.blocks);
         let (kept, left_out): (Vec<_>, Vec<_>) = all.into_iter().partition(|(block, _)| block.in_rusthdl());
@@ -254,7 +254,7 @@ impl Job {
         Ok(())
     }
 
-    /// Number of clocks that exercise everything that a verdict on any of the rows speaks of.
+    /// Number of clocks that exercise everything that a verdict on any of the rows covers.
     fn least_clocks(&self) -> u64 {
         self.blocks
             .iter()
@@ -273,8 +273,8 @@ impl Job {
         compare(self.blocks.iter(), simulator, (cycles, seed), observer)
     }
 
-    /// The simulator that must agree where Verilog was edited and the simulation decides: an edit may mean something else to
-    /// each.
+    /// Returns the simulator that must also agree if Verilog was edited and the simulation decides, because an edit may mean different
+    /// things to each simulator.
     fn second(&self, simulator: Simulator, observer: &dyn Observer) -> Option<Simulator> {
         self.edited_blocks().next()?;
         match simulator {
@@ -298,8 +298,8 @@ impl Job {
         })
     }
 
-    /// As [`Self::lockstep`], of the blocks whose Verilog was edited. The second simulator may be slow, so that it compares no
-    /// more clocks than by default.
+    /// Like [`Self::lockstep`], for the blocks with edited Verilog. The second simulator may be slow, so it compares no more clocks than by
+    /// default.
     fn lockstep_of_edited(
         &self,
         simulator: Simulator,
@@ -312,7 +312,7 @@ impl Job {
         compare(self.edited_blocks(), simulator, (cycles, seed), observer)
     }
 
-    /// Refuses to begin where a tool is missing.
+    /// Returns an error if a tool is missing.
     fn require_tools(&self, simulator: Simulator, second: Option<Simulator>) -> Result<(), Failure> {
         let all = self.blocks.iter().map(|(block, sources)| (block.as_ref(), sources));
         let edited = self.edited_blocks().map(|(block, sources)| (block.as_ref(), sources));

@@ -12,7 +12,7 @@ pub(crate) fn path(module: &Module) -> String {
     format!("rtl/{}.v", module.name)
 }
 
-/// Adds the machine file and its Verilog to the folder, and returns where the Verilog is until the folder is
+/// Adds the machine file and its Verilog to the folder, and returns the paths of the Verilog until the folder is
 /// complete.
 pub(crate) fn add_sources(
     package: &mut Package,

@@ -1,4 +1,4 @@
-//! Warnings about a machine file: each names the file, the line and the key that it is about.
+//! Warnings about a machine file: each names its file, line and key.
 
 use crate::machine;
 use crate::observer::Observer;
@@ -7,9 +7,9 @@ use std::path::Path;
 /// A warning about a key of a machine file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Warning {
-    /// Index of the axis, from 0; any for a key outside the axes.
+    /// Index of the axis, from 0; any index for a key outside the axes.
     pub(crate) axis: usize,
-    /// The dotted key, such as `axis.limits.watchdog_s`; the line is that of its table where it is absent.
+    /// The dotted key, such as `axis.limits.watchdog_s`; the line is that of its table if the key is absent.
     pub(crate) key: String,
     /// What was found, and what to do.
     pub(crate) text: String,
@@ -24,7 +24,7 @@ impl Warning {
         }
     }
 
-    /// Tells the front of it; `path` is the machine file, or the folder that contains it.
+    /// Reports it to the front; `path` is the machine file, or the folder that contains it.
     pub(crate) fn tell(&self, path: &Path, observer: &dyn Observer) {
         let placed = machine::place(path, self.axis, &self.key, &self.text);
         observer.say(&format!("warning: {placed}"));

@@ -1,4 +1,4 @@
-//! `posicast campaign coverage`: what the lock step reaches of each block, a block a unit.
+//! `posicast campaign coverage`: which lines, nets and bins of each block the lock step reaches, one block per unit.
 
 use super::{UnitOutcome, Units, figures, only_blocks, row_name};
 use crate::bench;
@@ -10,7 +10,7 @@ use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::verilator;
 use serde_json::{Map, Value};
 
-/// The blocks of which it is measured what lines, nets and bins the lock step reaches.
+/// The blocks whose reached lines, nets and bins are measured.
 #[derive(Debug, Clone)]
 pub struct CoverageOptions {
     /// Only the blocks of these names; all without any.
@@ -62,7 +62,7 @@ impl Units for Coverage {
         bench::require_installed(verilator::missing_tools())
     }
 
-    /// The explanations of what is not reached are those of the ladder's seed, whatever that of the campaign is.
+    /// The explanations of unreached places apply to the seed of the ladder, so the seed of the campaign is not used.
     fn run(&self, unit: u64, _seed: u64) -> Result<UnitOutcome, Failure> {
         let measured = coverage::measure(self.block(unit), CLOCKS).map_err(bench::failure)?;
         let of = |share: &Share| format!("{} of {}", share.reached, share.all);

@@ -1,4 +1,4 @@
-//! `posicast campaign faults`: the fault campaign of the stage, some cases a unit.
+//! `posicast campaign faults`: the fault campaign of the stage, some cases per unit.
 
 use super::{UnitOutcome, Units, figures};
 use crate::failure::Failure;

@@ -1,4 +1,4 @@
-//! `posicast campaign identify`: the modes of random machines from their logs, some logs a unit.
+//! `posicast campaign identify`: identifies the modes of random machines from their logs, some logs per unit.
 
 use super::{UnitOutcome, Units, case_seeds, figures};
 use crate::failure::Failure;

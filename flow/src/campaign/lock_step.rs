@@ -21,16 +21,16 @@ pub struct LockStepOptions {
     pub blocks: Vec<String>,
     /// Clocks to compare in every row, in whole units.
     pub clocks: u64,
-    /// Clocks of a unit; more where it takes more to see every tap, bank and flag.
+    /// Clocks of a unit; more if it takes more to exercise every tap, bank and flag.
     pub unit_clocks: u64,
-    /// Whether the simulation alone judges Verilog of the folder that was edited.
+    /// Whether edited Verilog of the folder is judged by simulation alone.
     pub edited: bool,
 }
 
 /// Builds the simulations and does nothing else, so that the shards find them built.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read or built, and for a tool that is missing.
+/// [`Failure`] for files that cannot be read or built, and for a missing tool.
 pub fn prepare(options: &LockStepOptions, observer: &dyn Observer) -> Result<Outcome<()>, Failure> {
     LockStep::new(options, observer)?.prepare(observer)
 }
@@ -71,7 +71,8 @@ impl LockStep {
         })
     }
 
-    /// The row of a unit, and the number of the unit among those of the row. Neighbours are of different rows, so that each shard has
+    /// Returns the row of a unit, and the number of the unit within the row. Neighbouring units are of different rows, so that each shard
+    /// has
     /// some of each.
     fn place(&self, unit: u64) -> (usize, u64) {
         let rows = self.rows.len() as u64;

@@ -7,17 +7,17 @@ use posicast_testbench::shard::{self, MergeError, Merged, ShardDocument};
 use posicast_testbench::wording::counted;
 use std::path::Path;
 
-/// Joins the shards of a campaign in a folder, which has no other files `*.json`.
+/// Joins the shards of a campaign in a folder that contains no other `*.json` files.
 ///
 /// # Errors
-/// [`Failure`] for files of something else, and for a shard that is missing.
+/// [`Failure`] for other files, and for a missing shard.
 pub fn merge(folder: &Path) -> Result<Outcome<Merged>, Failure> {
-    let documents = shard::read_folder(folder).map_err(of_merge)?;
+    let documents = shard::read_folder(folder).map_err(merge_failure)?;
     let costs = costs(documents.iter().map(|(_, document)| document));
     let repeat = documents
         .first()
         .map_or_else(String::new, |(_, document)| document.repeat.clone());
-    let merged = shard::merge(documents).map_err(of_merge)?;
+    let merged = shard::merge(documents).map_err(merge_failure)?;
     let text = text(&merged, &costs, &repeat);
     Ok(Outcome {
         failed: problem(&merged.results, true),
@@ -28,8 +28,8 @@ pub fn merge(folder: &Path) -> Result<Outcome<Merged>, Failure> {
 /// Number of digits that the verdict shows of a machine's checksum.
 const SHOWN_DIGITS: usize = 12;
 
-/// A missing shard is a check that fails; files of something else are bad input.
-fn of_merge(error: MergeError) -> Failure {
+/// A missing shard is a failed check; other files are bad input.
+fn merge_failure(error: MergeError) -> Failure {
     match error {
         MergeError::Missing { .. } => Failure::Check(format!("no verdict: {error}; run them, then merge again")),
         MergeError::Empty(_) => Failure::from(miette::miette!(
@@ -40,7 +40,7 @@ fn of_merge(error: MergeError) -> Failure {
     }
 }
 
-/// What the shards took, in a sentence.
+/// Returns a sentence about the time that the shards took.
 fn costs<'a>(documents: impl Iterator<Item = &'a ShardDocument>) -> String {
     let (mut count, mut sum, mut longest, mut overhead) = (0, 0.0, 0.0_f64, 0.0_f64);
     for document in documents {

@@ -1,7 +1,7 @@
 //! `posicast campaign`: long checks in parts, for many cores or many machines.
 //!
-//! The list of units, and what one of them does, is in a file per kind of campaign. This file runs the units of a shard, writes its
-//! file, and prints its table; `merge` joins the files.
+//! A file per kind of campaign has the list of units and the work of a unit. This file runs the units of a shard, writes its file, and
+//! prints its table; `merge` joins the files.
 
 mod coverage;
 mod faults;
@@ -74,31 +74,31 @@ pub struct CampaignPart {
     pub seed: u64,
     /// File for the results of this part; a part that has its file is not run again.
     pub json: Option<PathBuf>,
-    /// The command that does this, without the options that choose a part: the file has it, and [`merge`] names it.
+    /// The command without the options that select a part: it is stored in the file, and [`merge`] prints it.
     pub repeat: String,
 }
 
-/// A campaign: its units in order, and what one of them does.
+/// A campaign: its ordered units, and the work of each.
 trait Units {
     /// Name of the kind, as on the command line.
     fn kind(&self) -> &'static str;
-    /// The machine that it is about.
+    /// The machine of the campaign, if it has one.
     fn machine(&self) -> Option<MachineFileHash>;
-    /// All options that decide what the units are and do.
+    /// All options on which the units and their work depend.
     fn options(&self) -> Map<String, Value>;
     /// Number of units.
     fn count(&self) -> u64;
     /// Name of a unit.
     fn name(&self, unit: u64) -> String;
-    /// Names of all units, for [`Units::options`] where each stands for itself.
+    /// Names of all units, for [`Units::options`] if the units are named there one by one.
     fn names(&self) -> Value {
         (0..self.count()).map(|unit| self.name(unit)).collect()
     }
-    /// Refuses to begin where a tool is missing that a unit needs: all of them are named.
+    /// Returns an error that names all missing tools of the units.
     fn require_tools(&self) -> Result<(), Failure> {
         Ok(())
     }
-    /// Does a unit from a fresh start. `seed` is that of the campaign.
+    /// Runs a unit from a fresh start. `seed` is that of the campaign.
     fn run(&self, unit: u64, seed: u64) -> Result<UnitOutcome, Failure>;
 }
 
@@ -108,10 +108,10 @@ struct UnitOutcome {
     failure: Option<String>,
 }
 
-/// Does a part of a campaign. `started` is when the command began.
+/// Runs a part of a campaign. `started` is the time at which the command began.
 ///
 /// # Errors
-/// [`Failure`] for what cannot be read, built or written, and for a tool that is missing. A unit that does not hold is no error but
+/// [`Failure`] for files that cannot be read, built or written, and for a missing tool. A failed unit is not an error but gives
 /// [`Outcome::failed`].
 pub fn run(
     kind: &CampaignKind,
@@ -140,13 +140,13 @@ fn figures<V: Into<Value>>(list: impl IntoIterator<Item = (&'static str, V)>) ->
         .collect()
 }
 
-/// Seeds of the cases of a unit that has this many. Campaigns of other seeds have none of them.
+/// Seeds of the cases of a unit with `unit_cases` cases. Campaigns with other seeds share none of them.
 fn case_seeds(campaign_seed: u64, unit: u64, unit_cases: u64) -> impl Iterator<Item = u64> {
     let first = campaign_seed.rotate_left(32);
     (unit * unit_cases..(unit + 1) * unit_cases).map(move |case| first.wrapping_add(case))
 }
 
-/// Keeps what belongs to the blocks of these names; all, if there is no name.
+/// Keeps the entries of the blocks with these names; all, if there is no name.
 fn only_blocks<T>(list: &mut Vec<T>, wanted: &[String], name: impl Fn(&T) -> &str) -> Result<(), Failure> {
     let mut names: Vec<&str> = list.iter().map(&name).collect();
     names.dedup();
@@ -225,7 +225,7 @@ fn run_part(
     Ok(finish(&document.results, part, &beside))
 }
 
-/// The results that the file of this shard has already; `None` if there is no file.
+/// Returns the results in the file of this shard; `None` if there is no file.
 fn finished(head: &CampaignHead, part: &CampaignPart) -> Result<Option<Vec<UnitResult>>, Failure> {
     let Some(path) = &part.json else {
         return Ok(None);
@@ -247,7 +247,7 @@ fn finished(head: &CampaignHead, part: &CampaignPart) -> Result<Option<Vec<UnitR
     )))
 }
 
-/// Does these units, one after the other: a core is given to each shard.
+/// Runs these units one after the other, because each shard has one core.
 fn done(
     campaign: &dyn Units,
     units: impl IntoIterator<Item = u64>,
@@ -273,7 +273,7 @@ fn done(
     Ok(results)
 }
 
-/// The table of these results; a check failed if one does not hold.
+/// Returns the table of these results; failed if one of them failed.
 fn finish(results: &[UnitResult], part: &CampaignPart, beside: &str) -> Outcome<()> {
     let failed: Vec<&UnitResult> = results.iter().filter(|result| result.failure.is_some()).collect();
     let mut text = table(&shard::rows(results));
@@ -287,7 +287,7 @@ fn finish(results: &[UnitResult], part: &CampaignPart, beside: &str) -> Outcome<
     }
 }
 
-/// How many units there were, how many failed, and how many were refused.
+/// Returns the numbers of units, of failed and of refused ones.
 fn counts(results: &[UnitResult]) -> String {
     let failed = results.iter().filter(|result| result.failure.is_some()).count();
     let refused = match results.iter().filter(|result| is_refused(result)).count() {
@@ -309,7 +309,8 @@ fn of_failure(result: &UnitResult) -> String {
     format!("unit {}, {}: {why}\n", result.unit, result.name)
 }
 
-/// What is wrong with a part of a campaign, or with all of it. One without a unit has checked nothing, nor has a campaign of which every unit was refused.
+/// Returns why a part of a campaign, or all of it, fails. A part without a unit has checked nothing, nor has a campaign whose units were
+/// all refused.
 fn problem(results: &[UnitResult], are_all: bool) -> Option<String> {
     let failed = results.iter().filter(|result| result.failure.is_some()).count();
     if results.is_empty() {
@@ -359,5 +360,5 @@ fn table(rows: &[MergedRow]) -> String {
             .collect::<String>()
 }
 
-/// Name of the figure that says why a unit has no others; it is a line below the table.
+/// Name of the figure that gives the reason for a unit without others; it becomes a line below the table.
 const REFUSED: &str = "refused";

@@ -1,4 +1,4 @@
-//! `posicast campaign mutants`: mutants of the blocks, some of one block a unit.
+//! `posicast campaign mutants`: mutants of the blocks, some mutants of one block per unit.
 
 use super::{UnitOutcome, Units, figures, only_blocks};
 use crate::bench;
@@ -9,7 +9,7 @@ use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::{formal, verilator};
 use serde_json::{Map, Value};
 
-/// The mutants that lock step or proofs are to notice.
+/// The mutants that lock step or proofs must detect.
 #[derive(Debug, Clone)]
 pub struct MutantOptions {
     /// Only the blocks of these names; all without any.

@@ -1,4 +1,5 @@
-//! `posicast campaign netlists`: Yosys's netlist of each block, simulated and proven equal to the RTL, a block a unit.
+//! `posicast campaign netlists`: simulates Yosys's netlist of each block and proves it equal to the RTL, one block per
+//! unit.
 
 use super::{UnitOutcome, Units, figures, only_blocks, row_name};
 use crate::bench;

@@ -1,4 +1,4 @@
-//! `posicast campaign proofs`: the property files of the blocks, a proof a unit.
+//! `posicast campaign proofs`: proves the property files of the blocks, one proof per unit.
 
 use super::{UnitOutcome, Units, figures, only_blocks};
 use crate::bench;

@@ -1,4 +1,4 @@
-//! `posicast campaign sweep`: the design of a machine at every combination of values, one a unit.
+//! `posicast campaign sweep`: designs a machine at every combination of values, one combination per unit.
 
 use super::{REFUSED, UnitOutcome, Units, hash_of};
 use crate::design::DesignReport;
@@ -16,7 +16,7 @@ use serde_json::{Map, Number, Value};
 use std::path::{Path, PathBuf};
 use toml_edit::{Array, DocumentMut, Item};
 
-/// The machine that is designed at every combination of values, and what is found of each.
+/// The machine that is designed at every combination of values, and the estimates that are made for each.
 #[derive(Debug, Clone)]
 pub struct SweepOptions {
     /// Machine file with all other values.
@@ -39,7 +39,7 @@ pub struct Place {
 /// Parses a place and its values, as in `axis.x.shaper.kind=zv,zvd`.
 ///
 /// # Errors
-/// What is needed, for any other text.
+/// Returns the required form for any other text.
 pub fn place(text: &str) -> Result<Place, String> {
     let (path, values) = text
         .split_once('=')
@@ -96,13 +96,13 @@ pub(super) fn of<'a>(options: &'a SweepOptions, observer: &'a dyn Observer) -> R
         router,
         observer,
     };
-    // A misspelt place is found before anything long begins.
+    // Finds a misspelt place before anything long begins.
     sweep.text(0)?;
     Ok(sweep)
 }
 
 impl Sweep<'_> {
-    /// The values of a combination, the last place the fastest.
+    /// Values of a combination; the last place varies fastest.
     fn values(&self, unit: u64) -> Vec<(&str, &toml_edit::Value)> {
         let mut rest = unit;
         let mut values: Vec<_> = self
@@ -139,7 +139,7 @@ impl Sweep<'_> {
         let report = DesignReport::new(machine, self.path)?;
         let mut figures = Map::new();
         for (axis, tables) in machine.axes.iter().zip(&report.design.axes) {
-            figures.extend(of_axis(axis, tables, report.design.sample_hz));
+            figures.extend(axis_figures(axis, tables, report.design.sample_hz));
         }
         let Some(yosys) = &self.yosys else {
             return Ok(figures);
@@ -158,7 +158,9 @@ impl Sweep<'_> {
         ];
         figures.extend(counts.map(|(name, count)| (name.to_owned(), Value::from(count))));
         if let Some(router) = &self.router {
-            let mhz = router.highest_mhz(yosys, &files, &machine.name).map_err(of_clock)?;
+            let mhz = router
+                .highest_mhz(yosys, &files, &machine.name)
+                .map_err(clock_failure)?;
             figures.insert("clock, MHz".to_owned(), number(mhz));
         }
         Ok(figures)
@@ -206,8 +208,8 @@ impl Units for Sweep<'_> {
     }
 }
 
-/// Figures of an axis, with its name in that of each.
-fn of_axis(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> [(String, Value); 4] {
+/// Figures of an axis; the name of each begins with that of the axis.
+fn axis_figures(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> [(String, Value); 4] {
     let modes = tables.mode_figures(axis, sample_hz);
     let worst = modes.iter().map(|mode| mode.residual_quantised).fold(0.0, f64::max);
     let named = |what: &str| format!("{} {what}", axis.name);
@@ -219,7 +221,7 @@ fn of_axis(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> [(String,
     ]
 }
 
-/// A number with the digits that a reader can use.
+/// A number rounded to the digits that a reader can use.
 fn number(value: f64) -> Value {
     let rounded = format!("{value:.4e}").parse().unwrap_or(value);
     Number::from_f64(rounded).map_or(Value::Null, Value::Number)
@@ -232,7 +234,7 @@ fn shown(value: &toml_edit::Value) -> String {
     }
 }
 
-/// Sets the value at a path below an item; the error names the step that is not there.
+/// Sets the value at a path below an item; the error names the missing step of the path.
 fn set(item: &mut Item, path: &str, value: &toml_edit::Value) -> Result<(), String> {
     let (step, rest) = path
         .split_once('.')
@@ -274,7 +276,7 @@ fn set_in(table: &mut toml_edit::Table, path: &str, value: &toml_edit::Value) ->
     }
 }
 
-fn of_clock(error: ClockError) -> Failure {
+fn clock_failure(error: ClockError) -> Failure {
     match error {
         ClockError::Missing(_) => Failure::missing_tool(error),
         ClockError::Yosys(error) => synth::failure(error),
@@ -295,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_set_at_its_place_and_nowhere_else() {
+    fn a_value_is_set_only_at_its_place() {
         for (path, old, new) in [
             ("clock.sample_hz", "sample_hz = 1000", "sample_hz = 7"),
             ("axis.x.shaper.kind", "kind = \"zv\"", "kind = 7"),
@@ -313,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_is_not_there_is_named() {
+    fn the_error_names_a_missing_step_of_a_path() {
         for (path, what) in [
             ("axis.z.shaper.kind", "there is no `z`"),
             ("axis.x.mode.3.damping", "there is no `3`"),

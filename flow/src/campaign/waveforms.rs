@@ -1,4 +1,4 @@
-//! `posicast campaign waveforms`: recordings that are damaged at random and compared, a hundred a unit.
+//! `posicast campaign waveforms`: compares randomly damaged recordings, a hundred per unit.
 
 use super::{UnitOutcome, Units, case_seeds, figures, hash_of};
 use crate::failure::Failure;
@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::path::PathBuf;
 use wavecmp::damage::{self, Survival};
 
-/// The recordings that are damaged at random, and whose comparison is to survive it.
+/// The recordings that are damaged at random; comparing them must neither panic nor give a wrong result.
 #[derive(Debug, Clone)]
 pub struct WaveformOptions {
     /// Small recordings, VCD or FST; each case damages one of them.

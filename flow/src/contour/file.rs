@@ -12,11 +12,11 @@ const PIPED_BYTES: u64 = 64 << 20;
 /// Bytes that are read from a file at a time.
 const BUFFER_BYTES: usize = 1 << 18;
 
-/// A file that is read from its beginning as often as it is needed.
+/// A file that can be read from its beginning any number of times.
 pub(super) struct PathFile<'a> {
     pub(super) path: &'a Path,
     pub(super) bytes: u64,
-    /// What came through a pipe.
+    /// The content of a pipe.
     kept: Option<Vec<u8>>,
 }
 
@@ -66,7 +66,7 @@ impl<'a> PathFile<'a> {
     }
 }
 
-/// A file of which it is known how far it was read.
+/// A file that counts the bytes read from it.
 struct Counted {
     file: File,
     bytes: Rc<Cell<u64>>,

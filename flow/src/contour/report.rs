@@ -133,7 +133,7 @@ impl Report<'_> {
                 row.kind.clone()
             };
             let delays = if row.matched { "equal" } else { "own" };
-            // A smaller distance is rounding, and what is left of the settling.
+            // A smaller distance is due to rounding and the end of the settling.
             let show = |error: Option<f64>| match error {
                 None => "–".to_owned(),
                 Some(error) if error < 1e-10 => "0".to_owned(),

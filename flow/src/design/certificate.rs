@@ -1,4 +1,4 @@
-//! What is certified of an axis's table: `--certify`, and of every `optimal` design.
+//! The certificate of an axis's table, for `--certify` and for every `optimal` design.
 
 use crate::text::{Table, percent};
 use posicast_machine::machine_file::AxisSection;
@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The certificate of an axis, with the design that it is about.
+/// The certificate of an axis, with the certified design.
 pub(super) struct CertificateReport<'a> {
     certificate: AxisCertificate,
     optimal: Option<&'a Optimal>,
@@ -21,7 +21,7 @@ pub(super) struct CertificateReport<'a> {
 }
 
 impl<'a> CertificateReport<'a> {
-    /// Of every axis where it is asked for, else of `optimal`.
+    /// Returns the certificate if it was requested (`asked`) or the kind is `optimal`; otherwise `None`.
     pub(super) fn new(axis: &AxisSection, tables: &'a AxisTables, sample_hz: f64, asked: bool) -> Option<Self> {
         let optimal = match &tables.design.findings {
             Findings::Optimal(found) => Some(found),

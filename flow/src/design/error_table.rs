@@ -8,7 +8,7 @@ use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The table that the hardware has of what was measured on an axis.
+/// The table that the hardware makes from the points measured on an axis.
 pub(super) struct ErrorTableReport<'a> {
     axis: &'a AxisSection,
     built: StageErrorTable,
@@ -27,7 +27,8 @@ pub(super) struct ErrorTableDocument {
 }
 
 impl<'a> ErrorTableReport<'a> {
-    /// That of the axis of this place; none where there is no table, or no stage that could have one.
+    /// Returns the table of the axis with this index; `None` if it has no table, or there is no stage that could
+    /// contain one.
     pub(super) fn new(hardware: &Hardware<'_>, axis: &'a AxisSection, place: usize) -> Option<Self> {
         let stage = hardware.stage().ok().flatten()?;
         let built = stage.of_machine.config.axes.get(place)?.error_table.clone()?;
@@ -74,7 +75,7 @@ impl<'a> ErrorTableReport<'a> {
     }
 }
 
-/// What is said of tables that nothing is built of.
+/// Warns about an error table that is not built because there is no stage.
 pub(super) fn not_built(machine: &Machine, hardware: &Hardware<'_>) -> Option<Warning> {
     let has_stage = !matches!(hardware.stage(), Ok(None));
     let mut axes = machine.axes.iter().enumerate();

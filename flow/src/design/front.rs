@@ -1,4 +1,4 @@
-//! `posicast design --front`: what more duration buys, of each axis with an `optimal` shaper.
+//! `posicast design --front`: the benefit of longer durations, for each axis with an `optimal` shaper.
 
 use super::DesignReport;
 use crate::failure::Failure;
@@ -78,7 +78,8 @@ impl FrontReport {
     }
 
     pub(super) fn panels(&self, machine: &str) -> Vec<Panel> {
-        // A shaper holds for every longer duration too, until a better one is found: steps. The residual only has points.
+        // A shaper is valid for every longer duration too, until a better one is found, so taps are drawn as steps. The residual only has
+        // points.
         let panel = |what: &str, y_label: &str, in_steps: bool, value: &dyn Fn(&FrontFigures) -> f64| {
             let mut points: Vec<(f64, f64)> = Vec::new();
             for figures in &self.figures {

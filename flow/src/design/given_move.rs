@@ -1,4 +1,4 @@
-//! `posicast design --move`: one known move behind each axis's shaper, beside a move whose jerk time is a period of a mode.
+//! `posicast design --move`: one known move behind each axis's shaper, compared with a move whose jerk time is a period of a mode.
 
 use super::DesignReport;
 use crate::failure::Failure;

@@ -15,7 +15,7 @@ pub(super) struct TogetherReport<'a> {
 }
 
 impl<'a> TogetherReport<'a> {
-    /// `None` where the axes are not designed as one.
+    /// Returns `None` if the axes are not designed together.
     pub(super) fn new(design: &'a MachineDesign) -> Option<Self> {
         let together = design.together.as_ref()?;
         Some(Self {

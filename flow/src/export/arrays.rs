@@ -3,7 +3,7 @@
 use super::{Selected, Selection, list};
 use std::fmt::Write;
 
-/// Two lines that say what the numbers are, each after `comment`.
+/// Two lines that describe the numbers, each after `comment`.
 fn heading(selection: &Selection<'_>, comment: &str) -> String {
     let mut text = format!(
         "{comment} Shapers of {}, designed by posicast {}.\n\
@@ -59,7 +59,7 @@ fn c_axis(text: &mut String, machine: &str, selected: &Selected<'_>) {
     );
 }
 
-/// Lines of axis, time and amplitude; `axis_of` tells how the axis is written.
+/// Lines of axis, time and amplitude; `axis_of` returns the axis as it is written.
 fn lines(selection: &Selection<'_>, separator: &str, axis_of: impl Fn(usize, &str) -> String) -> String {
     let mut text = String::new();
     for (number, selected) in selection.axes.iter().enumerate() {
@@ -105,7 +105,7 @@ const KEYWORDS: [&str; 9] = [
     "try",
 ];
 
-/// A name that MATLAB takes: a keyword gets an underscore.
+/// A name that MATLAB accepts: keywords get an underscore.
 fn matlab_name(name: &str) -> String {
     let underscore = if KEYWORDS.contains(&name) { "_" } else { "" };
     format!("{name}{underscore}")

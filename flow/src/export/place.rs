@@ -1,7 +1,7 @@
-//! Where an export goes. Nothing that a user owns is replaced or appended to.
+//! Chooses where an export is written. A user's own file is never replaced or appended to.
 //!
-//! Klipper's configuration ends with a block that `SAVE_CONFIG` writes. With anything behind it Klipper ignores the whole block, and with it PID values, the
-//! offset of the probe and meshes. So an export for Klipper is a file of its own, which the configuration includes.
+//! Klipper's configuration ends with a block that `SAVE_CONFIG` writes. If anything follows this block, Klipper ignores it, and with it PID
+//! values, the offset of the probe and meshes. So an export for Klipper is a separate file, which the configuration includes.
 
 use super::ExportFormat;
 use crate::failure::Failure;
@@ -11,19 +11,19 @@ use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// What Klipper writes at the beginning of each line of its own block.
+/// Klipper's mark at the beginning of each line of its own block.
 const AUTOSAVE: &str = "#*#";
 /// Suggested name for Klipper.
 const SUGGESTED: &str = "posicast.cfg";
 
-/// Where the text goes.
+/// Place of the text.
 pub(super) struct Place {
     format: ExportFormat,
     file: Option<PathBuf>,
 }
 
 impl Place {
-    /// Asks for the place before any work.
+    /// Requests the place before any work.
     pub(super) fn claim(format: ExportFormat, file: Option<&Path>, machine: &Path) -> Result<Self, Failure> {
         match file {
             None => refuse_to_append(format)?,
@@ -57,7 +57,7 @@ impl Place {
         })
     }
 
-    /// Writes the text, and tells what to do with the file. Without a file the text is returned.
+    /// Writes the text, and reports what to do with the file. Without a file, returns the text.
     pub(super) fn write(&self, text: String, observer: &dyn Observer) -> Result<Option<String>, Failure> {
         let Some(file) = &self.file else {
             return Ok(Some(text));
@@ -77,7 +77,7 @@ impl Place {
         Ok(None)
     }
 
-    /// How the firmware is made to read the file.
+    /// Instructions that make the firmware read the file.
     fn next_step(&self, file: &Path) -> Vec<String> {
         let name = file
             .file_name()
@@ -104,7 +104,7 @@ fn is_klipper(format: ExportFormat) -> bool {
     matches!(format, ExportFormat::Klipper | ExportFormat::Kalico)
 }
 
-/// A file that stays as it is.
+/// Refuses to change a file that is not an export.
 fn owned(what: &str, format: ExportFormat) -> Failure {
     let remedy = match is_klipper(format) {
         true => format!(
@@ -118,13 +118,13 @@ fn owned(what: &str, format: ExportFormat) -> Failure {
     ))
 }
 
-/// Refuses to write behind Klipper's own block, where the shell appends the standard output to a configuration.
+/// Refuses to write behind Klipper's own block, if the shell appends the standard output to a configuration.
 fn refuse_to_append(format: ExportFormat) -> Result<(), Failure> {
     let standard_output = Path::new("/dev/stdout");
     let appends = standard_output
         .metadata()
         .is_ok_and(|found| found.is_file() && found.len() > 0);
-    // Where it cannot be read, there is nothing to tell.
+    // If it cannot be read, nothing is refused.
     let before = match appends && is_klipper(format) {
         true => std::fs::read(standard_output).unwrap_or_default(),
         false => return Ok(()),

@@ -1,22 +1,22 @@
-//! What is known of the excitation of an accelerometer's log.
+//! Knowledge about the excitation of an accelerometer's log.
 
 use posicast_identify::sweep::{SquareWave, Sweep, Sweeping};
 
-/// What is known of the excitation of an accelerometer's log.
+/// Knowledge about the excitation of an accelerometer's log.
 #[derive(Debug, Clone, Default)]
 pub struct LogExcitation {
-    /// The sweep of the resonance test; `None`: the log tells it.
+    /// The sweep of the resonance test; `None`: it is found in the log.
     pub sweep: Option<Sweep>,
-    /// It is not known: modes are looked for in the spectrum alone, as if it were even.
+    /// The excitation is unknown: modes are sought in the spectrum alone, as if the excitation were even.
     pub output_only: bool,
-    /// The log is of a stop: modes are looked for in what rings after it.
+    /// The log is of a stop: modes are sought in the decay after it.
     pub ring_down: bool,
 }
 
 /// Parses a positive number.
 ///
 /// # Errors
-/// What is allowed, for any other text.
+/// Returns the allowed values for any other text.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -28,7 +28,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
 /// mm/s² and s (a period of 0: none).
 ///
 /// # Errors
-/// What is allowed, for any other text.
+/// Returns the required form for any other text.
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let fields: Vec<&str> = text.split(':').collect();
     let numbers: Vec<f64> = fields

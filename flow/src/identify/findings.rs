@@ -1,4 +1,4 @@
-//! The modes found in a log, by whichever method.
+//! The modes found in a log, whatever the method.
 
 use super::excitation::LogExcitation;
 use super::log_file::axis_of;
@@ -15,14 +15,14 @@ use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::unit::trimmed;
 
-/// Measured data and what the modes explain of it, for the plots.
+/// Measured data and the fit of the modes to it, for the plots.
 pub(super) enum Evidence {
     /// A transfer function, and the fitted one at the same points.
     Transfer {
         points: Vec<ResponsePoint>,
         fitted: Vec<(f64, f64)>,
     },
-    /// A response over time, and what the modes explain of it.
+    /// A response over time, and the fit of the modes to it.
     Response {
         /// Name of the response.
         name: &'static str,
@@ -55,14 +55,14 @@ pub(super) struct Findings {
     pub(super) method_name: &'static str,
     /// Whether the modes are known to be those with the motor held.
     pub(super) is_motor_held: bool,
-    /// The axis that the log says it is of.
+    /// The axis that the log names.
     pub(super) axis: Option<String>,
     pub(super) modes: Vec<FoundMode>,
     pub(super) recommended: Vec<Recommendation>,
-    /// Unit of the axis that the modes are for, in which the shapers' figures are shown.
+    /// Unit of the axis of the modes, in which the shapers' figures are shown.
     pub(super) unit: AxisUnit,
     pub(super) judgement: Judgement,
-    /// Problems of the log, and what it does not contain.
+    /// Problems of the log, and missing information in it.
     pub(super) remarks: Vec<String>,
     pub(super) evidence: Evidence,
     /// Name of the direction of an accelerometer that was used.
@@ -82,11 +82,11 @@ impl Findings {
             remarks.push(MILLISECONDS.to_owned());
         }
         let mut findings = match &reading.log {
-            Log::Acceleration(log) if excitation.output_only => of_output(log)?,
-            Log::Acceleration(log) if excitation.ring_down => of_ring_down(log)?,
-            Log::Acceleration(log) => of_accelerometer(log, excitation)?,
-            Log::Position(log) => of_position(log)?,
-            Log::Drive(log) => of_motor(log)?,
+            Log::Acceleration(log) if excitation.output_only => identify_output(log)?,
+            Log::Acceleration(log) if excitation.ring_down => identify_ring_down(log)?,
+            Log::Acceleration(log) => identify_acceleration(log, excitation)?,
+            Log::Position(log) => identify_position(log)?,
+            Log::Drive(log) => identify_motor(log)?,
         };
         let found = std::mem::replace(&mut findings.remarks, remarks);
         findings.remarks.extend(found);
@@ -106,42 +106,45 @@ impl Findings {
     }
 }
 
-/// Time between samples above which it is asked whether it was given in milliseconds.
+/// Time between samples above which the user is asked whether it is in milliseconds.
 const SLOW_S: f64 = 0.2;
 const MILLISECONDS: &str =
     "the log has less than 5 samples per second; if its times are in milliseconds, say so: --columns time_ms,…";
 
-/// A log of an accelerometer of which nothing is said: a sweep, or else what rings after a stop.
-fn of_accelerometer(log: &AccelerationLog, excitation: &LogExcitation) -> Result<Findings, Failure> {
+/// Identifies an accelerometer log without a described excitation: as a sweep, or else as the decay after a stop.
+fn identify_acceleration(log: &AccelerationLog, excitation: &LogExcitation) -> Result<Findings, Failure> {
     /// Length of a log in seconds below which it has no sweep.
     const SHORT_S: f64 = 2.0;
     let samples = log.directions.iter().map(|(_, record)| record.len()).min().unwrap_or(0);
     if (samples as f64) * log.sample_s < SHORT_S {
-        return of_ring_down(log);
+        return identify_ring_down(log);
     }
-    let no_sweep = match of_sweep(log, excitation.sweep.as_ref()) {
+    let no_sweep = match identify_sweep(log, excitation.sweep.as_ref()) {
         Err(failure) => failure,
         Ok(findings) => return Ok(findings),
     };
     match ring_down::identify(log) {
         Ok(found) if !found.modes.is_empty() && found.explained > RINGS && found.part > PART => {
-            Ok(of_decay(log, found))
+            Ok(findings_in_decay(log, found))
         }
         _ => Err(no_sweep),
     }
 }
 
-/// Fraction of the power after the last push that modes must explain if nothing says that the log is of a stop, and fraction of the whole
-/// log's power that this must be: the end of a sweep rings too.
+/// Fraction of the power after the last push that modes must explain if the log is not said to be of a stop, and the fraction of the whole
+/// log's power that this must be, because the end of a sweep rings too.
 const RINGS: f64 = 0.95;
 const PART: f64 = 0.1;
 
-/// What rings after a stop.
-fn of_ring_down(log: &AccelerationLog) -> Result<Findings, Failure> {
-    Ok(of_decay(log, ring_down::identify(log).map_err(of_ring_down_error)?))
+/// Identifies the decay after a stop.
+fn identify_ring_down(log: &AccelerationLog) -> Result<Findings, Failure> {
+    Ok(findings_in_decay(
+        log,
+        ring_down::identify(log).map_err(ring_down_failure)?,
+    ))
 }
 
-fn of_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
+fn findings_in_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
     let mut remarks: Vec<String> = found.decay.remarks.iter().map(ToString::to_string).collect();
     if found.modes.is_empty() {
         remarks.push("what follows the last push does not decay as a mode would: log a sudden stop, until the machine is at rest".into());
@@ -162,7 +165,7 @@ fn of_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
     )
 }
 
-/// What was found in a direction of an accelerometer, by a method with this name and description.
+/// Findings in a direction of an accelerometer, by a method with this name and description.
 fn in_direction(
     log: &AccelerationLog,
     direction: &str,
@@ -189,7 +192,7 @@ fn in_direction(
     }
 }
 
-fn of_ring_down_error(error: RingDownError) -> Failure {
+fn ring_down_failure(error: RingDownError) -> Failure {
     let help = match error {
         RingDownError::Directions(..) => "--direction names the direction of the sensor along the axis",
         RingDownError::Log(_) => "log from before the stop until the machine is at rest",
@@ -197,7 +200,7 @@ fn of_ring_down_error(error: RingDownError) -> Failure {
     Failure::from(miette::miette!(help = help, "{error}"))
 }
 
-fn of_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Failure> {
+fn identify_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Failure> {
     let found = match given {
         Some(sweep) => sweep::identify(log, sweep),
         None => sweep::identify_any(log),
@@ -214,7 +217,7 @@ fn of_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Fa
         Failure::from(miette::miette!(help = help, "{error}"))
     })?;
     let sweep = found.sweep;
-    // The sensor's gain is 1 at low frequencies, so that the log tells the acceleration that was not described.
+    // The sensor's gain is 1 at low frequencies, so the log determines an acceleration that was not described.
     let per_hz = match given {
         Some(_) => sweep.acceleration_per_hz,
         None => sweep.acceleration_per_hz * found.static_gain,
@@ -262,8 +265,8 @@ fn of_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Fa
     ))
 }
 
-fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
-    let found = output_only::identify(log).map_err(of_position_error)?;
+fn identify_output(log: &AccelerationLog) -> Result<Findings, Failure> {
+    let found = output_only::identify(log).map_err(position_failure)?;
     let mut remarks: Vec<String> = vec![
         "the excitation was taken as even over the frequencies: what it has of its own, such as a fan, looks like a mode here, and \
          shares are rough"
@@ -284,8 +287,8 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
     ))
 }
 
-fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
-    let found = position::identify(log).map_err(of_position_error)?;
+fn identify_position(log: &PositionLog) -> Result<Findings, Failure> {
+    let found = position::identify(log).map_err(position_failure)?;
     let (source, method_name) = match found.is_forced {
         true => ("command and response", "output-error"),
         false => ("response", "decay"),
@@ -320,9 +323,9 @@ fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
     })
 }
 
-/// A drive and its own motor: modes with the motor held.
-fn of_motor(log: &DriveLog) -> Result<Findings, Failure> {
-    let found = motor::identify(log).map_err(of_position_error)?;
+/// Identifies the modes with the motor held from a drive and its own motor.
+fn identify_motor(log: &DriveLog) -> Result<Findings, Failure> {
+    let found = motor::identify(log).map_err(position_failure)?;
     let acts = if found.is_force { "force" } else { "velocity" };
     let remarks = found.held.remarks.iter().map(ToString::to_string).collect();
     Ok(Findings {
@@ -347,17 +350,17 @@ fn of_motor(log: &DriveLog) -> Result<Findings, Failure> {
     })
 }
 
-fn of_position_error(error: PositionError) -> Failure {
+fn position_failure(error: PositionError) -> Failure {
     let help = "log longer, from before the command moves until the machine is at rest";
     Failure::from(miette::miette!(help = help, "{error}"))
 }
 
 fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
-    /// Ratio of the square of the remainder to that of the noise, above which the fit is incomplete.
+    /// Ratio of the square of the residual to that of the noise, above which the fit is incomplete.
     const LEFT_OVER: f64 = 4.0;
-    /// Part by which clocks differ that is told: less moves no mode.
+    /// Smallest relative clock difference worth reporting; a smaller one changes no mode.
     const TOLD_CLOCK: f64 = 1e-5;
-    /// Ratio by which an end of the sweep must be missing to be told.
+    /// Smallest ratio by which an end of the sweep must be missing to be reported.
     const PART: f64 = 1.05;
     let mut remarks = Vec::new();
     if found.reduced_square > LEFT_OVER {

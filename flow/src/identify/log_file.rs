@@ -1,4 +1,4 @@
-//! What a log's file leaves open, and the reading of the file.
+//! Options for information that a log's file lacks, and the reading of the file.
 
 use crate::failure::Failure;
 use posicast_identify::log::{self, Log, ReadOptions, Reading};
@@ -6,10 +6,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What a log's file leaves open.
+/// Information that a log's file lacks.
 #[derive(Debug, Clone, Default)]
 pub struct LogOptions {
-    /// Names of the columns in their order, in the place of the header's, such as `time_ms`; `-` for one that is not used.
+    /// Names of the columns in their order, such as `time_ms`, instead of those in the header; `-` for an unused column.
     pub columns: Option<Vec<String>>,
     /// Samples per second, for a log without times or with times that waver.
     pub rate_hz: Option<f64>,
@@ -68,7 +68,7 @@ fn only(reading: &mut Reading, direction: &str) -> Result<(), Failure> {
     }
 }
 
-/// The axis of a direction: `accel_x_g` and `x` are of axis `x`.
+/// Returns the axis of a direction: `accel_x_g` and `x` belong to axis `x`.
 pub(super) fn axis_of(direction: &str) -> Option<String> {
     let name = direction.strip_prefix("accel_").unwrap_or(direction);
     let mut letters = name.chars();

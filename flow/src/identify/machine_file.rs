@@ -17,7 +17,7 @@ pub(super) struct Written {
     pub(super) text: String,
     /// Unit of the axis that has the modes.
     pub(super) unit: AxisUnit,
-    /// The axis whose other values it has, where it was added.
+    /// The axis from which the other values were copied, if the axis was added.
     pub(super) copied_from: Option<String>,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn from_template(
     checked(without_stale_step(document.to_string()), path, 0)
 }
 
-/// The first step that the head of a template tells does not remain where the log has answered all of it.
+/// Replaces the first step in the head of a template if the log has answered all of it.
 fn without_stale_step(text: String) -> String {
     const STEP: &str = "Measure what is marked MEASURE and write it in";
     match to_measure(&text).is_empty() {
@@ -56,8 +56,8 @@ fn without_stale_step(text: String) -> String {
     }
 }
 
-/// An existing machine file, with the modes in one of its axes. Where `identify` has written the file with the other axis of such a
-/// machine alone, the axis is added.
+/// Puts the modes into one of the axes of an existing machine file. Adds the axis if the file has only the other axis of the pair, as
+/// `identify` writes it.
 pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings) -> Result<Written, Failure> {
     let text = machine::read(path)?.text;
     let mut document = parsed(&text, path)?;
@@ -98,7 +98,7 @@ fn is_pair(one: &str, other: &str) -> bool {
     matches!((one, other), ("x", "y") | ("y", "x"))
 }
 
-/// Adds an axis with the values of the only other one, but for modes and shaper; its place among the axes.
+/// Adds an axis with the values of the only other one, except for modes and shaper; returns its index among the axes.
 fn add_beside(axes: &mut ArrayOfTables, wanted: &str, is_first: bool, findings: &Findings) -> usize {
     let mut added = axes.iter().next().cloned().unwrap_or_default();
     put(&mut added, "name", wanted.into());
@@ -107,7 +107,7 @@ fn add_beside(axes: &mut ArrayOfTables, wanted: &str, is_first: bool, findings: 
     both.insert(if is_first { 0 } else { both.len() }, added);
     axes.clear();
     for mut axis in both {
-        // Tables are written in the order of their places in the file that was read, which two axes now share.
+        // Tables are written in the order of their places in the file that was read; here two axes would share a place.
         without_place(&mut axis);
         axes.push(axis);
     }

@@ -11,7 +11,7 @@ use posicast_testbench::wording::counted;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Modes, shapers, and what to do next.
+/// Modes, shapers, and the next step.
 pub(super) fn text(log: &Path, findings: &Findings, written: Option<(&Path, &Written)>) -> String {
     let mut text = format!(
         "{}: {} over {} at {} samples per second; {}\n{}\n",
@@ -88,7 +88,7 @@ fn modes(findings: &Findings) -> String {
     table.text("  ")
 }
 
-/// The shapers in two tables: those that leave little enough, the shortest first, and the others.
+/// The shapers in two tables: those with a small enough residual, the shortest first, and the others.
 fn shapers(findings: &Findings) -> String {
     let enough = trimmed(100.0 * findings.judgement.enough, 4);
     let (few, more): (Vec<_>, Vec<_>) = findings
@@ -116,7 +116,7 @@ fn table_of(shapers: &[&Recommendation], findings: &Findings) -> String {
         ">of unshaped %",
         ">smoothing",
     ];
-    // The rule of printers is for lengths, and for machines that may take their corners with some acceleration.
+    // The rule of printers applies to lengths, and to machines that may take their corners with some acceleration.
     let is_printer = findings.unit.si_name() == "m" && findings.kind() == MachineKind::Printer;
     if is_printer {
         heads.extend([">max_accel mm/s²", ">smoothing at it"]);

@@ -13,12 +13,12 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 
 /// Radius of a dot, in pixels.
 pub(super) const DOT: i32 = 4;
-/// Most numbers along an axis of a picture on a page, whose texts are large.
+/// Largest number of labels along an axis of a picture on a page, whose texts are large.
 pub(super) const NUMBERS: usize = 6;
-/// Number of columns that a curve's points are thinned to: more than a chart has pixels.
+/// Number of columns to which a curve's points are thinned: more than a chart has pixels.
 const COLUMNS: usize = 1000;
 
-/// What a chart shows: the ends of its axes.
+/// The range that a chart shows: the ends of its axes.
 pub(super) struct Frame {
     /// Left and right end.
     pub(super) x: (f64, f64),
@@ -27,7 +27,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The frame that holds all curves of a panel, or as much of them as it asks for.
+    /// Returns the frame that contains all curves of a panel, or the part of them that the panel requests.
     pub(super) fn of(panel: &Panel) -> Self {
         let points = || panel.curves.iter().flat_map(|c| c.points.iter());
         let x = span(points().map(|p| p.0).chain(panel.marks.iter().map(|mark| mark.at)));
@@ -66,7 +66,7 @@ pub(super) fn draw_chart(
         drawn_for.series(area, &band.name, || draw_band(&mut chart, band.range, frame))?;
     }
     for range in &panel.x_ranges {
-        // However narrow it is, it must be visible.
+        // A very narrow range must stay visible.
         let thin = 0.001 * (x_high - x_low);
         let (low, high) = (range.ends.0 - thin, range.ends.1 + thin);
         let corners = [(low.max(x_low), y_low), (high.min(x_high), y_high)];
@@ -93,7 +93,7 @@ pub(super) fn draw_chart(
         mesh.x_labels(NUMBERS).y_labels(NUMBERS);
     }
     mesh.draw()?;
-    // The first of the coloured curves lies on top of the others, and levels lie on top of all.
+    // The first coloured curve lies on top of the others, and levels lie on top of all.
     let mut order: Vec<_> = panel.curves.iter().zip(looks).rev().collect();
     order.sort_by_key(|(curve, _)| curve.look);
     for (curve, (style, is_dashed)) in order {
@@ -147,7 +147,7 @@ pub(super) fn draw_chart(
     Ok(edges)
 }
 
-/// Draws a band as far as the frame shows it, with lines at its ends, which show it where it is thin.
+/// Draws a band within the frame, with lines at its ends, which keep a thin band visible.
 fn draw_band(chart: &mut Chart<'_, '_>, range: (f64, f64), frame: &Frame) -> Drawn {
     let ((x_low, x_high), (y_low, y_high)) = (frame.x, frame.y);
     let (low, high) = (range.0.max(y_low), range.1.min(y_high));
@@ -206,12 +206,12 @@ pub(super) fn dashed(colour: RGBColor) -> RGBColor {
     shade(colour, DARK, end)
 }
 
-/// The colour of a curve on which another is expected to lie.
+/// The colour of a curve that another curve is expected to cover.
 pub(super) fn under(colour: RGBColor) -> RGBColor {
     shade(colour, PALE, 255)
 }
 
-/// A colour, this part of the way to black (0) or white (255).
+/// Returns a colour shifted by this fraction towards black (`end` 0) or white (255).
 fn shade(colour: RGBColor, part: f64, end: u8) -> RGBColor {
     let mixed = |channel: u8| (f64::from(channel) * (1.0 - part) + f64::from(end) * part).round() as u8;
     RGBColor(mixed(colour.0), mixed(colour.1), mixed(colour.2))
@@ -243,7 +243,7 @@ fn cut(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
     parts
 }
 
-/// A number on an axis: without the digits that only binary fractions have, and never "-0".
+/// A number on an axis: without digits that are artefacts of binary fractions, and never "-0".
 pub(super) fn axis_label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
@@ -263,7 +263,7 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
 }
 
-/// The points of a curve that a picture can show: where many fall on one column of it, the first, the lowest, the highest and
+/// The points of a curve that a picture can show: of many points in one column, the first, the lowest, the highest and
 /// the last.
 fn thinned(points: &[(f64, f64)], (low, high): (f64, f64)) -> Vec<(f64, f64)> {
     if points.len() <= 4 * COLUMNS {
@@ -311,7 +311,7 @@ mod tests {
         let looks = looks(&[Curve::new("shaped", line()), Curve::under("load", line())]);
         let [on_top, under] = [&looks[0].0, &looks[1].0];
         assert!(under.stroke_width >= on_top.stroke_width + 2);
-        // It is drawn before the other.
+        // The lower curve is drawn first.
         assert!(Look::Under < Look::Own && Look::Own < Look::Dashed);
     }
 

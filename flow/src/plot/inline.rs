@@ -1,4 +1,4 @@
-//! A panel as a picture inside a page: the page has its title and its legend, and chooses the colours by its style sheet.
+//! A panel as a picture inside a page: the page shows its title and its legend, and its style sheet chooses the colours.
 
 use super::chart::{Edges, Frame, dashed, draw_chart, looks, under};
 use super::series::{For, grouped};
@@ -7,16 +7,16 @@ use crate::failure::Failure;
 use plotters::prelude::*;
 use std::fmt::Write;
 
-/// Size of a picture in pixels, and of its texts. A phone shows it at two thirds of that: the texts are so large that they can be
-/// read there. The page's style sheet makes them smaller on wide screens.
+/// Size of a picture in pixels, and of its texts. A phone shows it at two thirds of that size, where the large texts stay readable. The
+/// page's style sheet makes them smaller on wide screens.
 pub(super) const SIZE: (u32, u32) = (520, 340);
 pub(super) const TEXT_SIZE: i32 = 22;
 
-/// A picture with what a page says about it.
+/// A picture with its descriptions for the page.
 pub(crate) struct Inline {
     /// Heading.
     pub(crate) title: String,
-    /// The picture, with `stroke` and `fill` of the colours that [`style_rules`] knows.
+    /// The picture; its `stroke` and `fill` have the colours that [`style_rules`] knows.
     pub(crate) svg: String,
     /// Its legend.
     pub(crate) legend: Vec<LegendEntry>,
@@ -35,11 +35,11 @@ pub(crate) struct LegendEntry {
     pub(crate) name: String,
     /// Its colour in the picture, as `#RRGGBB`.
     pub(crate) colour: String,
-    /// ResultForm of its sample: `line`, `dash`, `dot` or `area`.
+    /// Form of its sample: `line`, `dash`, `dot` or `area`.
     pub(crate) form: &'static str,
 }
 
-/// The frame of a picture: where a pointer's place becomes values.
+/// The frame of a picture, which converts the place of a pointer into values.
 pub(crate) struct Window {
     /// Left, right, top and bottom in pixels.
     pub(crate) edges: Edges,
@@ -71,7 +71,7 @@ const THEMES: [(&str, RGBColor, &str); 13] = [
 const LIGHT: &str = "--paper:#FFFFFF;--ink:#1B1B1B;--soft:#5A6068;--line:#D9DCE0;--good:#1B6E2C;--bad:#B00020;--open:#8A5A00;--far:#000000";
 const DARK: &str = "--paper:#14171A;--ink:#E6E6E6;--soft:#A4ABB3;--line:#363C43;--good:#5CC873;--bad:#FF6B7A;--open:#E5AE4A;--far:#FFFFFF";
 
-/// The rules of a style sheet that give pictures the colours of the reader's theme; paper has the light ones.
+/// The rules of a style sheet that give pictures the colours of the reader's theme; printed pages have the light ones.
 pub(crate) fn style_rules() -> String {
     let mut light = format!("color-scheme:light;{LIGHT}");
     let mut dark = format!("color-scheme:dark;{DARK}");
@@ -88,7 +88,7 @@ pub(crate) fn style_rules() -> String {
         if !COLOURS.contains(&colour) {
             continue;
         }
-        // What lies beside a curve is farther from the paper than that, and what lies under it nearer.
+        // A curve beside another is farther from the paper's colour than that, and one under another is nearer.
         let far = if colour == BLACK { "paper" } else { "far" };
         rule(
             dashed(colour),

@@ -1,4 +1,4 @@
-//! The legend of a panel, in rows above its chart: no curve runs under it.
+//! The legend of a panel, in rows above its chart, so that no curve runs under it.
 
 use super::{Area, BAND, DARK_RED, DASH, Drawn, Panel, TEXT_SIZE};
 use plotters::prelude::*;
@@ -8,7 +8,7 @@ const SAMPLE: i32 = 26;
 const GAP: i32 = 6;
 const BETWEEN: i32 = 20;
 const ROW: i32 = 18;
-/// Part of a panel's height below which a band is thinner than a curve, which hides it.
+/// Fraction of a panel's height below which a band is thinner than a curve, which would hide it.
 const THIN: f64 = 0.008;
 /// Average width of a letter, as a fraction of the text size.
 const LETTER: f64 = 0.5;

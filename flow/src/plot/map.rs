@@ -9,7 +9,7 @@ use plotters::prelude::*;
 
 /// A level of a map.
 pub(crate) struct Level {
-    /// Values up to this are on the level, unless a lower one has them.
+    /// Largest value on the level; values of lower levels do not belong to it.
     pub(crate) up_to: f64,
     /// Name in the legend.
     pub(crate) name: String,
@@ -28,7 +28,7 @@ pub(crate) struct Map {
     pub(crate) rows: Vec<f64>,
     /// Values as `values[row][column]`.
     pub(crate) values: Vec<Vec<f64>>,
-    /// Levels from the lowest on; the last has everything above the one before.
+    /// Levels from the lowest on; the last contains all values above the one before.
     pub(crate) levels: Vec<Level>,
     /// A point to mark.
     pub(crate) mark: (f64, f64),
@@ -76,7 +76,7 @@ pub(crate) fn inline_map(map: &Map) -> Picture {
                 .copied()
                 .zip(values.iter().map(|value| map.level(*value)))
                 .collect();
-            // Neighbours on one level are one area.
+            // Neighbours on one level form one area.
             for run in cells.chunk_by(|a, b| a.1 == b.1) {
                 let left = (run[0].0 - half_column).max(x.0);
                 let right = (run[run.len() - 1].0 + half_column).min(x.1);

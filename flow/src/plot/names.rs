@@ -1,4 +1,4 @@
-//! Where the names of points are written, so that none lies on another, on a point or outside of the chart.
+//! Places the names of points so that none lies on another, on a point or outside of the chart.
 
 use super::chart::{DOT, Edges};
 
@@ -19,12 +19,12 @@ fn overlap(a: Area, b: Area) -> bool {
 pub(super) struct Name<'a> {
     pub(super) text: &'a str,
     pub(super) at: (i32, i32),
-    /// Whether it is written even if something lies under it.
+    /// Whether it is written even on top of something else.
     pub(super) is_needed: bool,
 }
 
-/// The upper left corner of each name that has room beside its point: to its right, else to its left, above or below. Those before
-/// take the room from those after. `points` are all points of the chart.
+/// Returns the upper left corner of each name that has room beside its point: to the right, else to the left, above or below. Earlier names
+/// get room before later ones. `points` are all points of the chart.
 pub(super) fn placed<'a>(
     names: &[Name<'a>],
     points: &[(i32, i32)],

@@ -1,7 +1,7 @@
 //! Which elements of a picture belong to which entry of its legend.
 //!
-//! Plotters gives elements no name. A text that no picture has is drawn before an entry's elements and after them;
-//! [`grouped`] replaces the two by the begin and the end of a group, which the page's script finds by `data-series`.
+//! Plotters does not name elements. A text that occurs in no picture is drawn before and after an entry's elements;
+//! [`grouped`] replaces both by the beginning and the end of a group, which the page's script finds by `data-series`.
 
 use super::{Area, Drawn, LegendEntry};
 use plotters::prelude::*;
@@ -9,17 +9,18 @@ use plotters::prelude::*;
 /// First letter of the texts, from Unicode's private use area.
 const SIGN: char = '\u{E000}';
 
-/// What a picture is drawn for.
+/// The use of a picture.
 #[derive(Clone, Copy)]
 pub(super) enum For<'a> {
-    /// A file of its own, which has every point of a curve.
+    /// A file of its own, with every point of a curve.
     File,
-    /// A page, which has many pictures: curves are thinned to what can be seen, and elements belong to these entries.
+    /// A page, which has many pictures: curves are thinned to their visible points, and elements belong to these
+    /// entries.
     Page(&'a [LegendEntry]),
 }
 
 impl For<'_> {
-    /// Draws what belongs to the entry of this name.
+    /// Draws the elements of the entry with this name.
     pub(super) fn series(self, area: &Area<'_>, name: &str, draw: impl FnOnce() -> Drawn) -> Drawn {
         let entry = match self {
             Self::File => None,
@@ -61,7 +62,7 @@ pub(super) fn grouped(svg: &str) -> String {
             lines.push(line.to_owned());
             continue;
         };
-        // The tags of the text, before and after it.
+        // These are the tags of the text, before and after it.
         lines.pop();
         rest.next();
         lines.push(match name {

@@ -1,4 +1,4 @@
-//! The likely cause of a failed check, and what to try.
+//! The likely cause of a failed check, and a remedy.
 
 use crate::run::checks::{Check, Coverage};
 
@@ -181,7 +181,7 @@ const GIVEN_UP: Advice = Advice {
     ],
 };
 
-/// The advice for a check that failed, by its name, or because it ended too early.
+/// Returns the advice for a failed check: by its name, or for a run that ended too early.
 pub(crate) fn for_failed(check: &Check) -> Option<&'static Advice> {
     match check.coverage {
         Coverage::TooFewClocks => Some(&TOO_SHORT),

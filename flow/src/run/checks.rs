@@ -205,7 +205,7 @@ fn compared(name: &'static str, comparison: &Comparison, waves: &Waves) -> Check
     Check::new(name, comparison.result == DiffVerdict::Equal, detail)
 }
 
-/// Every axis must move by a count or more: the waveforms of an axis at rest compare nothing.
+/// Every axis must move by at least a count: the waveforms of an axis at rest compare nothing.
 pub(crate) fn moves(machine: &Machine, axes: &[AxisSimulation]) -> Check {
     let one = f64::from(machine.fixed_point.command_fraction).exp2();
     let counts = |run: &AxisSimulation| {
@@ -237,7 +237,7 @@ fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check
     let name = "the integer taps keep the tolerance that was asked for";
     match (beyond.first(), modes) {
         (Some(first), _) => Check::new(name, false, first.text.clone()),
-        // A machine whose axes have no shaper asks for nothing: that is reported, and is not a failure.
+        // The axes of this machine have no shaper: that is reported, and is not a failure.
         (None, 0) => Check::not_exercised(name, true, "no axis has a shaper for a mode"),
         (None, modes) => {
             let above = just_above_tolerance(machine, design).map_or_else(String::new, |text| format!("; {text}"));
@@ -246,8 +246,8 @@ fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check
     }
 }
 
-/// With each mode at each corner of its band, a step on the simulated plant leaves no more than is certified; no check where no shaper is made for
-/// bands.
+/// With each mode at each corner of its band, a step on the simulated plant must leave no more than is certified. There is no check if no
+/// shaper is designed for bands.
 fn residual_at_corners(machine: &Machine, design: &MachineDesign) -> Option<Check> {
     let axes = machine.axes.iter().zip(&design.axes);
     let optimal = axes.filter(|(_, tables)| matches!(tables.design.findings, Findings::Optimal(_)));
@@ -326,8 +326,7 @@ fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check 
     )
 }
 
-/// Verilator's lint must have no warning about the Verilog under any of the tops; no check where Verilator is not the
-/// simulator.
+/// Verilator's lint must have no warning about the Verilog under any of the tops; there is no check if another simulator is used.
 pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block]) -> Result<Option<Check>, Failure> {
     if simulator != Simulator::Verilator {
         return Ok(None);
@@ -359,7 +358,7 @@ pub(crate) fn link(link: Option<&LinkedStageBlock>) -> Option<Check> {
     ))
 }
 
-/// The top module, without the components, must fit the device of the machine file; no check where it names none.
+/// The top module, without the components, must fit the device of the machine file; there is no check if the file names none.
 pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
     machine.target.as_ref()?;
     let excess = estimate.excesses().first().map(|e| {

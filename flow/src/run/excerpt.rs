@@ -1,4 +1,4 @@
-//! The waves of one sample, read from `wave/rtl.vcd`: from its strobe to the end of what is recorded of it.
+//! The waves of one sample, read from `wave/rtl.vcd`: from its strobe to the end of its recorded part.
 
 use crate::failure::Failure;
 use maud::{Markup, html};
@@ -70,7 +70,7 @@ pub(super) fn read(path: &Path, sample: usize) -> Result<Option<Excerpt>, Failur
                 from = Some(time);
             }
         }
-        // The sample ends where the recording pauses, or else with the next strobe.
+        // The sample ends when the recording pauses, or else at the next strobe.
         let ends = Some(id) == recording && text == "0" || strobes == sample + 2;
         if ends && from.is_some() {
             to = Some(time);
@@ -87,13 +87,13 @@ pub(super) fn read(path: &Path, sample: usize) -> Result<Option<Excerpt>, Failur
         return Ok(None);
     };
     let to = to.unwrap_or(time);
-    // When the recording pauses, the clock becomes unknown.
+    // The clock becomes unknown when the recording pauses.
     changes.retain(|(at, ..)| *at < to);
     let lane = |(code, name, width): &(IdCode, String, u32)| {
         let mut values = vec![(from, now.get(code).cloned().unwrap_or_else(|| "x".to_owned()))];
         for (at, id, text) in &changes {
             if id == code {
-                // What changes with the strobe has its new value from the beginning on.
+                // Signals that change at the strobe have their new values from the beginning on.
                 if *at == from {
                     values.clear();
                 }
@@ -111,7 +111,7 @@ pub(super) fn read(path: &Path, sample: usize) -> Result<Option<Excerpt>, Failur
         }
     };
     let mut lanes: Vec<Lane> = names.iter().map(lane).collect();
-    // A word that the sample brings is shown even if it brings the same one again.
+    // A word of the sample is shown even if it equals the word before.
     lanes.retain(|lane| lane.values.len() > 1 || lane.name.ends_with("_x"));
     lanes.truncate(LANES);
     Ok((to > from).then_some(Excerpt {
@@ -123,7 +123,7 @@ pub(super) fn read(path: &Path, sample: usize) -> Result<Option<Excerpt>, Failur
     }))
 }
 
-/// A value as people read it: words of positions are signed.
+/// Formats a value for people: words of positions are signed.
 fn shown(name: &str, width: u32, bits: &str) -> String {
     if width == 1 || bits.contains(['x', 'z']) {
         return bits.to_owned();
@@ -219,7 +219,7 @@ mod tests {
         #100\n1%\n1\"\n1!\nb1110 #\n#110\n0!\n0\"\n#120\n1!\nb1111 $\n#130\n0!\n0%\n";
 
     #[test]
-    fn the_waves_of_a_sample_are_those_from_its_strobe_on() {
+    fn the_waves_of_a_sample_begin_at_its_strobe() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rtl.vcd");
         std::fs::write(&path, VCD).unwrap();

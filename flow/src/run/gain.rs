@@ -1,4 +1,4 @@
-//! What a shaper costs and gains in the move of a run: how much later the command arrives, and how much sooner the load rests.
+//! The cost and the gain of a shaper in the move of a run: how much later the command arrives, and how much sooner the load rests.
 
 use super::pictures::slowest_period_s;
 use posicast_machine::machine_file::{AxisSection, Machine};
@@ -66,8 +66,8 @@ fn begin(command: &[f64]) -> usize {
 }
 
 impl Gain {
-    /// The figures of two moves with the same command. A load counts as at rest only if it is seen to stay in the band for a
-    /// whole period of its slowest mode.
+    /// Computes the figures of two moves with the same command. A load counts as at rest only if it stays in the band for a whole period of
+    /// its slowest mode.
     pub(super) fn new(
         of: GainSource,
         band: f64,
@@ -128,7 +128,7 @@ impl Gain {
     }
 }
 
-/// The gain of each axis: in the closed loop where there is one, else on the machine alone.
+/// The gain of each axis: in the closed loop if there is one, otherwise on the machine alone.
 pub(super) fn of_axes(
     machine: &Machine,
     words: &[Vec<i64>],
@@ -146,7 +146,7 @@ pub(super) fn of_axes(
 mod tests {
     use super::*;
 
-    /// A ramp of 10 samples, and a load that swings by this much afterwards, 8 samples a period, halving in each.
+    /// Gain for a ramp of 10 samples, after which the load swings by these amounts, 8 samples per period, halving in each.
     fn gain(swings: [f64; 2], samples: usize) -> Gain {
         let ramp = |delay: usize| {
             (0..samples)
@@ -187,8 +187,8 @@ mod tests {
 
     #[test]
     fn the_cost_is_the_later_arrival_and_the_gain_the_earlier_rest() {
-        // The ramp begins after sample 5 and is at its end 10 samples later. The envelope of the swing is 4 · 2^(−n/8): its
-        // peak of −0.5·√½·4 = 1.41 at n = 12 is followed by 1 at 16, 0.71 at 20, and 0.5, which is in the band, at 24.
+        // The ramp begins after sample 5 and ends 10 samples later. The envelope of the swing is 4 · 2^(−n/8): after the peak of −0.5·√½·4
+        // = 1.41 at n = 12 it is 1 at 16, 0.71 at 20, and 0.5, which is in the band, at 24.
         let gain = gain([4.0, 0.0], 100);
         assert_eq!((gain.arrival_unshaped_s, gain.arrival_s), (Some(9e-3), Some(13e-3)));
         assert!((gain.later_s.unwrap() - 4e-3).abs() < 1e-12, "{gain:?}");
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_that_was_not_seen_at_rest_for_a_period_has_not_settled() {
+    fn a_load_not_seen_at_rest_for_a_period_has_not_settled() {
         let gain = gain([4.0, 0.0], 40);
         assert_eq!((gain.settled_unshaped_s, gain.sooner_s), (None, None));
         assert!(gain.settled_s.is_some() && gain.end_unshaped_s > 33e-3, "{gain:?}");

@@ -1,4 +1,4 @@
-//! What a run is asked for.
+//! Options of a run.
 
 use crate::bench::Simulator;
 use crate::contour::{Corners, PathOptions};
@@ -8,7 +8,7 @@ use crate::text::shell_word;
 use crate::verify::DEFAULT_SEED;
 use std::path::{Path, PathBuf};
 
-/// What to run, and what to say of it.
+/// Options of a run and its output.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Machine file.
@@ -17,23 +17,23 @@ pub struct Options {
     pub output: Option<PathBuf>,
     /// How the axes move.
     pub motion: Motion,
-    /// Radius of the circle of the closed loop, in the unit of the first axis; `None`: what the limits of the axes suit.
+    /// Radius of the circle of the closed loop, in the unit of the first axis; `None`: chosen by the limits of the axes.
     pub radius: Option<f64>,
     /// Path of the closed loop in place of the circle: `circle`, `square`, a CSV file of points, or a G-code file.
     pub contour: Option<String>,
-    /// How bends of that path are passed.
+    /// How the axes pass bends of that path.
     pub corners: Corners,
-    /// Simulator; `None`: Verilator, or RustHDL's, the weaker check, where Verilator is missing.
+    /// Simulator; `None`: Verilator, or if it is missing RustHDL's, which is the weaker check.
     pub simulator: Option<Simulator>,
     /// Clocks of the lock step; `None`: as many as the simulator does in some seconds.
     pub cycles: Option<u64>,
     /// Seed of the random stimuli.
     pub seed: u64,
-    /// How much the text says.
+    /// Level of detail of the text.
     pub detail: Detail,
 }
 
-/// How much the text of a run says.
+/// Level of detail of the text of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
     /// The verdict, and what failed.

@@ -47,9 +47,9 @@ pub(crate) fn response_panels(
 
 /// `name` with the time at which the deviations, given at times in the unit of `time`, have settled to ± `band`.
 ///
-/// A vibration of this period crosses its band twice in each: it has settled only if it then stays there for a whole
-/// period that is shown. If it leaves the band within the last half of one, it has not settled before the end; if it
-/// stays in the band for longer than that, but less than a period, more would have to be shown to tell.
+/// A vibration of this period crosses its band twice per period, so it has settled only if the picture shows that it stays there for a
+/// whole period. If it leaves the band within the last half period, it has not settled before the end. If it stays in the band for longer
+/// than that, but less than a period, the picture is too short for a verdict.
 pub(super) fn with_settling(
     name: &str,
     deviations: &[(f64, f64)],
@@ -118,7 +118,7 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
     })
 }
 
-/// The machine that follows the words of the simulated hardware.
+/// The motion of the machine behind the simulated hardware.
 struct Followed {
     name: &'static str,
     positions: Vec<f64>,
@@ -163,7 +163,7 @@ fn move_panel(
     let [unshaped, shaped] = both.map(|positions| points(positions));
     let slowest_s = slowest_period_s(axis);
     let count = unit.of(1.0 / axis.loop_counts_per_unit());
-    // What stays within a count from the start on does not leave the picture.
+    // A motion that stays within a count does not leave the picture.
     let shown = unit.of(largest).max(count);
     let mut curves = vec![
         Curve::reference(with_settling("unshaped", &unshaped, count, time, slowest_s), unshaped),
@@ -196,7 +196,7 @@ mod tests {
     use posicast_shaper::unit::time_unit;
     use std::f64::consts::TAU;
 
-    /// The label of a vibration of 10 ms that begins at 7 and halves in each period, shown for this long.
+    /// The label of a vibration of 10 ms that begins at 7, halves in each period, and is shown for this long.
     fn label_of(shown_ms: f64) -> String {
         let points = (0..=(10.0 * shown_ms) as usize).map(|n| {
             let t = n as f64 / 10.0;
@@ -206,13 +206,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_of_settling_is_what_is_shown() {
+    fn the_label_about_settling_matches_the_curve() {
         // The envelope at the half periods is 7 · 2^(−n/2): 1.24 at 25 ms is the last above 1, and the curve enters the
         // band for good soon after.
         assert_eq!(label_of(60.0), "load: settled at 25.9 ms");
         assert_eq!(label_of(37.0), "load: settled at 25.9 ms");
         assert_eq!(label_of(33.0), "load: not shown long enough");
-        // It crosses the band, and leaves it again.
+        // The vibration crosses the band, and leaves it again.
         for shown_ms in [2.5, 7.5, 12.5, 20.0, 28.0] {
             assert_eq!(label_of(shown_ms), "load: settles later", "{shown_ms}");
         }

@@ -44,7 +44,7 @@ pub(crate) struct RunReport<'a> {
     pub(crate) checks: &'a [Check],
     /// The command of the move, per axis.
     pub(crate) words: &'a [Vec<i64>],
-    /// What each shaper costs and gains.
+    /// Cost and gain of each shaper.
     pub(crate) gains: Vec<Gain>,
     /// All kinds of shaper on the axes.
     pub(crate) kinds: &'a [KindComparison],
@@ -256,7 +256,7 @@ impl RunReport<'_> {
     }
 }
 
-/// The JSON Schema of [`Document`], as its types say.
+/// Returns the JSON Schema of [`Document`].
 #[must_use]
 pub fn schema() -> Schema {
     let settings = SchemaSettings::draft2020_12().for_serialize();

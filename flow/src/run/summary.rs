@@ -1,7 +1,7 @@
 //! The summary of a run for the terminal: a line per axis, the area, the number of checks, and the verdict.
 //!
-//! A failed check is always shown in full, with its likely cause; one that compared nothing too, except with
-//! `--quiet`. `--verbose` prints all tables of [`RunReport::text`] instead.
+//! A failed check is always shown in full, with its likely cause. A check that compared nothing is also shown, except
+//! with `--quiet`. `--verbose` prints all tables of [`RunReport::text`] instead.
 
 use super::advice;
 use super::checks::Check;
@@ -39,7 +39,7 @@ impl RunReport<'_> {
         text + &self.verdict()
     }
 
-    /// The verdict alone, and what failed.
+    /// The verdict alone, and failed checks.
     pub(crate) fn quiet(&self) -> String {
         self.checks_text(|check| !check.passed) + &self.verdict()
     }
@@ -58,7 +58,7 @@ impl RunReport<'_> {
         )
     }
 
-    /// A line per axis: its shaper and the vibration with it; in the closed loop where there is one.
+    /// A line per axis: its shaper and the vibration with it, in the closed loop if there is one.
     fn axes_text(&self) -> String {
         let mut headings = vec!["axis", "shaper", ">residual, %", ">ringing unshaped", ">shaped"];
         if self.closed_loop.is_some() {

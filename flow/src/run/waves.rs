@@ -31,7 +31,7 @@ pub(super) struct Waves {
     pub(super) float: Comparison,
     /// Largest difference between RTL and float design per axis, in LSB.
     pub(super) largest_difference_lsb: Vec<f64>,
-    /// What was simulated, in a word.
+    /// Name of the simulated device.
     pub(super) device: &'static str,
     /// Its shaped words per axis; those of a modulo axis with the whole turns of the model's.
     pub(super) unwrapped: Vec<Vec<i64>>,
@@ -151,7 +151,7 @@ impl Job<'_> {
     }
 }
 
-/// The words of the hardware with as many whole turns as the model's have.
+/// Returns the words of the hardware with as many whole turns as those of the model.
 fn unwrapped(words: &[i64], axis: &AxisSimulation, word_bits: u32) -> Vec<i64> {
     let pairs = words.iter().zip(&axis.shaped);
     pairs

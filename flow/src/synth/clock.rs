@@ -8,7 +8,7 @@ use posicast_synth::yosys::{Yosys, YosysError};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// The tops that were asked for, and the tools that place and route them.
+/// The requested tops, and the tools that place and route them.
 pub(super) struct Clocks<'a> {
     tool: PlaceAndRoute,
     tops: &'a [String],
@@ -29,7 +29,7 @@ pub(super) struct ClockEstimates {
 }
 
 impl<'a> Clocks<'a> {
-    /// Names a misspelt top before anything long begins.
+    /// Refuses a misspelt top before anything long begins.
     pub(super) fn check(tops: &[String], machine: &str, components: &[String]) -> Result<(), Failure> {
         let known = || std::iter::once(machine).chain(components.iter().map(String::as_str));
         if let Some(unknown) = tops.iter().find(|top| !known().any(|known| known == *top)) {

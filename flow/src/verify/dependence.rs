@@ -1,11 +1,10 @@
-//! Finds text in Verilog that means something else to another tool: to a simulator, a synthesiser, or a linter.
+//! Finds text in Verilog whose meaning differs between tools: simulators, synthesisers and linters.
 //!
-//! A simulation says what one tool makes of a file. `` `ifdef VERILATOR `` shows that tool one circuit and every other tool
-//! another; so do pragmas in comments, `$test$plusargs`, and macros that only some tools define. What posicast generates has
-//! none of them. So in a file that was edited they are named, and there is no match: neither simulator can see what the other
-//! tools read.
+//! A simulation only shows how one tool reads a file. `` `ifdef VERILATOR `` shows that tool one circuit and every other tool another; so
+//! do pragmas in comments, `$test$plusargs`, and macros that only some tools define. The Verilog that posicast generates contains none of
+//! them. So if an edited file contains them, they are reported, and there is no match: neither simulator can see what the other tools read.
 //!
-//! What is named:
+//! These texts are reported:
 //!
 //! | text | why |
 //! |---|---|
@@ -24,7 +23,7 @@ pub(super) struct Dependent {
     pub(super) what: String,
 }
 
-/// Directives that set what holds for the text after them, in every tool alike.
+/// Directives that apply to the following text, in the same way in every tool.
 const PLAIN_DIRECTIVES: [&str; 5] = [
     "timescale",
     "default_nettype",
@@ -40,7 +39,7 @@ const PURE: [&str; 14] = [
     "signed", "unsigned", "clog2", "bits", "rtoi", "itor", "display", "displayb", "displayh", "write", "strobe",
     "monitor", "finish", "stop",
 ];
-/// First words of comments that are orders to a tool.
+/// First words of comments that a tool obeys.
 const TOOLS: [&str; 16] = [
     "verilator",
     "synthesis",
@@ -59,7 +58,7 @@ const TOOLS: [&str; 16] = [
     "vcs",
     "verilint",
 ];
-/// Words that make a comment an order wherever they stand in it.
+/// Words that make a comment an instruction to a tool, wherever they stand in it.
 const PRAGMA_WORDS: [&str; 12] = [
     "translate_off",
     "translate_on",
@@ -74,7 +73,7 @@ const PRAGMA_WORDS: [&str; 12] = [
     "rtl_synthesis",
     "message_off",
 ];
-/// Attributes that change what a synthesiser makes of the text.
+/// Attributes that change the result of a synthesiser.
 const ATTRIBUTES: [&str; 9] = [
     "translate_off",
     "translate_on",
@@ -162,7 +161,7 @@ pub(super) fn in_verilog(text: &str) -> Vec<Dependent> {
     found
 }
 
-/// The places of `theirs` that depend on the tool and are not in `ours`, whatever their lines are.
+/// Returns the places of `theirs` that depend on the tool and are not in `ours`, regardless of their lines.
 pub(super) fn added(ours: &str, theirs: &str) -> Vec<Dependent> {
     let mut known: Vec<String> = in_verilog(ours).into_iter().map(|place| place.what).collect();
     let is_new = |place: &Dependent| match known.iter().position(|what| *what == place.what) {
@@ -175,7 +174,7 @@ pub(super) fn added(ours: &str, theirs: &str) -> Vec<Dependent> {
     in_verilog(theirs).into_iter().filter(is_new).collect()
 }
 
-/// What is left of a text, and the line in which it begins.
+/// The rest of a text, and the line in which it begins.
 struct Rest<'a> {
     text: &'a str,
     line: usize,
@@ -298,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stood_there_before_is_not_added() {
+    fn text_that_was_there_before_is_not_added() {
         let ours = "initial $readmemh(\"a\", b);\n// verilator lint_off WIDTH\n";
         let theirs =
             "// mine\n// verilator lint_off WIDTH\ninitial $readmemh(\"a\", b);\ninitial $readmemh(\"c\", b);\n";

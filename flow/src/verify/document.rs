@@ -1,4 +1,4 @@
-//! The output of `verify`: the rows, the findings, and a last line that says what was compared and how much.
+//! The output of `verify`: the rows, the findings, and a last line about what was compared and how much.
 
 use super::folder::Folder;
 use crate::bench::Simulator;
@@ -13,14 +13,14 @@ use serde::Serialize;
 pub struct Document {
     #[serde(flatten)]
     pub(super) report: LockstepReport,
-    /// Why there is no match; `None` where there is one.
+    /// Why there is no match; `None` if there is one.
     pub(super) reason: Option<String>,
-    /// What no clock of the run exercised although a verdict would speak of it; there is then no verdict.
+    /// Parts that a verdict would cover and that no clock of the run exercised; there is then no verdict.
     pub(super) not_exercised: Vec<String>,
-    /// Number of clocks that exercise all of it.
+    /// Number of clocks that exercise all parts.
     #[serde(skip)]
     pub(super) least_clocks: u64,
-    /// Whether the clocks were asked for with `--cycles`.
+    /// Whether `--cycles` set the number of clocks.
     #[serde(skip)]
     pub(super) cycles_given: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -31,9 +31,9 @@ pub struct Document {
     pub(super) replayed: Option<Replayed>,
 }
 
-/// What the folder's files say, beside the simulation.
+/// The result of comparing the folder's files, apart from the simulation.
 enum Files {
-    /// They are those that posicast generates, or edits of the Verilog are accepted; or there is no folder.
+    /// The files are those that posicast generates, or edits of the Verilog are accepted; or there is no folder.
     Agree,
     /// Verilog was edited, and edits are not accepted.
     Edited,
@@ -44,12 +44,12 @@ enum Files {
 }
 
 impl Document {
-    /// Why the command fails; `None` where everything was exercised and equal.
+    /// Why the command fails; `None` if everything was exercised and equal.
     pub(super) fn failed(&self) -> Option<String> {
         if self.report.result == LockstepVerdict::Match {
             return None;
         }
-        Some(match (self.report.mismatches(), self.of_files()) {
+        Some(match (self.report.mismatches(), self.state_of_files()) {
             (1.., _) if self.replayed.is_some() => "recording, RTL and model do not match".to_owned(),
             (1.., _) => "the RTL does not match the model".to_owned(),
             (0, Files::Contradict) => {
@@ -67,7 +67,7 @@ impl Document {
         })
     }
 
-    fn of_files(&self) -> Files {
+    fn state_of_files(&self) -> Files {
         match &self.folder {
             Some(folder) if folder.contradicts() => Files::Contradict,
             Some(folder) if folder.depends_on_tool() => Files::DependOnTool,
@@ -86,7 +86,7 @@ impl Document {
         }
     }
 
-    /// Number of clocks of the shortest row in which something was not exercised.
+    /// Number of clocks of the shortest row that left something unexercised.
     fn fewest_clocks(&self) -> u64 {
         let rows = self.report.blocks.iter().filter(|row| !row.not_exercised.is_empty());
         rows.map(|row| row.cycles).min().unwrap_or(u64::MAX)
@@ -119,7 +119,7 @@ impl Document {
     /// The last line.
     fn verdict(&self) -> String {
         let report = &self.report;
-        let verdict = match (report.result, report.mismatches(), self.of_files()) {
+        let verdict = match (report.result, report.mismatches(), self.state_of_files()) {
             (LockstepVerdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
             (_, 1.., _) => "MISMATCH".to_owned(),
             (_, 0, Files::Contradict) => {

@@ -1,12 +1,12 @@
-//! Compares a folder's files with what posicast generates from the machine file in it: tables, and whatever else was
-//! edited.
+//! Compares a folder's files with those that posicast generates from the machine file in it: tables, and any other
+//! edits.
 //!
-//! The simulation says whether the Verilog behaves as the model of the machine file. It does not say whether a table
-//! is the machine file's where few samples reach it, nor whether the machine file is the one from which the Verilog
-//! was generated. Both are compared directly: a difference in a table, or in the machine file, is no match, whatever
-//! the simulation says. Verilog that was edited otherwise is named, and is no match either: no random run sees every
-//! fault that an edit may bring. A user who edits on purpose says so with `--edited`, and both simulators then
-//! decide. Text that [depends on the tool](super::dependence) is refused even so.
+//! The simulation shows whether the Verilog behaves like the model of the machine file. It does not show whether a
+//! table that few samples reach matches the machine file, nor whether the Verilog was generated from this machine file.
+//! Both are compared directly: a difference in a table, or in the machine file, is no match, whatever the simulation
+//! shows. Verilog with other edits is reported, and is no match either, because no random run detects every fault that
+//! an edit may introduce. A user who edits on purpose gives `--edited`, and both simulators then decide. Text that
+//! [depends on the tool](super::dependence) is refused even then.
 
 use super::dependence::{self, Dependent};
 use crate::failure::Failure;
@@ -54,7 +54,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Whether the folder can be neither what posicast generates, nor behave like it.
+    /// Whether the folder contradicts its machine file: a table, the machine file or the list of modules differs.
     fn contradicts(self) -> bool {
         matches!(self, Self::Machine | Self::Table | Self::Missing)
     }
@@ -74,7 +74,7 @@ pub(super) struct Folder {
 
 impl Folder {
     /// Compares the folder `root` with these modules, which were generated from the machine file in it. With
-    /// `edits_accepted`, Verilog that was edited is named and does not fail.
+    /// `edits_accepted`, edited Verilog is reported and does not fail.
     pub(super) fn compare(
         root: &Path,
         contents: &Contents,
@@ -112,7 +112,7 @@ impl Folder {
             }
         }
         for path in rest {
-            // A file that no edited one can reach is not read by any tool.
+            // No tool reads a file that no edited file can reach.
             let text = std::fs::read(path).map_err(Failure::of_file(path, "read it"))?;
             let text = String::from_utf8_lossy(&text).into_owned();
             if modules_in(&text).any(|module| names_in(&edited).any(|name| name == module)) {
@@ -152,7 +152,7 @@ impl Folder {
             if found.is_none_or(|(_, found)| found != word) {
                 let line = found.map(|(line, _)| *line);
                 let found = found.map(|(_, found)| found.as_str());
-                self.add(file, line, Kind::Table, of_word(name, *address, found, word));
+                self.add(file, line, Kind::Table, word_difference(name, *address, found, word));
             }
         }
         for (address, (line, found)) in &theirs {
@@ -177,7 +177,7 @@ impl Folder {
         }
     }
 
-    /// Whether the folder is no match, whatever the simulation says.
+    /// Whether the folder is no match, whatever the simulation shows.
     pub(super) fn fails(&self) -> bool {
         self.contradicts() || self.depends_on_tool() || (self.edited() > 0 && !self.edits_accepted)
     }
@@ -232,7 +232,7 @@ impl Folder {
         text
     }
 
-    /// What was compared, for the line of the verdict.
+    /// Summary of the comparison, for the line of the verdict.
     pub(super) fn summary(&self) -> String {
         let same = format!("{} files are what posicast generates", self.identical);
         match self.edited() {
@@ -248,7 +248,7 @@ fn modules_in(text: &str) -> impl Iterator<Item = &str> {
     names_in(text).filter(move |name| std::mem::replace(&mut before, name) == "module")
 }
 
-/// The words of a text, of which some are names of modules.
+/// The words of a text, some of which are names of modules.
 fn names_in(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_alphanumeric() || "_$".contains(c)))
         .filter(|name| !name.is_empty())
@@ -260,7 +260,7 @@ type Words = std::collections::BTreeMap<u64, (usize, String)>;
 fn words_of(line: &str) -> Option<(u64, String)> {
     let (address, rest) = line.trim().strip_prefix("words[")?.split_once(']')?;
     let (value, after) = rest.trim().strip_prefix('=')?.split_once(';')?;
-    // Another statement in the line is code.
+    // If another statement follows in the line, the line is code.
     let is_comment = after.trim().is_empty() || after.trim().starts_with("//");
     let is_number = value
         .trim()
@@ -306,8 +306,8 @@ fn first_difference(ours: &[(usize, String)], theirs: &[(usize, String)]) -> Opt
     }
 }
 
-/// Describes a word of the table of `module` that differs.
-fn of_word(module: &str, address: u64, found: Option<&str>, wanted: &str) -> String {
+/// Describes a differing word in the table of `module`.
+fn word_difference(module: &str, address: u64, found: Option<&str>, wanted: &str) -> String {
     let Some(found) = found else {
         return format!("word {address} is missing; the machine file gives {wanted}");
     };
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn other_edits_are_told_apart_and_only_verilog_fails_unless_it_is_accepted() {
+    fn only_edited_verilog_fails_unless_it_is_accepted() {
         for (from, to, kind) in [
             ("// 0.38", "// three eighths", Kind::Comment),
             ("    words[1]", "\twords[1]", Kind::Comment),

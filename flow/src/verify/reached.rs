@@ -3,7 +3,7 @@
 use crate::text::Table;
 use posicast_testbench::lockstep::report::LockstepReport;
 
-/// A row per count, with the bar of a verdict, `–` where there is none.
+/// A row per count, with the number that a verdict requires; `–` if there is none.
 pub(super) fn text(report: &LockstepReport) -> String {
     let mut table = Table::new(&["block", "instance", "reached", ">count", ">least"]);
     for block in &report.blocks {

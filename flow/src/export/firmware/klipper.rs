@@ -1,6 +1,6 @@
 //! Klipper's and Kalico's section `[input_shaper]`.
 //!
-//! `zv`, `zvd` and `mzv` are what posicast designs. The EI kinds of Klipper are fits; where the firmware takes impulses
+//! `zv`, `zvd` and `mzv` equal posicast's designs. The EI kinds of Klipper are fits; if the firmware accepts impulses
 //! (`custom`), posicast's own are written instead.
 
 use super::super::{Selected, Selection, list};
@@ -23,7 +23,7 @@ use std::fmt::Write;
 const MOST_IMPULSES: usize = 5;
 const LEAST_AMPLITUDE: f64 = 0.001;
 const DURATION_S: [f64; 2] = [0.001, 0.2];
-/// Tolerances for which the fit of `ei` was made, as far as they leave what they say.
+/// Tolerances for which the fit of `ei` is accurate enough to keep what it promises.
 const TOLERANCES: [f64; 2] = [0.01, 0.2];
 /// Parameters of `ei` and `mzv` that are tried in a search.
 const TRIED_TOLERANCES: [f64; 3] = [0.02, 0.1, 0.15];
@@ -77,7 +77,7 @@ fn section(selection: &Selection<'_>, wish: &Wish<'_>, version: &KlipperVersion)
     Ok(text + &lines)
 }
 
-/// What is written for an axis that the firmware can be told.
+/// Returns the text for an axis, if the firmware has a shaper for it.
 fn told(selected: &Selected<'_>, axis: &str, version: &KlipperVersion) -> Result<Told, Refusal> {
     let firmware = version.firmware.name();
     if selected.tables.design.impulses.impulses().len() == 1 {
@@ -93,8 +93,8 @@ fn told(selected: &Selected<'_>, axis: &str, version: &KlipperVersion) -> Result
         }
         let exact = matches!(kind, ShaperKind::Zv | ShaperKind::Zvd | ShaperKind::Mzv);
         if let Some(named) = named(kind).filter(|_| exact || !version.has_custom) {
-            let told = of_named(selected, axis, version, mode, named);
-            // A damping ratio beyond a branch's limit is no reason to refuse where it takes impulses.
+            let told = lines_of_named_kind(selected, axis, version, mode, named);
+            // A damping ratio beyond the limit of a branch is not a reason to refuse if the branch accepts impulses.
             if told.is_ok() || !version.has_custom {
                 return told;
             }
@@ -125,7 +125,7 @@ fn told(selected: &Selected<'_>, axis: &str, version: &KlipperVersion) -> Result
     })
 }
 
-/// The kinds of posicast that Klipper has by name.
+/// The kinds of posicast that Klipper offers by name.
 const KINDS: [(ShaperKind, Kind); 6] = [
     (ShaperKind::Zv, Kind::Zv),
     (ShaperKind::Mzv, Kind::Mzv),
@@ -139,7 +139,7 @@ fn named(kind: ShaperKind) -> Option<Kind> {
     KINDS.iter().find(|(of, _)| *of == kind).map(|(_, named)| *named)
 }
 
-/// Mode and kind of an axis with one mode and a kind of its own for it.
+/// Mode and kind of an axis with one mode and one kind for it.
 fn single(selected: &Selected<'_>) -> Option<(Mode, ShaperKind)> {
     match &selected.tables.design.parts {
         ShaperParts::PerMode(parts) if parts.len() == 1 => Some((parts[0].mode, parts[0].kind)),
@@ -147,8 +147,8 @@ fn single(selected: &Selected<'_>) -> Option<(Mode, ShaperKind)> {
     }
 }
 
-/// A kind by name.
-fn of_named(
+/// Returns the text for a kind that the firmware offers by name.
+fn lines_of_named_kind(
     selected: &Selected<'_>,
     axis: &str,
     version: &KlipperVersion,
@@ -212,7 +212,7 @@ fn lines(axis: &str, kind: &str, frequency_hz: f64, damping: f64) -> String {
     format!("shaper_type_{axis}: {kind}\nshaper_freq_{axis}: {frequency_hz:?}\ndamping_ratio_{axis}: {damping:?}\n")
 }
 
-/// The impulses themselves.
+/// Returns the text for the impulses themselves.
 fn custom(selected: &Selected<'_>, axis: &str, firmware: &str) -> Result<Told, Refusal> {
     let design = &selected.tables.design.impulses;
     let few = merged(
@@ -259,7 +259,7 @@ fn custom(selected: &Selected<'_>, axis: &str, firmware: &str) -> Result<Told, R
     })
 }
 
-/// A `smooth_*` kernel as a polynomial.
+/// Returns the text for a `smooth_*` kernel as a polynomial.
 fn smoother(selected: &Selected<'_>, axis: &str, mode: Mode, kind: ShaperKind) -> Result<Told, Refusal> {
     let tolerance = selected
         .axis
@@ -286,7 +286,7 @@ fn smoother(selected: &Selected<'_>, axis: &str, mode: Mode, kind: ShaperKind) -
     })
 }
 
-/// The kinds that a version has itself.
+/// The firmware's own kinds in this version.
 fn own(version: &KlipperVersion) -> Own<'_> {
     let mut kinds = Kind::NAMED.to_vec();
     if version.has_parameters {

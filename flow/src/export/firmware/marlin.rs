@@ -99,7 +99,7 @@ pub(crate) fn marlin_ft(selection: &Selection<'_>, wish: &Wish<'_>) -> Result<St
                 ),
             ));
         };
-        // A smaller one is taken for 0.01; the figures show what that costs.
+        // The firmware replaces a smaller ratio by 0.01; the figures show the effect.
         let damping = mode.damping.max(FT_DAMPING[0]);
         if damping > FT_DAMPING[1] {
             return Err(Refusal::new(
@@ -183,7 +183,7 @@ fn off(line: &str) -> Told {
     }
 }
 
-/// Mode and kind of an axis with one mode, whose shaper the firmware can be told by name.
+/// Returns mode and kind of an axis with one mode, if the firmware offers its shaper by name.
 fn named(selected: &Selected<'_>, firmware: &str, kinds: &str) -> Result<(Mode, ShaperKind), Refusal> {
     let remedy = format!(
         "choose one of {kinds} and one mode, or take --to reprapfirmware or --to kalico, which take impulses, or --to c, csv, numpy or matlab"
@@ -201,7 +201,7 @@ fn named(selected: &Selected<'_>, firmware: &str, kinds: &str) -> Result<(Mode, 
     }
 }
 
-/// The lines of all axes, each with what Marlin leaves.
+/// The lines of all axes, each with the residual that Marlin leaves.
 fn axes(
     selection: &Selection<'_>,
     wish: &Wish<'_>,

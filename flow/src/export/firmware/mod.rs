@@ -1,6 +1,6 @@
 //! Impulses for the firmware of 3D printers.
 //!
-//! Each file says what its firmware takes, how that is written, and which shapers of its own it has; here is what they share:
+//! The file of each firmware describes its numbers, their format, and its own shapers; this file has what the firmwares share:
 //!
 //! ```text
 //! design ─► told: the numbers, and what the firmware makes of them ─► residual at the modes, beside the design's
@@ -24,19 +24,19 @@ use posicast_shaper::firmware::version::{Firmware, VersionError};
 use posicast_shaper::impulse::ImpulseSequence;
 use posicast_shaper::mode::Mode;
 
-/// Difference of two residuals from which on it is worth a warning.
+/// Smallest difference of two residuals that gives a warning.
 const WORTH_A_WARNING: f64 = 0.01;
 
-/// What the user asks of a firmware's export.
+/// The user's options for a firmware's export.
 pub(super) struct Wish<'a> {
     /// Its version; `None` for the newest.
     pub(super) version: Option<&'a str>,
-    /// Whether the firmware's own shaper is written where it cannot take the design.
+    /// Whether the firmware's own shaper is written if the firmware cannot use the design.
     pub(super) closest: bool,
 }
 
 impl Wish<'_> {
-    /// Tables of numbers have no versions and nothing closer than themselves.
+    /// Refuses these options for tables of numbers, which have neither versions nor a closest shaper.
     pub(super) fn refuse_for_arrays(&self) -> Result<(), Failure> {
         let option = match (self.version, self.closest) {
             (Some(_), _) => "--firmware-version",
@@ -50,7 +50,7 @@ impl Wish<'_> {
     }
 }
 
-/// What a firmware makes of the numbers that it is told.
+/// The firmware's interpretation of the written numbers.
 enum Read {
     /// Impulses.
     Impulses(ImpulseSequence),
@@ -67,19 +67,19 @@ impl Read {
     }
 }
 
-/// What is written for an axis.
+/// The text for an axis.
 struct Told {
     /// Lines of the output.
     lines: String,
-    /// What the firmware makes of them.
+    /// The firmware's interpretation of these lines.
     read: Read,
 }
 
-/// Why a firmware cannot take a design.
+/// Why a firmware cannot use a design.
 struct Refusal {
     why: String,
     remedy: String,
-    /// Whether another shaper of the firmware can help: it has one for the axis at all.
+    /// Whether the firmware has a shaper of its own for the axis, so that another one can help.
     has_own: bool,
 }
 
@@ -103,7 +103,7 @@ impl Refusal {
     }
 }
 
-/// A version that is not known, with those that are.
+/// Refuses an unknown version, and lists the known ones.
 fn of_version(firmware: Firmware, error: &VersionError) -> Failure {
     Failure::from(miette::miette!(
         help = format!("versions of {}: {}", firmware.name(), firmware.versions()),
@@ -135,7 +135,7 @@ fn joined(words: &[&str]) -> String {
     }
 }
 
-/// Head of an output: what it is, and for which firmware.
+/// Head of an output: its content, and its firmware.
 fn heading(selection: &Selection<'_>, comment: &str, version: &str) -> String {
     format!(
         "{comment} Shapers of {}, designed by posicast {}, for {version}.\n",
@@ -144,8 +144,8 @@ fn heading(selection: &Selection<'_>, comment: &str, version: &str) -> String {
     )
 }
 
-/// What the firmware leaves at each mode and what the design leaves, as a comment; a warning where the difference matters and was not
-/// asked for by `--closest`.
+/// Compares the residuals of the firmware and of the design at each mode, in a comment. Adds a warning if the difference matters, unless
+/// `--closest` requested it.
 fn residuals(selected: &Selected<'_>, read: &Read, firmware: &str, is_closest: bool) -> String {
     let design = &selected.tables.design.impulses;
     let modes: Vec<Mode> = selected.axis.modes.iter().map(|mode| mode.mode).collect();

@@ -1,4 +1,4 @@
-//! The firmware's own shaper that leaves least, where it cannot take the design.
+//! Finds the firmware's own shaper with the smallest residual, if the firmware cannot use the design.
 
 use super::super::Selected;
 use super::Refusal;
@@ -6,29 +6,29 @@ use crate::failure::Failure;
 use posicast_shaper::analysis::WeightedMode;
 use posicast_shaper::firmware::closest::{BAND, Closest, OwnKind, closest, left};
 
-/// Kinds that a message lists.
+/// Number of kinds that a message lists.
 const LISTED: usize = 8;
 
-/// The shapers that a firmware has itself.
+/// The shapers that a firmware itself offers.
 pub(super) struct Own<'a> {
     /// The firmware.
     pub(super) firmware: &'a str,
     /// Its kinds.
     pub(super) candidates: Vec<OwnKind<'a>>,
-    /// Damping ratio that the firmware takes where none is written.
+    /// Damping ratio that the firmware uses if none is written.
     pub(super) default_damping: Option<f64>,
 }
 
-/// What was found for axes that share a shaper.
+/// Shapers that were found for axes that share one.
 pub(super) struct Found {
     /// The best of each kind, the best first.
     pub(super) best: Vec<Closest>,
-    /// One line that says what the first leaves, and what the design would.
+    /// One line with the residuals of the first shaper and of the design.
     pub(super) line: String,
 }
 
 impl Own<'_> {
-    /// Searches for axes that share a shaper; `None` where no kind fits.
+    /// Searches for axes that share a shaper; `None` if no kind fits.
     pub(super) fn search(&self, axes: &[&Selected<'_>]) -> Option<Found> {
         let weighted = weighted(axes);
         let best = closest(&self.candidates, &weighted, None);
@@ -58,7 +58,7 @@ impl Own<'_> {
         Some(Found { best, line })
     }
 
-    /// The refusal with the firmware's own shapers beside it.
+    /// Returns the refusal together with the firmware's own shapers.
     pub(super) fn refuse(&self, refusal: &Refusal, axes: &[&Selected<'_>]) -> Failure {
         let name = axes.first().map_or("", |selected| selected.axis.name.as_str());
         let found = refusal.has_own.then(|| self.search(axes)).flatten();
@@ -71,7 +71,7 @@ impl Own<'_> {
         ];
         lines.extend(found.best.iter().take(LISTED).map(|of_kind| self.row(of_kind)));
         if let Some(damping) = self.default_damping {
-            // Kinds with parameters are for those who read the whole list above.
+            // Kinds with parameters are only in the list above.
             let plain = |of_kind: &&Closest| !self.candidates[of_kind.candidate].name.contains('(');
             let best = closest(&self.candidates, &weighted(axes), Some(damping));
             let rows: Vec<String> = best.iter().filter(plain).map(|of_kind| self.row(of_kind)).collect();

@@ -17,7 +17,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// Kinds whose impulses are searched: positive ones of two to five impulses.
+/// Kinds whose impulses are tried: positive ones of two to five impulses.
 const KINDS: [ShaperKind; 8] = [
     ShaperKind::Zv,
     ShaperKind::Mzv,
@@ -28,7 +28,7 @@ const KINDS: [ShaperKind; 8] = [
     ShaperKind::Zvddd,
     ShaperKind::ThreeHumpEi,
 ];
-/// Damping ratios up to which they are searched.
+/// Largest damping ratio that is tried.
 const MOST_DAMPING: f64 = 0.3;
 
 /// `M593` with the impulses of the design.
@@ -71,7 +71,7 @@ pub(crate) fn reprapfirmware(selection: &Selection<'_>, wish: &Wish<'_>) -> Resu
             time_s: form.rounded_s(impulse.time_s),
             ..*impulse
         });
-        // Impulses closer than a step clock would coincide; the sequence as it was designed is the better answer then.
+        // Impulses closer than a step clock would coincide; then the designed sequence is the better approximation.
         let read = ImpulseSequence::new(rounded.collect()).unwrap_or_else(|_| selected.tables.design.impulses.clone());
         let _ = writeln!(
             text,
@@ -93,7 +93,7 @@ pub(crate) fn reprapfirmware(selection: &Selection<'_>, wish: &Wish<'_>) -> Resu
     Ok(text + &command)
 }
 
-/// The axes with this one first.
+/// Returns the axes, starting with this one.
 fn reordered<'a, 'b>(all: &[&'a Selected<'b>], first: &'a Selected<'b>) -> Vec<&'a Selected<'b>> {
     let others = all
         .iter()
@@ -102,7 +102,7 @@ fn reordered<'a, 'b>(all: &[&'a Selected<'b>], first: &'a Selected<'b>) -> Vec<&
     std::iter::once(first).chain(others).collect()
 }
 
-/// The impulses that all axes have; else the axis that has others, and why it is refused.
+/// Returns the impulses that all axes share; otherwise the axis that differs, and the reason for the refusal.
 fn shared<'a, 'b>(selection: &'a Selection<'b>, form: Form) -> Result<Vec<Impulse>, (&'a Selected<'b>, Refusal)> {
     let first = &selection.axes[0];
     let differs = |other: &&Selected<'_>| other.columns() != first.columns();
@@ -178,7 +178,7 @@ fn command(form: Form, impulses: &[Impulse]) -> String {
     let [h, t] = form.numbers(&times_s, &amplitudes);
     match (impulses, form) {
         ([] | [_], _) => "M593 P\"none\"\n".into(),
-        // From 3.6 on, a single time would be taken for four; F and S say the same.
+        // From version 3.6 on, a single time would be taken for four; F and S have the same effect.
         ([_, second], Form::Amplitudes) => {
             format!("M593 P\"custom\" F{:.5} S0 H{}\n", 0.5 / second.time_s, digits(&h))
         }
@@ -186,10 +186,10 @@ fn command(form: Form, impulses: &[Impulse]) -> String {
     }
 }
 
-/// Kinds of posicast with as few impulses as the firmware takes, at any frequency.
+/// Kinds of posicast with no more impulses than the firmware accepts, at any frequency.
 fn own() -> Own<'static> {
     let candidates = KINDS.map(|kind| {
-        // A kind at another frequency is the same one, shorter or longer.
+        // A kind at another frequency is the same sequence, shorter or longer.
         let of_one_hz: RefCell<HashMap<u64, Option<ImpulseSequence>>> = RefCell::default();
         OwnKind {
             name: kind.name().into(),

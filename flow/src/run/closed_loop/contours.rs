@@ -34,7 +34,7 @@ pub(super) struct Contours<'a> {
     pub(super) matched: Result<Contoured, String>,
 }
 
-/// The path of a run, from where the axes stand at reset.
+/// Returns the path of a run, from the reset position of the axes.
 pub(crate) fn contour(
     machine: &Machine,
     path: Option<&PathOptions>,
@@ -171,7 +171,7 @@ impl Contours<'_> {
         }
     }
 
-    /// The distance over time; `None` where the stage never moved.
+    /// The distance over time; `None` if the stage never moved.
     pub(super) fn panel(&self, machine: &Machine) -> Option<Panel> {
         let sample_s = machine.clock.sample_period_s();
         let rows = || {

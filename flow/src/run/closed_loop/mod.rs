@@ -26,7 +26,7 @@ pub(crate) use report::StageDocument;
 
 use contours::Contours;
 
-/// Number of runs at a time: one may be Verilator's, which takes as long as the others together.
+/// Number of simultaneous runs: one may be Verilator's, which takes as long as the others together.
 const AT_ONCE: usize = 2;
 /// Frequency factors of machines for which the shapers were not designed.
 const SLOWER: f64 = 0.9;
@@ -54,7 +54,7 @@ pub(crate) struct ClosedLoop<'a> {
     uncompensated: Option<Moved>,
     /// Expected figures of these four moves, by axis.
     expected: [Vec<Expected>; 4],
-    /// By axis, whether its move has no jerk limit, so that its acceleration changes from tick to tick.
+    /// For each axis, whether its move has no jerk limit, so that its acceleration changes from tick to tick.
     harsh: Vec<bool>,
     /// The circles; the error says why there are none.
     circles: Result<Circles, String>,
@@ -275,8 +275,8 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The circle of a run, with the radius of `--radius` in the unit of the first axis. Where there is none, the report
-/// gives the reason, unless `--radius` asked for one.
+/// Returns the circle of a run, with the radius of `--radius` in the unit of the first axis. If there is none, the
+/// report gives the reason; it is a failure if `--radius` requested the circle.
 pub(crate) fn circle(
     machine: &Machine,
     radius: Option<f64>,
@@ -299,7 +299,7 @@ pub(crate) fn circle(
 }
 
 impl ClosedLoop<'_> {
-    /// Where the load of each axis that has an error table rests after the move: index of the axis, and figures.
+    /// Rest position of the load of each axis with an error table: index of the axis, and figures.
     fn compensated(&self) -> impl Iterator<Item = (usize, Compensated)> {
         let without = self.uncompensated.iter();
         let built = &self.stage.of_machine.config.axes;
@@ -321,7 +321,7 @@ fn failure(error: StageRunError, path: &Path) -> Failure {
     }
 }
 
-/// Says at the start what the closed loop of this run will leave out.
+/// Reports at the start what the closed loop of this run will leave out.
 pub(crate) fn announce(simulator: Simulator, has_command: bool, observer: &dyn Observer) {
     if simulator != Simulator::Verilator {
         observer.say(

@@ -79,7 +79,7 @@ impl ClosedLoop<'_> {
             .collect()
     }
 
-    /// Marks where a run was aborted.
+    /// Marks the times at which runs were aborted.
     fn trips<'a>(&self, runs: impl IntoIterator<Item = (&'a str, &'a Moved)>) -> Vec<Mark> {
         let time = self.time();
         let trip = |(name, moved): (&str, &Moved)| {
@@ -158,14 +158,13 @@ impl ClosedLoop<'_> {
         ]
     }
 
-    /// The load after its move; if a run was aborted, all runs from their start, because there may be nothing after
-    /// the move.
+    /// The load after its move. If a run was aborted, all runs from their start, because there may be nothing after the
+    /// move.
     fn vibration(&self, axis: usize) -> Panel {
         if self.runs().iter().any(|(_, moved)| moved.trouble.is_some()) {
             return self.until_the_trip(axis);
         }
-        // Commands come to their ends at different times, and so what is left after them differs in length: all are
-        // shown for as long as the shortest.
+        // Commands end at different times, so the remaining times differ: all curves are as long as the shortest.
         let runs = self.runs().map(|(name, moved)| (name, moved.ringing(axis)));
         let shown = runs.iter().map(|(_, load)| load.len()).filter(|ticks| *ticks > 0).min();
         let shown = shown.unwrap_or(0);

@@ -98,7 +98,7 @@ impl ClosedLoop<'_> {
                 return None;
             }
             let samples = moved.samples.get(index)?;
-            // Where the load rests is what the ringing is about.
+            // The ringing is relative to the rest position of the load.
             let rest = samples.last()?.load - moved.ringing(index).last()?;
             let command: Vec<f64> = samples.iter().map(|sample| sample.command).collect();
             let shaped: Vec<f64> = samples.iter().map(|sample| sample.shaped).collect();

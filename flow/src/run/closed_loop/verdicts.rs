@@ -54,7 +54,7 @@ impl ClosedLoop<'_> {
         )
     }
 
-    /// Measured and expected figures of every move of every axis. Empty for a move that was not made.
+    /// Measured and expected figures of every move of every axis; empty for a move that was not made.
     fn figures(&self) -> impl Iterator<Item = (String, &AxisSection, &AxisFigures, &Expected)> {
         let moves = self.moves().into_iter().zip(&self.expected).zip(MOVES);
         moves.flat_map(move |((moved, expected), (shaping, factor))| {
@@ -68,7 +68,7 @@ impl ClosedLoop<'_> {
         })
     }
 
-    /// Axes whose move is too short to say anything.
+    /// Describes an axis whose move is too short for a verdict.
     fn motionless(&self) -> Option<String> {
         let axes = self.machine.axes.iter().zip(&self.expected[0]);
         let mut short = axes.filter(|(_, expected)| !expected.moves());
@@ -129,14 +129,14 @@ impl ClosedLoop<'_> {
     }
 
     /// The shapers must suppress the vibration for which they are designed. Returns a check for the axes whose moves
-    /// exercise it, and a note about the others; nothing where no axis has a shaper.
+    /// exercise it, and a note about the others; nothing if no axis has a shaper.
     fn calmer(&self) -> Vec<Check> {
         let name = "the shapers suppress the vibration of the move that they are made for";
         if [&self.shaped, &self.unshaped]
             .iter()
             .any(|moved| moved.trouble.is_some())
         {
-            // The check of the faults fails.
+            // The check of the faults reports this failure.
             return vec![Check::not_exercised(name, true, "the move was given up before its end")];
         }
         let built = &self.stage.of_machine.config.axes;
@@ -196,7 +196,7 @@ impl ClosedLoop<'_> {
         checks
     }
 
-    /// With its error table, the load of an axis must rest at its target; no check where no axis has a table.
+    /// With its error table, the load of an axis must rest at its target; there is no check if no axis has a table.
     fn led_to_true_positions(&self) -> Option<Check> {
         self.uncompensated.as_ref()?;
         let (mut failed, mut held, mut open) = (None, Vec::new(), Vec::new());
@@ -227,7 +227,7 @@ impl ClosedLoop<'_> {
         })
     }
 
-    /// The error must stay below `following_error`; no check where no axis has that limit.
+    /// The error must stay below `following_error`; there is no check if no axis has that limit.
     fn limited(&self) -> Option<Check> {
         let limited = self.figures().filter_map(|(name, axis, found, _)| {
             let limit = axis.limits?.following_error?;

@@ -18,7 +18,7 @@ const DAMPINGS: (f64, f64) = (0.1, 0.95);
 const GRID: (usize, usize) = (81, 31);
 /// Residual in percent above which a kind is not drawn, unless it is the machine's own.
 const SHOWN_PERCENT: f64 = 30.0;
-/// Colours of a map's levels, which colour-blind readers can tell apart (ColorBrewer's RdBu): blue is within the tolerance.
+/// Colours of a map's levels, which colour-blind readers can distinguish (ColorBrewer's RdBu): blue is within the tolerance.
 const LEVELS: [RGBColor; 5] = [
     RGBColor(33, 102, 172),
     RGBColor(146, 197, 222),

@@ -20,7 +20,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// What the page shows beside the results of the run.
+/// Content of the page beside the results of the run.
 pub(crate) struct Extra {
     /// Panels of the closed loop, with the name of their file.
     pub(crate) closed_loop: Vec<(&'static str, Vec<Panel>)>,
@@ -30,7 +30,7 @@ pub(crate) struct Extra {
     pub(crate) response: Vec<Panel>,
 }
 
-/// A figure that `report.json` has at this JSON pointer, as the page shows it; a dash where there is none.
+/// A figure of the page with its JSON pointer in `report.json`; a dash if there is no value.
 fn figure_at(pointer: &str, figure: impl Into<Option<f64>>, shown: impl Fn(f64) -> String) -> Markup {
     match figure.into() {
         Some(number) => html! { data value=(number) data-path=(pointer) { (shown(number)) } },
@@ -41,7 +41,7 @@ fn figure_at(pointer: &str, figure: impl Into<Option<f64>>, shown: impl Fn(f64) 
 /// A part of the page with pictures.
 struct Part {
     title: &'static str,
-    /// What the pictures show, and what to look for.
+    /// Description of the pictures, and what to look for.
     about: String,
     /// The command that makes them, to be called in the output folder.
     command: String,
@@ -143,7 +143,7 @@ impl RunReport<'_> {
         }
     }
 
-    /// What this run says nothing about.
+    /// The parts of the machine that this run does not exercise.
     fn not_exercised(&self) -> Markup {
         let mut names = self.lockstep.not_exercised_names();
         names.extend(
@@ -179,7 +179,7 @@ fn detail(check: &Check) -> Markup {
     }
 }
 
-/// A text whose parts between backticks are code.
+/// A text in which the parts between backticks are formatted as code.
 fn with_code(text: &str) -> Markup {
     html! {
         @for (index, part) in text.split('`').enumerate() {
@@ -231,7 +231,7 @@ fn figure(picture: &Inline) -> Markup {
     }
 }
 
-/// The names of a picture's points, for the script; `None` where it has none.
+/// The names of a picture's points, for the script; `None` if it has none.
 fn points(picture: &Inline) -> Option<String> {
     (!picture.points.is_empty()).then(|| serde_json::json!(picture.points).to_string())
 }

@@ -157,7 +157,7 @@ impl RunReport<'_> {
     }
 }
 
-/// The command of a run as one of `simulate`, which has no simulator.
+/// Converts the command of a run to one of `simulate`, which has no simulator.
 fn simulated(run: &str) -> String {
     let mut words = Vec::new();
     let mut given = run.split(' ');

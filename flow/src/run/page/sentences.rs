@@ -1,4 +1,4 @@
-//! A sentence per axis: what its shaper costs, and what it gains.
+//! A sentence per axis about the cost and the gain of its shaper.
 
 use super::figure_at;
 use crate::run::gain::{Gain, GainSource};
