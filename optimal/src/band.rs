@@ -73,7 +73,7 @@ const ROUNDS: usize = 34;
 
 impl Edge {
     fn at(&self, share: f64) -> Point {
-        // Never beyond the ends, whatever the rounding: a proof is refused for a point outside.
+        // Rounding must not lead beyond the ends, because a proof is refused for a point outside.
         let between = |from: f64, to: f64| (from + share * (to - from)).clamp(from, to);
         Point {
             frequency_hz: between(self.from.frequency_hz, self.to.frequency_hz),

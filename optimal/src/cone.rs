@@ -11,7 +11,8 @@ use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverSt
 /// succeeds.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
 
-/// A cone program under construction. Rows of one cone follow each other; the cones are given in the order of [`Rows`].
+/// A cone program under construction. The rows of one cone are consecutive; the cones are given in the order of
+/// [`Rows`].
 #[derive(Debug, Default)]
 pub(crate) struct ConeProgram {
     linear: Vec<f64>,
@@ -105,7 +106,7 @@ impl ConeProgram {
                 .map_err(|error| Unsolved::Stopped(error.to_string()))?;
             solver.solve();
             match solver.solution.status {
-                // Progress that stalls near the end leaves a point that the caller judges by its own arithmetic.
+                // If progress stalls near the end, the caller checks the point by its own arithmetic.
                 SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
                     return Ok(Solution {
                         x: solver.solution.x,

@@ -1,11 +1,11 @@
-//! Computes what a longer duration gains: fewer taps, or less residual.
+//! Computes the benefit of longer durations: fewer taps, or less residual.
 
 use crate::prefer::fewest_at;
 use crate::refine::{Points, least_ratio, peaks};
 use crate::search::check;
 use crate::{OptimalError, Prefer, Request, Tap, shortest};
 
-/// A duration, and what it gains.
+/// A duration, and its benefit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontPoint {
     /// Duration in samples.
@@ -16,19 +16,19 @@ pub struct FrontPoint {
     pub least_ratio: f64,
 }
 
-/// Returns the smallest worst ratio of residual to tolerance that any shaper of at most `samples` samples has, with any number
-/// of taps, to a part in ten thousand.
+/// Returns the smallest worst ratio of residual to tolerance of any shaper of at most `samples` samples, with any number of taps, to a part
+/// in ten thousand.
 ///
 /// # Errors
-/// [`OptimalError`] for bands or tolerances that are out of range, or where the solver does not converge.
+/// [`OptimalError`] for bands or tolerances that are out of range, or if the solver does not converge.
 pub fn least_ratio_at(request: &Request, samples: u32) -> Result<f64, OptimalError> {
     check(request)?;
     let all: Vec<u32> = (0..=samples).collect();
     least_ratio(request, &all, &mut Points::new(request))
 }
 
-/// Returns what each of these durations gains; a duration after the first for which the solver does not converge is
-/// left out. None may be below [`Shortest::least_samples`](crate::Shortest::least_samples).
+/// Returns the benefit of each of these durations; a duration after the first is left out if the solver does not converge for it. None may
+/// be below [`Shortest::least_samples`](crate::Shortest::least_samples).
 ///
 /// # Errors
 /// [`OptimalError::Solver`], also for a duration that is too short.
@@ -53,7 +53,7 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
             samples,
             status: "no shaper of this duration holds".into(),
         })?;
-        // Rounding ends some programs early; the ratio of the few taps then takes their place.
+        // Rounding errors end some programs early; the ratio of the few taps is then used instead.
         let ratio = match least_ratio(&request, &all, &mut points) {
             Err(OptimalError::Solver { .. }) => peaks(&request, &taps).first().map_or(0.0, |peak| peak.0),
             other => other?,

@@ -1,9 +1,8 @@
 //! Rounds to integers, and moves units between taps until the residual is within the tolerances again.
 //!
-//! Amplitudes that may not be negative or have bounds are rounded by largest remainder, and partial sums with bounds one
-//! by one. So the bounds of the command hold for the integers too, and their sum is exactly `2^F`. If the residual of the integers
-//! is then beyond a tolerance somewhere in a band, one unit after the other moves from a tap to another, the best of
-//! all such moves each time.
+//! Amplitudes that may not be negative or have bounds are rounded by largest remainder, and partial sums with bounds one by one. So the
+//! bounds of the command hold for the integers too, and their sum is exactly `2^F`. If the residual of the integers then exceeds a
+//! tolerance somewhere in a band, single units move from one tap to another, the best of all such moves each time.
 
 use crate::band::Point;
 use crate::refine::peaks;
@@ -22,7 +21,7 @@ const NEAR: usize = 6;
 /// A tap of whole units of `2^−F`.
 type Units = (u32, i64);
 
-/// Rounds amplitudes of sum 1 to integers of sum `2^F`. None of them is 0, and the last stays.
+/// Rounds amplitudes of sum 1 to integers of sum `2^F`. None of the integers is 0, and the last tap is kept.
 pub fn round_taps(request: &Request, taps: &[Tap], fraction: u32) -> Vec<(u32, i64)> {
     let unity = 1i64 << fraction;
     let mut units = match request.command {
@@ -69,7 +68,7 @@ fn in_units(low: f64, high: f64, unity: i64) -> (i64, i64) {
 
 /// Rounds down, then adds a unit to the largest remainders, first of the taps that have room below the upper bound.
 ///
-/// Where the integers within the bounds do not reach the sum, some of them are a unit above.
+/// If integers within the bounds do not reach the sum, some of them exceed the bounds by a unit.
 fn by_remainder(taps: &[Tap], unity: i64, (low, high): (i64, i64)) -> Vec<Units> {
     let exact = |tap: &Tap| tap.1 * unity as f64;
     let floor = |tap: &Tap| (exact(tap).floor() as i64).clamp(low, high);
@@ -81,7 +80,7 @@ fn by_remainder(taps: &[Tap], unity: i64, (low, high): (i64, i64)) -> Vec<Units>
     // A clamped floor can be a unit above the exact amplitude, so the sum may also be too large.
     let step = missing.signum();
     let mut left = missing.unsigned_abs();
-    // In order of the remainders, and again, as long as a tap has room; then without regard to the bounds.
+    // The units are added in the order of the remainders, repeatedly while a tap has room, and then without regard to the bounds.
     for regards_bounds in [true, false] {
         loop {
             let before = left;
@@ -171,10 +170,9 @@ fn improve(request: &Request, units: &mut [Units], points: &[Point], unity: i64)
     moved
 }
 
-/// Returns how far ratios of residual to tolerance are above 1, and 0 if none is.
+/// Returns the sum of squares of the excess of ratios of residual to tolerance above 1; 0 if none exceeds 1.
 ///
-/// It is a sum of squares and not the maximum: by the maximum alone, most moves are worse for one of two equal peaks,
-/// and a search would end there.
+/// The maximum alone would not do: with two equal peaks, most moves make one of them worse, and a search would end there.
 fn excess(ratios: impl Iterator<Item = Complex64>) -> f64 {
     ratios.map(|ratio| (ratio.norm_sqr() - 1.0).max(0.0).powi(2)).sum()
 }

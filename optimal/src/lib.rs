@@ -23,8 +23,7 @@
 //! `V` is the modulus of an analytic function of `p`, so its maximum over a band lies on the band's edge ([`Band`]):
 //! only four curves are searched. Rounding to integers is [`round_taps`].
 //!
-//! The crate knows neither machine files nor hardware. The proofs are checked elsewhere, by code that shares nothing
-//! with this.
+//! The crate knows neither machine files nor hardware. The proofs are checked elsewhere, by code that shares nothing with this crate.
 
 mod band;
 mod cone;
@@ -120,10 +119,9 @@ pub type Tap = (u32, f64);
 /// A lower bound of the residual of every shaper of `samples` samples, as weights of the residuals at some points of
 /// the bands.
 ///
-/// With `c_p` the sum `Σ a_i z_p^(N−i)` and weights `y_p`, of which `Σ tolerance_p |y_p| = 1`, the largest ratio of a
-/// residual to its tolerance is at least `Re Σ ȳ_p c_p`; and that is at least its minimum over all amplitudes that the
-/// command allows, which is found sample by sample. Without points the bound is infinite, and says that amplitudes on so
-/// few samples do not sum to 1.
+/// Let `c_p` be the sum `Σ a_i z_p^(N−i)`, and `y_p` weights with `Σ tolerance_p |y_p| = 1`. Then the largest ratio of a residual to its
+/// tolerance is at least `Re Σ ȳ_p c_p`; and that is at least its minimum over all amplitudes that the command allows, which is found
+/// sample by sample. Without points the bound is infinite: amplitudes on so few samples cannot sum to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowerBound {
     /// `N`.
@@ -142,7 +140,7 @@ pub struct LowerBound {
 /// an upper bound, `−i` takes the place of `i`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DelayBound {
-    /// Longest duration in samples of the shapers that it is about.
+    /// Longest duration in samples of the shapers to which the bound applies.
     pub samples: u32,
     /// Whether it is an upper bound.
     pub is_upper: bool,

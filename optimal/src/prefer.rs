@@ -129,7 +129,7 @@ fn fewest_taps(
 }
 
 /// Leaves out taps as long as the others meet the tolerances, the smallest first. A tap that cannot be left out of many
-/// taps cannot be left out of fewer, so each is tried once.
+/// taps cannot be left out of fewer either, so each is tried only once.
 fn leave_out(request: &Request, mut taps: Vec<Tap>, points: &mut Points, level: f64) -> Result<Vec<Tap>, OptimalError> {
     // With a required delay the duration is a limit only: the first and the last sample may be left out as well.
     let ends = match request.delay_samples {

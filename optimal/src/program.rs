@@ -179,8 +179,8 @@ impl Program<'_> {
         }
     }
 
-    /// Adds `Σ weight |a|` of amplitudes that may be negative: a variable at least as large as each of them and as its
-    /// negative.
+    /// Adds `Σ weight |a|` of amplitudes that may be negative, with a variable for each that is at least as large as the amplitude and as
+    /// its negative.
     fn magnitudes(&self, program: &mut ConeProgram, weights: &[f64]) {
         if self.request.command.is_positive() {
             return;
@@ -224,7 +224,7 @@ impl Program<'_> {
     }
 }
 
-/// Clamps amplitudes to bounds; what is then missing from the sum 1 is shared by the room that each of them has.
+/// Clamps amplitudes to bounds; the amount that is then missing from the sum 1 is distributed over the room that each of them has.
 fn within(x: &[f64], low: f64, high: f64) -> Vec<f64> {
     let clamped: Vec<f64> = x.iter().map(|value| value.clamp(low, high)).collect();
     let missing = 1.0 - clamped.iter().sum::<f64>();

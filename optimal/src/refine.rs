@@ -18,7 +18,7 @@ const IDLE: f64 = 1e-7;
 pub(crate) enum Refined {
     /// These amplitudes are within every tolerance times the level, over the whole bands.
     Within(Vec<Tap>),
-    /// No amplitudes are; with the proof, if the ratio was the objective.
+    /// No amplitudes are within the tolerances; with the proof, if the ratio was the objective.
     Beyond(Option<LowerBound>),
 }
 
@@ -40,7 +40,7 @@ impl Points {
         }
     }
 
-    /// Removes the points that the last program did not need: those of another duration are elsewhere.
+    /// Removes the points that the last program did not need, because the points of another duration are elsewhere.
     pub(crate) fn prune(&mut self) {
         let mut used = self.used.iter();
         self.points.retain(|_| used.next().copied().unwrap_or(true));
@@ -80,7 +80,7 @@ pub(crate) fn refine(
                 return Ok(Refined::Beyond(Some(bound)));
             }
         }
-        // With a required delay there is no such bound; the least ratio at some of the points is one as well.
+        // With a required delay there is no such bound; the least ratio at some of the points is also a bound.
         if request.delay_samples.is_some() && found.ratio.is_some_and(|ratio| ratio > level * (1.0 + 10.0 * SLACK)) {
             return Ok(Refined::Beyond(None));
         }
@@ -213,7 +213,7 @@ pub(crate) fn significant(taps: &[Tap]) -> Vec<Tap> {
     kept.copied().collect()
 }
 
-/// Returns the bound that says that amplitudes on these samples do not sum to 1.
+/// Returns the bound that amplitudes on these samples cannot sum to 1.
 fn too_few(samples: &[u32]) -> LowerBound {
     LowerBound {
         samples: samples.last().copied().unwrap_or(0),
@@ -222,8 +222,8 @@ fn too_few(samples: &[u32]) -> LowerBound {
     }
 }
 
-/// Returns the least `Σ a_i gain_i` of amplitudes within bounds and of sum 1: each sample at the lower bound, and what is
-/// then missing where the gain is least.
+/// Returns the least `Σ a_i gain_i` of amplitudes within bounds and of sum 1: each sample is at the lower bound, and the missing amount
+/// goes to the samples with the least gain.
 fn least_over_amplitudes(gains: &[f64], low: f64, high: f64) -> f64 {
     let mut order = gains.to_vec();
     order.sort_by(f64::total_cmp);

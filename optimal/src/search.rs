@@ -137,7 +137,7 @@ fn least(request: &Request, points: &mut Points) -> Result<Least, OptimalError> 
     on_full_grid(request, high, points)
 }
 
-/// Finds the least duration on the full grid, from one that is enough: downwards until one is not, then in between.
+/// Finds the least duration on the full grid, from one that is enough: downwards until one is not, then by bisection.
 fn on_full_grid(request: &Request, mut high: u32, points: &mut Points) -> Result<Least, OptimalError> {
     let (mut reach, mut held) = (1, None);
     let (mut low, mut shorter) = loop {

@@ -1,10 +1,10 @@
-//! Designs the shapers of several axes as one: with one delay, so that the axes arrive together.
+//! Designs the shapers of several axes together, with one delay, so that the axes arrive together.
 //!
-//! The shapers of an axis that last at most `N` samples and meet its tolerances form a convex set, and their mean delay
-//! is linear: so the delays that the axis can have are all from an earliest to a latest one, each the solution of a cone
-//! program. Several axes have a common delay if these ranges meet. With `N` they only grow, so the least common duration
-//! is found by bisection; there the least common delay is the largest of the earliest ones. The axis that decides it has
-//! the shaper of least delay, and the others are designed for that delay as they prefer.
+//! The shapers of an axis that last at most `N` samples and meet its tolerances form a convex set, and their mean delay is linear. So the
+//! possible delays of the axis form a range from an earliest to a latest one, each the solution of a cone program. Several axes have a
+//! common delay if their ranges meet. The ranges only grow with `N`, so the least common duration is found by bisection; there, the least
+//! common delay is the largest of the earliest ones. The axis that determines it gets its shaper of least delay, and the others are
+//! designed for that delay by their preferences.
 
 use crate::prefer::{NONE, levels, preferred, support};
 use crate::program::Objective;
@@ -17,11 +17,11 @@ const NOTHING: f64 = 1e-8;
 /// An axis of a joint design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Partner {
-    /// What its shaper must do.
+    /// Requirements of its shaper.
     pub request: Request,
     /// Its shortest shaper alone.
     pub alone: Shortest,
-    /// Delay in samples that the axis has beside that of its shaper.
+    /// Delay in samples of the axis in addition to that of its shaper.
     pub lag_samples: f64,
 }
 
@@ -38,8 +38,8 @@ pub struct Together {
     pub shorter: Option<Shorter>,
     /// The axis that decides the delay.
     pub latest_axis: usize,
-    /// Lower bound of that axis's delay at this duration, without its lag, for its whole tolerances. The taps leave a part of
-    /// these for rounding, if the duration has room for it, and are later by what that part would gain.
+    /// Lower bound of that axis's delay at this duration, without its lag, for its full tolerances. The taps leave a part of these for
+    /// rounding, if the duration has room for it, and are later by the benefit of that part.
     pub earlier: Option<DelayBound>,
 }
 
@@ -66,7 +66,7 @@ pub enum Shorter {
     },
 }
 
-/// Why there is no joint design, and the axis that it is about.
+/// Why there is no joint design, and the axis that prevents it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{cause}")]
 pub struct TogetherError {
@@ -83,10 +83,10 @@ struct End {
     bound: Option<DelayBound>,
 }
 
-/// Designs shapers with one delay, of the least common duration and, at that, of the least delay.
+/// Designs shapers with one delay: of the least common duration and, at that duration, of the least delay.
 ///
 /// # Errors
-/// [`TogetherError`], with [`OptimalError::Apart`] where no duration up to the longest has a common delay.
+/// [`TogetherError`], with [`OptimalError::Apart`] if no duration up to the longest has a common delay.
 pub fn together(partners: &[Partner]) -> Result<Together, TogetherError> {
     let durations = partners.iter().map(|partner| partner.alone.least_samples).enumerate();
     let Some((slowest, least)) = durations.max_by_key(|(_, samples)| *samples) else {
@@ -133,7 +133,7 @@ pub fn together(partners: &[Partner]) -> Result<Together, TogetherError> {
     at(partners, high, ends, shorter)
 }
 
-/// That the ranges of two axes do not meet.
+/// Two axes whose ranges do not meet.
 struct Apart {
     /// The axis that is always later.
     late_axis: usize,
@@ -185,7 +185,7 @@ fn end(partner: &Partner, samples: u32, latest: bool) -> Result<End, OptimalErro
             });
         }
     }
-    // At the least duration there may be no solution within the solver's accuracy; the shortest shaper is one.
+    // At the least duration there may be no solution within the solver's accuracy; then the shortest shaper is used.
     Ok(End {
         delay: mean(&partner.alone.taps) + partner.lag_samples,
         bound: None,
@@ -269,8 +269,8 @@ fn with_delay(request: &Request, samples: u32, delay: f64) -> Result<Vec<Tap>, O
     }
 }
 
-/// Leaves out ends that are nothing but the solver's accuracy, and moves between the two largest taps what that accuracy
-/// leaves of a required delay.
+/// Leaves out end taps that only result from the solver's accuracy, and corrects the delay by moving amplitude between the two largest
+/// taps.
 fn exactly(mut taps: Vec<Tap>, delay: f64) -> Vec<Tap> {
     let is_nothing = |tap: Option<&Tap>| tap.is_some_and(|tap| tap.1.abs() < NOTHING);
     while taps.len() > 2 && is_nothing(taps.last()) {

@@ -59,7 +59,7 @@ fn golden_bounded_amplitudes_are_as_short_as_the_vector_diagram_says() {
 }
 
 #[test]
-fn a_wide_bound_is_none_and_a_narrow_one_costs_duration() {
+fn a_wide_bound_has_no_effect_and_a_narrow_one_costs_duration() {
     let samples = |command| {
         let request = Request {
             command,

@@ -23,7 +23,7 @@ fn mean_square(request: &Request, taps: &[(u32, f64)]) -> f64 {
 }
 
 #[test]
-fn each_preference_is_best_at_what_it_prefers() {
+fn each_preference_optimises_its_own_measure() {
     // Longer than the shortest: then there is a choice.
     let with = |prefer| {
         let request = Request {
@@ -70,7 +70,7 @@ fn a_tap_budget_is_met_by_a_longer_duration() {
 }
 
 #[test]
-fn a_budget_that_cannot_be_met_says_what_was_found() {
+fn a_budget_that_cannot_be_met_reports_the_fewest_taps() {
     // Two taps have one zero: they hold no band of ±20 %.
     let budget = Request {
         most_taps: 2,

@@ -31,7 +31,7 @@ fn bands_beyond_the_samples_are_refused() {
 }
 
 #[test]
-fn a_tolerance_lies_between_nothing_and_everything() {
+fn a_tolerance_must_lie_between_0_and_1() {
     for tolerance in [0.0, 1.0, -0.1, f64::NAN, f64::INFINITY] {
         let error = refused(&request(100.0, &[(10.0, 0.0)], tolerance, 0.1));
         assert!(matches!(error, OptimalError::Tolerance { band: 0, .. }), "{error}");
@@ -39,7 +39,7 @@ fn a_tolerance_lies_between_nothing_and_everything() {
 }
 
 #[test]
-fn what_is_longer_than_the_longest_says_how_much_is_left() {
+fn exceeding_the_longest_duration_reports_the_smallest_ratio() {
     for command in [posicast_optimal::Command::Positive, SIGNED] {
         let short = Request {
             longest_samples: 20,
