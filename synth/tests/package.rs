@@ -102,7 +102,7 @@ fn a_folder_of_somebody_else_is_refused_untouched() {
 }
 
 #[test]
-fn a_file_is_no_folder() {
+fn a_file_in_place_of_the_folder_is_refused() {
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("out");
     fs::write(&file, "text").unwrap();
@@ -174,7 +174,7 @@ fn an_edit_during_the_run_is_seen_at_the_end() {
 }
 
 #[test]
-fn an_edit_that_equals_the_new_file_is_no_conflict() {
+fn an_edit_that_equals_the_new_file_is_not_a_conflict() {
     let (_scratch, folder) = written();
     let mut package = Package::open(&folder, "xy_stage").unwrap();
     package.add("machine.toml", b"new").unwrap();
@@ -183,7 +183,7 @@ fn an_edit_that_equals_the_new_file_is_no_conflict() {
 }
 
 #[test]
-fn files_no_longer_produced_go_and_extra_files_stay() {
+fn files_no_longer_produced_are_removed_and_extra_files_stay() {
     let (_scratch, folder) = written();
     fs::write(folder.join("notes.txt"), "mine").unwrap();
     write(&folder, &[("machine.toml", "x"), ("sopc/driver.h", "y")]).unwrap();
@@ -247,7 +247,7 @@ fn an_announced_file_that_nobody_wrote_is_an_error() {
 }
 
 #[test]
-fn paths_are_checked_and_taken_once() {
+fn invalid_and_repeated_paths_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let mut package = Package::open(folder.path(), "m").unwrap();
     assert!(matches!(package.add("../evil", b""), Err(PackageError::Path { .. })));
@@ -265,7 +265,7 @@ fn two_runs_on_one_folder_exclude_each_other() {
 }
 
 #[test]
-fn what_a_killed_run_left_staged_goes() {
+fn staged_files_of_a_killed_run_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir_all(folder.path().join(".posicast-staging/rtl")).unwrap();
     write(folder.path(), &FILES).unwrap();
@@ -333,7 +333,7 @@ fn generated(machine: &'static str) -> Vec<(&'static str, &'static str)> {
 }
 
 #[test]
-fn evidence_stays_as_long_as_machine_file_and_verilog_are_what_it_is_about() {
+fn evidence_stays_while_machine_file_and_verilog_are_unchanged() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("out");
     let files = &generated("1\n");

@@ -37,7 +37,7 @@ fn netlist_every_instance_is_a_block() {
 }
 
 #[test]
-fn netlist_memory_multipliers_and_registers_are_those_of_the_source() {
+fn netlist_memory_multipliers_and_registers_match_the_source() {
     for family in Family::ALL {
         let blocks = stage(family).blocks;
         let of = |index: usize| {
@@ -65,7 +65,7 @@ fn netlist_a_counter_takes_about_a_cell_per_bit() {
 }
 
 #[test]
-fn netlist_the_json_is_the_contract() {
+fn netlist_the_json_document_has_its_fixed_keys() {
     let estimate = stage(Family::Cyclone2);
     let json = serde_json::to_value(&estimate).unwrap();
     let resources = ["cells", "registers", "memory_bits", "multipliers"];
@@ -111,7 +111,7 @@ fn netlist_a_multiplier_is_as_wide_as_what_its_operands_carry() {
 }
 
 #[test]
-fn netlist_what_yosys_optimises_late_is_mapped_too() {
+fn netlist_cells_of_late_optimisations_are_mapped_too() {
     let yosys = Yosys::installed().unwrap();
     for family in Family::ALL {
         let total = yosys.estimate(&rtl(&["counter"]), "counter", family).unwrap().total;
@@ -120,7 +120,7 @@ fn netlist_what_yosys_optimises_late_is_mapped_too() {
 }
 
 #[test]
-fn netlist_what_does_not_fit_is_named() {
+fn netlist_resources_that_do_not_suffice_are_named() {
     let mut estimate = stage(Family::Cyclone2);
     estimate.device.memory_bits = 1024;
     let excesses = estimate.excesses();

@@ -72,7 +72,7 @@ pub(super) fn definitions(driver: &StageDriver<'_>) -> String {
         );
         for (place, member) in family.tables.members.iter().enumerate() {
             let table = &member.tables.table;
-            // C cannot write an infinite end, so the largest number stands for it.
+            // C has no literal for an infinite end, so the largest number stands for it.
             let [value, down, up] =
                 [member.value, member.down, member.up].map(|value| (value * family.scale).clamp(f64::MIN, f64::MAX));
             let _ = writeln!(

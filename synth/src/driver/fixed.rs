@@ -5,7 +5,7 @@ use super::{DriverFile, file};
 /// Path below the driver's folder, and text.
 type Fixed = (&'static str, &'static str);
 
-/// Every stage's.
+/// Files for every stage.
 const CORE: [Fixed; 23] = [
     ("inc/posicast_io.h", include_str!("c/inc/posicast_io.h")),
     ("inc/posicast_machine.h", include_str!("c/inc/posicast_machine.h")),
@@ -44,7 +44,7 @@ const BRING_UP: [Fixed; 2] = [
     ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),
 ];
 
-/// Where an axis has an error table.
+/// Files for stages with an error table of an axis.
 const ERROR_TABLE: [Fixed; 2] = [
     (
         "inc/posicast_error_table.h",
@@ -56,13 +56,13 @@ const ERROR_TABLE: [Fixed; 2] = [
     ),
 ];
 
-/// Where the modes of an axis move.
+/// Files for stages with an axis whose modes move.
 const FAMILY: [Fixed; 2] = [
     ("inc/posicast_family.h", include_str!("c/inc/posicast_family.h")),
     ("src/posicast_family.c", include_str!("c/src/posicast_family.c")),
 ];
 
-/// What a stage has beside what every stage has.
+/// Features of a stage that need additional files.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct With {
     pub(super) bring_up: bool,

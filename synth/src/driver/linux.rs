@@ -1,4 +1,4 @@
-//! The server for Linux, by which a host operates the stage over a network: it has the numbers of the link's frames from the model.
+//! The server for Linux, through which a host operates the stage over a network. Its numbers of the link's frames come from the model.
 
 use super::{DriverFile, file};
 use posicast_blocks::link::{

@@ -53,7 +53,7 @@ fn source(driver: &StageDriver<'_>) -> String {
     }
     text.push_str("\nstatic const posicast_axis_machine axes[] = {\n");
     for (axis, data) in driver.config.axes.iter().zip(driver.axes) {
-        of_axis(&mut text, axis, data);
+        write_axis(&mut text, axis, data);
     }
     let _ = write!(
         text,
@@ -64,7 +64,7 @@ fn source(driver: &StageDriver<'_>) -> String {
     text + &family::definitions(driver)
 }
 
-fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
+fn write_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
     let limits = &data.limits;
     let _ = write!(
         text,

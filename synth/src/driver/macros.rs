@@ -52,11 +52,11 @@ pub(super) fn register(text: &mut String, prefix: &str, register: &Register, fie
         let _ = writeln!(text, "#define {name}_RESET {:#x}u", register.reset());
     }
     for field in fields {
-        of_field(text, &name, field);
+        write_field(text, &name, field);
     }
 }
 
-fn of_field(text: &mut String, register: &str, field: &Field) {
+fn write_field(text: &mut String, register: &str, field: &Field) {
     let name = format!("{register}_{}", field.name.to_uppercase());
     let _ = writeln!(text, "#define {name}_OFST {}u", field.low);
     let _ = writeln!(text, "#define {name}_MSK {:#x}u", field.mask());

@@ -122,7 +122,7 @@ fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
     let _ = writeln!(text, "#define POSICAST_BRING_UP_AXES {mask:#x}u");
 }
 
-/// Which axes have an error table, if one has.
+/// Writes which axes have an error table, if one has.
 fn error_tables(text: &mut String, driver: &StageDriver<'_>) {
     let axes = driver.config.axes.iter().enumerate();
     let mask: u32 = axes

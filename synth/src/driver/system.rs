@@ -82,7 +82,7 @@ fn hal_header(top: &str) -> String {
     )
 }
 
-/// The overlay for a stage behind the lightweight bridge of a Cyclone V; another address is another `reg`.
+/// Writes the overlay for a stage behind the lightweight bridge of a Cyclone V; another address needs another `reg`.
 fn overlay(driver: &StageDriver<'_>) -> String {
     let bytes = (4 * driver.map.words()).next_power_of_two().max(4096);
     format!(

@@ -3,16 +3,18 @@
 use super::{HalAxis, HalMachine};
 use std::fmt::Write;
 
-/// Servo periods from a command to the stage's FIFO's end: two in the FIFO, one that plays, one to interpolate.
+/// Servo periods from a command to the end of the stage's FIFO: two in the FIFO, one that is played, one for the
+/// interpolation.
 const LATENCY_PERIODS: f64 = 4.0;
-/// Part of the largest velocity at which an axis looks for its index.
+/// Fraction of the largest velocity at which an axis searches for its index.
 const INDEX_SEARCH: f64 = 0.02;
-/// Following error that LinuxCNC allows where the stage has no limit, as a part of a second at full velocity.
+/// Following error that LinuxCNC allows if the stage has no limit: the distance covered in this time in seconds at full
+/// velocity.
 const FOLLOWING_S: f64 = 0.01;
-/// Travel where the machine file has none, mm or degrees.
+/// Travel in mm or degrees if the machine file has none.
 const TRAVEL: [f64; 2] = [-1e6, 1e6];
 
-/// Its text.
+/// Returns the text of the file.
 pub(super) fn text(machine: &HalMachine<'_>, letters: &[char]) -> String {
     let coordinates: String = letters.iter().collect();
     let spaced: Vec<String> = letters.iter().map(char::to_string).collect();
@@ -76,12 +78,12 @@ JOINTS = {joints}
         joints = machine.axes.len(),
     );
     for (number, (axis, letter)) in machine.axes.iter().zip(letters).enumerate() {
-        of_axis(&mut text, machine, number, axis, *letter);
+        write_axis(&mut text, machine, number, axis, *letter);
     }
     text
 }
 
-fn of_axis(text: &mut String, machine: &HalMachine<'_>, number: usize, axis: &HalAxis<'_>, letter: char) {
+fn write_axis(text: &mut String, machine: &HalMachine<'_>, number: usize, axis: &HalAxis<'_>, letter: char) {
     let [low, high] = axis.travel.unwrap_or(TRAVEL);
     let lag = axis.velocity * (axis.delay_s + LATENCY_PERIODS / machine.servo_hz);
     let following = lag + axis.following_error.unwrap_or(FOLLOWING_S * axis.velocity);
@@ -93,7 +95,7 @@ fn of_axis(text: &mut String, machine: &HalMachine<'_>, number: usize, axis: &Ha
         figure(axis.acceleration),
     );
     let homing = match axis.index {
-        // Only the index: an axis with a switch gets HOME_SEARCH_VEL, too.
+        // This is only for the index: an axis with a switch also needs HOME_SEARCH_VEL.
         true => format!(
             "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = {}\nHOME_USE_INDEX = YES\n",
             figure(INDEX_SEARCH * axis.velocity)
@@ -117,7 +119,7 @@ HOME_OFFSET = 0
     );
 }
 
-/// A figure with at most six significant digits after what the machine file's conversion leaves.
+/// A figure with at most six significant digits, because the machine file's conversion leaves rounding errors.
 fn figure(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     rounded.to_string()

@@ -12,7 +12,7 @@ use posicast_taps::TapTable;
 /// Why the machine cannot be driven at this servo rate.
 #[derive(Debug, thiserror::Error)]
 pub enum ServoError {
-    /// The stage's tick is no whole part of a servo period.
+    /// The stage's tick is not an integral fraction of a servo period.
     #[error(
         "a servo rate of {servo_hz} Hz: the stage's tick of {sample_hz} Hz is a multiple of 2 to 256 of it; give one that is"
     )]
@@ -43,7 +43,7 @@ pub enum ServoError {
 }
 
 impl<'a> HalMachine<'a> {
-    /// A machine with its design at its own tick rate, for a servo thread of this rate.
+    /// Creates the machine from its design at its own tick rate, for a servo thread of `servo_hz`.
     ///
     /// # Errors
     /// [`ServoError`] for a rate that does not suit the machine.

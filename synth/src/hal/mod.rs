@@ -1,4 +1,4 @@
-//! What LinuxCNC needs to drive a machine, as files of the output folder:
+//! Writes the files that LinuxCNC needs to drive a machine, into the output folder:
 //!
 //! ```text
 //! hal/posicast.c, _link, _load, _path    the real-time component, the same for every machine; it is compiled with driver/
@@ -53,15 +53,15 @@ pub struct HalAxis<'a> {
     pub rotary: bool,
     /// Counts of its loop per mm or degree.
     pub counts_per_unit: f64,
-    /// Limits of its moves, per s and s².
+    /// Largest velocity, per s.
     pub velocity: f64,
     /// Largest acceleration, per s².
     pub acceleration: f64,
-    /// Lowest and highest position, where the machine file has them.
+    /// Lowest and highest position, if the machine file has them.
     pub travel: Option<[f64; 2]>,
-    /// Largest following error of the stage's own check, where it has one.
+    /// Largest following error of the stage's own check, if it has one.
     pub following_error: Option<f64>,
-    /// By how much the shaper delays a ramp, s.
+    /// Delay of a ramp by the shaper, in s.
     pub delay_s: f64,
     /// Whether its encoder has an index.
     pub index: bool,
@@ -107,7 +107,7 @@ const FIXED: [(&str, &str); 8] = [
     ("Makefile", include_str!("c/Makefile")),
 ];
 
-/// LinuxCNC's letter of each axis: its own name where that is a letter of its kind, else the next one that is free.
+/// Returns LinuxCNC's letter of each axis: its own name if that is a letter of its kind, otherwise the next free letter.
 fn letters(axes: &[HalAxis<'_>]) -> Result<Vec<char>, HalError> {
     let of_kind = |axis: &HalAxis<'_>| if axis.rotary { &ROTARY[..] } else { &LINEAR[..] };
     let own = |axis: &HalAxis<'_>| {
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_keep_their_letter_where_it_is_one() {
+    fn axes_keep_their_letter_if_it_suits_their_kind() {
         let axes = [
             axis("table", false),
             axis("x", false),

@@ -3,7 +3,7 @@
 use super::HalMachine;
 use std::fmt::Write;
 
-/// Its text.
+/// Returns the text of the file.
 pub(super) fn text(machine: &HalMachine<'_>) -> String {
     let mut text = format!(
         "# {} in LinuxCNC. Written by posicast; docs/linuxcnc.md has the pins.
@@ -47,7 +47,7 @@ setp posicast.watchdog-ms [POSICAST]WATCHDOG_MS
         for (net, from, out, to, into) in wires {
             let _ = writeln!(text, "net {name}-{net} {from}.{number}.{out} => {to}.{number}.{into}");
         }
-        // Both sides write it: LinuxCNC arms the index, the component says that it has come.
+        // Both sides write this pin: LinuxCNC arms the index, and the component reports that it has come.
         let _ = writeln!(
             text,
             "net {name}-index joint.{number}.index-enable <=> posicast.{number}.index-enable"

@@ -41,13 +41,13 @@ fn meaning(shaper: &KitShaper<'_>, port: &Port) -> String {
         .replace('`', "")
 }
 
-/// The user's signal at a port: that of the example where it has one.
+/// The user's signal at a port: that of the example if it has one.
 fn yours(shaper: &KitShaper<'_>, port: &Port) -> String {
     connected(shaper, port).unwrap_or_else(|| format!("{}_{}", shaper.axis, port.name))
 }
 
-/// Meaning of the ports with the axis's position; `None` for others.
-fn of_position(kit: &Kit<'_>, shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
+/// Description of a port with the axis's position; `None` for other ports.
+fn position_meaning(kit: &Kit<'_>, shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
     let axis = shaper.axis;
     if port.name == shaper.position("x") {
         let fraction = kit.command_fraction;
@@ -100,7 +100,7 @@ pub(super) fn template(kit: &Kit<'_>) -> String {
         for port in shaper.ports() {
             let name = format!("{}_{}", shaper.axis, port.name);
             let (wire, mark, meaning) = match connection(&port) {
-                Connection::Yours => (yours(shaper, &port), "CONNECT: ", of_position(kit, shaper, &port)),
+                Connection::Yours => (yours(shaper, &port), "CONNECT: ", position_meaning(kit, shaper, &port)),
                 Connection::Idle => (format!("{}'d0", port.width), "", None),
                 Connection::Open => (String::new(), "", None),
             };

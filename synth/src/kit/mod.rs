@@ -38,7 +38,7 @@ pub struct Kit<'a> {
     pub command_fraction: u32,
     /// Paths of all Verilog files in the folder.
     pub files: &'a [String],
-    /// The shapers of the top module, where the machine has nothing else.
+    /// The shapers of the top module, if the machine has nothing else.
     pub shapers: &'a [KitShaper<'a>],
 }
 
@@ -170,12 +170,12 @@ The clock is {mhz} MHz. {of_pll}
         sample_clocks = kit.sample_clocks,
         fraction = kit.command_fraction,
         mhz = kit.clock_hz / 1e6,
-        of_pll = of_pll(kit),
+        of_pll = pll_text(kit),
         what_else = what_else(kit),
     )
 }
 
-/// The section of the page about the kit that says what a real machine needs beside the wires of the example.
+/// The section of the kit's page about the connections that a real machine needs in addition to those of the example.
 fn what_else(kit: &Kit<'_>) -> String {
     const PAGE: &str = include_str!("../../datasheets/kit.md");
     const HEADING: &str = "## What else to connect on a real machine\n";
@@ -195,8 +195,8 @@ fn what_else(kit: &Kit<'_>) -> String {
     format!("{HEADING}\n{others}{}", section.trim_start().replace("AXIS", axis))
 }
 
-/// What to do on a board with another oscillator.
-fn of_pll(kit: &Kit<'_>) -> String {
+/// Instructions for a board with another oscillator.
+fn pll_text(kit: &Kit<'_>) -> String {
     let oscillators = pll::oscillators(kit);
     let other = "On a board with another oscillator add a PLL: in Quartus ALTPLL (or PLL Intel FPGA IP)\nof the IP catalogue, with the oscillator \
                  at `inclk0` (`refclk`), `c0` (`outclk_0`) as `clk`, and `locked`, inverted, as `rst`.";

@@ -7,8 +7,8 @@
 //!             └───────── / feedback ◄─ / loop ─────┘
 //! ```
 //!
-//! The clock is exactly that of the machine file, because the sample rate depends on it: an oscillator from which it
-//! cannot be made is left out. Limits are those of Lattice's data sheet FPGA-DS-02012 (table of the sysCLOCK PLL).
+//! The clock is exactly that of the machine file, because the sample rate depends on it: an oscillator is left out if this clock cannot be
+//! made from it. Limits are those of Lattice's data sheet FPGA-DS-02012 (table of the sysCLOCK PLL).
 
 use std::fmt::Write;
 
@@ -25,7 +25,7 @@ const OSCILLATORS_HZ: [u64; 7] = [
     50_000_000,
     100_000_000,
 ];
-/// Range of the VCO in Hz, and the middle of it, where it runs best.
+/// Range of the VCO in Hz, and its middle, which is the best frequency.
 const VCO_HZ: std::ops::RangeInclusive<u64> = 400_000_000..=800_000_000;
 const VCO_MIDDLE_HZ: u64 = 600_000_000;
 /// Lowest frequency of an output and of the phase detector, in Hz; the highest is not reached from these oscillators.
@@ -48,8 +48,8 @@ struct Dividers {
     output: u64,
 }
 
-/// The dividers that make `clock_hz` of `oscillator_hz` exactly, with the VCO as near to its middle as can be; `None`
-/// where there are none.
+/// Returns the dividers that make exactly `clock_hz` from `oscillator_hz`, with the VCO as near to its middle as possible; `None` if there
+/// are none.
 fn dividers(oscillator_hz: u64, clock_hz: u64) -> Option<Dividers> {
     if !(LEAST_HZ..=MOST_HZ).contains(&clock_hz) {
         return None;
@@ -77,7 +77,7 @@ fn dividers(oscillator_hz: u64, clock_hz: u64) -> Option<Dividers> {
     found.next()
 }
 
-/// The clock in whole Hz; `None` where it has a fraction.
+/// The clock in whole Hz; `None` if it has a fraction.
 fn clock_hz(kit: &Kit<'_>) -> Option<u64> {
     (kit.clock_hz.fract() == 0.0).then_some(kit.clock_hz as u64)
 }
@@ -96,7 +96,7 @@ pub(super) fn oscillators(kit: &Kit<'_>) -> Vec<u64> {
     choices(kit).into_iter().map(|(oscillator, _)| oscillator).collect()
 }
 
-/// The PLL, and the example behind it; `None` where no oscillator suits.
+/// Writes the PLL, and the example behind it; `None` if no oscillator suits.
 pub(super) fn verilog(kit: &Kit<'_>) -> Option<String> {
     let choices = choices(kit);
     let (first, _) = choices.first()?;
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn golden_the_dividers_are_those_of_project_trellis() {
+    fn golden_the_dividers_match_project_trellis() {
         // `ecppll -i 48 -o 50 --highres`: "Refclk divisor: 2, Feedback divisor: 1, clkout0 divisor: 25, clkout1 divisor:
         // 12, VCO frequency: 600".
         let expected = Dividers {
@@ -272,7 +272,7 @@ mod tests {
             }
         }
         assert!(found > 40, "{found}");
-        // No PLL has so low an output, and none so odd a ratio.
+        // The output frequency is too low for a PLL, and the ratio cannot be made.
         assert_eq!(dividers(25_000_000, 1_000_000), None);
         assert_eq!(dividers(27_000_000, 50_000_001), None);
     }

@@ -53,7 +53,7 @@ fn software(access: &Access) -> Software {
     }
 }
 
-/// Its fields; one for the whole word where a write of any value has an effect.
+/// Returns its fields; one for the whole word if a write of any value has an effect.
 fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
     match map.fields(register) {
         [] => vec![Field::new("any", 0, 32, "any value: the write itself counts")],
@@ -61,7 +61,7 @@ fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
     }
 }
 
-/// Its value after reset, if it has one that software can rely on.
+/// Whether it has a value after reset that software can rely on.
 fn has_reset(access: &Access) -> bool {
     !matches!(access, Access::Live | Access::Shadow { .. }) && software(access) != Software::Write
 }

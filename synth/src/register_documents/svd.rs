@@ -36,13 +36,13 @@ pub(super) fn document(top: &str, map: &RegisterMap) -> String {
         map.words() * WORD_BYTES
     );
     for register in map.registers() {
-        of_register(&mut text, map, register);
+        write_register(&mut text, map, register);
     }
     text.push_str("      </registers>\n    </peripheral>\n  </peripherals>\n</device>\n");
     text
 }
 
-fn of_register(text: &mut String, map: &RegisterMap, register: &Register) {
+fn write_register(text: &mut String, map: &RegisterMap, register: &Register) {
     let mut line = |depth: usize, text_of: &str| {
         let _ = writeln!(text, "{:width$}{text_of}", "", width = 8 + 2 * depth);
     };
@@ -82,13 +82,13 @@ fn of_register(text: &mut String, map: &RegisterMap, register: &Register) {
     }
     line(1, "<fields>");
     for field in fields(map, register) {
-        of_field(&mut line, &field);
+        write_field(&mut line, &field);
     }
     line(1, "</fields>");
     line(0, "</register>");
 }
 
-fn of_field(line: &mut dyn FnMut(usize, &str), field: &Field) {
+fn write_field(line: &mut dyn FnMut(usize, &str), field: &Field) {
     line(2, "<field>");
     line(3, &format!("<name>{}</name>", field.name));
     line(3, &format!("<description>{}</description>", escaped(&meaning(field))));

@@ -24,16 +24,16 @@ pub(super) fn document(top: &str, map: &RegisterMap) -> String {
         quoted(map.about()),
     );
     for register in map.registers() {
-        of_register(&mut text, map, register);
+        write_register(&mut text, map, register);
     }
     text.push_str("};\n");
     text
 }
 
-fn of_register(text: &mut String, map: &RegisterMap, register: &Register) {
+fn write_register(text: &mut String, map: &RegisterMap, register: &Register) {
     let _ = write!(text, "\n    reg {{\n        desc = {};\n", quoted(&about(register)));
     for field in fields(map, register) {
-        of_field(text, register, &field);
+        write_field(text, register, &field);
     }
     let many = match register.words() {
         1 => String::new(),
@@ -47,7 +47,7 @@ fn of_register(text: &mut String, map: &RegisterMap, register: &Register) {
     );
 }
 
-fn of_field(text: &mut String, register: &Register, field: &Field) {
+fn write_field(text: &mut String, register: &Register, field: &Field) {
     let access = match software(&register.access) {
         Software::Read => "sw = r;",
         Software::ReadWrite => "sw = rw;",
@@ -95,7 +95,7 @@ fn about(register: &Register) -> String {
     format!("{} ({}){how}", register.meaning, register.access.words())
 }
 
-/// A name, escaped where it is a word of the language.
+/// Returns a name, escaped if it is a word of the language.
 fn identifier(name: &str) -> String {
     match KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
         true => format!("\\{name}"),

@@ -49,7 +49,7 @@ pub(super) struct Facts {
     pub(super) clock_pin: &'static str,
     /// Pin and board name of the push button for the reset, which is low while pressed.
     pub(super) reset_pin: (&'static str, &'static str),
-    /// Pins for receive and transmit of a serial line on the board; `None` where the fabric has none.
+    /// Pins for receive and transmit of a serial line on the board; `None` if the fabric has none.
     pub(super) uart_pins: Option<[&'static str; 2]>,
     /// Pins `[0]` to `[35]` of the expansion headers `GPIO_0` and `GPIO_1`.
     pub(super) headers: [[&'static str; 36]; 2],

@@ -33,12 +33,12 @@ pub struct BridgeUnit {
 }
 
 impl BridgeUnit {
-    /// Name of the component: the constants are those of the machine, though the Verilog is not.
+    /// Name of the component. It contains the machine's name because the constants are the machine's, although the Verilog is not.
     pub(super) fn name(&self, machine: &str) -> String {
         format!("{machine}_{}", self.config.block())
     }
 
-    /// What its line is.
+    /// The kind of its line.
     pub(super) fn line(&self) -> Line {
         match self.config {
             BridgeConfig::Uart(_) => Line::Uart,

@@ -1,9 +1,9 @@
-//! What the top level of a project has inside: the system with a processor, or the stage with its line alone.
+//! The content of a project's top level: the system with a processor, or the stage with its line alone.
 
 use super::board::Board;
 use super::system;
 
-/// The inside of a project.
+/// The content of a project's top level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Core<'a> {
     /// The system that Platform Designer builds.
@@ -20,7 +20,7 @@ pub(super) enum Line {
 }
 
 impl Line {
-    /// What the stage is, in a sentence.
+    /// A description of the stage as a part of a sentence.
     pub(super) fn of_stage(self) -> &'static str {
         match self {
             Self::Uart => "the stage with its serial line",

@@ -31,7 +31,7 @@ const AGENT_PROPERTIES: [(&str, &str); 10] = [
     ("isMemoryDevice", "false"),
 ];
 
-/// Properties of a host: word addresses, one access at a time, which waits as long as it is told.
+/// Properties of a host: word addresses, and one access at a time, which waits while the bus requests it.
 const HOST_PROPERTIES: [(&str, &str); 4] = [
     ("addressUnits", "WORDS"),
     ("bitsPerSymbol", "8"),

@@ -17,7 +17,7 @@
 //! - Cyclone II ends with Quartus II 13.0sp1. Its files, and the components, which all boards share, use only what
 //!   that version knows.
 //!
-//! Quartus itself is not exercised. The commands are checked against lists of what 13.0 knows (`cli/tests`); their
+//! Quartus itself is not run. The commands are checked against lists of the commands of 13.0 (`cli/tests`); their
 //! results are not checked.
 
 mod board;
@@ -47,7 +47,7 @@ pub struct Design<'a> {
     pub machine: &'a str,
     /// Fabric clock in Hz.
     pub clock_hz: f64,
-    /// Its board, where the machine file names one: the README lists it first.
+    /// Its board, if the machine file names one: the README lists it first.
     pub board: Option<Board>,
     /// Its stage, if it has one.
     pub stage: Option<Unit<'a>>,
@@ -132,7 +132,7 @@ impl Design<'_> {
         Ok(files)
     }
 
-    /// Why boards get no project without a processor: their headers have no pins left for the line.
+    /// Returns why boards get no project without a processor: their headers have no pins left for the line.
     pub fn without_link_project(&self) -> Vec<SopcError> {
         let cores: Vec<Core<'_>> = self.cores().filter(|core| *core != Core::System).collect();
         let of_board = |(board, stage): (Board, &Unit<'_>)| {
@@ -147,7 +147,7 @@ impl Design<'_> {
         self.stage.iter().chain(&self.components)
     }
 
-    /// What the projects of a board have inside.
+    /// Contents of the projects of a board.
     fn cores(&self) -> impl Iterator<Item = Core<'_>> {
         let link = self.link.as_ref().map(|(top, bridge)| Core::Link(top, bridge.line()));
         std::iter::once(Core::System).chain(link)

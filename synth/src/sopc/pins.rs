@@ -1,9 +1,9 @@
 //! Assigns the ports of the top level to pins of a board.
 //!
-//! Clock, reset and, where the fabric has one, the system's serial line have fixed pins on the board. The line of a stage without a processor
-//! is on the headers: the board's own has an RS-232 driver, which is slower than the rates of `[link]`. All others are on the
-//! expansion headers from `GPIO_0[0]` upwards, in the order of the stage's ports: first those that belong to no axis,
-//! then axis by axis.
+//! Clock, reset and the system's serial line, if the fabric has one, have fixed pins on the board. The line of a stage without a processor
+//! is on the headers, because the board's own serial line has an RS-232 driver, which is slower than the rates of `[link]`. All other ports
+//! are on the expansion headers from `GPIO_0[0]` upwards, in the order of the stage's ports: first those that belong to no axis, then axis
+//! by axis.
 
 use super::SopcError;
 use super::board::Board;
@@ -35,7 +35,7 @@ pub(super) const SPI: [(&str, bool); 4] = [
     ("spi_miso", false),
 ];
 
-/// Lines to a host that are high while nobody speaks, or nobody is connected.
+/// Lines to a host that are high while nobody sends, or nobody is connected.
 pub(super) const RESTS_HIGH: [&str; 2] = [UART_RECEIVE, "spi_cs_n"];
 
 /// Purpose of a port of the top level.
@@ -43,7 +43,7 @@ pub(super) const RESTS_HIGH: [&str; 2] = [UART_RECEIVE, "spi_cs_n"];
 pub(super) enum Use {
     Clock,
     Reset,
-    /// Of the line to the host.
+    /// A line to the host.
     Line,
     /// A port of the stage's conduits.
     Stage,
@@ -59,14 +59,14 @@ pub(super) struct Pin {
     pub(super) location: &'static str,
     /// Name on the board.
     pub(super) on_board: String,
-    /// For a port of the stage its conduit and role.
+    /// Conduit and role of a port of the stage.
     pub(super) conduit: Option<(String, String)>,
 }
 
 /// Assigns the pins of a project on a board.
 ///
 /// # Errors
-/// [`SopcError::Pins`] where the headers have fewer than it needs, [`SopcError::Wide`] for a port of more than one bit.
+/// [`SopcError::Pins`] if the headers have fewer pins than needed, [`SopcError::Wide`] for a port of more than one bit.
 pub(super) fn assign(board: Board, core: Core<'_>, stage: &Unit<'_>) -> Result<Vec<Pin>, SopcError> {
     let facts = board.facts();
     let fixed = |port: &str, is_input, purpose, location, on_board: &str| Pin {

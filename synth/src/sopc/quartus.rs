@@ -7,7 +7,7 @@ use super::core::Core;
 use super::pins::{self, Pin, Use};
 use super::unit::Unit;
 
-/// Machine, board and inside of a project.
+/// Machine, board and content of a project.
 type Project<'a> = (&'a str, Board, Core<'a>);
 
 /// I/O standard of all pins.
@@ -107,7 +107,8 @@ pub(super) fn timing((machine, board, core): Project<'_>, stage: &Unit<'_>, pins
         names.join(" ")
     };
     let lines = list(&|pin| pin.is_input && pin.purpose != Use::Clock);
-    // The line of the system ends in a synchroniser of Platform Designer's UART, that of the stage in one like all its lines.
+    // The system's line ends in a synchroniser of Platform Designer's UART, and that of the stage in a synchroniser like those of its other
+    // lines.
     let in_system = core == Core::System;
     let is_synchronised = |purpose| match purpose {
         Use::Stage | Use::Reset => true,
@@ -130,7 +131,7 @@ create_clock -name {clock} -period {period:.3} [get_ports {{{clock}}}]
         period = 1e9 / facts.oscillator_hz,
     );
     if in_system {
-        // Of the debugger.
+        // This is the clock of the debugger.
         let _ = write!(
             text,
             "\

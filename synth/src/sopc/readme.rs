@@ -9,10 +9,10 @@ use super::unit::Unit;
 use super::{Design, system};
 use posicast_blocks::linked_stage::BridgeConfig;
 
-/// A board with a project, what that has inside, and its pins.
+/// A board with a project, the project's content, and its pins.
 type Project<'a> = (Board, Core<'a>, Vec<Pin>);
 
-/// The text.
+/// Returns the text of the page.
 pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
     let mut text = String::new();
     contents(&mut text, design, projects);

@@ -1,5 +1,5 @@
-//! Writes the top level of a project in Verilog-2001: the system, or the stage with its line, and a synchroniser for its reset, nothing
-//! else.
+//! Writes the top level of a project in Verilog-2001. It contains only the system, or the stage with its line, and a synchroniser for the
+//! reset.
 
 use std::fmt::Write;
 

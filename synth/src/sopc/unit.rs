@@ -135,7 +135,7 @@ impl Unit<'_> {
         constants.flat_map(|register| &register.fields)
     }
 
-    /// Reset value of a field of the constants `magic` and `version`; 0 where the map has no field with this name.
+    /// Reset value of a field of the constants `magic` and `version`; 0 if the map has no field with this name.
     pub(super) fn constant(&self, register: &str, field: &str) -> u32 {
         let register = self.component.map().register(register);
         let field = register.and_then(|register| register.fields.iter().find(|other| other.name == field));

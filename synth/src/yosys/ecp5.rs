@@ -14,7 +14,7 @@ use super::{Yosys, YosysError, module_name};
 pub struct TopPort {
     /// Name of the port.
     pub name: String,
-    /// Whether it is an input; else it is an output.
+    /// Whether it is an input; otherwise it is an output.
     pub is_input: bool,
     /// Width in bits.
     pub width: u32,

@@ -126,7 +126,7 @@ fn logic_elements(name: &'static str, cells: u64, memory_bits: u64, multipliers:
     }
 }
 
-/// A question about a name that is nearly right.
+/// Asks whether a similar name was meant.
 fn question(found: &str) -> String {
     did_you_mean(found, &FAMILIES, '"').map_or_else(String::new, |question| format!("; {question}"))
 }

@@ -1,6 +1,6 @@
 //! Counts the logic elements of Cyclone II to IV, Cyclone 10 LP and MAX 10 that hold LUTs and flip-flops.
 //!
-//! An element has a LUT of four inputs and a flip-flop. The flip-flop takes its data from the LUT, or, where the LUT
+//! An element has a LUT of four inputs and a flip-flop. The flip-flop takes its data from the LUT, or, if the LUT
 //! leaves the third input free, from that input: then both serve unrelated functions, which the handbooks call
 //! register packing (Cyclone IV Device Handbook, "LE Features"; Intel Cyclone 10 LP Core Fabric Handbook, 1.1.1).
 //! Quartus does as much of it as the design needs to fit (Settings File Reference Manual,
@@ -72,7 +72,7 @@ mod tests {
         serde_json::json!({"type": "cycloneive_lcell_comb", "parameters": {"sum_lutc_input": mode}, "connections": connections})
     }
 
-    fn of(luts: serde_json::Value, flip_flops: serde_json::Value) -> (u64, u64) {
+    fn packed_and_unpacked(luts: serde_json::Value, flip_flops: serde_json::Value) -> (u64, u64) {
         let (luts, flip_flops) = (cells(luts), cells(flip_flops));
         let found = count(&luts.iter().collect::<Vec<_>>(), &flip_flops.iter().collect::<Vec<_>>());
         (found.packed, found.unpacked)
@@ -81,14 +81,23 @@ mod tests {
     #[test]
     fn a_flip_flop_shares_its_lut_once() {
         let three = serde_json::json!([flip_flop(5.into()), flip_flop(5.into()), flip_flop("0".into())]);
-        assert_eq!(of(serde_json::json!([lut(3, "datac")]), three), (3, 3));
+        assert_eq!(packed_and_unpacked(serde_json::json!([lut(3, "datac")]), three), (3, 3));
     }
 
     #[test]
-    fn a_lut_of_three_inputs_gives_room_to_a_stranger() {
+    fn a_lut_of_three_inputs_leaves_room_for_an_unrelated_flip_flop() {
         let stranger = || serde_json::json!([flip_flop(7.into())]);
-        assert_eq!(of(serde_json::json!([lut(3, "datac")]), stranger()), (1, 2));
-        assert_eq!(of(serde_json::json!([lut(4, "datac")]), stranger()), (2, 2));
-        assert_eq!(of(serde_json::json!([lut(2, "cin")]), stranger()), (2, 2));
+        assert_eq!(
+            packed_and_unpacked(serde_json::json!([lut(3, "datac")]), stranger()),
+            (1, 2)
+        );
+        assert_eq!(
+            packed_and_unpacked(serde_json::json!([lut(4, "datac")]), stranger()),
+            (2, 2)
+        );
+        assert_eq!(
+            packed_and_unpacked(serde_json::json!([lut(2, "cin")]), stranger()),
+            (2, 2)
+        );
     }
 }

@@ -176,7 +176,7 @@ pub struct Yosys {
 }
 
 impl Yosys {
-    /// The program that the environment variable `POSICAST_YOSYS` names, else that of the search path.
+    /// Returns the program that the environment variable `POSICAST_YOSYS` names, or else that of the search path.
     ///
     /// # Errors
     /// [`YosysError::Missing`], or the error of its start.
@@ -193,7 +193,7 @@ impl Yosys {
         ))
     }
 
-    /// The Yosys at this path.
+    /// Returns the Yosys at this path.
     ///
     /// # Errors
     /// Those of [`installed`](Yosys::installed).
@@ -327,8 +327,8 @@ fn to_logic_elements(top: &str, mapping: Mapping) -> String {
     let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
     let to_luts = match mapping {
         Mapping::Luts => format!("{synth} -run begin:map_luts"),
-        // A clear serves all flip-flops of a block of 16 elements, so it is not worth it for a few. Flip-flops
-        // without a clear, or with an asynchronous one, are mapped by Yosys itself.
+        // A clear serves all flip-flops of a block of 16 elements, so it is too costly for a few. Yosys itself maps
+        // flip-flops without a clear, or with an asynchronous one.
         Mapping::LogicElement => format!(
             "{synth} -run begin:map_ffram; techmap -map logic_element.v t:$alu; {synth} -run map_ffram:map_ffs; \
              dfflegalize -cell $_SDFFCE_PP0P_ 01 -cell $_DFFE_PN0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \

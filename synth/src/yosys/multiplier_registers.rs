@@ -1,4 +1,4 @@
-//! Finds the flip-flops that are the built-in registers of a multiplier, and so take no logic element.
+//! Finds the flip-flops that are the built-in registers of a multiplier, and therefore need no logic element.
 //!
 //! An embedded multiplier of Cyclone II to IV, Cyclone 10 LP and MAX 10 has a register for each operand and one for
 //! the product, without synchronous clear, with one clock and one enable for all (Cyclone II Device Handbook,
@@ -14,7 +14,7 @@ const OUTPUTS: [&str; 5] = ["combout", "cout", "q", "Y", "RD_DATA"];
 /// A use of a wire: the cell and its port; `None` for a port of the module.
 type Use<'a> = Option<(&'a NetlistCell, &'a str)>;
 
-/// Names of the flip-flops of the module that are such registers: an operand's if nothing else reads them, a
+/// Returns the names of the module's flip-flops that are such registers: an operand's if nothing else reads them, a
 /// product's if nothing else reads the product; always all bits of a word, or none.
 pub(super) fn of(module: &Module) -> BTreeSet<&str> {
     let multipliers: Vec<_> = module
@@ -54,7 +54,7 @@ pub(super) fn of(module: &Module) -> BTreeSet<&str> {
     found
 }
 
-/// The flip-flops of a word, if each of its wires has its own.
+/// Returns the flip-flops of a word, if each of its wires has its own.
 fn word<'a, 'b>(
     bits: impl IntoIterator<Item = &'b Bit>,
     flip_flops: &HashMap<&Bit, (&'a str, &'a NetlistCell)>,
@@ -67,7 +67,7 @@ fn word<'a, 'b>(
     found.unwrap_or_default()
 }
 
-/// Whether a flip-flop has no clear. Cyclone V has others, and enough of them.
+/// Whether a flip-flop has no clear. Flip-flops of Cyclone V are not counted here; it has enough registers.
 fn can_be_built_in(cell: &NetlistCell) -> bool {
     let constant = |name, value: &str| matches!(port(cell, name), [Bit::Constant(found)] if found == value);
     cell.kind == "dffeas" && constant("sclr", "0") && constant("clrn", "1")
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn two_enables_are_one_too_many() {
+    fn registers_with_different_enables_stay_outside() {
         assert!(found(|cells| cells["b"]["connections"]["ena"] = serde_json::json!([3])).is_empty());
     }
 }

@@ -51,7 +51,7 @@ impl Yosys {
     }
 }
 
-/// Copies `files` into `folder` and returns their paths from there: a Yosys in a sandbox sees no other folder.
+/// Copies `files` into `folder` and returns their paths from there, because a Yosys in a sandbox sees no other folder.
 fn beside(folder: &Path, files: &[PathBuf]) -> Result<Vec<PathBuf>, YosysError> {
     let copy = |(index, file): (usize, &PathBuf)| {
         // Each copy has a folder of its own, because two files may have the same name.

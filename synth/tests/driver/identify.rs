@@ -27,7 +27,7 @@ fn measured_machine() -> Machine {
 }
 
 #[test]
-fn the_stages_own_trace_tells_its_mode() {
+fn the_stages_own_trace_gives_its_mode() {
     let driver = Driver::of(measured_machine());
     let mut bridge = Bridge::new(&driver, "identify.c", false);
     let said = bridge.talk(&[]);
@@ -84,7 +84,7 @@ samples = 2048
 }
 
 #[test]
-fn the_stages_own_trace_tells_its_mode_at_the_motor() {
+fn the_stages_own_trace_gives_its_mode_at_the_motor() {
     let driver = Driver::of(motor_machine());
     let options = PlantOptions {
         encoder_at: Some(Coordinate::Driven),

@@ -265,7 +265,7 @@ fn points_that_no_entry_reaches_are_refused() {
 }
 
 #[test]
-fn limits_that_are_none_are_refused() {
+fn invalid_limits_are_refused() {
     let input = "m 0 256 0 1 1\nm 0 256 1 -1 1\nm 0 256 1 1 0\nm 5 5 1 1 1\n";
     let found = answers(&Driver::write(), input);
     assert_eq!(found, [[3, 0], [3, 0], [3, 0], [0, 0]]);

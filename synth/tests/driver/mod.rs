@@ -65,7 +65,7 @@ fn headers_compile_alone_in_c_and_in_cpp() {
 }
 
 #[test]
-fn the_variant_for_linux_builds_and_refuses_what_is_no_device() {
+fn the_variant_for_linux_builds_and_refuses_other_files_than_devices() {
     let driver = Driver::write();
     let linux = driver.path().join("linux");
     run(Command::new("make").arg("-C").arg(&linux));
@@ -171,7 +171,7 @@ fn the_bsp_finds_every_file() {
 }
 
 #[test]
-fn unit_a_program_moves_the_stage_and_handles_a_fault() {
+fn a_program_moves_the_model_of_the_stage_and_handles_a_fault() {
     a_program_moves_the_stage_and_handles_a_fault(false);
 }
 

@@ -108,7 +108,7 @@ fn fields(map: &RegisterMap, array: fn(&str, u32) -> String) -> Vec<String> {
 }
 
 #[test]
-fn systemrdl_compiler_reads_what_the_map_says() {
+fn systemrdl_compiler_reads_the_registers_of_the_map() {
     let folder = tempfile::tempdir().unwrap();
     for (top, component) in [("xy_stage_stage", stage()), ("xy_stage_x_pwm_avalon", pwm())] {
         let [rdl, _] = documents(&folder, top, component.map());
