@@ -11,7 +11,7 @@ pub enum LinkError {
     Open {
         /// Name of the port.
         port: String,
-        /// What the operating system says.
+        /// Reason that the operating system gives.
         reason: String,
     },
     /// The SPI device cannot be opened.
@@ -19,17 +19,17 @@ pub enum LinkError {
     Spi {
         /// Name of the device.
         device: String,
-        /// What the operating system says.
+        /// Reason that the operating system gives.
         reason: String,
-        /// What to look at.
+        /// What to check.
         remedy: &'static str,
     },
     /// There is no server for this host.
     #[error("{address}: {reason}")]
     Server {
-        /// Where it should be.
+        /// Address of the server.
         address: String,
-        /// What the operating system or the server says.
+        /// Reason that the operating system or the server gives.
         reason: String,
     },
     /// The line fails.
@@ -41,11 +41,11 @@ pub enum LinkError {
         .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
     )]
     NoReply {
-        /// How often the request was sent.
+        /// Number of times that the request was sent.
         attempts: u32,
-        /// How long each reply was awaited.
+        /// Time for which each reply was awaited.
         timeout: Duration,
-        /// Number of frames that came and were no reply.
+        /// Number of frames that were not a reply.
         damaged: u64,
         /// Whether the request writes.
         written: bool,
@@ -53,12 +53,12 @@ pub enum LinkError {
     /// The bridge refuses the request. Nothing was read or written.
     #[error("the bridge refuses the request: {0}")]
     Refused(LinkStatus),
-    /// The reply has another number of words than was asked for.
+    /// The reply has another number of words than requested.
     #[error("{found} words came, {asked} were asked for: is the other end a bridge of this version?")]
     Words {
-        /// Number of words that were asked for.
+        /// Number of words requested.
         asked: usize,
-        /// Number of words that came.
+        /// Number of words received.
         found: usize,
     },
     /// The request cannot be sent.

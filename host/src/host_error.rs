@@ -1,15 +1,15 @@
-//! Why a stage does not do what a host asks for.
+//! Why a stage does not carry out a host's request.
 
 use crate::LinkError;
 use posicast_machine::motion::{AxisMoveError, PlanError};
 
-/// Why a stage does not do what a host asks for.
+/// Why a stage does not carry out a host's request.
 #[derive(Debug, thiserror::Error)]
 pub enum HostError {
     /// The link fails.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// There are registers, but not those of a stage.
+    /// There are registers, but they are not those of a stage.
     #[error("word 0 reads {found:#010x}, and that of a stage {:#010x} (STGE): something else is at this port", u32::from_le_bytes(*b"STGE"))]
     NoStage {
         /// Word 0.
@@ -45,9 +45,9 @@ pub enum HostError {
     Constant {
         /// Name of the register.
         register: String,
-        /// In the stage.
+        /// Value in the stage.
         found: u32,
-        /// By the machine file.
+        /// Value by the machine file.
         expected: u32,
     },
     /// The stage has no such register.
@@ -66,12 +66,12 @@ pub enum HostError {
     /// An axis moves.
     #[error("axis {0} moves: wait until it stands")]
     Busy(String),
-    /// Something did not happen in time.
+    /// A change did not happen in time.
     #[error("axis {axis} is in {state} and did not {wanted} in time")]
     Late {
         /// Name of the axis.
         axis: String,
-        /// What was awaited.
+        /// The awaited change.
         wanted: &'static str,
         /// Its state.
         state: &'static str,
@@ -109,7 +109,7 @@ pub enum HostError {
         /// Upper limit.
         plus: f64,
     },
-    /// The stage refused something.
+    /// The stage refused a request.
     #[error("axis {axis}: the stage refuses {what}")]
     Refused {
         /// Name of the axis.
@@ -117,7 +117,7 @@ pub enum HostError {
         /// What was refused, and what to do.
         what: &'static str,
     },
-    /// A trace was asked for that there is not.
+    /// A trace was requested that the stage cannot record.
     #[error("{0}")]
     Trace(String),
     /// A tap table does not fit the stage.

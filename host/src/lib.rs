@@ -1,6 +1,6 @@
 //! The host's end of the link: reads and writes the registers of a stage over a serial line, SPI or a network, and operates its axes.
 //!
-//! The frames are those of [`posicast_blocks::link`], the other end is the block of `docs/uart_bridge.md` or `docs/spi_bridge.md`.
+//! The frames are those of [`posicast_blocks::link`]; the block of `docs/uart_bridge.md` or `docs/spi_bridge.md` is at the other end.
 //!
 //! - A request that gets no reply in time is sent again with the same sequence number; the bridge executes it once. After
 //!   [`LinkOptions::attempts`] the call fails, and it is not known whether a write has been executed.
@@ -17,7 +17,7 @@
 //! # Ok::<(), posicast_host::LinkError>(())
 //! ```
 //!
-//! [`HostedStage`] is the stage of a machine file at the other end: it refuses any other, and knows the registers by their names.
+//! [`HostedStage`] is the stage of a machine file at the other end: it refuses any other stage, and knows the registers by their names.
 //!
 //! | call | what it does |
 //! |---|---|
@@ -27,8 +27,8 @@
 //! | [`HostedStage::trace`] | signals of an axis, tick by tick |
 //! | [`HostedStage::load_table`] | another tap table, while the axis stands or moves |
 //!
-//! Calls that wait kick the watchdogs of all axes. When the host dies, the watchdog stops the machine
-//! (`watchdog_s` of the machine file): a link that ends is no other case than a host that ends.
+//! Calls that wait kick the watchdogs of all axes. If the host stops or the link fails, the watchdog stops the machine (`watchdog_s` of the
+//! machine file).
 
 mod error;
 mod host_error;

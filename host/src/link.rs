@@ -7,15 +7,15 @@ use posicast_blocks::link::{DELIMITER, MOST_REPLY_BYTES, MOST_WORDS, Reply, Requ
 
 use crate::LinkError;
 
-/// Longest time for which a read from a port waits before the clock is looked at.
+/// Longest time for which a read from a port waits before the time-out is checked.
 pub(crate) const LOOK: Duration = Duration::from_millis(5);
 
-/// How long a reply is awaited, and how often a request is sent.
+/// Time for which a reply is awaited, and number of attempts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LinkOptions {
     /// Time from a request to its reply. It must exceed the time-out of the bridge, which is that of the machine file.
     pub timeout: Duration,
-    /// How often a request is sent, at least once.
+    /// Number of times that a request is sent, at least 1.
     pub attempts: u32,
 }
 
@@ -28,20 +28,20 @@ impl Default for LinkOptions {
     }
 }
 
-/// What the line was like so far.
+/// Statistics of the line so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LinkStatistics {
     /// Requests that were answered.
     pub answered: u64,
     /// Requests that were sent again.
     pub repeated: u64,
-    /// Frames that came and were no reply, or a late one.
+    /// Frames that were not a reply, or were late.
     pub damaged: u64,
     /// Frames that the bridge has dropped since its reset, modulo 256.
     pub dropped_by_bridge: u8,
 }
 
-/// Anything that reads and writes bytes, for a link whose kind of line is known only when the program runs.
+/// Anything that reads and writes bytes, for a link whose kind of line is known only at run time.
 pub trait Line: Read + Write {}
 
 impl<T: Read + Write> Line for T {}
@@ -76,8 +76,8 @@ impl Link<Box<dyn serialport::SerialPort>> {
 }
 
 impl<L: Read + Write> Link<L> {
-    /// A link over any line. Its `read` must return after a short while, with what has come or with the error
-    /// [`ErrorKind::TimedOut`] or [`ErrorKind::WouldBlock`].
+    /// Creates a link over any line. The line's `read` must return after a short while, with the bytes received or with
+    /// the error [`ErrorKind::TimedOut`] or [`ErrorKind::WouldBlock`].
     pub fn new(line: L, options: LinkOptions) -> Self {
         Self {
             line,
@@ -89,12 +89,12 @@ impl<L: Read + Write> Link<L> {
         }
     }
 
-    /// What the line was like so far.
+    /// Returns the statistics of the line so far.
     pub fn statistics(&self) -> LinkStatistics {
         self.statistics
     }
 
-    /// Gives the line back.
+    /// Returns the line.
     pub fn into_line(self) -> L {
         self.line
     }
@@ -149,7 +149,8 @@ impl<L: Read + Write> Link<L> {
     /// [`LinkError`]
     pub fn call(&mut self, request: &Request) -> Result<Vec<u32>, LinkError> {
         if !self.begun {
-            // The first request of a host has the number 0, which is never taken for a repetition, and only reads.
+            // The first request of a host has the number 0, which the bridge never takes for a repetition, and only
+            // reads.
             let first = Request::Read { address: 0, count: 1 };
             self.exchange(&first, 0)?;
             self.begun = true;
@@ -175,7 +176,7 @@ impl<L: Read + Write> Link<L> {
         let attempts = self.options.attempts.max(1);
         for attempt in 0..attempts {
             if attempt > 0 || sequence == 0 {
-                // It ends what the bridge may have taken for the beginning of a frame.
+                // The delimiter ends what the bridge may have taken for the beginning of a frame.
                 self.line.write_all(&[DELIMITER])?;
             }
             self.statistics.repeated += u64::from(attempt > 0);
@@ -216,7 +217,7 @@ impl<L: Read + Write> Link<L> {
             for byte in &bytes[..count] {
                 if *byte != DELIMITER {
                     self.frame.push(*byte);
-                    // Noise without an end must not fill the memory.
+                    // Endless noise must not fill the memory.
                     self.frame.truncate(2 * MOST_REPLY_BYTES);
                     continue;
                 }

@@ -27,10 +27,11 @@ pub struct HostMove {
 }
 
 impl<L: Read + Write> HostedStage<'_, L> {
-    /// Moves axes that are switched on. They start in the same tick; it returns when their shaped commands stand still.
+    /// Moves axes that are switched on. They start in the same tick; the call returns when their shaped commands stand
+    /// still.
     ///
     /// # Errors
-    /// [`HostError`] for a move that does not fit, which then did not begin, and for a fault on the way.
+    /// [`HostError`] for a move that does not fit, in which case no axis moves, and for a fault on the way.
     pub fn move_axes(&mut self, moves: &[HostMove]) -> Result<(), HostError> {
         let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
         let all = self.status()?;

@@ -1,24 +1,24 @@
 //! The line over SPI, with the host as its controller (`docs/spi_bridge.md`).
 //!
-//! Every byte goes in both directions. What is written is sent in one selection, by the flush; a read sends bytes 00 and gives what came.
-//! Bytes 00 are empty frames to both ends.
+//! Every byte goes in both directions. Written bytes are sent in one selection, by the flush; a read sends bytes 00 and returns the bytes
+//! received meanwhile. Bytes 00 are empty frames to both ends.
 //!
-//! A [`Link`](crate::Link) writes the delimiter before a frame that it repeats. The line then first takes what the bridge still has of a reply, in a
-//! selection of its own, and drops it: the bridge repeats it.
+//! A [`Link`](crate::Link) writes the delimiter before a frame that it repeats. The line then first reads the rest of a reply from the
+//! bridge, in a separate selection, and drops it, because the bridge repeats the reply.
 
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 
 use posicast_blocks::link::DELIMITER;
 
-/// Bytes that a read sends for those that it takes: the reply to a write, 10 bytes, and some for the time that the bridge needs.
+/// Bytes that a read sends to receive as many: the reply to a write, 10 bytes, and some for the time that the bridge needs.
 const LOOK_BYTES: usize = 16;
-/// Bytes that take whatever a bridge may have of a reply.
+/// Number of bytes that is enough to read any rest of a reply from the bridge.
 const CLEAR_BYTES: usize = 200;
 
 /// A controller of SPI, mode 0, most significant bit first.
 pub trait SpiTransfer {
-    /// Sends all bytes in one selection; what comes meanwhile replaces them.
+    /// Sends all bytes in one selection; the bytes received meanwhile replace them.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -31,7 +31,7 @@ pub struct SpiLine<T> {
     controller: T,
     /// Bytes since the last flush.
     going: Vec<u8>,
-    /// Bytes that came and were not read yet.
+    /// Bytes that were received and not read yet.
     coming: VecDeque<u8>,
 }
 

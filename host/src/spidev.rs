@@ -41,7 +41,7 @@ impl SpiLine<LinuxSpi> {
     }
 }
 
-/// What to look at if a device cannot be opened.
+/// What to check if a device cannot be opened.
 fn remedy(kind: io::ErrorKind) -> &'static str {
     match kind {
         io::ErrorKind::NotFound => {

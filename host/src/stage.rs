@@ -1,4 +1,4 @@
-//! A stage at the other end of the link: which it is, what its axes do, and how they are switched on and off.
+//! A stage at the other end of the link: its identity, the state of its axes, and how they are switched on and off.
 
 use std::io::{Read, Write};
 
@@ -11,9 +11,9 @@ use crate::{HostError, Link};
 
 /// Ticks for which a change of state is awaited, beyond the times of brakes.
 pub(crate) const PATIENCE_TICKS: u32 = 2000;
-/// Reads after which time that stands still means that the stage has no clock.
+/// Number of reads after which time that stands still means that the stage has no clock.
 const STILL_LOOKS: u32 = 8;
-/// Causes that every stage has after a reset: they are cleared without being asked.
+/// Causes that every stage has after a reset: they are cleared without a request.
 pub(crate) const AFTER_RESET: u32 = Cause::PwmTripped.bit() | Cause::GroupStop.bit();
 
 /// A stage, and the machine that it was made for.
@@ -24,7 +24,7 @@ pub struct HostedStage<'m, L> {
     map: &'m RegisterMap,
 }
 
-/// What an axis does. Positions are in counts of its loop since the stage's reset.
+/// The state of an axis. Positions are in counts of its loop since the stage's reset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisStatus {
     /// Name of the axis.
@@ -49,7 +49,7 @@ pub struct AxisStatus {
     pub error: f64,
     /// Entries that wait.
     pub waiting: u32,
-    /// Active tap table: 0 the machine's, 1 and 2 those that were loaded.
+    /// Active tap table: 0 is the machine's, 1 and 2 are loaded ones.
     pub table_bank: u32,
 }
 
@@ -59,7 +59,7 @@ pub fn causes(word: u32) -> Vec<&'static str> {
     set.map(Cause::name).collect()
 }
 
-/// Patience in ticks of the stage.
+/// The time left for a wait, in ticks of the stage.
 pub(crate) struct Patience {
     from: u32,
     ticks: u32,
@@ -68,10 +68,11 @@ pub(crate) struct Patience {
 }
 
 impl<'m, L: Read + Write> HostedStage<'m, L> {
-    /// Asks who is at the other end, and accepts only the stage of this machine file.
+    /// Identifies the stage at the other end, and accepts only that of this machine file.
     ///
     /// # Errors
-    /// [`HostError`] for no stage, another version of its registers, and another machine, each with what was found and expected.
+    /// [`HostError`] if there is no stage, or one with another version of the registers or of another machine, with the values found and
+    /// expected.
     pub fn open(link: Link<L>, machine: &'m Machine, stage: &'m StageHardware) -> Result<Self, HostError> {
         let mut opened = Self {
             link,
@@ -132,7 +133,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         &self.link
     }
 
-    /// Gives the link back.
+    /// Returns the link.
     pub fn into_link(self) -> Link<L> {
         self.link
     }
@@ -190,7 +191,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         self.write(&[(self.of(axis, register), word)])
     }
 
-    /// Reads what all axes do. It writes nothing.
+    /// Reads the state of all axes; writes nothing.
     ///
     /// # Errors
     /// [`HostError`]
@@ -232,7 +233,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         Ok(all)
     }
 
-    /// Tells the watchdogs of all axes that this host is alive.
+    /// Kicks the watchdogs of all axes, to show that this host is alive.
     ///
     /// # Errors
     /// [`HostError`]
@@ -258,7 +259,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         })
     }
 
-    /// Kicks the watchdogs, and looks whether there is time left.
+    /// Kicks the watchdogs; returns whether there is time left.
     pub(crate) fn pass(&mut self, left: &mut Patience) -> Result<bool, HostError> {
         self.kick()?;
         let [tick, stamp] = self.time()?;
@@ -270,14 +271,14 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         }
     }
 
-    /// Lets ticks pass.
+    /// Waits for this many ticks.
     pub(crate) fn rest(&mut self, ticks: u32) -> Result<(), HostError> {
         let mut left = self.patience(ticks)?;
         while self.pass(&mut left)? {}
         Ok(())
     }
 
-    /// Waits until `done` holds for each of these axes. A cause of any of them ends it.
+    /// Waits until `done` holds for each of these axes. A cause of any of them is an error.
     pub(crate) fn wait(
         &mut self,
         axes: &[usize],
@@ -304,7 +305,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         }
     }
 
-    /// Ticks until a brake is open or applied, and some more.
+    /// Ticks until a brake is open or applied, with a margin.
     fn brake_ticks(&self, axes: &[usize]) -> u32 {
         let limits = axes.iter().filter_map(|axis| self.axis(*axis).limits);
         let longest_s = limits
@@ -313,10 +314,12 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         (longest_s * self.machine.clock.sample_hz) as u32 + PATIENCE_TICKS
     }
 
-    /// Switches these axes on; those in HOLD stay. What a reset leaves behind is cleared; faults are cleared only with `clears_faults`.
+    /// Switches these axes on; axes in HOLD stay there. Causes that a reset leaves behind are cleared; faults are cleared only with
+    /// `clears_faults`.
     ///
     /// # Errors
-    /// [`HostError::Fault`] for a fault, [`HostError::Busy`] for an axis that moves, others where an axis does not get ready in time.
+    /// [`HostError::Fault`] for a fault, [`HostError::Busy`] for an axis that moves, other errors for an axis that does not become ready in
+    /// time.
     pub fn switch_on(&mut self, axes: &[usize], clears_faults: bool) -> Result<(), HostError> {
         let all = self.status()?;
         let mut off = Vec::new();
@@ -326,13 +329,13 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
                 Some(SupervisorState::Run | SupervisorState::QuickStop) => {
                     return Err(HostError::Busy(status.axis.clone()));
                 }
-                // Entries of a host that has died would be played before those of this one.
+                // Waiting entries of a previous host would be played before those of this one.
                 Some(SupervisorState::Hold) if status.causes & !Cause::GroupStop.bit() == 0 && status.waiting == 0 => {}
                 _ if status.causes & !AFTER_RESET != 0 && !clears_faults => return Err(fault(status)),
                 _ => off.push(*axis),
             }
         }
-        // READY must see it low first, so that an axis whose fault is cleared does not switch on by itself.
+        // READY must see `enable` low first, so that an axis whose fault is cleared does not switch on by itself.
         self.enable(&off, false)?;
         let ticks = self.brake_ticks(axes);
         let mut left = self.patience(ticks)?;
@@ -384,7 +387,7 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
     /// Switches these axes off: after a quick stop and the brake.
     ///
     /// # Errors
-    /// [`HostError`]; a fault is none, because its outputs are off already.
+    /// [`HostError`]; a fault is not an error here, because it has already switched the outputs off.
     pub fn switch_off(&mut self, axes: &[usize]) -> Result<(), HostError> {
         self.enable(axes, false)?;
         let mut left = self.patience(self.brake_ticks(axes))?;

@@ -1,4 +1,4 @@
-//! Tap tables: loaded into the bank that is not in use, read back, and handed over to.
+//! Tap tables: loads them into the unused bank, reads them back, and hands over to them.
 
 use std::io::{Read, Write};
 
@@ -9,11 +9,10 @@ use crate::stage::PATIENCE_TICKS;
 use crate::{HostError, HostedStage};
 
 impl<L: Read + Write> HostedStage<'_, L> {
-    /// Loads a table into the bank that is not in use, reads it back, and hands over to it; the axis may stand or move. Returns the bank.
+    /// Loads a table into the unused bank, reads it back, and hands over to it; the axis may stand or move. Returns the bank.
     ///
     /// # Errors
-    /// [`HostError::Table`] for a table that the hardware does not hold or that is read back with a difference; nothing is handed over
-    /// then.
+    /// [`HostError::Table`] for a table that does not fit the hardware or that differs when it is read back; there is no handover then.
     pub fn load_table(&mut self, axis: usize, table: &TapTable) -> Result<u32, HostError> {
         self.table_fits(axis, table)?;
         let active = self.status()?[axis].table_bank;

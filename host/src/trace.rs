@@ -14,7 +14,7 @@ const SPARE_TICKS: u32 = 100;
 /// Most ticks of a test signal.
 const MOST_TICKS: u32 = (1 << 24) - 1;
 
-/// What is recorded.
+/// Signals to record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceRequest {
     /// Index of the axis.
@@ -84,7 +84,7 @@ impl RecordedTrace {
         let names: Vec<String> = self.signals.iter().map(name).collect();
         let mut text = format!("time_s,{}\n", names.join(","));
         for (row, values) in self.values().enumerate() {
-            // As many decimals as a tick has, without the rounding of the product.
+            // The time has as many decimals as a tick, without the rounding error of the product.
             let _ = write!(text, "{}", format_args!("{:.9}", row as f64 * self.row_s));
             values.iter().for_each(|value| {
                 let _ = write!(text, ",{value}");
@@ -97,7 +97,7 @@ impl RecordedTrace {
     /// The trace as VCD: a real per signal, times in ns.
     ///
     /// # Errors
-    /// That of `to`.
+    /// The error of `to`.
     pub fn vcd(&self, to: impl Write) -> io::Result<()> {
         let mut writer = vcd::Writer::new(to);
         writer.timescale(1, TimescaleUnit::NS)?;
@@ -136,10 +136,10 @@ impl<L: Read + Write> HostedStage<'_, L> {
         }
     }
 
-    /// Records until the memory is full, and reads it. The recording begins at once.
+    /// Records until the memory is full, and reads it. The recording begins immediately.
     ///
     /// # Errors
-    /// [`HostError`], [`HostError::Trace`] for a request that the hardware cannot do.
+    /// [`HostError`]; [`HostError::Trace`] for a request that the hardware cannot fulfil.
     pub fn trace(&mut self, request: &TraceRequest) -> Result<RecordedTrace, HostError> {
         let axis = request.axis;
         let chosen = self.chosen(request)?;
@@ -201,7 +201,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
         chosen.collect()
     }
 
-    /// The writes that begin a test signal.
+    /// The writes that start a test signal.
     fn shake_words(&mut self, axis: usize, shake: &Shake, ticks: u32) -> Result<Vec<(String, u32)>, HostError> {
         let status = &self.status()?[axis];
         if status.causes != 0 {
@@ -289,7 +289,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
     }
 }
 
-/// A signal, from its entry in the register map: the words behind the comma are its format and unit, `Q24.8 counts` or `counts`.
+/// Converts an entry of the register map to a signal: the words after the comma are its format and unit, `Q24.8 counts` or `counts`.
 fn signal(choice: &Choice) -> RecordedSignal {
     let format = choice.meaning.rsplit(',').next().unwrap_or_default().trim();
     let (fraction, unit) = match format.strip_prefix('Q').and_then(|rest| rest.split_once(' ')) {

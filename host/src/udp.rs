@@ -1,12 +1,12 @@
-//! The line over UDP: frames in datagrams, to the server that the C driver has for Linux (`driver/linux/posicast_server.h`).
+//! The line over UDP: frames in datagrams, to the C driver's server for Linux (`driver/linux/posicast_server.h`).
 //!
 //! ```text
 //! token, 4 bytes | number, 4 bytes | frame         little-endian
 //! ```
 //!
-//! The host asks for a token with a number of its own, and gets one if no other host is there. Its requests have the numbers 1, 2, 3, …; a
-//! repetition has the number of the first attempt. What comes with another token or number is a late reply, and ignored. A datagram
-//! without a frame ends it.
+//! The host asks for a token with a number of its own, and gets one if there is no other host. Its requests have the numbers 1, 2, 3, …; a
+//! repetition has the number of the first attempt. A datagram with another token or number is a late reply, and is ignored. A datagram
+//! without a frame ends the connection.
 
 use std::collections::VecDeque;
 use std::collections::hash_map::RandomState;
@@ -24,7 +24,7 @@ use crate::{Link, LinkError, LinkOptions};
 const HEADER_BYTES: usize = 8;
 /// More than the longest datagram.
 const DATAGRAM_BYTES: usize = 512;
-/// The token of a host that has none, and of a server that refuses.
+/// The token of a host without one, and of a server that refuses.
 const NO_TOKEN: u32 = 0;
 
 /// A line over UDP.
@@ -34,7 +34,7 @@ pub struct UdpLine {
     token: u32,
     /// Number of the last request.
     number: u32,
-    /// Its frame, without delimiters before it.
+    /// Frame of the last request, without delimiters before it.
     request: Vec<u8>,
     /// Bytes since the last flush.
     going: Vec<u8>,
@@ -46,7 +46,7 @@ impl Link<UdpLine> {
     /// Opens a link to a server at `HOST:PORT`.
     ///
     /// # Errors
-    /// [`LinkError::Server`] if there is no such address, no server, or another host.
+    /// [`LinkError::Server`] if there is no such address, no server, or already another host.
     pub fn open_udp(address: &str, options: LinkOptions) -> Result<Self, LinkError> {
         Ok(Self::new(UdpLine::open(address, options)?, options))
     }
@@ -56,7 +56,7 @@ impl UdpLine {
     /// Asks the server at `HOST:PORT` for a token.
     ///
     /// # Errors
-    /// [`LinkError::Server`] if there is no such address, no server, or another host.
+    /// [`LinkError::Server`] if there is no such address, no server, or already another host.
     pub fn open(address: &str, options: LinkOptions) -> Result<Self, LinkError> {
         let failed = |reason: String| LinkError::Server {
             address: address.to_owned(),
@@ -90,7 +90,7 @@ impl UdpLine {
         Ok(line)
     }
 
-    /// Asks for a token, until there is an answer.
+    /// Asks for a token until there is an answer.
     fn ask(&self, asked: u32, options: LinkOptions) -> Result<u32, String> {
         let attempts = options.attempts.max(1);
         for _ in 0..attempts {
@@ -121,7 +121,7 @@ impl UdpLine {
         self.socket.send(&datagram).map(drop)
     }
 
-    /// Token, number and frame of the next datagram; `None` if none came, or something else.
+    /// Returns token, number and frame of the next datagram; `None` if none came, or an invalid one.
     fn receive(&self) -> io::Result<Option<(u32, u32, Vec<u8>)>> {
         let mut bytes = [0; DATAGRAM_BYTES];
         let count = match self.socket.recv(&mut bytes) {
@@ -190,7 +190,7 @@ impl Read for UdpLine {
 }
 
 impl Drop for UdpLine {
-    /// Lets the next host in. If this is lost, the next one waits.
+    /// Releases the server for the next host. If this datagram is lost, the next host has to wait.
     fn drop(&mut self) {
         if self.token != NO_TOKEN {
             let _ = self.send(self.number.wrapping_add(1), &[]);

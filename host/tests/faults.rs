@@ -124,7 +124,7 @@ fn words_are_read_and_written() {
 }
 
 #[test]
-fn what_the_bridge_refuses_is_an_error_and_does_nothing() {
+fn a_refusal_of_the_bridge_is_an_error_and_writes_nothing() {
     let mut link = Link::new(line(0), FAST);
     let error = link.write_list(&[(1, 1), (REGISTERS, 1)]).unwrap_err();
     assert!(matches!(error, LinkError::Refused(LinkStatus::WrongAddress)), "{error}");

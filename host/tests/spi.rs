@@ -135,7 +135,7 @@ fn damaged_bits_write_nothing_wrong_and_nothing_twice() {
 
 /// The rest of a long reply would hide the reply to what the host sends next.
 #[test]
-fn a_repetition_first_takes_what_is_left_of_a_reply() {
+fn a_repetition_first_drops_the_rest_of_a_reply() {
     let mut line = SpiLine::new(Bench::new(0));
     let frame = Request::Read { address: 0, count: 40 }.encode(0).unwrap();
     let mut reply = [0; 400];

@@ -124,7 +124,7 @@ fn a_host_that_dies_in_a_move_leaves_a_machine_that_stops() {
 
 /// The mode of the machine file is found through the line.
 #[test]
-fn a_trace_of_a_shaken_axis_tells_its_mode() {
+fn a_trace_of_a_shaken_axis_gives_its_mode() {
     let machine = machine();
     let stage = stage(&machine);
     let mut host = open(&machine, &stage);
