@@ -1,4 +1,4 @@
-//! Compares what LinuxCNC's sampler recorded of `posicast_shaper` with the clocked model of the hardware, bit for bit.
+//! Compares the recording of `posicast_shaper` by LinuxCNC's sampler with the clocked model of the hardware, bit for bit.
 //!
 //! `clocked_shaper TABLES SAMPLES`: rows of the first axis's `word-in`, `word-out` and `table-used`, from the first servo period on.
 

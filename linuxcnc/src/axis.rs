@@ -24,24 +24,25 @@ pub(crate) struct Axis {
     modulo: bool,
     /// The last command that was a number, in words.
     word: i64,
-    /// Whether a command has been shaped since the last that was not.
+    /// Whether the previous command was shaped.
     shapes: bool,
 }
 
-/// What an axis has made of a command.
+/// Result of an axis for a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shaped {
     /// The shaped position, in the controller's unit.
     pub(crate) position: f64,
-    /// The word that the shaper took.
+    /// The shaper's input word.
     pub(crate) word_in: i32,
-    /// The word that it gave.
+    /// The shaper's output word.
     pub(crate) word_out: i32,
     /// The table in use, or to which a handover leads.
     pub(crate) table: u32,
     /// Whether a handover is under way; the next swap waits for its end.
     pub(crate) changes: bool,
-    /// Whether the command left the range of its word, or was not a number: it was clamped, or held.
+    /// Whether the command was outside the range of its word and was clamped, or was not a number and the last one was
+    /// held.
     pub(crate) clamped: bool,
 }
 
@@ -67,8 +68,8 @@ impl Axis {
         })
     }
 
-    /// Takes the command of a period. With `enable` low the output is the command, and the history begins anew from it.
-    /// `table` that does not exist changes nothing.
+    /// Takes the command of a period. With `enable` low the output equals the command, and the history restarts from
+    /// it. A `table` that does not exist changes nothing.
     pub(crate) fn update(&mut self, command: f64, table: u32, enable: bool) -> Shaped {
         let clamped = self.take(command);
         if !enable || !self.shapes {
@@ -103,7 +104,7 @@ impl Axis {
         }
     }
 
-    /// Makes the command a word; returns whether it is not quite that command.
+    /// Converts the command to a word; returns whether it was clamped, or held because the command was not a number.
     fn take(&mut self, command: f64) -> bool {
         let words = (command * self.lsb_per_unit).round();
         if words.is_nan() {

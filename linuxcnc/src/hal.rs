@@ -37,7 +37,7 @@ pub(crate) enum Direction {
 /// A function of the servo thread: its argument and the period in ns.
 pub(crate) type Function = unsafe extern "C" fn(*mut c_void, c_long);
 
-/// A value that a pin has.
+/// A value that a pin can have.
 pub(crate) trait PinValue: Copy {
     const NEW: unsafe extern "C" fn(*const c_char, c_int, *mut *mut Self, c_int) -> c_int;
 }
@@ -79,14 +79,14 @@ impl<T: PinValue> Pin<T> {
 pub(crate) struct Component(c_int);
 
 impl Component {
-    /// Makes the component known, or returns the HAL's error.
+    /// Registers the component with the HAL, or returns the HAL's error.
     pub(crate) fn new(name: &CStr) -> Result<Self, c_int> {
         // SAFETY: the name ends with 0.
         let id = unsafe { hal_init(name.as_ptr()) };
         if id < 0 { Err(id) } else { Ok(Self(id)) }
     }
 
-    /// Makes a pin with an initial value.
+    /// Creates a pin with an initial value.
     pub(crate) fn pin<T: PinValue>(self, name: &str, direction: Direction, value: T) -> Result<Pin<T>, c_int> {
         let name = CString::new(name).map_err(|_| INVALID)?;
         // SAFETY: a plain allocation, which is checked; its memory stays until the HAL ends.
@@ -104,14 +104,14 @@ impl Component {
         Ok(pin)
     }
 
-    /// Gives the servo thread a function with its argument, which must stay until [`Self::exit`].
+    /// Exports a function to the servo thread, with its argument, which must stay valid until [`Self::exit`].
     pub(crate) fn export(self, name: &CStr, function: Function, argument: *mut c_void) -> Result<(), c_int> {
         // SAFETY: the name ends with 0; the caller keeps the argument.
         let status = unsafe { hal_export_funct(name.as_ptr(), function, argument, 1, 0, self.0) };
         if status < 0 { Err(status) } else { Ok(()) }
     }
 
-    /// Says that all pins are there.
+    /// Reports that all pins exist.
     pub(crate) fn ready(self) -> Result<(), c_int> {
         // SAFETY: the component exists.
         let status = unsafe { hal_ready(self.0) };

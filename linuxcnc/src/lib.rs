@@ -34,7 +34,7 @@ const PERIOD_TOLERANCE: f64 = 0.01;
 /// The parameter `tables=FILE`, as `RTAPI_MP_STRING` in C declares it: LinuxCNC finds it by these names.
 static TABLES: AtomicPtr<c_char> = AtomicPtr::new(null_mut());
 
-/// An address or a text that a symbol stands for.
+/// An address or a text that a symbol refers to.
 #[repr(transparent)]
 pub struct Symbol(*const c_void);
 
@@ -49,12 +49,12 @@ pub static rtapi_info_type_tables: Symbol = Symbol(c"s".as_ptr().cast());
 #[unsafe(no_mangle)]
 #[allow(non_upper_case_globals, reason = "LinuxCNC looks for this name")]
 pub static rtapi_info_address_tables: Symbol = Symbol((&raw const TABLES).cast());
-/// What it is, for `modinfo`.
+/// Description of the parameter, for `modinfo`.
 #[unsafe(no_mangle)]
 #[allow(non_upper_case_globals, reason = "LinuxCNC looks for this name")]
 pub static rtapi_info_description_tables: Symbol =
     Symbol(c"file of shapers that posicast generate --hal wrote".as_ptr().cast());
-/// License, which LinuxCNC may look at.
+/// License, which LinuxCNC may check.
 #[unsafe(no_mangle)]
 #[allow(non_upper_case_globals, reason = "LinuxCNC looks for this name")]
 pub static rtapi_info_license: Symbol = Symbol(c"MIT OR Apache-2.0".as_ptr().cast());

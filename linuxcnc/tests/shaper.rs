@@ -1,4 +1,4 @@
-//! What the component computes, beside the hardware, and what it must not do in a real-time thread.
+//! Compares the component with the hardware, and checks that it does nothing that a real-time thread must not do.
 
 use crate::axis::Axis;
 use crate::clocked::Clocked;
@@ -42,7 +42,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn prop_it_gives_the_words_of_the_hardware(commands in commands(), modulo: bool) {
+    fn prop_the_component_gives_the_words_of_the_hardware(commands in commands(), modulo: bool) {
         let tables = tables(modulo);
         let mut axis = Axis::new(&tables).unwrap();
         let mut hardware = None;

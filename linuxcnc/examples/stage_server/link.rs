@@ -1,24 +1,24 @@
-//! The socket to LinuxCNC's component: requests of two words, and one word in return where the component reads.
+//! The socket to LinuxCNC's component: requests of two words, and one word in return for a read.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-/// How long LinuxCNC may be silent before the machine runs on.
+/// Time for which LinuxCNC may be silent before the machine runs on by itself.
 const SILENCE: Duration = Duration::from_secs(1);
-/// How long the next request is awaited awake. A servo period has some twenty reads, one after the other, and a process that sleeps is woken
-/// later than an answer is made.
+/// Time for which the process waits for the next request without sleeping. A servo period has some twenty reads, one after the other, and
+/// waking a sleeping process takes longer than an answer.
 const AWAKE: Duration = Duration::from_millis(1);
-/// How long it is slept after that.
+/// Time for which the process sleeps after that.
 const NAP: Duration = Duration::from_micros(100);
 /// Bytes of a request.
 const REQUEST: usize = 8;
 
 pub(crate) struct Link {
     stream: UnixStream,
-    /// What has come: whole requests, and at most one that has begun.
+    /// Bytes received: whole requests, and at most one incomplete one.
     bytes: Vec<u8>,
-    /// How many of the bytes have been taken.
+    /// Number of bytes that have been taken.
     taken: usize,
     last: Instant,
 }

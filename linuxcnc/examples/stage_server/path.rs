@@ -1,4 +1,4 @@
-//! How far the load of the machine was from the path of a program.
+//! The distance between the load of the machine and the path of a program.
 
 use plotters::prelude::*;
 use posicast_machine::contour::{Shape, Stroke, gcode};
@@ -20,8 +20,8 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// The distance of the load of the first two axes from the nearest point of a program's path, at each tick at which it moves or has
-    /// just moved. `origins` are the positions at which the program's are 0.
+    /// Computes the distance of the load of the first two axes from the nearest point of a program's path, at each tick at which it moves
+    /// or has just moved. `origins` are the positions of the program's zero.
     pub(crate) fn new(
         name: &str,
         program: &str,

@@ -21,20 +21,20 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// Count of the index of each encoder.
 const INDEX_AT: i64 = 777;
-/// How far the machine runs on then, and after a dropped link.
+/// Time in seconds for which the machine runs on by itself after a dropped link, and whenever LinuxCNC is silent.
 const ALONE_S: f64 = 0.5;
 
 const ASK_READ: u32 = 1;
 const ASK_WRITE: u32 = 2;
 const ASK_RUN: u32 = 3;
 
-/// A command, and where its answer goes.
+/// A command, and the receiver of its answer.
 type Command = (String, Sender<String>);
 
 pub(crate) struct Server {
     bench: StageBench,
     clock_hz: f64,
-    /// Clocks that LinuxCNC has asked for; a fraction of one is kept.
+    /// Clocks that LinuxCNC has requested; a fraction of a clock is kept.
     asked_clocks: f64,
     drift: f64,
     accesses: u64,
@@ -44,7 +44,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// The stage with its machine at rest; with its Verilog beside the model, if wanted.
+    /// Starts the stage with its machine at rest; with its Verilog beside the model if `with_rtl`.
     pub(crate) fn new(machine: &Machine, stage: &MachineStage, with_rtl: bool) -> Outcome<Self> {
         let component = Component::stage(&stage.config)?;
         let device = match with_rtl {
@@ -101,7 +101,7 @@ impl Server {
         }
     }
 
-    /// Answers LinuxCNC until it goes; returns whether the server shall end.
+    /// Answers LinuxCNC until it disconnects; returns whether the server must end.
     fn talk(&mut self, link: UnixStream, commands: &Receiver<Command>) -> Outcome<bool> {
         let mut link = Link::new(link)?;
         self.dropped = false;
@@ -141,7 +141,7 @@ impl Server {
         })
     }
 
-    /// Lets this time of LinuxCNC pass; what accesses have taken is a part of it.
+    /// Runs this time of LinuxCNC; the time that accesses have taken is included.
     fn run(&mut self, seconds: f64) -> Outcome<()> {
         self.asked_clocks =
             self.asked_clocks.max(self.bench.now() as f64) + seconds * self.clock_hz * (1.0 + self.drift);
@@ -149,7 +149,7 @@ impl Server {
         Ok(self.bench.clocks(clocks)?)
     }
 
-    /// Carries a command out; returns whether the server shall end.
+    /// Carries a command out; returns whether the server must end.
     fn obey(&mut self, (line, to): Command) -> Outcome<bool> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let said = match words.as_slice() {
@@ -191,7 +191,7 @@ impl Server {
             ["quit"] => "{}".to_owned(),
             _ => format!("{{\"error\": {line:?}}}"),
         };
-        // A client that has gone needs no answer.
+        // A client that has disconnected needs no answer.
         let _ = to.send(said);
         Ok(words == ["quit"])
     }
@@ -208,7 +208,7 @@ impl Server {
         Ok("{}".to_owned())
     }
 
-    /// Where the position of an axis is 0, in m or rad.
+    /// Position in m or rad at which an axis reports 0.
     fn origin(&mut self, axis: usize) -> Outcome<f64> {
         let name = self.bench.axes()[axis].clone();
         let counts = self.bench.read(&format!("{name}_origin"))? as i32;
