@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use posicast_flow::choice::WordChoice;
 
-/// Parses one of the words; the help lists them with what they stand for.
+/// Parses one of the words; the help lists them with their descriptions.
 pub(crate) fn parser<T: WordChoice>() -> impl TypedValueParser<Value = T> {
     let words = T::ALL
         .iter()

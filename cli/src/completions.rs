@@ -1,4 +1,4 @@
-//! `posicast completions`: scripts with which a shell completes commands and options.
+//! `posicast completions`: writes scripts with which a shell completes commands and options.
 
 use crate::output;
 use clap_complete::Shell;

@@ -1,4 +1,4 @@
-//! `posicast doctor`: which of the programs that posicast calls are installed.
+//! `posicast doctor`: reports which of the programs that posicast calls are installed.
 
 mod tools;
 
@@ -30,7 +30,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let found: Vec<Finding> = TOOLS.iter().map(Finding::of).collect();
+    let found: Vec<Finding> = TOOLS.iter().map(Finding::for_tool).collect();
     let lacking: Vec<&Finding> = found.iter().filter(|f| f.need == Need::Run && !f.works).collect();
     let missing: Vec<&str> = lacking.iter().map(|f| f.tool).collect();
     if args.json {
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 #[derive(Serialize)]
 struct Finding {
     tool: &'static str,
-    /// Path of the executable; `None` where there is none.
+    /// Path of the executable; `None` if there is none.
     executable: Option<String>,
     version: Option<String>,
     /// Whether it is installed and prints its version, if it has an option for that.
@@ -71,7 +71,7 @@ struct Finding {
 }
 
 impl Finding {
-    fn of(tool: &Tool) -> Self {
+    fn for_tool(tool: &Tool) -> Self {
         let programs = tool::executables(tool.variable.unwrap_or(""), tool.names);
         let program = programs.iter().find(|program| tool::located(program).is_some());
         let version = program.map(|program| version(program, tool.version));
@@ -107,7 +107,7 @@ impl Finding {
     }
 }
 
-/// Asks a program for its version; `None` if it has no option for that, an error where it cannot be started.
+/// Asks a program for its version; `None` if it has no option for that, an error if it cannot be started.
 fn version(program: &Path, arguments: &[&str]) -> Result<Option<String>, ()> {
     if arguments.is_empty() {
         return Ok(None);
@@ -118,7 +118,7 @@ fn version(program: &Path, arguments: &[&str]) -> Result<Option<String>, ()> {
     }
 }
 
-/// The first word that looks like a version; else the beginning of the line.
+/// Returns the first word that looks like a version, or else the beginning of the line.
 fn version_in(printed: &str) -> Option<String> {
     let line = printed.lines().find(|line| !line.trim().is_empty())?.trim();
     let is_version = |word: &&str| {

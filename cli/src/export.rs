@@ -1,4 +1,4 @@
-//! `posicast export`: the designed impulses in the form in which other controllers and programs take them.
+//! `posicast export`: the designed impulses in the formats that other controllers and programs read.
 
 use crate::terminal::Terminal;
 use crate::{choice, output};

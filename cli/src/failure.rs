@@ -1,4 +1,4 @@
-//! How a command reports on standard error why it stopped, and its exit status.
+//! Reports on standard error why a command stopped, and determines its exit status.
 
 use anstream::stderr;
 use posicast_flow::{Failure, style, with_causes};
@@ -6,8 +6,8 @@ use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
-/// Prints why the command stopped: with an excerpt of the place on a terminal, in plain lines in a pipe, so that a log can be
-/// searched for them.
+/// Prints why the command stopped: with an excerpt of the place on a terminal, but in plain lines in a pipe, where a log can be searched
+/// for them.
 pub(crate) fn report(failure: &Failure) -> ExitCode {
     let mut err = std::io::stderr().lock();
     // If standard error cannot be written, nothing sensible is left to do.
@@ -23,7 +23,7 @@ pub(crate) fn report(failure: &Failure) -> ExitCode {
     })
 }
 
-/// Begins a line that says what is wrong.
+/// Beginning of a line that describes an error.
 const ERROR: &str = "error:";
 
 fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result<()> {
@@ -36,7 +36,7 @@ fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result
     Ok(())
 }
 
-/// Writes each line of a help text as a line of its own that a log can be searched for.
+/// Writes each line of a help text as a separate line, for which a log can be searched.
 fn write_help(err: &mut impl Write, help: Option<Box<dyn fmt::Display + '_>>) -> std::io::Result<()> {
     let help = help.map_or_else(String::new, |help| help.to_string());
     help.lines().try_for_each(|line| writeln!(err, "help: {line}"))

@@ -158,7 +158,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         )
     })?;
     if let Action::Trace(trace) = &args.action {
-        // What is wrong with the file is said before the machine moves.
+        // Report errors of the file before the machine moves.
         actions::check_output(trace)?;
     }
     let open = || open(&way, line.timeout, &machine, stage);
@@ -195,7 +195,7 @@ fn open<'m>(
     })
 }
 
-/// The failure of a call.
+/// Converts an error of a call into a failure.
 fn failure(error: HostError) -> Failure {
     match &error {
         HostError::Link(

@@ -1,8 +1,8 @@
 //! The `posicast` command: from a machine's modes to verified input-shaper hardware.
 //!
-//! There is one file per subcommand. This crate reads arguments, calls the steps of `posicast-flow` and prints; it computes nothing
-//! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was
-//! asked for is missing; 130 and 143 after SIGINT and SIGTERM, with nothing left behind.
+//! There is one file per subcommand. This crate reads arguments, calls the steps of `posicast-flow` and prints; it computes nothing itself.
+//! Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a required tool is missing; 130 and 143 after
+//! SIGINT and SIGTERM, with nothing left behind.
 
 mod campaign;
 mod choice;
@@ -78,7 +78,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    // What is wrong with the arguments is printed before they are known.
+    // Errors of the arguments are printed before the arguments are known.
     let matches = Cli::command()
         .color(style::of_arguments(std::env::args_os()))
         .get_matches();

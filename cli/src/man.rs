@@ -1,6 +1,6 @@
 //! `posicast man`: writes the help of every command as a manual page.
 //!
-//! The synopsis has the values of the options, and what follows the options in the help is in sections of its own:
+//! The synopsis contains the values of the options. The text after the options in the help becomes separate sections:
 //! the examples, and the exit status, which every page has.
 
 use crate::output;
@@ -57,12 +57,12 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
     ))
 }
 
-/// Begin of the paragraph of a command's help that says its exit status.
+/// Beginning of the paragraph of a command's help that describes its exit status.
 const EXIT_STATUS: &str = "Exit status";
-/// The exit status of a command whose help does not say it.
+/// The exit status of a command whose help does not describe it.
 const STATUS: &str =
     "0 what was asked for was done, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.";
-/// What holds for every command.
+/// The exit status after a signal, which applies to every command.
 const SIGNALS: &str = "130 or 143 after SIGINT or SIGTERM, with nothing left behind.";
 
 fn page_text(command: &clap::Command) -> std::io::Result<String> {
@@ -116,9 +116,9 @@ fn end(after: &str) -> Roff {
         .first()
         .map(|own| own.split_whitespace().collect::<Vec<_>>().join(" "));
     match own.as_deref().map(|own| own.trim_start_matches(EXIT_STATUS)) {
-        // The whole list.
+        // This is the whole list.
         Some(own) if own.starts_with(':') => end.text([roman(own.trim_start_matches(": "))]),
-        // What one of the numbers means.
+        // This is the meaning of one of the numbers.
         Some(_) => end
             .text([roman(STATUS)])
             .control("PP", [])

@@ -99,8 +99,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::print_beside(&outputs, &said)
 }
 
-/// Claims the file name. A machine file is somebody's work: an existing file is kept, unless it is one of ours that
-/// nobody has changed.
+/// Claims the file name. A machine file is the user's work: an existing file is kept, unless posicast wrote it and
+/// nobody has changed it.
 fn claim(path: &Path, force: bool) -> Result<OutputFiles, Failure> {
     let there = |found: &str, help: &str| {
         Failure::from(miette::miette!(

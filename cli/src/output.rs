@@ -20,7 +20,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints text with coloured verdicts; the colours are left out where nobody sees them.
+/// Prints text with coloured verdicts; leaves the colours out if nobody would see them.
 pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
     let colours = AutoStream::choice(&std::io::stdout()) != ColorChoice::Never;
     match colours {
@@ -29,7 +29,7 @@ pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints the result of a command that writes files: on standard error where one of the files is the standard output.
+/// Prints the result of a command that writes files: on standard error if one of the files is the standard output.
 pub(crate) fn print_beside(outputs: &OutputFiles, text: &str) -> Result<(), Failure> {
     if outputs.take_standard_output() {
         say(text.trim_end());
@@ -38,7 +38,7 @@ pub(crate) fn print_beside(outputs: &OutputFiles, text: &str) -> Result<(), Fail
     print(text)
 }
 
-/// Prints the result of a step, as text or as its document; a check that failed is the command's failure.
+/// Prints the result of a step, as text or as its document; a failed check is the command's failure.
 pub(crate) fn show<D: Serialize>(outcome: Outcome<D>, json: bool) -> Result<(), Failure> {
     match (json, outcome.is_beside_a_file) {
         (true, _) => print_json(&outcome.document)?,
@@ -51,7 +51,7 @@ pub(crate) fn show<D: Serialize>(outcome: Outcome<D>, json: bool) -> Result<(), 
     }
 }
 
-/// What is done with the document of a step.
+/// How the document of a step is shown.
 pub(crate) fn form(json: bool) -> ResultForm {
     match json {
         true => ResultForm::Document,

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let named = args.paper.as_deref().and_then(Paper::from_name);
     let papers = named.map_or_else(|| Paper::ALL.to_vec(), |paper| vec![paper]);
     let mut outputs = OutputFiles::new(args.force);
-    // A folder that does not exist yet holds nothing that could be replaced.
+    // A folder that does not exist yet contains nothing that could be replaced.
     for folder in args.plot.iter().filter(|folder| folder.is_dir()) {
         for paper in &papers {
             outputs
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         progress.advance(1);
     }
     drop(progress);
-    let counts = Counts::of(&tables);
+    let counts = Counts::from_tables(&tables);
     if args.json {
         output::print_json(&Document::new(&tables, counts))?;
     } else {
@@ -110,7 +110,7 @@ struct Counts {
 }
 
 impl Counts {
-    fn of(tables: &Tables) -> Self {
+    fn from_tables(tables: &Tables) -> Self {
         let count = |verdict| {
             let rows = tables.iter().flat_map(|(_, rows)| rows);
             rows.filter(|row| row.verdict == verdict).count()

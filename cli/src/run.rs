@@ -1,4 +1,4 @@
-//! `posicast run`: goes the whole way from the machine file to the verdict.
+//! `posicast run`: runs all steps from the machine file to the verdict.
 
 use crate::contour::CornerArgs;
 use crate::moves::MotionArgs;

@@ -32,7 +32,7 @@ pub(crate) struct Args {
 /// Name of the schema's file in the first line of machine files that `posicast new` writes.
 const FILE: &str = "posicast-machine.schema.json";
 
-/// How to get the schema that a new machine file names in its first line.
+/// Instructions to write the schema that a new machine file names in its first line.
 pub(crate) fn hint(machine: &Path) -> String {
     let schema = shell_word(&machine.with_file_name(FILE));
     format!("editors complete and check it beside its schema: `posicast schema -o {schema}`")

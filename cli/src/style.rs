@@ -1,7 +1,7 @@
-//! When colours are used: on a terminal, or as `--color` says.
+//! When colours are used: on a terminal, or as `--color` requests.
 //!
-//! Text carries its colours as escape sequences; [`print_styled`](crate::output::print_styled) and [`say`](crate::output::say) leave them out
-//! where nobody sees them: in a pipe or a file, with `NO_COLOR`, on a terminal that has none, or by `--color`.
+//! Text carries its colours as escape sequences; [`print_styled`](crate::output::print_styled) and [`say`](crate::output::say) remove them
+//! if nobody would see them: in a pipe or a file, with `NO_COLOR`, on a terminal without colours, or by `--color`.
 
 use anstream::ColorChoice;
 use clap::ValueEnum;
@@ -27,13 +27,13 @@ pub(crate) fn set(when: When) {
     };
     choice.write_global();
     if when == When::Never {
-        // This fails where a hook is set already, which then stays.
+        // This fails if a hook is set already, which then stays.
         let plain = || miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
         let _ = miette::set_hook(Box::new(move |_| Box::new(plain())));
     }
 }
 
-/// The value of `--color` among these arguments; `auto` where there is none, or a wrong one, which the parser reports.
+/// Returns the value of `--color` among these arguments; `auto` if there is none, or a wrong one, which the parser reports.
 pub(crate) fn of_arguments(arguments: impl Iterator<Item = OsString>) -> clap::ColorChoice {
     const OPTION: &str = "--color";
     let words: Vec<OsString> = arguments.collect();

@@ -1,4 +1,4 @@
-//! `posicast synth`: estimates the resources that a machine's Verilog takes of a device.
+//! `posicast synth`: estimates the resources that a machine's Verilog needs on a device.
 
 use crate::output;
 use crate::terminal::Terminal;

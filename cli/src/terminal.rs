@@ -1,5 +1,5 @@
-//! The front of the steps on a terminal: messages on standard error, and for long work a bar with the remaining time, which a pipe does
-//! not get.
+//! The front of the steps on a terminal: messages on standard error, and for long work a bar with the remaining time, which is not written
+//! to a pipe.
 
 use crate::output;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -68,9 +68,9 @@ fn spinner(what: &str) -> ProgressBar {
     spinner
 }
 
-/// The remaining time, estimated from the pace so far; unknown before the first step.
+/// Writes the remaining time, estimated from the pace so far; unknown before the first step.
 fn left(state: &ProgressState, text: &mut dyn Write) {
-    // An error of writing only leaves the time out.
+    // A write error only leaves the time out.
     let _ = match state.pos() {
         0 => text.write_str("time left unknown yet"),
         _ => write!(text, "about {:#} left", HumanDuration(state.eta())),

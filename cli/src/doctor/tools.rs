@@ -6,11 +6,11 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Need {
-    /// `posicast run`, with all of its checks.
+    /// For `posicast run`, with all of its checks.
     Run,
-    /// Other commands and options.
+    /// For other commands and options.
     Option,
-    /// The tests of posicast itself.
+    /// For the tests of posicast itself.
     Development,
 }
 
@@ -20,7 +20,7 @@ pub(super) struct Tool {
     pub(super) names: &'static [&'static str],
     /// The environment variable that names another executable.
     pub(super) variable: Option<&'static str>,
-    /// Arguments with which it says its version and nothing else; empty where it cannot.
+    /// Arguments with which it prints only its version; empty if it has no such option.
     pub(super) version: &'static [&'static str],
     pub(super) need: Need,
     pub(super) purpose: &'static str,

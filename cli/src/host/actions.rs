@@ -1,4 +1,4 @@
-//! What `posicast host` lets a stage do.
+//! The actions of `posicast host` on a stage.
 
 use super::{Port, TraceArgs, axis_of, failure};
 use crate::output;
@@ -12,7 +12,7 @@ use posicast_machine::machine_file::Machine;
 use posicast_system::output::OutputFiles;
 use std::path::Path;
 
-/// Most counts of an amplitude, which has 8 fraction bits of 16.
+/// Largest amplitude in counts: its 16 bits have 8 fraction bits.
 const MOST_COUNTS: f64 = 255.99;
 
 pub(super) fn move_axes<'m>(
@@ -46,7 +46,7 @@ pub(super) fn move_axes<'m>(
     let mut stage = open()?;
     stage.switch_on(&axes, clears_faults).map_err(failure)?;
     let moved = stage.move_axes(&moves);
-    // Whatever happened, the axes end as the user wants them: off. A fault has switched them off already.
+    // In any case, the axes end as the user wants them: off. A fault has already switched them off.
     let off = match holds && moved.is_ok() {
         true => Ok(()),
         false => stage.switch_off(&axes),
@@ -55,7 +55,7 @@ pub(super) fn move_axes<'m>(
     super::text::status(&mut stage, false)
 }
 
-/// Refuses a name for the trace that cannot be written.
+/// Refuses a file name for the trace if the file cannot be written.
 pub(super) fn check_output(args: &TraceArgs) -> Result<(), Failure> {
     is_vcd(&args.output)?;
     outputs(args).map(drop)
@@ -130,7 +130,7 @@ pub(super) fn trace<'m>(
     write(args, &trace)
 }
 
-/// The test signal, as far as the machine file allows it.
+/// Returns the test signal, if the machine file allows it.
 fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Path) -> Result<Shake, Failure> {
     let section = &machine.axes[axis];
     let limit = section
@@ -138,7 +138,7 @@ fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Pat
         .and_then(|limits| limits.excitation)
         .map(|limit| limit * section.loop_counts_per_unit());
     let most = limit.unwrap_or(4.0).min(MOST_COUNTS);
-    // The hardware would clamp it without a word.
+    // The hardware would clamp it without a message.
     if !(counts > 0.0 && counts <= most * (1.0 + 1e-9)) {
         return Err(machine::at_key(
             path,

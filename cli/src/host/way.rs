@@ -1,4 +1,4 @@
-//! The ways to a stage, as the first argument of `posicast host` names them.
+//! The connections to a stage, as the first argument of `posicast host` names them.
 
 use posicast_flow::Failure;
 #[cfg(target_os = "linux")]
@@ -7,14 +7,14 @@ use posicast_host::{Line, Link, LinkError, LinkOptions, UdpLine};
 use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
 use std::path::Path;
 
-/// Begins the name of an SPI device.
+/// Prefix of the name of an SPI device.
 const SPI: &str = "spi://";
-/// Begins the clock behind it.
+/// Prefix of the clock after the device.
 const SPI_CLOCK: &str = "?hz=";
-/// Begins the address of a server.
+/// Prefix of the address of a server.
 const UDP: &str = "udp://";
 
-/// The way to the stage.
+/// The connection to the stage.
 pub(super) enum Way<'a> {
     /// Port and baud rate.
     Serial(&'a str, u32),
@@ -25,7 +25,8 @@ pub(super) enum Way<'a> {
 }
 
 impl<'a> Way<'a> {
-    /// The way through a port, with the baud rate of the arguments, if they have one. `path` is the machine file.
+    /// Returns the connection for a port, with the baud rate of the arguments, if they have one. `path` is the machine
+    /// file.
     pub(super) fn of((port, baud): (&'a str, Option<u32>), machine: &Machine, path: &Path) -> Result<Self, Failure> {
         let (spi, udp) = (port.strip_prefix(SPI), port.strip_prefix(UDP));
         if baud.is_some() && (spi.is_some() || udp.is_some()) {
@@ -68,7 +69,7 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// An SPI device, whose name a clock may follow; without one, that of the machine file.
+    /// Parses an SPI device, whose name may be followed by a clock; otherwise the clock of the machine file is used.
     fn spi(
         (port, name): (&str, &'a str),
         (link, sck_hz): (&LinkSection, u32),
@@ -101,7 +102,7 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// What to look at where nothing comes back, or the line fails.
+    /// What to check if there is no reply, or the line fails.
     pub(super) fn remedy(&self) -> String {
         match self {
             Self::Serial(..) => {
@@ -148,7 +149,7 @@ impl std::fmt::Display for Way<'_> {
     }
 }
 
-/// Arguments that do not suit the machine.
+/// Refuses arguments that do not suit the machine.
 fn refused(help: &str, text: String) -> Failure {
     Failure::from(miette::miette!(help = help.to_owned(), "{text}"))
 }

@@ -1,7 +1,7 @@
 //! The questions of `posicast new`, and the effect of their answers.
 //!
-//! Every answer is put into the file, and the file checked: an answer that does not fit is reported at once, and the
-//! question is asked again.
+//! Every answer is put into the file, and the file is checked: an answer that does not fit is reported immediately, and the question is
+//! asked again.
 
 use posicast_flow::Failure;
 use posicast_flow::design::DesignReport;
@@ -107,7 +107,8 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         }
     }
 
-    /// Asks a question; returns the default for an empty answer. The end of the input is an error: nobody has agreed to what is open.
+    /// Asks a question; returns the default for an empty answer. The end of the input is an error, because nobody has confirmed the
+    /// remaining values.
     fn ask(&mut self, question: &str, default: &str) -> Result<String, Failure> {
         self.say(&format!("{question} [{default}]: "))?;
         let mut line = Vec::new();
@@ -140,7 +141,7 @@ fn number(answer: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("found `{}`; allowed: a number, such as 47.5", answer.escape_debug()))
 }
 
-/// Checks that the file can be built; the error has the problems with their remedies.
+/// Checks that the file can be built; the error contains the problems with their remedies.
 fn fits(draft: &MachineDraft) -> Result<(), String> {
     let machine = draft.machine().map_err(|error| {
         let lines = error.problems().iter().map(|problem| {
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_the_input_makes_no_file() {
+    fn the_end_of_the_input_leaves_no_file() {
         for answers in ["", "\n\n", "gantry\n", "1\n"] {
             let mut questions = Questions::new(answers.as_bytes(), Vec::new());
             assert!(questions.draft(Path::new("mill.toml")).is_err(), "{answers:?}");
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_said_and_asked_again() {
+    fn invalid_answers_are_reported_and_asked_again() {
         let (draft, said) = answered("lathe\ncrane\nwire\nhoist\nkm\nmm\nmany\n20\n1e9\n0.25\n1.5\n0.02\n");
         for message in [
             "found `lathe`; allowed: printer, gantry, joint, crane",

@@ -1,4 +1,5 @@
-//! `posicast reproduce --beyond`: the paper's shaper, the shortest closed form and the shortest there is, side by side.
+//! `posicast reproduce --beyond`: the paper's shaper, the shortest closed form and the shortest possible shaper, side
+//! by side.
 
 use crate::output;
 use crate::terminal::Terminal;
@@ -12,7 +13,7 @@ use serde::Serialize;
 /// Designs all examples, and prints the table or the JSON document.
 ///
 /// # Errors
-/// A check that failed: an example cannot be designed, or what is found is not proven to be the shortest.
+/// A failed check: an example cannot be designed, or a result is not proven to be the shortest.
 pub(super) fn run(json: bool) -> Result<(), Failure> {
     let progress = Terminal.begin("designing", None);
     let rows = beyond().map_err(|error| Failure::Check(format!("an example cannot be designed: {error}")))?;

@@ -192,14 +192,14 @@ fn cli_every_problem_has_its_remedy_in_a_pipe() {
 }
 
 #[test]
-fn cli_one_thing_is_said_in_the_singular() {
+fn cli_messages_about_one_thing_are_in_the_singular() {
     let (_folder, file) = scratch(&one_axis("kind = \"none\"", MODE));
     let design = posicast().arg("design").arg(&file).assert().success();
     design.stdout(predicate::str::contains("one: 1 axis, 50 MHz").and(predicate::str::contains("1 tap at 10000 Hz")));
 }
 
 #[test]
-fn cli_what_optimal_cannot_do_names_the_key_and_what_would_help() {
+fn cli_errors_of_optimal_name_the_key_and_a_remedy() {
     refused(
         &["design"],
         &one_axis(
@@ -211,7 +211,7 @@ fn cli_what_optimal_cannot_do_names_the_key_and_what_would_help() {
 }
 
 #[test]
-fn cli_a_file_that_is_no_text_or_not_there_is_refused() {
+fn cli_a_binary_or_missing_file_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("binary.toml");
     std::fs::write(&file, [0xff, 0xfe, 0]).unwrap();
@@ -471,7 +471,7 @@ fn cli_a_stop_that_leaves_the_position_word_is_blamed_on_the_keys_that_decide() 
 }
 
 #[test]
-fn cli_a_travel_that_the_word_does_not_hold_is_told_in_whole_counts_and_with_the_words_of_a_stage() {
+fn cli_a_travel_beyond_the_word_is_reported_in_whole_counts() {
     let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     let narrow = format!(
         "{}\n[fixed_point]\ncommand_bits = 24\n",
@@ -489,7 +489,7 @@ fn cli_a_travel_that_the_word_does_not_hold_is_told_in_whole_counts_and_with_the
 }
 
 #[test]
-fn cli_a_device_of_another_vendor_is_told_what_to_write() {
+fn cli_a_device_of_another_vendor_is_refused_with_a_remedy() {
     let machine = one_axis("kind = \"zvd\"", MODE) + "[target]\nfamily = \"ecp5\"\n";
     let words = [
         "machine.toml:14: target.family: found \"ecp5\"",
@@ -499,7 +499,7 @@ fn cli_a_device_of_another_vendor_is_told_what_to_write() {
 }
 
 #[test]
-fn cli_sliding_mode_without_gains_is_told_where_to_begin() {
+fn cli_sliding_mode_without_gains_gets_starting_values() {
     let stage = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
     let without = stage
         .lines()
@@ -521,7 +521,7 @@ fn cli_sliding_mode_without_gains_is_told_where_to_begin() {
 }
 
 #[test]
-fn cli_a_unit_that_no_axis_has_is_told_what_to_write() {
+fn cli_an_unknown_unit_is_refused_with_a_remedy() {
     let machine = one_axis("kind = \"zvd\"", MODE).replace("\"x\"", "\"x\"\nunit = \"inch\"");
     let words = [
         "axis.unit of axis x: found \"inch\"",
@@ -570,7 +570,7 @@ fn cli_warnings_name_file_line_and_key() {
 }
 
 #[test]
-fn cli_a_number_in_quotes_is_told_where_its_unit_is_said() {
+fn cli_a_number_in_quotes_is_refused_with_the_place_of_its_unit() {
     let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     for (key, words) in [
         ("watchdog_s", "`watchdog_s` has one unit, and its name says which"),
@@ -584,7 +584,7 @@ fn cli_a_number_in_quotes_is_told_where_its_unit_is_said() {
 }
 
 #[test]
-fn cli_a_misspelt_table_is_the_only_thing_that_is_told() {
+fn cli_a_misspelt_table_is_the_only_error_reported() {
     let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     let (_folder, file) = scratch(&stage.replace("[axis.controller]", "[axis.controler]"));
     let design = posicast().arg("design").arg(&file).assert().code(2).stdout("");

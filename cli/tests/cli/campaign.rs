@@ -75,7 +75,7 @@ fn cli_campaign_gives_the_same_whatever_the_number_of_shards() {
 }
 
 #[test]
-fn cli_campaign_does_a_finished_shard_once_and_destroys_no_file() {
+fn cli_campaign_runs_a_finished_shard_once_and_destroys_no_file() {
     let folder = tempfile::tempdir().unwrap();
     assert!(shard(folder.path(), 1, 2, "1").status.success());
     let file = folder.path().join("1.json");
@@ -96,7 +96,7 @@ fn cli_campaign_does_a_finished_shard_once_and_destroys_no_file() {
 }
 
 #[test]
-fn cli_campaign_merge_names_what_is_missing_doubled_or_of_another_campaign() {
+fn cli_campaign_merge_names_missing_double_and_foreign_shards() {
     let folder = tempfile::tempdir().unwrap();
     let empty = merged(folder.path());
     assert_eq!(empty.status.code(), Some(2));
@@ -207,7 +207,7 @@ fn cli_campaign_names_a_broken_block_and_the_command_that_repeats_it() {
 
 /// The figures are those of the tables in `testbench/RESULTS.md`.
 #[test]
-fn cli_campaign_does_the_other_rungs_of_the_ladder() {
+fn cli_campaign_runs_the_other_rungs_of_the_ladder() {
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../waves/tests/fixtures/waves/icarus.vcd");
     for (words, cells) in [
         (
@@ -263,7 +263,7 @@ fn cli_campaign_of_refused_combinations_alone_fails() {
 }
 
 #[test]
-fn cli_campaign_refuses_what_it_does_not_have() {
+fn cli_campaign_refuses_unknown_names_and_missing_options() {
     let machine = example("xy-stage.toml");
     let machine = machine.to_str().unwrap();
     for (words, expected) in [

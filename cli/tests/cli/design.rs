@@ -120,7 +120,7 @@ fn cli_design_and_generate_warn_of_a_controller_that_is_too_fast() {
 }
 
 #[test]
-fn cli_design_makes_the_axes_of_a_stage_equally_late_and_says_what_is_left() {
+fn cli_design_gives_the_axes_of_a_stage_equal_delays_and_reports_the_rest() {
     let file = example("contouring-stage.toml");
     let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
     let document = json(&output.get_output().stdout);
@@ -196,7 +196,7 @@ fn cli_design_says_that_a_free_mode_was_converted() {
 }
 
 #[test]
-fn cli_design_says_what_a_mode_from_data_sheets_comes_from() {
+fn cli_design_names_the_source_of_a_mode_from_data_sheets() {
     // 1/(1/(207e9 A/0.5) + 1/144e6 + 1/110e6 + ..) by hand, and √(K/38)/2π.
     let says = "mode 1: from [axis.mechanics], 28.37 N/µm between motor and table, table 38 kg,";
     let text = posicast()

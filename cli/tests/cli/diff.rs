@@ -18,7 +18,7 @@ fn vcd(folder: &Path, name: &str, values: &[u8]) -> std::path::PathBuf {
 }
 
 #[test]
-fn cli_diff_tells_equal_from_different_and_from_incomparable() {
+fn cli_diff_distinguishes_equal_different_and_incomparable() {
     let folder = tempfile::tempdir().unwrap();
     let a = vcd(folder.path(), "a.vcd", &[1, 2, 3, 4]);
     let b = vcd(folder.path(), "b.vcd", &[1, 2, 7, 4]);
@@ -72,7 +72,7 @@ fn cli_diff_refuses_a_truncated_file() {
 }
 
 #[test]
-fn cli_diff_writes_what_shows_the_difference() {
+fn cli_diff_writes_files_that_show_the_difference() {
     let folder = tempfile::tempdir().unwrap();
     let a = vcd(folder.path(), "a.vcd", &[1, 2, 3, 4]);
     let b = vcd(folder.path(), "b.vcd", &[1, 2, 7, 4]);

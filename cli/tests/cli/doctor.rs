@@ -35,7 +35,7 @@ fn doctor(folder: &Path) -> assert_cmd::Command {
 }
 
 #[test]
-fn cli_what_is_there_is_green_and_what_is_missing_red_where_colours_are_seen() {
+fn cli_installed_tools_are_green_and_missing_ones_red_on_a_terminal() {
     let folder = programs(&["verilator"]);
     let said = |words: &[&str]| String::from_utf8(doctor(folder.path()).args(words).output().unwrap().stdout).unwrap();
     let coloured = said(&["--color", "always"]);
@@ -73,7 +73,7 @@ fn all_that_run_needs_is_enough() {
 }
 
 #[test]
-fn what_run_lacks_is_named_with_its_package() {
+fn tools_that_run_lacks_are_named_with_their_packages() {
     let folder = programs(&["make", "g++", "yosys"]);
     let output = doctor(folder.path()).arg("--json").output().unwrap();
     assert_eq!(output.status.code(), Some(1));

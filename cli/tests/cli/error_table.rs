@@ -21,7 +21,7 @@ fn run(command: &str, file: &Path, more: &[&str]) -> std::process::Output {
 }
 
 #[test]
-fn cli_design_says_what_became_of_the_points() {
+fn cli_design_describes_the_error_table_made_from_the_points() {
     let (_folder, file) = machine(RIGHT);
     let document = json(&run("design", &file, &["--json"]).stdout);
     let table = &document["axes"][0]["error_table"];
@@ -81,7 +81,7 @@ fn cli_the_folder_holds_the_file_and_is_verified() {
 }
 
 #[test]
-fn cli_what_is_wrong_with_the_file_is_bad_input() {
+fn cli_errors_of_the_error_table_file_are_bad_input() {
     for (csv, words) in [
         ("-0.1,0\n0.1,0\n0.05,0\n", "x.csv: row 3"),
         ("-0.1,0\n0.1,inf\n", "x.csv: row 2"),

@@ -56,12 +56,12 @@ fn follow_pages(commands: Commands) {
 }
 
 #[test]
-fn cli_the_pages_of_the_examples_show_what_is_designed() {
+fn cli_the_pages_of_the_examples_show_their_designs() {
     follow_pages(Commands::Fast);
 }
 
 #[test]
-fn long_the_pages_of_the_examples_show_what_a_run_finds() {
+fn long_the_pages_of_the_examples_show_the_results_of_a_run() {
     follow_pages(Commands::All);
 }
 

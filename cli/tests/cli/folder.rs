@@ -156,7 +156,7 @@ fn cli_generate_removes_evidence_of_another_machine_file_and_says_so() {
 }
 
 #[test]
-fn cli_generate_says_in_three_lines_what_went_where_and_lists_the_files_if_asked_to() {
+fn cli_generate_prints_three_lines_and_lists_the_files_on_request() {
     let bench = Bench::new();
     let said = |words: &[&str]| {
         let assert = bench
@@ -193,7 +193,7 @@ fn cli_generate_says_in_three_lines_what_went_where_and_lists_the_files_if_asked
 }
 
 #[test]
-fn cli_run_says_the_result_in_some_lines_and_all_of_it_if_asked_to() {
+fn cli_run_prints_a_summary_and_all_results_on_request() {
     let bench = Bench::new();
     let said = |words: &[&str]| {
         let words = [&["run", "machine.toml", "--simulator", "icarus"], words].concat();

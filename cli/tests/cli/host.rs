@@ -151,7 +151,7 @@ fn cli_host_shows_moves_records_and_loads() {
 }
 
 #[test]
-fn cli_host_says_what_is_missing() {
+fn cli_host_names_what_is_missing() {
     let text = machine();
     let (folder, file) = scratch(&text);
     let fails = |port: &str, machine: &Path, words: &[&str], code: i32, expected: &str| {
@@ -220,7 +220,7 @@ fn cli_host_says_what_is_missing() {
 }
 
 #[test]
-fn cli_host_says_what_is_wrong_with_an_spi_device() {
+fn cli_host_reports_errors_of_an_spi_device() {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     let (_folder, file) = scratch(&(text + "[link]\nline = \"spi\"\nsck_hz = 5_000_000\ntimeout_s = 100e-6\n"));
     let hz = "hz is a whole number, 160000 to 6250000";

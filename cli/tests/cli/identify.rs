@@ -73,7 +73,7 @@ fn cli_the_document_has_modes_and_shapers() {
 }
 
 #[test]
-fn cli_modes_go_into_an_axis_of_a_machine_that_is_there_and_nothing_else_changes() {
+fn cli_modes_replace_only_those_of_an_axis_of_an_existing_machine() {
     let folder = tempfile::tempdir().unwrap();
     write_log(&folder.path().join("log.csv"), &[known(60.0, 0.05, 1.0)]);
     posicast()
@@ -229,7 +229,7 @@ fn cli_a_rotary_axis_has_angles_in_text_picture_and_document() {
 }
 
 #[test]
-fn cli_new_from_a_log_tells_what_is_left_to_measure() {
+fn cli_new_from_a_log_names_the_values_left_to_measure() {
     let folder = tempfile::tempdir().unwrap();
     write_decay(folder.path());
     let new = |kind: &str, file: &str| {
@@ -267,7 +267,7 @@ fn cli_new_from_a_log_tells_what_is_left_to_measure() {
 }
 
 #[test]
-fn cli_without_knowing_the_excitation_the_spectrum_still_tells_a_mode() {
+fn cli_with_unknown_excitation_the_spectrum_gives_a_mode() {
     let folder = tempfile::tempdir().unwrap();
     write_log(&folder.path().join("log.csv"), &[known(60.0, 0.05, 1.0)]);
     let (status, said, _) = identify(folder.path(), &["log.csv", "--output-only", "--json"]);
@@ -286,7 +286,7 @@ fn cli_without_knowing_the_excitation_the_spectrum_still_tells_a_mode() {
 }
 
 #[test]
-fn cli_a_log_that_says_nothing_fails_and_writes_nothing() {
+fn cli_a_log_without_a_mode_fails_and_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     write_log(&folder.path().join("rigid.csv"), &[]);
     let words = ["rigid.csv", "--sweep", SWEEP, "-o", "machine.toml"];

@@ -55,7 +55,7 @@ fn cli_stops_of_an_accelerometer_are_found_without_renaming_columns() {
 }
 
 #[test]
-fn cli_what_the_columns_leave_open_is_asked_and_spectra_are_refused() {
+fn cli_ambiguous_columns_and_spectra_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     let two: String = XYZ_G
@@ -171,7 +171,7 @@ fn cli_the_two_commands_for_x_and_y_work_from_either_axis() {
 }
 
 #[test]
-fn cli_shapers_that_leave_more_than_said_stand_below_another_heading() {
+fn cli_shapers_that_leave_too_much_have_their_own_heading() {
     let folder = tempfile::tempdir().unwrap();
     write_test(folder.path(), "x.csv", "accel_x", 60.0);
     let words = ["x.csv", "--sweep", "5:135:10:60", "--margin", "6"];

@@ -57,7 +57,7 @@ fn cli_the_kits_example_is_clean_and_its_bench_passes() {
 }
 
 #[test]
-fn cli_the_kits_bench_finds_a_table_that_is_no_longer_whole() {
+fn cli_the_kits_bench_detects_a_damaged_table() {
     let folder = generated("robot-joint.toml");
     let out = folder.path().join("out");
     let rom = out.join("rtl/robot_joint_elbow_machine_taps.v");

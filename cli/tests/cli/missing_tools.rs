@@ -86,7 +86,7 @@ fn cli_a_verilator_without_a_compiler_lacks_the_compiler() {
 }
 
 #[test]
-fn cli_campaigns_and_estimates_name_all_that_they_lack() {
+fn cli_campaigns_and_estimates_name_all_missing_tools() {
     let path = without(&[
         "yosys",
         "yosys-abc",
@@ -129,7 +129,7 @@ fn cli_campaigns_and_estimates_name_all_that_they_lack() {
 
 /// A tool that the search path has, and that another tool does not find all the same.
 #[test]
-fn cli_a_tool_that_is_lost_in_the_middle_is_missing_and_what_was_compared_is_named() {
+fn cli_a_tool_lost_during_the_run_is_missing_and_earlier_comparisons_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let compiler = folder.path().join("iverilog");
     let used = folder.path().join("used");

@@ -6,7 +6,7 @@ use crate::cli::stage::{quick, run};
 use crate::cli::support::{example, one_axis, posicast, scratch};
 
 #[test]
-fn cli_run_moves_each_axis_as_far_and_as_fast_as_it_is_told() {
+fn cli_run_moves_each_axis_by_its_distance_and_speed() {
     let told = [
         "--simulator",
         "rusthdl",
@@ -27,7 +27,7 @@ fn cli_run_moves_each_axis_as_far_and_as_fast_as_it_is_told() {
 }
 
 #[test]
-fn cli_a_move_that_cannot_be_is_refused_with_its_option_and_a_remedy() {
+fn cli_an_impossible_move_is_refused_with_its_option_and_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let command = folder.path().join("command.csv");
     std::fs::write(&command, "time_s,position\n0,0\n0.1,0.01\n").unwrap();
@@ -94,7 +94,7 @@ fn cli_a_radius_that_no_circle_has_is_refused_before_any_work() {
 }
 
 #[test]
-fn cli_a_move_beyond_the_command_word_is_told_in_readable_counts() {
+fn cli_a_move_beyond_the_command_word_is_reported_in_readable_counts() {
     let machine =
         one_axis("kind = \"zvd\"", "frequency_hz = 100.0\ndamping = 0.1") + "[fixed_point]\ncommand_bits = 24\n";
     let (folder, file) = scratch(&machine);

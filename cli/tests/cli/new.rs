@@ -146,7 +146,7 @@ fn standard_output_takes_the_file_alone() {
 }
 
 #[test]
-fn a_name_with_a_space_is_quoted_for_the_shell_and_the_schema_is_told() {
+fn a_name_with_a_space_is_quoted_and_the_schema_is_mentioned() {
     let folder = tempfile::tempdir().unwrap();
     let output = new(folder.path(), &["--joint", "my joint.toml"]);
     let said = String::from_utf8(output.stdout).unwrap();

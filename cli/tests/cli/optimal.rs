@@ -105,7 +105,7 @@ fn cli_run_takes_an_optimal_shaper_to_rtl_and_measures_the_corners() {
 }
 
 #[test]
-fn cli_the_front_says_what_more_duration_buys() {
+fn cli_the_front_shows_the_benefit_of_longer_durations() {
     let folder = tempfile::tempdir().unwrap();
     let plot = folder.path().join("front.svg");
     let mut design = posicast();

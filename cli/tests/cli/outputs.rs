@@ -164,7 +164,7 @@ fn cli_a_file_that_posicast_did_not_write_is_replaced_with_force_only() {
 }
 
 #[test]
-fn cli_all_files_of_show_are_asked_for_before_one_is_written() {
+fn cli_all_files_of_show_are_claimed_before_one_is_written() {
     let bench = bench();
     for extension in ["vcd", "gtkw", "sucl", "svg"] {
         let file = format!("first.{extension}");
@@ -192,7 +192,7 @@ fn cli_all_files_of_show_are_asked_for_before_one_is_written() {
 }
 
 #[test]
-fn cli_a_name_that_is_no_place_for_a_file_is_refused_before_the_work() {
+fn cli_an_unwritable_file_name_is_refused_before_the_work() {
     let bench = bench();
     std::fs::create_dir(bench.path("folder")).unwrap();
     for (words, _, option) in &WRITERS[..4] {

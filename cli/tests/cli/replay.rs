@@ -148,7 +148,7 @@ fn cli_replay_names_the_signal_and_the_clock_of_one_flipped_bit() {
 }
 
 #[test]
-fn cli_replay_says_what_is_not_in_the_file() {
+fn cli_replay_names_ports_that_are_not_in_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recorded.vcd");
     record(
@@ -268,7 +268,7 @@ fn cli_replay_does_not_compare_unknown_bits_and_counts_their_clocks() {
 }
 
 #[test]
-fn cli_replay_refuses_what_it_cannot_use() {
+fn cli_replay_refuses_unusable_recordings_and_options() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recorded.vcd");
     record(&path, |_| true, |_, _| {});
@@ -358,7 +358,7 @@ fn record_by_icarus(folder: &Path, define: &str, format: &str) -> PathBuf {
 }
 
 #[test]
-fn cli_replay_takes_what_another_simulator_recorded() {
+fn cli_replay_accepts_recordings_of_another_simulator() {
     let folder = tempfile::tempdir().unwrap();
     let inside = ["--map", "bench.dut=posicast_divider_5000", "--json"];
     for format in ["vcd", "fst"] {

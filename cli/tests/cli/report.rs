@@ -207,7 +207,7 @@ fn cli_the_page_of_a_run_says_what_its_document_says() {
 }
 
 #[test]
-fn cli_the_page_of_a_failed_run_says_so_first_and_why() {
+fn cli_the_page_of_a_failed_run_begins_with_the_failure_and_its_cause() {
     let (folder, file) = scratch(&one_axis("kind = \"zv\"", "frequency_hz = 50.0\ndamping = 0.1"));
     let command = folder.path().join("<still & \"quiet\">.csv");
     std::fs::write(&command, "time_s,position\n0,0\n0.01,0\n").unwrap();

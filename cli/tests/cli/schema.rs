@@ -14,7 +14,7 @@ fn standard_output_has_the_committed_schema() {
 }
 
 #[test]
-fn golden_the_committed_schema_of_the_report_is_what_its_types_say() {
+fn golden_the_committed_schema_of_the_report_matches_its_types() {
     let output = posicast().args(["schema", "--report"]).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     let written = String::from_utf8(output.stdout).unwrap();

@@ -282,7 +282,7 @@ fn cli_a_signal_finds_generate_undone_or_done() {
 }
 
 #[test]
-fn cli_what_a_killed_run_leaves_is_cleared_by_the_next() {
+fn cli_the_next_run_clears_the_rest_of_a_killed_one() {
     let bench = Bench::new();
     let run = [
         "run",

@@ -109,7 +109,7 @@ fn axes(document: &serde_json::Value) -> &Vec<serde_json::Value> {
 }
 
 #[test]
-fn cli_generate_of_a_stage_that_cannot_be_names_line_and_key_and_writes_nothing() {
+fn cli_generate_of_an_impossible_stage_names_line_and_key_and_writes_nothing() {
     let cases = [
         ("name = \"x\"", "name = \"divider\"", "machine.toml:20: axis.name: "),
         ("name = \"y\"", "name = \"avs\"", ": axis.name: "),
@@ -190,7 +190,7 @@ fn cli_an_axis_with_a_loop_takes_words_of_any_width() {
 }
 
 #[test]
-fn cli_a_torque_drive_whose_wrong_sign_nothing_sees_is_warned_of() {
+fn cli_a_warning_names_a_torque_drive_whose_wrong_sign_is_not_detected() {
     let text = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
     let unseen = "does not notice a wrong feedback sign";
     let said = |text: &str| {
@@ -347,7 +347,7 @@ fn cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
 }
 
 #[test]
-fn cli_run_of_ei_shapers_passes_and_says_what_was_expected() {
+fn cli_run_of_ei_shapers_passes_and_reports_the_expected_residual() {
     let text = include_str!("../../../testbench/tests/fixtures/machines/ei-gantry.toml");
     let (status, document, said, _folder) = run(text, &["--simulator", "rusthdl", "--move", "0.005"]);
     assert_eq!((status, failed(&document).len()), (Some(0), 0), "{said} {document}");

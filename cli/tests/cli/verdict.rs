@@ -196,7 +196,7 @@ fn cli_verify_refuses_verilog_that_depends_on_the_tool() {
 }
 
 #[test]
-fn cli_verify_that_exercised_too_little_says_what_and_is_no_match() {
+fn cli_verify_names_what_was_not_exercised_and_is_no_match() {
     let (_folder, machine) = scratch(&one_axis("kind = \"zvd\"", "frequency_hz = 17.4\ndamping = 0.05"));
     let few = verify(&machine, &["--cycles", "1000"]);
     assert_eq!(few.status.code(), Some(1), "{}", said(&few));

@@ -74,7 +74,7 @@ fn cli_verify_of_shapers_alone_keeps_to_them() {
 }
 
 #[test]
-fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
+fn cli_verify_selects_blocks_by_name_and_lists_them() {
     let chosen = ["--simulator", "icarus", "--block", "divider", "--block", "cascade"];
     let (document, rows) = rows(&example("xy-stage.toml"), &chosen);
     assert_eq!(document["result"], "match");

@@ -55,14 +55,14 @@ fn said_to_leave(text: &str, axis: usize) -> f64 {
 }
 
 #[test]
-fn cli_klipper_leaves_what_the_design_leaves() {
+fn cli_klipper_has_the_residual_of_the_design() {
     compare(&["--to", "klipper"], &EXACT, 1e-9, of_klipper("new"));
     // Its fits of the EI kinds are within 0.6 % of the command.
     compare(&["--to", "klipper"], &EI, 0.006, of_klipper("new"));
 }
 
 #[test]
-fn cli_kalico_and_the_advanced_branch_leave_what_the_design_leaves_of_every_kind() {
+fn cli_kalico_and_the_advanced_branch_have_the_residual_of_every_kinds_design() {
     for words in [
         ["--to", "kalico", "--firmware-version", "bleeding-edge"],
         ["--to", "klipper", "--firmware-version", "advanced-features"],
@@ -101,7 +101,7 @@ fn cli_kalico_takes_smooth_kinds_as_polynomials_that_leave_as_little() {
 }
 
 #[test]
-fn cli_older_klipper_and_kalicos_main_say_what_their_ei_kinds_leave() {
+fn cli_older_klipper_and_kalicos_main_report_the_residual_of_their_ei_kinds() {
     for (words, version) in [
         (["--to", "klipper", "--firmware-version", "0.12"], "old"),
         (["--to", "kalico", "--firmware-version", "main"], "old"),
@@ -128,7 +128,7 @@ fn cli_older_klipper_and_kalicos_main_say_what_their_ei_kinds_leave() {
 }
 
 #[test]
-fn cli_reprapfirmware_leaves_what_the_design_leaves() {
+fn cli_reprapfirmware_has_the_residual_of_the_design() {
     let kinds = [
         "zv",
         "zvd",
@@ -157,7 +157,7 @@ fn cli_reprapfirmware_leaves_what_the_design_leaves() {
 }
 
 #[test]
-fn cli_marlins_m593_leaves_what_the_design_leaves_up_to_its_rounding() {
+fn cli_marlins_m593_has_the_residual_of_the_design_up_to_its_rounding() {
     // Half of 1/128, twice: in the first and in the second amplitude.
     compare(&["--to", "marlin"], &["zv"], 1.0 / 128.0, |text, axis, damping| {
         residual(
@@ -169,7 +169,7 @@ fn cli_marlins_m593_leaves_what_the_design_leaves_up_to_its_rounding() {
 }
 
 #[test]
-fn cli_fixed_time_motion_says_what_its_samples_leave() {
+fn cli_fixed_time_motion_reports_the_residual_of_its_samples() {
     let kinds = [
         "zv",
         "zvd",

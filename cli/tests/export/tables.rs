@@ -116,7 +116,7 @@ fn cli_the_header_compiles_and_its_numbers_are_the_design() {
 }
 
 #[test]
-fn cli_what_a_firmware_cannot_express_is_refused_with_a_remedy() {
+fn cli_designs_that_a_firmware_cannot_express_are_refused_with_a_remedy() {
     let two = format!("{}\n{}", mode(40.0, 0.1), mode(90.0, 0.05));
     let one = mode(40.0, 0.1);
     let cases = [

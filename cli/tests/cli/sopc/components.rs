@@ -64,7 +64,7 @@ fn cli_components_bind_every_port_of_their_verilog() {
 }
 
 #[test]
-fn cli_a_component_says_what_the_hardware_says() {
+fn cli_a_component_matches_the_hardware() {
     let (_folder, output) = xy_stage();
     let (records, _) = check_component(&output.join("sopc/xy_stage_stage_hw.tcl"));
     let assignments: BTreeMap<&str, &str> = records
