@@ -11,7 +11,7 @@ pub enum Failure {
     Check(String),
     /// Bad usage or input: exit status 2.
     Input(miette::Report),
-    /// A tool that the user named is missing: exit status 3.
+    /// A required tool is missing: exit status 3.
     MissingTool(miette::Report),
 }
 
