@@ -209,12 +209,12 @@ pub(super) fn decimal(data: &[u8], at: usize) -> Option<(u64, usize)> {
     let mut bytes = [0; 16];
     bytes.copy_from_slice(sixteen);
     let digits = u128::from_le_bytes(bytes) ^ ZEROS;
-    // Only the first byte that is no digit is sure to be found.
+    // Only the first byte that is not a digit is certain to be found.
     let count = ((digits.wrapping_add(ABOVE_9) | digits) & HIGH).trailing_zeros() / 8;
     if count == 0 || count == 16 {
         return decimal_by_digit(data, at);
     }
-    // Zeros go before the digits in place of what comes after them.
+    // The shift drops the bytes after the digits, and puts zeros before the digits.
     let digits = digits << (128 - 8 * count);
     let [upper, lower] = [digits as u64, (digits >> 64) as u64].map(eight_digits);
     Some((upper * 100_000_000 + lower, at + count as usize))

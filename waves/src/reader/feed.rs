@@ -71,7 +71,7 @@ impl Feed {
                 Ok(empty) => send_full.send(Message::Batch(gatherer.take(empty))).is_ok(),
                 Err(_) => false,
             };
-            // A panic ends the thread without a message; the receiver says so.
+            // A panic ends the thread without a message; the receiver reports it.
             let Some(read) = caught(|| read(&mut gatherer, &mut hand_over)) else {
                 return;
             };

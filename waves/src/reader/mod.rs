@@ -201,7 +201,7 @@ impl Wave {
     }
 }
 
-/// Returns whether a file can be opened again: it is no pipe.
+/// Returns whether a file can be opened again: a pipe cannot.
 pub(crate) fn can_be_read_again(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|data| data.is_file())
 }

@@ -179,7 +179,7 @@ impl<'a> Worker<'a> {
                     if data[next - 1] != b'\n' {
                         return None;
                     }
-                    // A time that has nothing else is no sample.
+                    // A time without changes is not a sample.
                     if at == step_at {
                         step_at = next;
                     }

@@ -52,7 +52,7 @@ pub(super) fn pack_text(text: &[u8], words: &mut [u64]) {
     }
 }
 
-/// Place of what a value of [`Kind::Any`] is: text if it is 0.
+/// Place of the type of a value of [`Kind::Any`]: text if it is 0.
 const ANY_SHIFT: u32 = 56;
 const ANY_REAL: u64 = 1;
 const ANY_BITS: u64 = 2;
