@@ -5,10 +5,10 @@
 //! | `time`, `accel_x`, `accel_y`, `accel_z` (any of them) | an accelerometer log as 3D-printer firmware writes it: s and mm/s² |
 //! | `time`, `command`, `response` | a position log: command and response of an axis, in one unit |
 //! | `time`, `response` | a free decay |
-//! | `time`, `drive_command`, `position` | what a drive was told, and where its own motor went |
-//! | `time`, `captured_position`, `deviation` | a trace of the stage: motor, and motor against scale; the scale moves as the motor drives it |
+//! | `time`, `drive_command`, `position` | command of a drive, and position of its own motor |
+//! | `time`, `captured_position`, `deviation` | a trace of the stage: position of the motor, and motor minus scale; the motor drives the scale |
 //! | `Sample`, `X`, `Y`, `Z` (any of them), the rate in the last line | accelerations in g as RepRapFirmware writes them |
-//! | `time`, `x`, `y`, `z` | accelerations, if the three directions measure gravity; else it is asked what they are |
+//! | `time`, `x`, `y`, `z` | accelerations, if the three directions measure gravity; otherwise the user is asked |
 //!
 //! Names may include a unit: `time_ms`, `command_mm`, `response_um`, `Accel X (g)`. A `#` before the first name is
 //! ignored. [`ReadOptions`] say what a file leaves open.

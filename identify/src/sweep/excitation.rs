@@ -308,8 +308,8 @@ impl SweptAcceleration {
         [velocities, positions]
     }
 
-    /// Means of the acceleration over the sample around each of these instants, which contain almost nothing of what the samples alias into
-    /// the band.
+    /// Means of the acceleration over the sample around each of these instants. They contain almost none of the aliases that the samples
+    /// have in the band.
     pub fn means(&self, start_s: f64, sample_s: f64, samples: usize) -> Vec<f64> {
         let mut walk = Walk::new(self);
         let mut before = walk.velocity(start_s - 0.5 * sample_s);

@@ -114,7 +114,8 @@ const HELD: f64 = 0.8;
 const TURNS: usize = 30;
 const SETTLED: f64 = 1e-3;
 
-/// Measures the transfer function; `seen` returns the fraction of what a frequency shook that was measured.
+/// Measures the transfer function. `seen` returns, for a frequency in Hz, the fraction of the samples at which it shakes the axis that were
+/// measured.
 pub(super) fn measure(
     grid: &Grid,
     record: &mut Record,

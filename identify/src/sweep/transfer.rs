@@ -299,7 +299,8 @@ impl Estimate {
     }
 }
 
-/// Divides the lines of a band; `seen` returns the fraction of what a frequency shook that was measured.
+/// Divides the lines of a band. `seen` returns, for a frequency in Hz, the fraction of the samples at which it shakes the axis that were
+/// measured.
 pub(super) fn estimate(division: &Division<'_>, seen: impl Fn(f64) -> f64) -> Estimate {
     let Division {
         response,
