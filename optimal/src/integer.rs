@@ -170,7 +170,7 @@ fn improve(request: &Request, units: &mut [Units], points: &[Point], unity: i64)
     moved
 }
 
-/// Returns the sum of squares of the excess of ratios of residual to tolerance above 1; 0 if none exceeds 1.
+/// Returns the sum of `max(|ratio|² − 1, 0)²` over ratios of residual to tolerance; 0 if none exceeds 1.
 ///
 /// The maximum alone would not do: with two equal peaks, most moves make one of them worse, and a search would end there.
 fn excess(ratios: impl Iterator<Item = Complex64>) -> f64 {

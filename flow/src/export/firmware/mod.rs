@@ -3,7 +3,7 @@
 //! The file of each firmware describes its numbers, their format, and its own shapers; this file has what the firmwares share:
 //!
 //! ```text
-//! design ─► told: the numbers, and what the firmware makes of them ─► residual at the modes, beside the design's
+//! design ─► accepted: the numbers, and their interpretation by the firmware ─► residual at the modes, beside the design's
 //!        └► refused ─► the firmware's own shaper that leaves least, which --closest writes
 //! ```
 
