@@ -70,7 +70,7 @@ fn config(word_bits: u32, fraction: u32, taps: &[(u32, i32)]) -> ShaperConfig {
 }
 
 #[test]
-fn lockstep_everything_at_random() {
+fn long_lockstep_everything_at_random() {
     let mut random = Random(1);
     for (word_bits, taps, longest, fraction, gain) in [
         (16, 3, 20, 16, 1),
@@ -98,7 +98,7 @@ fn lockstep_everything_at_random() {
 }
 
 #[test]
-fn lockstep_motion_with_any_channels_at_random() {
+fn long_lockstep_motion_with_any_channels_at_random() {
     let mut random = Random(21);
     for (word_bits, channels, modulo, taps, longest) in [
         (24, 1, false, 4, 9),
@@ -183,7 +183,7 @@ fn lockstep_the_sizes_for_motion() {
                         .and_then(|c| c.for_motion(ShaperMotion { channels, modulo }))
                         .unwrap();
                     let mut both = LockStep::new(&config);
-                    for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(200) {
+                    for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(80) {
                         both.step(&inputs);
                     }
                 }
@@ -267,7 +267,7 @@ fn lockstep_the_sizes_of_machine_files() {
                     .and_then(|c| c.with_room_for((1 << ring) - 2, 1 << index))
                     .unwrap();
                 let mut both = LockStep::new(&config);
-                for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(300) {
+                for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(120) {
                     both.step(&inputs);
                 }
             }

@@ -55,18 +55,9 @@ fn lockstep(samples: u32, seed: u64, clocks: u32) -> [u64; 4] {
 }
 
 #[test]
-fn lockstep_everything_at_random() {
-    let seen = lockstep(256, 3, 20_000);
-    assert!(
-        seen.iter().all(|&clocks| clocks > 200),
-        "{seen:?} clocks in the four states"
-    );
-}
-
-#[test]
 fn lockstep_every_size() {
     for samples in SAMPLES {
-        lockstep(samples, u64::from(samples), 3_000);
+        lockstep(samples, u64::from(samples), 1_000);
     }
 }
 

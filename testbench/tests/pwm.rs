@@ -1,158 +1,50 @@
-//! Compares the PWM's Verilog with its bit-exact model, every output in every clock, and checks the gates' safety.
+//! Checks the safety of the gates in the PWM's Verilog: no leg is ever on at both ends, with each polarity of the pins.
 
-use crate::support::broken;
-use posicast_blocks::ClockedBlock;
-use posicast_blocks::pwm::{ActiveLow, Pwm, PwmConfig, ports};
-use posicast_hdl::pwm::{emit, name};
-use posicast_testbench::blocks::Sources;
-use posicast_testbench::icarus::Icarus;
-use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
-use posicast_testbench::lockstep::{self, Device, Instance, LockstepOptions};
-use posicast_testbench::pwm::{GateSafety, PwmCoverage, PwmRandom};
-use posicast_testbench::verilator::{Verilated, VerilogSource, lint};
+use crate::support::{assert_match, broken};
+use posicast_blocks::pwm::{ActiveLow, PwmConfig};
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::lockstep::report::LockstepReport;
+use posicast_testbench::lockstep::{self, LockstepOptions};
+use posicast_testbench::pwm::{GateSafety, PwmBlock, PwmRandom};
 
-struct Bench {
-    config: PwmConfig,
-    top: String,
-    sources: Sources,
-}
-
-struct Outcome {
-    report: LockstepReport,
-    coverage: PwmCoverage,
-    violation: Option<String>,
-}
-
-fn plain() -> PwmConfig {
-    PwmConfig::new(ActiveLow::default(), 2, 1).unwrap()
-}
-
-impl Bench {
-    /// Compiles the PWM with the first `from` in the Verilog replaced by `to`.
-    fn new(config: PwmConfig, from: &str, to: &str) -> Self {
-        let modules = broken(&emit(&config, "").unwrap(), from, to);
-        Self {
-            config,
-            top: name(&config, ""),
-            sources: Sources::of_modules(&modules).unwrap(),
-        }
-    }
-
-    fn run(&self, device: &mut dyn Device, seed: u64, cycles: u64) -> Outcome {
-        let mut model = Pwm::new(&self.config);
-        let instances = [Instance::whole("pwm", "alone", model.ports())];
-        let mut coverage = PwmCoverage::default();
-        let mut safety = GateSafety::new(self.config.active_low());
-        let report = lockstep::run(
-            &mut model,
-            device,
-            &mut PwmRandom::new(seed),
-            &instances,
-            &LockstepOptions::cycles(cycles),
-            &mut |clock| {
-                coverage.observe(clock.inputs, clock.expected);
-                safety.observe(clock.actual);
-            },
-            &mut |_| {},
-        );
-        Outcome {
-            report: report.unwrap(),
-            coverage,
-            violation: safety.violation().map(str::to_owned),
-        }
-    }
-
-    fn source<'a>(&'a self, ports: &'a [posicast_blocks::Port]) -> VerilogSource<'a> {
-        VerilogSource {
-            files: self.sources.files(),
-            top: &self.top,
-            ports,
-        }
-    }
-
-    fn verilated(&self, seed: u64) -> Verilated {
-        let ports = ports();
-        Verilated::build(&self.source(&ports), seed).unwrap()
-    }
-}
-
-fn assert_holds(outcome: &Outcome) {
-    if let Some(first) = &outcome.report.blocks[0].first {
-        panic!("{} mismatches\n{first}", outcome.report.blocks[0].mismatches);
-    }
-    assert_eq!(outcome.report.result, LockstepVerdict::Match);
-    assert_eq!(outcome.violation, None);
+/// Runs the Verilog with the first `from` replaced by `to`; returns the comparison and the first violation.
+fn run(config: PwmConfig, (from, to): (&str, &str), clocks: u64) -> (LockstepReport, Option<String>) {
+    let block = PwmBlock::new(config, "", "alone");
+    let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
+    let mut device = sources.verilated(&block, 1).unwrap();
+    let mut model = block.model(1);
+    let instances = block.instances(model.ports());
+    let mut safety = GateSafety::new(config.active_low());
+    let report = lockstep::run(
+        model.as_mut(),
+        &mut device,
+        &mut PwmRandom::new(1),
+        &instances,
+        &LockstepOptions::cycles(clocks),
+        &mut |clock| safety.observe(clock.actual),
+        &mut |_| {},
+    );
+    (report.unwrap(), safety.violation().map(str::to_owned))
 }
 
 #[test]
-fn lockstep_a_million_random_clocks() {
-    let bench = Bench::new(plain(), "", "");
-    assert_eq!(lint(bench.sources.files(), &bench.top).unwrap(), [""; 0]);
-    for seed in 1..=2 {
-        let outcome = bench.run(&mut bench.verilated(seed), seed, 1_000_000);
-        assert_holds(&outcome);
-        assert!(outcome.coverage.least() > 10, "{:?}", outcome.coverage.counts());
-    }
-}
-
-#[test]
-fn lockstep_other_polarities_and_floors() {
-    let active_low = ActiveLow {
+fn lockstep_no_leg_is_on_at_both_ends() {
+    let inverted = ActiveLow {
         a_high: true,
         b_low: true,
         ..ActiveLow::default()
     };
-    let bench = Bench::new(PwmConfig::new(active_low, 1, 7).unwrap(), "", "");
-    assert_eq!(lint(bench.sources.files(), &bench.top).unwrap(), [""; 0]);
-    assert_holds(&bench.run(&mut bench.verilated(3), 3, 1_000_000));
-}
-
-#[test]
-fn crosssim_icarus_agrees_with_the_model() {
-    let bench = Bench::new(plain(), "", "");
-    let ports = ports();
-    let mut icarus = Icarus::build(&bench.source(&ports)).unwrap();
-    assert_holds(&bench.run(&mut icarus, 4, 20_000));
-}
-
-/// Breaks the Verilog and requires a mismatch.
-fn caught(from: &str, to: &str) -> Outcome {
-    let bench = Bench::new(plain(), from, to);
-    let outcome = bench.run(&mut bench.verilated(1), 1, 600_000);
-    assert_eq!(outcome.report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
-    outcome
-}
-
-#[test]
-fn lockstep_catches_a_watchdog_that_a_feed_does_not_reset() {
-    caught("waits = running & !feed", "waits = running");
-}
-
-#[test]
-fn lockstep_catches_a_clear_while_the_fault_stands() {
-    caught(
-        "clear_trip & !running & latched & over",
-        "(clear_trip & !running) & latched",
-    );
-}
-
-#[test]
-fn lockstep_catches_an_unlimited_duty() {
-    caught("limited_next = !under", "limited_next = 1'd0");
-}
-
-#[test]
-fn lockstep_catches_a_duty_one_above_its_limit() {
-    caught("first = {3'd0, max_duty}", "first = {3'd0, max_duty} + 19'd1");
-}
-
-#[test]
-fn lockstep_catches_a_pin_that_the_mask_forgets() {
-    caught("b_low_gate & on", "b_low_gate & armed");
+    for (active_low, dead_time, pulse) in [(ActiveLow::default(), 2, 1), (inverted, 1, 7)] {
+        let config = PwmConfig::new(active_low, dead_time, pulse).unwrap();
+        let (report, violation) = run(config, ("", ""), 400_000);
+        assert_match(&report, "random clocks");
+        assert_eq!(violation, None);
+    }
 }
 
 #[test]
 fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
-    let outcome = caught("lasts = dead_time;", "lasts = 10'd1;");
-    assert!(outcome.violation.is_some(), "the gates' safety is not checked");
+    let config = PwmConfig::new(ActiveLow::default(), 2, 1).unwrap();
+    let (_, violation) = run(config, ("lasts = dead_time;", "lasts = 10'd1;"), 600_000);
+    assert!(violation.is_some(), "the gates' safety is not checked");
 }

@@ -15,7 +15,7 @@ use posicast_testbench::shaper::{
 use posicast_testbench::shaper::{MachineShapers, ShaperBlock};
 use posicast_testbench::stimuli::Stimuli;
 use posicast_testbench::verilator::Verilated;
-use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
+use support::{assert_match, broken};
 
 /// A ZVD shaper like that of the XY stage: three impulses with two taps each.
 fn zvd(fraction: u32) -> TapTable {
@@ -71,10 +71,6 @@ impl Bench {
         self.block.layout()
     }
 
-    fn random(&self, seed: u64) -> Random {
-        Random::new(self.layout(), seed)
-    }
-
     fn directed(&self, script: Vec<Action>) -> Directed {
         Directed::new(self.layout(), script)
     }
@@ -119,36 +115,6 @@ fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig
     config.for_motion(ForMotion { channels, modulo }).unwrap()
 }
 
-fn million_random_clocks_of(config: ShaperConfig, seed: u64) {
-    let block = ShaperBlock::new(config, "", "alone").unwrap();
-    let run = million_random_clocks(&block, seed, 1);
-    let often = ["swaps", "saturated", "handovers", "handovers over"];
-    for (name, count) in run.coverage.iter().filter(|(name, _)| often.contains(&name.as_str())) {
-        assert!(*count > 20, "{name}: {:?}", run.coverage);
-    }
-    assert!(run.report.samples > 3_000);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_motion_with_one_channel() {
-    million_random_clocks_of(for_motion(config(24, negative(15), 0, 0), 1, false), 11);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_motion_with_three_channels() {
-    million_random_clocks_of(for_motion(config(32, zvd(16), 0, 0), 3, false), 12);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_a_rotary_axis() {
-    million_random_clocks_of(for_motion(config(32, negative(15), 0, 0), 1, true), 13);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_a_rotary_axis_with_velocity() {
-    million_random_clocks_of(for_motion(config(24, negative(14), 0, 0), 2, true), 14);
-}
-
 #[test]
 fn lockstep_every_directed_case_of_motion() {
     for config in [
@@ -169,26 +135,6 @@ fn lockstep_every_directed_case_of_motion() {
             }
         }
     }
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_32_bits() {
-    million_random_clocks_of(standard(), 1);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_16_bits_with_negative_taps() {
-    million_random_clocks_of(config(16, negative(15), 0, 0), 2);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_of_24_bits_with_256_taps() {
-    million_random_clocks_of(config(24, zvd(12), 500, 256), 3);
-}
-
-#[test]
-fn lockstep_a_million_random_clocks_with_the_longest_ring() {
-    million_random_clocks_of(config(32, negative(1), 16_000, 64), 4);
 }
 
 #[test]
@@ -266,64 +212,6 @@ fn lockstep_real_motion_of_a_machine_with_two_axes() {
     let (report, coverage) = run(&block, block.layout(), &mut device, &mut random, 300_000);
     assert_match(&report, "two axes at random");
     assert_eq!(coverage.missing(), Vec::<&str>::new(), "{coverage}");
-}
-
-#[test]
-fn crosssim_icarus_and_rusthdl_agree_with_the_model() {
-    let bench = Bench::new(standard());
-    icarus_agrees(&bench.block);
-    let mut device = TwoValued(bench.block.simulate().unwrap());
-    let (report, _) = bench.run(&mut device, &mut bench.random(8), 3_000);
-    assert_match(&report, "RustHDL");
-}
-
-fn caught_in(config: ShaperConfig, from: &str, to: &str) {
-    caught(&ShaperBlock::new(config, "", "alone").unwrap(), from, to, 200_000);
-}
-
-#[test]
-fn lockstep_catches_a_broken_multiplier_bit() {
-    caught_in(
-        standard(),
-        "product <= a_q * b_q;",
-        "product <= (a_q * b_q) ^ 50'sd1048576;",
-    );
-}
-
-#[test]
-fn lockstep_catches_a_handover_that_goes_wrong() {
-    let motion = || for_motion(standard(), 3, false);
-    caught_in(motion(), "tap_delay < since_q", "tap_delay <= since_q");
-    caught_in(motion(), "since_q == reach", "next_since == reach");
-    caught_in(motion(), "still >= reach", "still > reach");
-}
-
-#[test]
-fn lockstep_catches_a_broken_address_bit() {
-    caught_in(
-        standard(),
-        "address = head - delay;",
-        "address = (head - delay) & 7'h7e;",
-    );
-}
-
-#[test]
-fn lockstep_catches_a_history_that_ages_a_sample_late() {
-    caught_in(standard(), "delay > age", "delay >= age");
-}
-
-#[test]
-fn lockstep_catches_a_read_back_that_goes_wrong() {
-    let motion = || for_motion(standard(), 3, false);
-    // The reads are of the other bank, of a tap that is not loaded, in a pass, and at the same time as a write.
-    caught_in(
-        standard(),
-        "read_address = write_address;",
-        "read_address = write_address ^ 7'd64;",
-    );
-    caught_in(standard(), "(index < host_taps)", "(index <= host_taps)");
-    caught_in(motion(), "& !busy", "");
-    caught_in(motion(), "& !tap_write", "");
 }
 
 /// Faults that ten million random clocks did not reveal, each with the directed case that does.

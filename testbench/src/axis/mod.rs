@@ -3,6 +3,7 @@
 mod coverage;
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::coverage::{AxisCoverage, AxisSafety};
 pub use self::stimuli::AxisRandom;
@@ -34,6 +35,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
                  magnitudes with their limits.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The supervisor of an axis, which has one size: registers configure it.

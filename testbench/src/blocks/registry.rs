@@ -6,6 +6,7 @@
 //! | [`small`](RegistryRow::small) | mutants |
 //! | [`proofs`](RegistryRow::proofs) | the formal proofs |
 //! | [`areas`](RegistryRow::areas) | `docs/area.md` |
+//! | [`trials`](RegistryRow::trials), [`mutants`](RegistryRow::mutants) | the tests (`testbench/tests/blocks.rs`) |
 //!
 //! The row of a new block is in the file of its bench; add it to [`REGISTRY`].
 
@@ -70,6 +71,10 @@ pub(crate) struct RegistryRow {
     pub(crate) proofs: fn() -> Result<Vec<Task>, Error>,
     /// Makes the sizes whose area is checked.
     pub(crate) areas: fn() -> Result<Vec<AreaRow>, Error>,
+    /// Makes the sizes that the tests compare.
+    pub(crate) trials: fn() -> Result<Vec<Trial>, Error>,
+    /// Faults in the Verilog that the stimuli must find.
+    pub(crate) mutants: &'static [BlockMutant],
 }
 
 impl RegistryRow {
@@ -80,6 +85,8 @@ impl RegistryRow {
         small: || Ok(Vec::new()),
         proofs: || Ok(Vec::new()),
         areas: || Ok(Vec::new()),
+        trials: || Ok(Vec::new()),
+        mutants: &[],
     };
 }
 
@@ -160,6 +167,95 @@ impl AreaRow {
     pub(crate) fn note(self, note: &'static str) -> Self {
         Self { note, ..self }
     }
+}
+
+/// A block at a size that the tests compare, in a million clocks per seed.
+pub struct Trial {
+    /// The block.
+    pub block: Box<dyn Block>,
+    /// Its size, or empty if the tests compare one only.
+    pub size: &'static str,
+    /// Seeds of the runs.
+    pub seeds: &'static [u64],
+    /// Smallest count of each case that a run must reach.
+    pub least: u64,
+}
+
+impl Trial {
+    /// Creates it without a size.
+    pub(crate) fn new(block: impl Block + 'static, seeds: &'static [u64], least: u64) -> Self {
+        Self {
+            block: Box::new(block),
+            size: "",
+            seeds,
+            least,
+        }
+    }
+
+    pub(crate) fn size(self, size: &'static str) -> Self {
+        Self { size, ..self }
+    }
+}
+
+/// A fault in a block's Verilog: the first `from` is replaced by `to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BlockMutant {
+    /// The fault in words, which follow "the stimuli find".
+    pub name: &'static str,
+    /// Size of the trial that gets it; empty for the first.
+    pub size: &'static str,
+    /// Text of the Verilog.
+    pub from: &'static str,
+    /// What replaces it.
+    pub to: &'static str,
+    /// Number of clocks in which the stimuli must find it.
+    pub clocks: u64,
+}
+
+impl BlockMutant {
+    /// Creates a fault that is found within 300,000 clocks of the first trial.
+    pub(crate) const fn new(name: &'static str, from: &'static str, to: &'static str) -> Self {
+        Self {
+            name,
+            size: "",
+            from,
+            to,
+            clocks: 300_000,
+        }
+    }
+
+    pub(crate) const fn of(self, size: &'static str) -> Self {
+        Self { size, ..self }
+    }
+
+    pub(crate) const fn within(self, clocks: u64) -> Self {
+        Self { clocks, ..self }
+    }
+}
+
+/// The tests of a kind of block.
+pub struct BlockTrials {
+    /// The block's name.
+    pub name: &'static str,
+    /// Its sizes.
+    pub trials: Vec<Trial>,
+    /// Its faults.
+    pub mutants: &'static [BlockMutant],
+}
+
+/// Returns the tests of every kind of block.
+///
+/// # Errors
+/// As [`benches`].
+pub fn trials() -> Result<Vec<BlockTrials>, Error> {
+    let of_row = |row: &RegistryRow| {
+        Ok(BlockTrials {
+            name: row.name,
+            trials: (row.trials)()?,
+            mutants: row.mutants,
+        })
+    };
+    REGISTRY.iter().map(of_row).collect()
 }
 
 /// Returns the single bench of a row.

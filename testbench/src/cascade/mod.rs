@@ -1,6 +1,7 @@
 //! The bench of `cascade`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{CascadeCoverage, CascadeRandom};
 
@@ -37,6 +38,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             area(32, 5, 1000, "32 bits, 5 stages, ring 1024")?,
         ])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The cascade of one size.

@@ -1,6 +1,7 @@
 //! The bench of `divider`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{DividerCoverage, DividerRandom};
 
@@ -33,6 +34,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             "The 35-bit register and the remainder select between two or three sources.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The divider for ticks of one length.

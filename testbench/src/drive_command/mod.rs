@@ -1,6 +1,7 @@
 //! The bench of `drive_command`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{DriveCommandCoverage, DriveCommandRandom};
 
@@ -34,6 +35,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             AreaRow::new("nothing tied", emit("")?).note("Two counters and two results belong to the self-test."),
         ])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The drive command, which has one size.

@@ -1,6 +1,7 @@
 //! The bench of `encoder_generator`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{EncoderGeneratorCoverage, EncoderGeneratorRandom};
 
@@ -31,6 +32,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
                  them.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The internal encoder, which has one size.

@@ -1,6 +1,7 @@
 //! The bench of `error_table`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{ErrorTableCoverage, ErrorTableRandom};
 
@@ -44,6 +45,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
              place, 32 bits each; a fifth checks what a host loads.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The error table of one machine.

@@ -1,6 +1,7 @@
 //! The bench of `excitation`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{ExcitationCoverage, ExcitationRandom};
 
@@ -31,6 +32,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
                  with `amplitude_limit` and `modulo` tied, it takes 333 LE.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The excitation, which has one size.

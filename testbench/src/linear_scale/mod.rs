@@ -1,6 +1,7 @@
 //! The bench of `linear_scale`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{LinearScaleCoverage, LinearScaleRandom};
 
@@ -34,6 +35,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
                  monitor. It has six registers of 32 bits.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The linear scale, which has one size.

@@ -3,6 +3,7 @@
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::PartRandom;
 
@@ -40,6 +41,12 @@ pub(crate) const TIME_BASE: RegistryRow = RegistryRow {
             .into_iter()
             .collect()
     },
+    trials: || {
+        Ok(vec![trials::trial(
+            SmallPart::TimeBase(DividerConfig::new(17).map_err(refused)?),
+            "",
+        )])
+    },
     ..RegistryRow::EMPTY
 };
 pub(crate) const SCHEDULE: RegistryRow = RegistryRow {
@@ -56,6 +63,13 @@ pub(crate) const SCHEDULE: RegistryRow = RegistryRow {
         ))
     },
     proofs: || [2, 400].map(proofs::schedule).into_iter().collect(),
+    trials: || {
+        Ok(vec![trials::trial(
+            SmallPart::Schedule(ScheduleConfig::new(37).map_err(refused)?),
+            "",
+        )])
+    },
+    mutants: trials::SCHEDULE,
     ..RegistryRow::EMPTY
 };
 pub(crate) const DIVIDER_SHARE: RegistryRow = RegistryRow {
@@ -63,6 +77,14 @@ pub(crate) const DIVIDER_SHARE: RegistryRow = RegistryRow {
     benches: |sizes| Ok(one(PartBlock::new(SmallPart::DividerShare(sizes.axes), &sizes.prefix))),
     small: || Ok(small(PartBlock::new(SmallPart::DividerShare(2), ""), "2 channels")),
     proofs: || [1, 2, 3, 8].map(proofs::divider_share).into_iter().collect(),
+    trials: || {
+        Ok(vec![
+            trials::trial(SmallPart::DividerShare(2), "2 channels"),
+            trials::trial(SmallPart::DividerShare(1), "1 channel"),
+            trials::trial(SmallPart::DividerShare(8), "8 channels"),
+        ])
+    },
+    mutants: trials::DIVIDER_SHARE,
     ..RegistryRow::EMPTY
 };
 pub(crate) const GROUP: RegistryRow = RegistryRow {
@@ -70,6 +92,13 @@ pub(crate) const GROUP: RegistryRow = RegistryRow {
     benches: |sizes| Ok(one(PartBlock::new(SmallPart::Group(sizes.axes), &sizes.prefix))),
     small: || Ok(small(PartBlock::new(SmallPart::Group(2), ""), "2 axes")),
     proofs: || [2, 4].map(proofs::group).into_iter().collect(),
+    trials: || {
+        Ok(vec![
+            trials::trial(SmallPart::Group(2), "2 axes"),
+            trials::trial(SmallPart::Group(4), "4 axes"),
+        ])
+    },
+    mutants: trials::GROUP,
     ..RegistryRow::EMPTY
 };
 pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
@@ -77,6 +106,7 @@ pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
     benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
     small: || Ok(small(PartBlock::new(WIDE_SAMPLES, ""), "3 channels of 32 bits")),
     proofs: || [1, 3].map(proofs::sample_select).into_iter().collect(),
+    trials: || Ok(vec![trials::trial(WIDE_SAMPLES, "")]),
     ..RegistryRow::EMPTY
 };
 pub(crate) const SETTING_BANKS: RegistryRow = RegistryRow {
@@ -92,6 +122,11 @@ pub(crate) const SETTING_BANKS: RegistryRow = RegistryRow {
         Ok(small(PartBlock::new(part, ""), "settings of 0"))
     },
     proofs: || Ok(vec![proofs::setting_banks()?]),
+    trials: || {
+        let words = std::array::from_fn(|row| 0x1234_5678_u32.rotate_left(row as u32));
+        Ok(vec![trials::trial(SmallPart::SettingBanks(Settings(words)), "")])
+    },
+    mutants: trials::SETTING_BANKS,
     ..RegistryRow::EMPTY
 };
 

@@ -1,6 +1,7 @@
 //! The bench of `pulse_counter`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{PulseCounterCoverage, PulseCounterRandom};
 
@@ -32,6 +33,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
                  if `differential` is tied low. A third of the LUTs is the one-pole filter.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The pulse counter, which has one size: registers configure it.

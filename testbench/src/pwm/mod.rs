@@ -1,6 +1,7 @@
 //! The bench of `pwm`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{GateSafety, PwmCoverage, PwmRandom};
 
@@ -49,6 +50,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             ),
         ])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The PWM with its polarities and smallest times.

@@ -62,6 +62,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             )?,
         ])
     },
+    ..RegistryRow::EMPTY
 };
 
 /// A register bank without its block.

@@ -1,6 +1,7 @@
 //! The bench of `segments`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{SegmentsCoverage, SegmentsRandom};
 
@@ -28,6 +29,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     small: || Ok(small(SegmentsBlock::new("", "alone"), "64 entries")),
     proofs,
     areas: || Ok(vec![AreaRow::new("64 entries", emit("")?)]),
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The command FIFO, which has one size.

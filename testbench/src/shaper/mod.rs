@@ -2,6 +2,7 @@
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{
     Action, AxisLayout, Coverage, Directed, Fill, Layout, MotionStimuli, Random, ShaperExercise, cases, corners,
@@ -42,6 +43,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             AreaRow::new("motion, 3 channels, 32 bits, ring 128", emit(&motion, "")?),
         ])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// Position, velocity and acceleration.

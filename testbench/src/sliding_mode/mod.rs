@@ -2,6 +2,7 @@
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{SlidingModeCoverage, SlidingModeRandom};
 
@@ -26,6 +27,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     small: || Ok(small(SlidingModeBlock::new("", "alone"), "all laws")),
     proofs: proofs::tasks,
     areas: || Ok(vec![AreaRow::new("all laws", emit("")?)]),
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The controller, which has one size: its settings configure it.

@@ -1,6 +1,7 @@
 //! The bench of `spi_bridge`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{SpiBridgeCoverage, SpiBridgeRandom};
 
@@ -31,6 +32,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
              the line.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The bridge, which has one size.

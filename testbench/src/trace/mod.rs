@@ -1,6 +1,7 @@
 //! The bench of `trace`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{TraceCoverage, TraceRandom};
 
@@ -37,6 +38,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             "320 LUT select one of 16 signals of 32 bits; signals that are tied disappear.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The trace memory of one size.

@@ -1,6 +1,7 @@
 //! The bench of `uart_bridge`.
 
 pub(crate) mod stimuli;
+mod trials;
 
 pub use self::stimuli::{UartBridgeCoverage, UartBridgeRandom};
 
@@ -36,6 +37,8 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
              clock. Request and reply are a block RAM of 256 bytes each.",
         )])
     },
+    trials: trials::all,
+    mutants: trials::MUTANTS,
 };
 
 /// The bridge, which has one size.

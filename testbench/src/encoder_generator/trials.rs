@@ -1,0 +1,33 @@
+//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+
+use super::EncoderGeneratorBlock;
+use crate::Error;
+use crate::blocks::{BlockMutant, Trial};
+
+pub(super) fn all() -> Result<Vec<Trial>, Error> {
+    Ok(vec![Trial::new(EncoderGeneratorBlock::new("", "alone"), &[1, 2], 20)])
+}
+
+pub(super) const MUTANTS: &[BlockMutant] = &[
+    BlockMutant::new(
+        "lines that change in successive clocks",
+        "if (!moved) begin",
+        "if (1'b1) begin",
+    ),
+    BlockMutant::new(
+        "a turn that is a period too long",
+        "next_period >= index_periods",
+        "next_period > index_periods",
+    ),
+    BlockMutant::new(
+        "an index that is lost going down",
+        "from_period = index_periods",
+        "from_period = period",
+    ),
+    BlockMutant::new(
+        "lines that outlive a reset",
+        "generated_a = line_a & !rst",
+        "generated_a = line_a",
+    ),
+    BlockMutant::new("a rate without its sign", "{{32{rate[31]}}, rate}", "{32'd0, rate}"),
+];

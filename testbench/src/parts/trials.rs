@@ -1,0 +1,34 @@
+//! Faults in the Verilog of the small parts that the stimuli find.
+
+use super::{PartBlock, SmallPart};
+use crate::blocks::{BlockMutant, Trial};
+
+/// A part as the tests compare it.
+pub(super) fn trial(part: SmallPart, size: &'static str) -> Trial {
+    Trial::new(PartBlock::new(part, "alone"), &[1], 20).size(size)
+}
+
+pub(super) const SCHEDULE: &[BlockMutant] = &[BlockMutant::new(
+    "a tick that does not begin anew",
+    "if (tick) begin",
+    "if (tick & !waits) begin",
+)];
+pub(super) const DIVIDER_SHARE: &[BlockMutant] = &[BlockMutant::new(
+    "steps of the other channel",
+    "steps_q_next = steps_of_1;",
+    "steps_q_next = steps_of_0;",
+)
+.of("2 channels")];
+pub(super) const GROUP: &[BlockMutant] = &[BlockMutant::new(
+    "a start that looks at another axis",
+    "& !can_start_1)",
+    "& !can_start_0)",
+)];
+pub(super) const SETTING_BANKS: &[BlockMutant] = &[
+    BlockMutant::new(
+        "a read-back of another row",
+        "read_row = setting_row;",
+        "read_row = row;",
+    ),
+    BlockMutant::new("a read-back while the controller reads", "& !busy", ""),
+];

@@ -1,0 +1,91 @@
+//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+
+use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
+use posicast_taps::TapTable;
+
+use super::{ShaperBlock, tap_table};
+use crate::Error;
+use crate::blocks::{BlockMutant, Trial};
+use crate::formal::refused;
+
+/// A ZVD shaper like that of the XY stage: three impulses with two taps each. The first tap takes what rounding leaves.
+fn zvd(fraction: u32) -> Result<TapTable, Error> {
+    let taps = [(0, 388), (38, 280), (39, 190), (77, 100), (78, 42)];
+    let mut taps = taps.map(|(delay_samples, permille)| (delay_samples, permille * (1 << fraction) / 1000));
+    taps[0].1 += (1 << fraction) - taps.iter().map(|(_, coefficient)| coefficient).sum::<i32>();
+    tap_table(fraction, &taps)
+}
+
+/// Taps of negative impulses, whose output swings beyond full scale.
+fn negative(fraction: u32) -> Result<TapTable, Error> {
+    let one = 1 << fraction;
+    tap_table(fraction, &[(0, one), (7, -2 * one), (15, 2 * one)])
+}
+
+fn plain(word_bits: u32, table: TapTable, delay: u32, taps: usize) -> Result<ShaperConfig, Error> {
+    let config = ShaperConfig::new(word_bits, table).map_err(refused)?;
+    config.with_room_for(delay, taps).map_err(refused)
+}
+
+fn motion(config: ShaperConfig, channels: u32, modulo: bool) -> Result<ShaperConfig, Error> {
+    config.for_motion(ShaperMotion { channels, modulo }).map_err(refused)
+}
+
+pub(super) fn all() -> Result<Vec<Trial>, Error> {
+    let standard = plain(32, zvd(16)?, 0, 0)?;
+    let sizes = [
+        ("32 bits", &[1][..], standard.clone()),
+        ("16 bits, negative taps", &[2], plain(16, negative(15)?, 0, 0)?),
+        ("24 bits, 256 taps", &[3], plain(24, zvd(12)?, 500, 256)?),
+        ("longest ring", &[4], plain(32, negative(1)?, 16_000, 64)?),
+        ("one channel", &[11], motion(plain(24, negative(15)?, 0, 0)?, 1, false)?),
+        ("three channels", &[12], motion(standard, 3, false)?),
+        ("rotary axis", &[13], motion(plain(32, negative(15)?, 0, 0)?, 1, true)?),
+        (
+            "rotary axis with velocity",
+            &[14],
+            motion(plain(24, negative(14)?, 0, 0)?, 2, true)?,
+        ),
+    ];
+    let trial = |(size, seed, config)| Ok(Trial::new(ShaperBlock::new(config, "", "alone")?, seed, 1).size(size));
+    sizes.into_iter().map(trial).collect()
+}
+
+pub(super) const MUTANTS: &[BlockMutant] = &[
+    BlockMutant::new(
+        "a broken multiplier bit",
+        "product <= a_q * b_q;",
+        "product <= (a_q * b_q) ^ 50'sd1048576;",
+    ),
+    BlockMutant::new(
+        "a broken address bit",
+        "address = head - delay;",
+        "address = (head - delay) & 7'h7e;",
+    ),
+    BlockMutant::new("a history that ages a sample late", "delay > age", "delay >= age"),
+    BlockMutant::new(
+        "a handover that sees a delay too early",
+        "tap_delay < since_q",
+        "tap_delay <= since_q",
+    )
+    .of("three channels"),
+    BlockMutant::new(
+        "a handover that ends a sample early",
+        "since_q == reach",
+        "next_since == reach",
+    )
+    .of("three channels"),
+    BlockMutant::new("a rest that is a sample too short", "still >= reach", "still > reach").of("three channels"),
+    BlockMutant::new(
+        "a read-back from the other bank",
+        "read_address = write_address;",
+        "read_address = write_address ^ 7'd64;",
+    ),
+    BlockMutant::new(
+        "a read-back of a tap that is not loaded",
+        "(index < host_taps)",
+        "(index <= host_taps)",
+    ),
+    BlockMutant::new("a read-back in a pass", "& !busy", "").of("three channels"),
+    BlockMutant::new("a read-back at the same time as a write", "& !tap_write", "").of("three channels"),
+];
