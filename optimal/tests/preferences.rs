@@ -125,7 +125,7 @@ fn a_finer_grid_is_never_longer() {
 }
 
 #[test]
-fn more_duration_buys_fewer_taps_or_less_residual() {
+fn long_more_duration_buys_fewer_taps_or_less_residual() {
     let request = request(400.0, &four_modes(), 0.05, 0.0);
     let least = shortest(&request).unwrap().least_samples;
     let points = front(&request, &[least, least + 16, least + 40]).unwrap();

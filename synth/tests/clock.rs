@@ -20,7 +20,7 @@ fn tool() -> PlaceAndRoute {
 }
 
 #[test]
-fn netlist_a_longer_carry_is_a_slower_clock() {
+fn long_netlist_a_longer_carry_is_a_slower_clock() {
     let yosys = Yosys::installed().unwrap();
     let mhz = |top: &str| tool().highest_mhz(&yosys, &rtl(top), top).unwrap();
     let (counter, product) = (mhz("counter"), mhz("product"));

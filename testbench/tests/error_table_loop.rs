@@ -124,7 +124,7 @@ fn errors(bed: &mut Bed) -> Vec<f64> {
 }
 
 #[test]
-fn figure_the_error_of_a_screw_with_and_without_its_table() {
+fn long_figure_the_error_of_a_screw_with_and_without_its_table() {
     for apply in ["reference", "feedback"] {
         let mut bed = Bed::new(apply, false);
         let without = largest(&errors(&mut bed));

@@ -72,7 +72,7 @@ fn lockstep_faults_with_the_rtl_beside_the_model() {
 }
 
 #[test]
-fn a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
+fn long_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
     // A half bridge pushes in one direction only and cannot do these moves: it is in the test below.
     for mode in [PwmMode::Direction, PwmMode::FullBridge, PwmMode::LockedAntiphase] {
         for (filter_clocks, drive) in [(0, 0.5), (8, 0.6), (16, 0.5)] {

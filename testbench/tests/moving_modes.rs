@@ -31,7 +31,7 @@ fn ringing_um(moved: &Moved) -> f64 {
 /// With handovers during the move, the load rings within the design's bound of the handovers; with only the ROM's
 /// table it rings as with a frequency that is wrong by a quarter.
 #[test]
-fn lockstep_tables_are_handed_over_while_the_mode_moves() {
+fn long_lockstep_tables_are_handed_over_while_the_mode_moves() {
     let machine = machine(ARM);
     let family: TableFamily = design_machine(&machine).unwrap().families.remove(0);
     let own = run(&machine);

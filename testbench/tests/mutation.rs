@@ -36,7 +36,7 @@ fn mutate_no_mutant_of_a_small_block_is_unknown() {
 }
 
 #[test]
-fn mutate_stimuli_that_do_nothing_leave_mutants_alive_and_no_proof_calls_them_equivalent() {
+fn long_mutate_stimuli_that_do_nothing_leave_mutants_alive_and_no_proof_calls_them_equivalent() {
     let subject = subject("group");
     let seen = fates(&subject, 12);
     let folder = tempfile::tempdir().unwrap();
@@ -55,7 +55,7 @@ fn mutate_stimuli_that_do_nothing_leave_mutants_alive_and_no_proof_calls_them_eq
 }
 
 #[test]
-fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
+fn long_mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
     let subject = subject("schedule");
     let few = |seed| {
         let folder = tempfile::tempdir().unwrap();

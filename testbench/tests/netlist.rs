@@ -55,7 +55,7 @@ impl Mapped {
 
 /// The blocks have plain logic, carry chains, a chain whose carry-in is a signal, and a kept ROM and RAM.
 #[test]
-fn netlist_is_proven_equal_to_the_rtl() {
+fn long_netlist_is_proven_equal_to_the_rtl() {
     for (name, kept) in [("group", 0), ("divider", 0), ("pwm", 0), ("setting_banks", 2)] {
         let outcome = Mapped::new(name).check(0);
         assert_eq!(outcome.verdict, EquivalenceVerdict::Equivalent, "{name}: {outcome:?}");

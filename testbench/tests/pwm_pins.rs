@@ -228,7 +228,7 @@ fn every_edge_is_that_of_the_pin_rule(periods: u64) {
 
 #[test]
 fn lockstep_every_edge_of_many_periods_is_that_of_the_pin_rule() {
-    every_edge_is_that_of_the_pin_rule(200_000);
+    every_edge_is_that_of_the_pin_rule(50_000);
 }
 
 #[test]

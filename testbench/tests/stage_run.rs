@@ -51,7 +51,7 @@ fn holds(moved: &Moved, expected: &[Expected]) -> [bool; 2] {
 }
 
 #[test]
-fn golden_the_float_loop_foresees_what_the_stage_does() {
+fn long_golden_the_float_loop_foresees_what_the_stage_does() {
     for (text, ringing) in [(XY, true), (GANTRY, true), (TORQUE, false)] {
         let machine = machine(text);
         let [shaped, unshaped] = [Shaping::Shaped, Shaping::Unshaped].map(|shaping| moved(&machine, shaping, 1.0).1);
@@ -74,7 +74,7 @@ fn golden_the_float_loop_foresees_what_the_stage_does() {
 }
 
 #[test]
-fn a_broken_shaper_rings_more_than_is_allowed() {
+fn long_a_broken_shaper_rings_more_than_is_allowed() {
     for kind in ["zv", "zvd", "ei"] {
         let machine = machine(&GANTRY.replace("kind = \"ei\"", &format!("kind = \"{kind}\"")));
         let right = stage(&machine).config;

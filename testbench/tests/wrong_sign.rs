@@ -165,7 +165,7 @@ fn without_both_watches_a_wrong_sign_goes_on_to_the_end_of_the_errors_word() {
 }
 
 #[test]
-fn a_sound_machine_of_torque_drives_does_not_trip_when_it_stops() {
+fn long_a_sound_machine_of_torque_drives_does_not_trip_when_it_stops() {
     for frequency_factor in [0.8, 1.0, 1.2] {
         for stop_deceleration in [None, Some(16.0)] {
             sound(frequency_factor, stop_deceleration);

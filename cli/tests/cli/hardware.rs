@@ -213,7 +213,7 @@ fn break_file(file: &Path, from: &str, to: &str) {
 }
 
 #[test]
-fn cli_verify_reports_a_broken_bit_of_the_multiplier_and_of_the_address() {
+fn long_cli_verify_reports_a_broken_bit_of_the_multiplier_and_of_the_address() {
     for (file, from, to) in [
         ("rtl/posicast_smul_18x18.v", "a_q * b_q", "(a_q ^ 18'sd1) * b_q"),
         (

@@ -130,7 +130,7 @@ fn cli_the_kits_makefile_says_which_tool_is_missing_and_how_to_get_it() {
 }
 
 #[test]
-fn cli_the_kits_pll_makes_the_clock_of_the_machine_as_nextpnr_derives_it() {
+fn long_cli_the_kits_pll_makes_the_clock_of_the_machine_as_nextpnr_derives_it() {
     let folder = generated("robot-joint.toml");
     let out = folder.path().join("out");
     // 12 MHz need both dividers of the feedback.

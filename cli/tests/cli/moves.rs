@@ -6,7 +6,7 @@ use crate::cli::stage::{quick, run};
 use crate::cli::support::{example, one_axis, posicast, scratch};
 
 #[test]
-fn cli_run_moves_each_axis_by_its_distance_and_speed() {
+fn long_cli_run_moves_each_axis_by_its_distance_and_speed() {
     let told = [
         "--simulator",
         "rusthdl",

@@ -326,7 +326,7 @@ fn failed(document: &serde_json::Value) -> Vec<(String, String)> {
 }
 
 #[test]
-fn cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
+fn long_cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
     let coarse = quick().replace("counts_per_unit = 1_000_000", "counts_per_unit = 80");
     // Half a metre per second is less than one count per tick.
     let text = coarse.replacen("[target]", "[fixed_point]\ncoefficient_fraction = 1\n[target]", 1);
@@ -347,7 +347,7 @@ fn cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
 }
 
 #[test]
-fn cli_run_of_ei_shapers_passes_and_reports_the_expected_residual() {
+fn long_cli_run_of_ei_shapers_passes_and_reports_the_expected_residual() {
     let text = include_str!("../../../testbench/tests/fixtures/machines/ei-gantry.toml");
     let (status, document, said, _folder) = run(text, &["--simulator", "rusthdl", "--move", "0.005"]);
     assert_eq!((status, failed(&document).len()), (Some(0), 0), "{said} {document}");

@@ -290,7 +290,7 @@ fn crosssim_every_kernel_means_the_same_in_every_tool() {
 
 /// The bench itself must detect a difference: one bit of one expectation is inverted.
 #[test]
-fn crosssim_bench_notices_one_wrong_bit() {
+fn long_crosssim_bench_notices_one_wrong_bit() {
     let mut wrong = row::<SignedConstant>("wrong", pairs(16, 16));
     wrong.vectors[17][2] ^= 1;
     let differences = tools::replay(&[wrong]);

@@ -118,7 +118,7 @@ fn show(firmware: &Firmware, outcome: &Outcome) {
 }
 
 #[test]
-fn prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
+fn long_prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
     let driver = driver(MACHINE);
     let firmware = Firmware::build(&driver);
     // This fits a small memory; the compiler's version changes it by some hundred bytes.
