@@ -255,11 +255,11 @@ proptest! {
             let mut axis_mode = template.clone();
             axis_mode.mode = Mode { frequency_hz, damping };
             axis_mode.participation = participation;
-            axis_mode.shaper = own_kind.map(|(kind, _)| kind);
+            axis_mode.shaper = own_kind;
             axis.modes.push(axis_mode);
         }
         let choice = axis.shaper.as_mut().unwrap();
-        choice.kind = kind.0;
+        choice.kind = kind;
         choice.tolerance = Some(tolerance);
         choice.impulses = impulses;
         if let Ok(design) = design_machine(&machine) {

@@ -70,8 +70,8 @@ fn a_mode_may_have_a_smooth_kind_beside_an_impulse_shaper() {
 fn every_smooth_kind_has_its_word() {
     let smooth: Vec<&str> = ShaperKind::ALL
         .iter()
-        .filter(|(kind, _)| kind.is_smooth())
-        .map(|(_, name)| *name)
+        .filter(|kind| kind.is_smooth())
+        .map(|kind| kind.name())
         .collect();
     let expected = [
         "smooth_zv",

@@ -140,7 +140,7 @@ impl Example {
 
     /// The shortest kind that does what is asked for.
     fn closed_form(&self) -> Option<(f64, String)> {
-        let kinds = ShaperKind::ALL.into_iter().map(|(kind, _)| kind);
+        let kinds = ShaperKind::ALL.iter().copied();
         let kinds = kinds.filter(|kind| !matches!(kind, ShaperKind::Optimal | ShaperKind::Custom | ShaperKind::None));
         let designs = kinds.filter_map(|kind| {
             let impulses = design_axis(self.axis(kind).shaped(), self.sample_hz).ok()?.impulses;

@@ -10,8 +10,6 @@ pub const DEFAULT_TOLERANCE: f64 = 0.05;
 pub const DEFAULT_EPSILON: f64 = 0.05;
 /// Default number of zero pairs of `chebyshev-ei`.
 pub const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
-/// Default number of frequencies per mode of `vibrationless`.
-const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
 
 /// What the design of an axis's shaper takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,11 +51,9 @@ impl ShapedAxis<'_> {
     /// Order at a mode: the mode's, else the axis's, else the default of the mode's kind; 1 for a kind without order.
     pub fn order_of(&self, mode: &AxisMode) -> u32 {
         let of_axis = self.shaper.and_then(|s| s.order);
-        mode.order.or(of_axis).unwrap_or(match self.kind_of(mode) {
-            ShaperKind::ChebyshevEi => DEFAULT_CHEBYSHEV_ORDER,
-            ShaperKind::Vibrationless => DEFAULT_VIBRATIONLESS_ORDER,
-            _ => 1,
-        })
+        mode.order
+            .or(of_axis)
+            .unwrap_or_else(|| self.kind_of(mode).row().default_order)
     }
 
     /// Residual bound of `vibrationless`, default 0.05.

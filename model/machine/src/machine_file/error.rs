@@ -114,14 +114,6 @@ pub enum ProblemCause {
         /// The combinations that are right.
         allowed: String,
     },
-    /// A valid value that this version does not build.
-    #[error("not built in this version: {name}{}", allowed.as_ref().map(|a| format!("; allowed: {a}")).unwrap_or_default())]
-    NotBuilt {
-        /// Name of the block, key or kind.
-        name: String,
-        /// The alternatives that are built, where there is a choice.
-        allowed: Option<String>,
-    },
 }
 
 impl ProblemCause {
@@ -137,7 +129,6 @@ impl ProblemCause {
             ProblemCause::NotAChoice { .. } => "not in the list",
             ProblemCause::Duplicate { .. } => "not unique",
             ProblemCause::Inconsistent { .. } => "contradiction",
-            ProblemCause::NotBuilt { .. } => "not built",
         }
     }
 }

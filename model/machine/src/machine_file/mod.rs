@@ -1,9 +1,7 @@
 //! The machine file: what an engineer knows of a machine, parsed and validated.
 //!
 //! The types here hold only values that passed validation; [`parse`] is the one way to make them from text. It reads
-//! the whole schema of `docs/machine-file.md`, checks every value, and reports all problems of a file at once. A kind
-//! of shaper that is known but not built in this version is checked as the others are, and then refused with
-//! `not built in this version: NAME`: a machine never silently lacks what its file asks for.
+//! the whole schema of `docs/machine-file.md`, checks every value, and reports all problems of a file at once.
 //!
 //! ```
 //! let text = r#"

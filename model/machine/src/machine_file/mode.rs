@@ -210,7 +210,7 @@ fn read_masses(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>) -> Option<O
         return None;
     }
     // The impulses of these kinds do not depend on the modes.
-    let changes_shaper = !matches!(axis_kind, Some(ShaperKind::Custom | ShaperKind::None));
+    let changes_shaper = axis_kind.is_none_or(ShaperKind::depends_on_modes);
     if measured != Some(FREE) || (!changes_shaper && missing.len() == MASSES.len()) {
         return Some(None);
     }

@@ -290,7 +290,7 @@ pub(super) fn check(
     modulo: bool,
     unit: AxisUnit,
 ) {
-    if let Some(kind) = kind.filter(|kind| matches!(kind, ShaperKind::Custom | ShaperKind::None)) {
+    if let Some(kind) = kind.filter(|kind| !kind.depends_on_modes()) {
         let found = format!("shaper \"{kind}\" with a mode that moves");
         let remedy =
             "choose a kind that is designed for its modes, such as \"zvd\", or give `frequency_hz` and `damping`";

@@ -18,7 +18,6 @@ pub(super) struct Reader<'t> {
     beside: &'t dyn Fn(&str) -> Result<String, String>,
     line_ends: Vec<usize>,
     problems: Problems,
-    not_built: Problems,
 }
 
 /// A list that keeps its first [`MAX_PROBLEMS`] entries and counts the others.
@@ -48,7 +47,6 @@ impl<'t> Reader<'t> {
             beside,
             line_ends: text.match_indices('\n').map(|(offset, _)| offset).collect(),
             problems: Problems::default(),
-            not_built: Problems::default(),
         }
     }
 
@@ -93,11 +91,6 @@ impl<'t> Reader<'t> {
         self.problems.push(problem);
     }
 
-    /// Records something that this version does not build: an error only where [`Reader::report`] recorded none.
-    pub(super) fn report_not_built(&self, problem: Problem) {
-        self.not_built.push(problem);
-    }
-
     /// Quotes the text at a place of the file on one line, without control characters.
     pub(super) fn quote(&self, span: Range<usize>) -> String {
         let text = self.text.get(span).unwrap_or_default();
@@ -108,17 +101,17 @@ impl<'t> Reader<'t> {
         quote
     }
 
-    /// Returns the value if no problem was recorded and this version builds everything that the file asks for.
+    /// Returns the value if no problem was recorded.
     pub(super) fn finish<T>(self, value: Option<T>) -> Result<T, SpecError> {
-        let list = if self.problems.kept.borrow().is_empty() {
-            self.not_built
-        } else {
-            self.problems
-        };
-        let problems = list.kept.into_inner();
+        let problems = self.problems.kept.into_inner();
         match value {
             Some(value) if problems.is_empty() => Ok(value),
-            _ => Err(SpecError::new(self.file_name, self.text, problems, list.unlisted.get())),
+            _ => Err(SpecError::new(
+                self.file_name,
+                self.text,
+                problems,
+                self.problems.unlisted.get(),
+            )),
         }
     }
 }

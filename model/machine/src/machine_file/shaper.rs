@@ -7,6 +7,7 @@ use super::table::Table;
 use posicast_optimal::{Command, Prefer};
 use posicast_shaper::axis::{AxisMode, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice};
 use posicast_shaper::design::kind::ShaperKind;
+use posicast_shaper::design::periodic::BASES;
 use posicast_shaper::digitise::TAPS_MAX;
 use posicast_shaper::unit::short;
 
@@ -38,17 +39,15 @@ const PREFERENCES: [(&str, Prefer); 3] = [
     ("least-residual", Prefer::LeastResidual),
     ("least-delay", Prefer::LeastDelay),
 ];
-/// Base shapers of `periodic`.
-const BASES: [ShaperKind; 3] = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi];
-
 const COMMAND: &str = "command";
 const AMPLITUDE_BOUNDS: &str = "amplitude_bounds";
 const TAPS: &str = "taps";
 const PREFER: &str = "prefer";
+const IMPULSES: &str = "impulses";
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("kind", Values::Word(|| names(ShaperKind::is_built)), "Kind of shaper.").required(),
+    Key::new("kind", Values::Word(all), "Kind of shaper.").required(),
     Key::new(
         "tolerance",
         Values::Number(TOLERANCE),
@@ -115,7 +114,7 @@ pub(super) const KEYS: &[Key] = &[
     )
     .default(Default::Word("fewest-taps")),
     Key::new(
-        "impulses",
+        IMPULSES,
         Values::Pairs(IMPULSE, MAX_IMPULSES),
         "Impulses of `custom`, [time_s, amplitude]: first time 0, times increasing, sum of the amplitudes 1.",
     ),
@@ -128,48 +127,20 @@ pub(super) const ORDER: Key = Key::new(
     "Zero pairs of `chebyshev-ei` (default 3), or frequencies per mode of `vibrationless` (default 2).",
 );
 
-/// The kinds that have an order.
-const ORDER_KINDS: &[ShaperKind] = &[ShaperKind::ChebyshevEi, ShaperKind::Vibrationless];
-/// The keys that serve some kinds only, with those kinds.
-const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 11] = [
-    (COMMAND, &[ShaperKind::Optimal]),
-    (AMPLITUDE_BOUNDS, &[ShaperKind::Optimal]),
-    (TAPS, &[ShaperKind::Optimal]),
-    (PREFER, &[ShaperKind::Optimal]),
-    ("order", ORDER_KINDS),
-    ("epsilon", &[ShaperKind::Vibrationless]),
-    ("base", &[ShaperKind::Periodic]),
-    ("lowest_frequency_hz", &[ShaperKind::Periodic]),
-    ("amplitude", &[ShaperKind::Simultaneous]),
-    ("method", &[ShaperKind::Antisymmetric]),
-    ("ratio_tolerance", &[ShaperKind::Antisymmetric]),
-];
-
-/// Reads a kind of shaper by name. A kind that is known but not built counts as read.
+/// Reads a kind of shaper by name.
 pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<ShaperKind> {
-    let built = names(ShaperKind::is_built);
-    let name = table.text(key, built.join(", "))?;
-    let Some(kind) = ShaperKind::from_name(name) else {
-        return table.choice(key, &built).and_then(ShaperKind::from_name);
-    };
-    if !kind.is_built() {
-        table.not_built(key, kind.name(), Some(built.join(", ")), "choose a kind of the list");
-    }
-    Some(kind)
+    table.choice(key, &all()).and_then(ShaperKind::from_name)
 }
 
-/// Names of the kinds for which `wanted` is true.
-fn names(wanted: impl Fn(ShaperKind) -> bool) -> Vec<&'static str> {
-    ShaperKind::ALL
-        .iter()
-        .filter(|(kind, _)| wanted(*kind))
-        .map(|(_, name)| *name)
-        .collect()
+/// Names of all kinds.
+fn all() -> Vec<&'static str> {
+    ShaperKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
 /// Names of the kinds that can serve a single mode.
 pub(super) fn of_modes() -> Vec<&'static str> {
-    names(|kind| kind.is_built() && !kind.treats_modes_together())
+    let kinds = ShaperKind::ALL.iter().filter(|kind| !kind.treats_modes_together());
+    kinds.map(|kind| kind.name()).collect()
 }
 
 /// Reads `order`.
@@ -180,7 +151,7 @@ pub(super) fn order(table: &Table<'_, '_>) -> Option<u32> {
 /// Reads `[axis.shaper]`.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<ShaperChoice> {
     table.allow(KEYS);
-    table.require("kind", names(ShaperKind::is_built).join(", "));
+    table.require("kind", all().join(", "));
     let kind = kind(table, "kind");
     let half_sample_hz = clock.map_or(LOWEST_HZ, |c| c.sample_hz / 2.0);
     let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
@@ -256,7 +227,7 @@ fn read_amplitude_bounds(table: &Table<'_, '_>) -> Option<Command> {
 }
 
 fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f64)>> {
-    let key = "impulses";
+    let key = IMPULSES;
     if kind != ShaperKind::Custom {
         if table.has(key) {
             let found = format!("impulses with kind = \"{kind}\"");
@@ -317,7 +288,7 @@ pub(super) fn check(
     modes: &[(Table<'_, '_>, AxisMode)],
 ) {
     let kind = shaper.map(|(_, choice)| choice.kind);
-    if axis.lacks("mode") && axis.lacks("mechanics") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
+    if axis.lacks("mode") && axis.lacks("mechanics") && kind.is_none_or(ShaperKind::depends_on_modes) {
         let allowed = "at least one [[axis.mode]], except with kind custom or none";
         let remedy = format!(
             "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"; {}",
@@ -338,7 +309,7 @@ pub(super) fn check(
         check_own_shaper(table, kind, mode);
         let effective = mode.shaper.or(kind);
         if mode.order.is_some() {
-            check_key(table, "order", ORDER_KINDS, effective.as_slice());
+            check_key(table, "order", effective.as_slice());
         }
     }
     if let Some((table, choice)) = shaper {
@@ -346,8 +317,8 @@ pub(super) fn check(
         let used: Vec<ShaperKind> = own_kinds.chain([choice.kind]).collect();
         // The base of `periodic` has the order of its own kind.
         let used: Vec<ShaperKind> = used.into_iter().chain(choice.base).collect();
-        for (key, kinds) in KEYS_OF_KINDS {
-            check_key(table, key, kinds, &used);
+        for key in KEYS {
+            check_key(table, key.name, &used);
         }
     }
 }
@@ -387,13 +358,30 @@ fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>, mode: 
     }
 }
 
-/// Checks that at least one of the kinds in use takes a key, if the key is present.
-fn check_key(table: &Table<'_, '_>, key: &str, takers: &[ShaperKind], used: &[ShaperKind]) {
-    if table.has(key) && !used.iter().any(|kind| takers.contains(kind)) {
-        let used: Vec<&str> = used.iter().map(|kind| kind.name()).collect();
-        let takers: Vec<&str> = takers.iter().map(|kind| kind.name()).collect();
-        let found = format!("{key} with kind {}", used.join(", "));
-        let allowed = format!("{key} with kind {}", takers.join(", "));
+/// Checks that at least one of the kinds in use takes a key, if the key is present and only some kinds take it.
+fn check_key(table: &Table<'_, '_>, key: &str, used: &[ShaperKind]) {
+    let takers: Vec<ShaperKind> = ShaperKind::ALL.iter().copied().filter(|kind| kind.takes(key)).collect();
+    // `read_impulses` has checked its key itself.
+    let is_free = takers.is_empty() || key == IMPULSES;
+    if !is_free && table.has(key) && !used.iter().any(|kind| takers.contains(kind)) {
+        let [used, takers] =
+            [used, &takers].map(|kinds| kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", "));
+        let found = format!("{key} with kind {used}");
+        let allowed = format!("{key} with kind {takers}");
         table.contradiction(key, found, allowed, format!("remove `{key}`: it would have no effect"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keys_of_a_kind_are_keys_of_the_table() {
+        for kind in ShaperKind::ALL {
+            for key in kind.row().keys {
+                assert!(KEYS.iter().any(|row| row.name == *key), "{key} of {kind}");
+            }
+        }
     }
 }

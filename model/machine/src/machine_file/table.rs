@@ -147,22 +147,6 @@ impl<'r, 't> Table<'r, 't> {
         );
     }
 
-    /// Records something that the file asks for and this version does not build: an error only where there is no
-    /// other.
-    pub(super) fn not_built(&self, key: &str, name: &str, allowed: Option<String>, remedy: &str) {
-        let name = name.to_owned();
-        let cause = ProblemCause::NotBuilt { name, allowed };
-        let reader = self.reader;
-        let problem = reader.problem(
-            self.span_of(key),
-            self.dotted(key),
-            &self.place,
-            cause,
-            remedy.to_owned(),
-        );
-        reader.report_not_built(problem);
-    }
-
     fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, allowed: impl Display) {
         let allowed = allowed.to_string();
         let cause = ProblemCause::WrongType {

@@ -139,7 +139,7 @@ fn of_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
         | DesignError::NotSolved { mode, .. }
         | DesignError::NoSolution { mode, .. }
         | DesignError::Unverified { mode, .. } => at_mode(mode, "damping"),
-        DesignError::NotBuilt { .. }
+        DesignError::OtherFamily { .. }
         | DesignError::BiasPoint { .. }
         | DesignError::NoSequence { .. }
         | DesignError::Joint(_) => None,

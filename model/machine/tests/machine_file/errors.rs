@@ -1,7 +1,7 @@
 //! Errors of one key: syntax, unknown key, missing key, wrong type, out of range, unknown word, invalid or duplicate
 //! name.
 
-use crate::machine_file::files::{SMALL, breaks, built_kinds, wrong};
+use crate::machine_file::files::{SMALL, breaks, kinds, wrong};
 use posicast_machine::machine_file::ProblemCause;
 
 #[test]
@@ -52,7 +52,7 @@ fn a_missing_key_names_the_table_and_the_values() {
     breaks("damping = 0.1\n", "", expected);
     let expected = "m.toml:2: clock.sample_hz: found no such key; allowed: above 0, at most 1e9 Hz";
     breaks("sample_hz = 10_000\n", "", expected);
-    let kinds = built_kinds(|_| true);
+    let kinds = kinds(|_| true);
     let expected = format!("m.toml:10: axis.shaper.kind of axis x: found no such key; allowed: {kinds}");
     breaks("kind = \"zvd\"\n", "", &expected);
     let error = wrong("name = \"slide\"");
@@ -68,7 +68,7 @@ fn a_wrong_type_names_both_types() {
     breaks("damping = 0.1", "damping = \"low\"", expected);
     let expected = "m.toml:6: fixed_point.command_bits: found the float 32.0; allowed: a whole number, 8 to 32";
     breaks("32", "32.0", expected);
-    let kinds = built_kinds(|_| true);
+    let kinds = kinds(|_| true);
     let expected = format!("m.toml:11: axis.shaper.kind of axis x: found the array [1]; allowed: a text: {kinds}");
     breaks("\"zvd\"", "[1]", &expected);
     let expected = "m.toml:5: fixed_point: found the integer 5; allowed: a table, [fixed_point]";
@@ -132,7 +132,7 @@ fn a_number_out_of_range_names_the_range() {
 #[test]
 fn an_unknown_word_lists_the_words_and_suggests_the_nearest() {
     let error = wrong(&SMALL.replace("\"zvd\"", "\"zvf\""));
-    let kinds = built_kinds(|_| true);
+    let kinds = kinds(|_| true);
     let expected = format!("m.toml:11: axis.shaper.kind of axis x: found \"zvf\"; allowed: {kinds}");
     assert_eq!(error.to_string(), expected);
     assert_eq!(error.problems()[0].remedy, "did you mean \"zvd\"?");

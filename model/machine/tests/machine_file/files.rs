@@ -28,12 +28,10 @@ frequency_hz = 40.0
 damping = 0.1
 "#;
 
-/// Returns the names of the kinds that this version builds, as messages list them.
-pub(crate) fn built_kinds(wanted: impl Fn(ShaperKind) -> bool) -> String {
-    let built = ShaperKind::ALL
-        .iter()
-        .filter(|(kind, _)| kind.is_built() && wanted(*kind));
-    built.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
+/// Returns the names of some kinds, as messages list them.
+pub(crate) fn kinds(wanted: impl Fn(ShaperKind) -> bool) -> String {
+    let kinds = ShaperKind::ALL.iter().filter(|kind| wanted(**kind));
+    kinds.map(|kind| kind.name()).collect::<Vec<_>>().join(", ")
 }
 
 /// Returns the machine of a valid file.

@@ -49,7 +49,6 @@ fn check(text: &str) -> Result<(), TestCaseError> {
             prop_assert!((1..=4).contains(&machine.axes.len()));
             for axis in &machine.axes {
                 for mode in &axis.modes {
-                    prop_assert!(axis.shaped().kind_of(mode).is_built());
                     prop_assert!((0.0..1.0).contains(&mode.mode.damping));
                     let turn = mode.mode.omega_damped() * machine.clock.sample_period_s();
                     prop_assert!(turn > 0.0 && turn < std::f64::consts::PI);

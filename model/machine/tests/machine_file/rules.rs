@@ -1,6 +1,6 @@
 //! Errors of keys that are each valid but contradict each other.
 
-use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
+use crate::machine_file::files::{SMALL, breaks, kinds, right, wrong};
 
 #[test]
 fn the_sample_rate_divides_the_clock_and_the_message_names_the_nearest() {
@@ -73,7 +73,7 @@ fn a_modes_own_shaper_serves_one_mode() {
     let expected = format!(
         "m.toml:15: axis.mode.shaper of axis x, mode 1: found shaper = \"custom\", which serves an axis and not one mode; \
          allowed: {}",
-        built_kinds(|kind| !kind.treats_modes_together())
+        kinds(|kind| !kind.treats_modes_together())
     );
     breaks("damping = 0.1", "damping = 0.1\nshaper = \"custom\"", &expected);
     let text = SMALL

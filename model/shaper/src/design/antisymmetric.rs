@@ -24,12 +24,24 @@ use std::f64::consts::PI;
 
 use nalgebra::{Complex, DVector};
 
+use super::joint::{Findings, check_zeros};
 use super::joint_error::{JointError, check_distinct, list};
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::ratios::{self, Class, MULTIPLE_MAX};
 use super::{DesignError, newton};
+use crate::axis::ShapedAxis;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `antisymmetric`.
+pub(super) const ANTISYMMETRIC: KindRow = KindRow::new(
+    "antisymmetric",
+    Promise::Unsaid,
+    Design::Axis(|axis, _| of_axis(axis)),
+    "one shaper for modes whose frequencies are odd multiples of one",
+)
+.source("Singh and Heppler 1993")
+.keys(&["method", "ratio_tolerance"]);
 
 /// Method by which the impulses of a set of modes are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -71,6 +83,27 @@ pub struct Antisymmetric {
     pub impulses: ImpulseSequence,
     /// The sets of modes that share an antiperiod, as indices of the modes; frequencies in Hz.
     pub classes: Vec<Class>,
+}
+
+/// Designs the shaper of an axis by the keys of the machine file.
+fn of_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper;
+    let method = given
+        .and_then(|s| s.method.as_deref())
+        .and_then(AntisymmetricMethod::from_name);
+    let method = method.unwrap_or_default();
+    let ratio_tolerance = given.and_then(|s| s.ratio_tolerance).unwrap_or(0.0);
+    let participants = axis.modes.iter().map(|m| Participant {
+        mode: m.mode,
+        participation: m.participation,
+    });
+    let participants: Vec<Participant> = participants.collect();
+    let found = design(&participants, method, ratio_tolerance)?;
+    // The paper's damped impulses, and ratios with a tolerance, leave a residual that is only reported.
+    if method == AntisymmetricMethod::Exact && ratio_tolerance == 0.0 {
+        check_zeros(ShaperKind::Antisymmetric, &found.impulses, axis)?;
+    }
+    Ok((found.impulses.clone(), Findings::Antisymmetric(found)))
 }
 
 /// Designs a shaper for all modes. `ratio_tolerance` is the relative error at which a frequency counts as an odd

@@ -36,9 +36,41 @@
 use std::f64::consts::PI;
 
 use super::DesignError;
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
+use crate::axis::DEFAULT_CHEBYSHEV_ORDER;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `zv-ei`.
+pub(super) const ZV_EI: KindRow = row(
+    "zv-ei",
+    "`tolerance` at the mode, one pair of zeros; impulses at whole half periods",
+);
+
+/// `zv-ei-2`.
+pub(super) const ZV_EI_2: KindRow = row("zv-ei-2", "two `zv-ei` in series, each for the root of `tolerance`");
+
+/// `zvd-ei`.
+pub(super) const ZVD_EI: KindRow = row(
+    "zvd-ei",
+    "four `zv-ei` in series, each for the fourth root of `tolerance`",
+);
+
+/// `multi-ei`.
+pub(super) const MULTI_EI: KindRow = row("multi-ei", "two pairs of zeros of equal ripple");
+
+/// `chebyshev-ei`.
+pub(super) const CHEBYSHEV_EI: KindRow = row(
+    "chebyshev-ei",
+    "`order` pairs of zeros of equal ripple: the widest band for the length",
+)
+.keys(&["order"])
+.order(DEFAULT_CHEBYSHEV_ORDER);
+
+const fn row(name: &'static str, about: &'static str) -> KindRow {
+    let design = Design::Mode(|kind, mode, settings| design(kind, settings.order, mode, settings.tolerance));
+    KindRow::new(name, Promise::Tolerance, design, about).source("Zhang and Li 2010")
+}
 
 /// Largest order of `chebyshev-ei`.
 pub const ORDER_MAX: u32 = 5;

@@ -1,10 +1,28 @@
-//! `custom`: the impulses of the machine file, unchanged.
+//! `custom`: the impulses of the machine file, unchanged; `none`: the command, unchanged. Neither depends on a mode.
 //!
-//! The first time is 0, times increase, and the amplitudes sum to 1 within 1e-9. No residual is promised at any mode;
+//! Of `custom`, the first time is 0, times increase, and the amplitudes sum to 1 within 1e-9. No residual is promised at any mode;
 //! the reported residual says what the impulses do.
 
 use super::DesignError;
+use super::kind::{Design, KindRow, Promise};
 use crate::impulse::{Impulse, ImpulseSequence};
+
+/// `custom`.
+pub(super) const CUSTOM: KindRow = KindRow::new(
+    "custom",
+    Promise::Unsaid,
+    Design::Fixed(|axis| design(axis.name, axis.shaper.map_or(&[], |shaper| &shaper.impulses))),
+    "the impulses in the file",
+)
+.keys(&["impulses"]);
+
+/// `none`.
+pub(super) const NONE: KindRow = KindRow::new(
+    "none",
+    Promise::Unsaid,
+    Design::Fixed(|_| Ok(ImpulseSequence::unity())),
+    "the command unchanged",
+);
 
 /// Takes `(time_s, amplitude)` pairs of the axis `axis`.
 ///

@@ -13,9 +13,9 @@ use crate::unit::short;
 /// Why a machine cannot get shapers. Every message names the axis or the mode, what is allowed, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DesignError {
-    /// The kind parses, but this version does not design it.
-    #[error("not built in this version: {kind}")]
-    NotBuilt {
+    /// A function that designs some kinds was called with another.
+    #[error("shaper \"{kind}\" is of another family than this function designs")]
+    OtherFamily {
         /// The kind.
         kind: ShaperKind,
     },

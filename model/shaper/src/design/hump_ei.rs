@@ -21,11 +21,40 @@ use nalgebra::DVector;
 
 use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::path::{Branch, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `ei`.
+pub(super) const EI: KindRow = row(
+    "ei",
+    Promise::Tolerance,
+    "`tolerance` at the mode, two zeros beside it; the length of `zvd`",
+)
+.source("Singhose, Seering and Singer 1994");
+
+/// `two-hump-ei`.
+pub(super) const TWO_HUMP_EI: KindRow = row(
+    "two-hump-ei",
+    Promise::Zero,
+    "at most `tolerance` round the mode, three zeros; the length of `zvdd`",
+)
+.source("Singhose, Porter, Tuttle and Singer 1997");
+
+/// `three-hump-ei`.
+pub(super) const THREE_HUMP_EI: KindRow = row(
+    "three-hump-ei",
+    Promise::Tolerance,
+    "at most `tolerance` round the mode, four zeros; the length of `zvddd`",
+)
+.source("Singhose, Porter, Tuttle and Singer 1997");
+
+const fn row(name: &'static str, promise: Promise, about: &'static str) -> KindRow {
+    let design = Design::Mode(|kind, mode, settings| Ok(design(kind, mode, settings.tolerance)?.impulses));
+    KindRow::new(name, promise, design, about)
+}
 
 /// Smallest tolerance that is solved for; below it, the shaper equals a power of `zv` to at least three digits.
 pub const TOLERANCE_MIN: f64 = 1e-6;
@@ -58,14 +87,14 @@ pub struct HumpEi {
 /// # Errors
 /// [`DesignError::Tolerance`] outside [`TOLERANCE_MIN`]..=[`TOLERANCE_MAX`]; [`DesignError::NoSolution`] above the
 /// damping at which the solution ends because an amplitude becomes negative or two impulses meet;
-/// [`DesignError::NotBuilt`] for a kind of another family.
+/// [`DesignError::OtherFamily`] for a kind of another family.
 pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<HumpEi, DesignError> {
     DesignError::check_mode(mode)?;
     let zeros = match kind {
         ShaperKind::Ei => 2,
         ShaperKind::TwoHumpEi => 3,
         ShaperKind::ThreeHumpEi => 4,
-        _ => return Err(DesignError::NotBuilt { kind }),
+        _ => return Err(DesignError::OtherFamily { kind }),
     };
     if !(TOLERANCE_MIN..=TOLERANCE_MAX).contains(&tolerance) {
         return Err(DesignError::Tolerance {

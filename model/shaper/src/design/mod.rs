@@ -44,7 +44,7 @@ use crate::axis::AxisMode;
 use crate::axis::ShapedAxis;
 use crate::impulse::ImpulseSequence;
 use crate::mode::Mode;
-use kind::ShaperKind;
+use kind::{Design, ShaperKind};
 use smooth::Kernel;
 
 /// Largest number of impulses of a convolution. A tap table holds 256, so more than this is a mistake in the machine
@@ -96,7 +96,7 @@ pub struct ShaperPart {
 /// look at them.
 ///
 /// # Errors
-/// [`DesignError`] where a kind is not built, does not exist for a mode, or is given what it cannot take.
+/// [`DesignError`] where a kind does not exist for a mode, or is given what it cannot take.
 pub fn design_axis(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<AxisDesign, DesignError> {
     let (impulses, parts, findings) = match axis.joint_kind() {
         Some(kind) => {
@@ -199,34 +199,18 @@ pub struct ModeSettings {
 /// Designs the shaper of one mode, and checks it at the mode.
 ///
 /// # Errors
-/// [`DesignError`] where the kind is not built, treats modes together or is a smooth one, which needs the sample grid
-/// ([`smooth::Kernel`]), does not exist for the mode, or misses its promise.
+/// [`DesignError::OtherFamily`] where the kind treats modes together or is a smooth one, which needs the sample grid
+/// ([`smooth::Kernel`]); [`DesignError`] where it does not exist for the mode, or misses its promise.
 pub fn design_mode(kind: ShaperKind, mode: &Mode, settings: &ModeSettings) -> Result<ImpulseSequence, DesignError> {
-    let tolerance = settings.tolerance;
-    let (impulses, promised) = match kind {
-        ShaperKind::None => return Ok(ImpulseSequence::unity()),
-        ShaperKind::Zv => (zv::design(kind, mode, 1)?, 0.0),
-        ShaperKind::Zvd => (zv::design(kind, mode, 2)?, 0.0),
-        ShaperKind::Zvdd => (zv::design(kind, mode, 3)?, 0.0),
-        ShaperKind::Zvddd => (zv::design(kind, mode, 4)?, 0.0),
-        ShaperKind::Mzv => (zv::design_mzv(mode)?, 0.0),
-        ShaperKind::UmZv | ShaperKind::UmZvd | ShaperKind::PsZv | ShaperKind::PsZvd => {
-            (negative::design(kind, mode, tolerance)?, 0.0)
-        }
-        ShaperKind::UmEi | ShaperKind::PsEi => (negative::design(kind, mode, tolerance)?, tolerance),
-        ShaperKind::Ei | ShaperKind::TwoHumpEi | ShaperKind::ThreeHumpEi => {
-            let promised = if kind == ShaperKind::TwoHumpEi { 0.0 } else { tolerance };
-            (hump_ei::design(kind, mode, tolerance)?.impulses, promised)
-        }
-        ShaperKind::ZvEi | ShaperKind::ZvEi2 | ShaperKind::ZvdEi | ShaperKind::MultiEi | ShaperKind::ChebyshevEi => {
-            (bias_point::design(kind, settings.order, mode, tolerance)?, tolerance)
-        }
-        // The cascade promises a band, not a residual at the mode: its design ignores damping, which the report
-        // includes.
-        ShaperKind::Vibrationless => return vibrationless::design(mode, settings.order, settings.epsilon),
-        _ => return Err(DesignError::NotBuilt { kind }),
+    let row = kind.row();
+    let impulses = match row.design {
+        Design::Mode(design) => design(kind, mode, settings)?,
+        _ if kind == ShaperKind::None => ImpulseSequence::unity(),
+        _ => return Err(DesignError::OtherFamily { kind }),
     };
-    let found = residual_vibration(impulses.impulses(), mode);
-    DesignError::verify(kind, mode, found, promised, RESIDUAL_TOLERANCE)?;
+    if let Some(promised) = kind.promised(settings.tolerance) {
+        let found = residual_vibration(impulses.impulses(), mode);
+        DesignError::verify(kind, mode, found, promised, RESIDUAL_TOLERANCE)?;
+    }
     Ok(impulses)
 }

@@ -22,11 +22,38 @@ use nalgebra::DVector;
 use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
 use super::hump_ei::TOLERANCE_MIN;
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::path::{Branch, PRECISE, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `um-zv`.
+pub(super) const UM_ZV: KindRow = row(
+    "um-zv",
+    Promise::Zero,
+    "`zv` with impulses 1, −1, 1: shorter, a command that swings back",
+);
+
+/// `um-zvd`.
+pub(super) const UM_ZVD: KindRow = row("um-zvd", Promise::Zero, "`zvd` with impulses 1, −1, 1, −1, 1");
+
+/// `um-ei`.
+pub(super) const UM_EI: KindRow = row("um-ei", Promise::Tolerance, "`ei` with impulses 1, −1, 1, −1, 1");
+
+/// `ps-zv`.
+pub(super) const PS_ZV: KindRow = row("ps-zv", Promise::Zero, "`zv` with impulses 1, −2, 2: shorter still");
+
+/// `ps-zvd`.
+pub(super) const PS_ZVD: KindRow = row("ps-zvd", Promise::Zero, "`zvd` with impulses 1, −2, 2, −2, 2");
+
+/// `ps-ei`.
+pub(super) const PS_EI: KindRow = row("ps-ei", Promise::Tolerance, "`ei` with impulses 1, −2, 2, −2, 2");
+
+const fn row(name: &'static str, promise: Promise, about: &'static str) -> KindRow {
+    let design = Design::Mode(|kind, mode, settings| design(kind, mode, settings.tolerance));
+    KindRow::new(name, promise, design, about).source("Singhose, Singer and Seering 1994")
+}
 
 /// Largest damping ratio of the family.
 pub const DAMPING_MAX: f64 = 0.4;
@@ -44,11 +71,11 @@ const VERIFIED: f64 = 1e-9;
 ///
 /// # Errors
 /// [`DesignError::Damping`] above [`DAMPING_MAX`]; [`DesignError::Tolerance`] below 1e-6 or from [`TOLERANCE_BELOW`] on;
-/// [`DesignError::NotBuilt`] for a kind of another family.
+/// [`DesignError::OtherFamily`] for a kind of another family.
 pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let Some(family) = Family::of(kind) else {
-        return Err(DesignError::NotBuilt { kind });
+        return Err(DesignError::OtherFamily { kind });
     };
     if mode.damping > DAMPING_MAX {
         return Err(DesignError::Damping {

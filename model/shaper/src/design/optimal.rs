@@ -4,7 +4,7 @@
 //! proof. Here the machine file's modes become its bands, its taps become impulses, and its rounding replaces that by largest remainder:
 //! units move between taps until the residual of the *integer* table is within every tolerance over the whole bands.
 
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::{AxisDesign, DesignError, Findings, JointError};
 use crate::axis::ShapedAxis;
 use crate::digitise::{DELAY_MAX_SAMPLES, Digitised, TAPS_MAX, quantise};
@@ -13,6 +13,17 @@ use posicast_optimal::{
     Band, Command, LowerBound, Partner, Request, Shortest, Together, round_taps, shortest, together,
 };
 use posicast_taps::{Tap, TapTable};
+
+/// `optimal`.
+pub(super) const OPTIMAL: KindRow = KindRow::new(
+    "optimal",
+    Promise::Unsaid,
+    Design::Axis(|axis, sample_hz| {
+        design(axis, sample_hz).map(|(impulses, found)| (impulses, Findings::Optimal(found)))
+    }),
+    "the shortest shaper on the sample grid for the bands of all modes, with a proof ([optimal](optimal.md))",
+)
+.keys(&["command", "amplitude_bounds", "taps", "prefer"]);
 
 /// What the design of `optimal` found beside its impulses.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,13 +14,27 @@
 //!
 //! Limits: at most [`MULTIPLES_MAX`] odd multiples per mode are searched; no ring buffer holds a longer shaper.
 
-use super::DesignError;
 use super::bias_point::{self, BiasPoint};
 use super::joint_error::{JointError, check_distinct};
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
+use super::{DesignError, Findings};
 use crate::analysis::residual_vibration;
+use crate::axis::{DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE, ShapedAxis};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `periodic`.
+pub(super) const PERIODIC: KindRow = KindRow::new(
+    "periodic",
+    Promise::Unsaid,
+    Design::Axis(|axis, _| of_axis(axis)),
+    "`base` with a common frequency of which each mode's is nearly an odd multiple",
+)
+.source("Zhang and Li 2010")
+.keys(&["base", "lowest_frequency_hz"]);
+
+/// The kinds that can be the base.
+pub const BASES: [ShaperKind; 3] = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi];
 
 /// Largest number of odd multiples per mode that are searched.
 pub const MULTIPLES_MAX: u32 = 16_384;
@@ -60,6 +74,19 @@ pub struct Periodic {
     pub solutions: Vec<Solution>,
 }
 
+/// Designs the shaper of an axis by the keys of the machine file.
+fn of_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper;
+    let base = Base {
+        kind: given.and_then(|s| s.base).unwrap_or(ShaperKind::MultiEi),
+        order: given.and_then(|s| s.order).unwrap_or(DEFAULT_CHEBYSHEV_ORDER),
+        tolerance: given.and_then(|s| s.tolerance).unwrap_or(DEFAULT_TOLERANCE),
+    };
+    let modes: Vec<(Mode, f64)> = axis.modes.iter().map(|m| (m.mode, axis.tolerance_of(m))).collect();
+    let found = design(&modes, base, axis.lowest_frequency_hz())?;
+    Ok((found.impulses.clone(), Findings::Periodic(found)))
+}
+
 /// Designs the shortest periodic shaper whose frequency is at least `lowest_hz`; each mode comes with its tolerance.
 ///
 /// # Errors
@@ -70,10 +97,7 @@ pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Perio
     let plain: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
     plain.iter().try_for_each(DesignError::check_mode)?;
     check_distinct(&plain)?;
-    if !matches!(
-        base.kind,
-        ShaperKind::ZvEi | ShaperKind::MultiEi | ShaperKind::ChebyshevEi
-    ) {
+    if !BASES.contains(&base.kind) {
         return Err(JointError::Base(base.kind).into());
     }
     let BiasPoint { amplitudes, lambda, .. } = bias_point::undamped(base.kind, base.order, base.tolerance)?;

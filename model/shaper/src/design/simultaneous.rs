@@ -21,11 +21,22 @@ use nalgebra::{Complex, DMatrix, DVector};
 pub use super::constraint::{Amplitudes, Constraint};
 
 use super::DesignError;
+use super::joint::{Findings, check_zeros};
 use super::joint_error::{JointError, check_distinct};
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::time_optimal::Problem;
+use crate::axis::ShapedAxis;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `simultaneous`.
+pub(super) const SIMULTANEOUS: KindRow = KindRow::new(
+    "simultaneous",
+    Promise::Unsaid,
+    Design::Axis(|axis, _| of_axis(axis)),
+    "one shaper with bounded partial sums for at most 4 modes: short, and sensitive",
+)
+.keys(&["amplitude"]);
 
 /// Largest number of modes that are solved together.
 pub const MODES_MAX: usize = 4;
@@ -37,6 +48,24 @@ pub struct Simultaneous {
     pub impulses: ImpulseSequence,
     /// Whether it is proven that no command within the bounds is shorter, with any number of jumps.
     pub is_time_optimal: bool,
+}
+
+/// Designs the shaper of an axis by the keys of the machine file.
+fn of_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper;
+    let amplitudes = match given.and_then(|s| s.amplitude.as_deref()) {
+        Some("um") => Amplitudes::UnitMagnitude,
+        _ => Amplitudes::PartialSum,
+    };
+    let constraints = axis.modes.iter().map(|m| match axis.kind_of(m) {
+        ShaperKind::Zv => Ok((m.mode, Constraint::Zv)),
+        ShaperKind::Zvd => Ok((m.mode, Constraint::Zvd)),
+        other => Err(JointError::Constraint(other)),
+    });
+    let constraints: Vec<(Mode, Constraint)> = constraints.collect::<Result<_, _>>()?;
+    let found = design(&constraints, amplitudes)?;
+    check_zeros(ShaperKind::Simultaneous, &found.impulses, axis)?;
+    Ok((found.impulses.clone(), Findings::Simultaneous(found)))
 }
 
 /// Designs a shaper that meets every mode's constraint.

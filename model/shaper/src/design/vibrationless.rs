@@ -24,10 +24,22 @@ use std::f64::consts::PI;
 use nalgebra::DVector;
 
 use super::joint_error::JointError;
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::{DesignError, newton};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `vibrationless`. The cascade promises a band, not a residual at the mode: its design ignores damping, which the
+/// report includes.
+pub(super) const VIBRATIONLESS: KindRow = KindRow::new(
+    "vibrationless",
+    Promise::Unsaid,
+    Design::Mode(|_, mode, settings| design(mode, settings.order, settings.epsilon)),
+    "half sums with 2·gain ≤ `epsilon` on the widest band",
+)
+.source("Prourzin and Shevlyakov")
+.keys(&["order", "epsilon"])
+.order(2);
 
 /// Largest number of frequencies per mode.
 pub const ORDER_MAX: u32 = 5;

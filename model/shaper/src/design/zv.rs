@@ -21,9 +21,53 @@
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::DesignError;
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
+
+/// `zv`.
+pub(super) const ZV: KindRow = KindRow::new(
+    "zv",
+    Promise::Zero,
+    Design::Mode(|kind, mode, _| design(kind, mode, 1)),
+    "no residual at the mode; the shortest with positive impulses",
+)
+.source("Smith 1957");
+
+/// `zvd`.
+pub(super) const ZVD: KindRow = KindRow::new(
+    "zvd",
+    Promise::Zero,
+    Design::Mode(|kind, mode, _| design(kind, mode, 2)),
+    "two `zv` in series: longer, less sensitive to a wrong frequency",
+)
+.source("Singer and Seering 1990");
+
+/// `zvdd`.
+pub(super) const ZVDD: KindRow = KindRow::new(
+    "zvdd",
+    Promise::Zero,
+    Design::Mode(|kind, mode, _| design(kind, mode, 3)),
+    "three `zv` in series",
+)
+.source("Singer and Seering 1990");
+
+/// `zvddd`.
+pub(super) const ZVDDD: KindRow = KindRow::new(
+    "zvddd",
+    Promise::Zero,
+    Design::Mode(|kind, mode, _| design(kind, mode, 4)),
+    "four `zv` in series",
+)
+.source("Singer and Seering 1990");
+
+/// `mzv`.
+pub(super) const MZV: KindRow = KindRow::new(
+    "mzv",
+    Promise::Zero,
+    Design::Mode(|_, mode, _| design_mzv(mode)),
+    "no residual at the mode, between `zv` and `zvd`, as in 3D printers",
+);
 
 /// Designs `factors` ZV factors in series, 1 (`zv`) to 4 (`zvddd`); `kind` is used in messages only.
 ///

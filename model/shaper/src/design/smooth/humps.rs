@@ -18,6 +18,7 @@
 use super::super::DesignError;
 use super::super::kind::ShaperKind;
 use super::super::newton;
+use super::Form;
 use super::moments::{Shape, response, slope};
 use crate::mode::Mode;
 use nalgebra::DVector;
@@ -33,7 +34,7 @@ const ACCURACY: f64 = 1e-12;
 const MZV_ZERO: f64 = 5.0 / 3.0;
 
 /// What makes a kind.
-struct Form {
+pub(super) struct HumpConditions {
     /// `q` of its two coefficients.
     shape: fn(f64, f64) -> Shape,
     /// Whether the residual is flat at the mode.
@@ -51,7 +52,7 @@ fn four_humps(c: f64, d: f64) -> Shape {
     [c * c * d, c * c - 2.0 * c * d, d - 2.0 * c, 1.0]
 }
 
-const TWO_HUMP_EI: Form = Form {
+pub(super) const TWO_HUMP_EI: HumpConditions = HumpConditions {
     shape: four_humps,
     is_flat: false,
     humps: &[-1.0, 1.0],
@@ -59,7 +60,7 @@ const TWO_HUMP_EI: Form = Form {
     tolerance: [1e-4, 0.4],
 };
 
-const ZVD_EI: Form = Form {
+pub(super) const ZVD_EI: HumpConditions = HumpConditions {
     shape: four_humps,
     is_flat: true,
     humps: &[1.0],
@@ -69,7 +70,7 @@ const ZVD_EI: Form = Form {
 
 /// With the first two humps as high as the tolerance; in this range of the tolerance all others are lower. One coefficient, for the first
 /// hump alone, would last 1.652 periods at 5 %, and reaches no tolerance below 4.2 %.
-const SI: Form = Form {
+pub(super) const SI: HumpConditions = HumpConditions {
     shape: |first, second| [1.0, first, second, 0.0],
     is_flat: false,
     humps: &[-1.0, 1.0],
@@ -77,20 +78,18 @@ const SI: Form = Form {
     tolerance: [0.01, 0.4],
 };
 
-/// Returns `θ` and `q` of a kind.
+/// Returns the kernel of a kind with humps.
 ///
 /// # Errors
-/// [`DesignError::NotBuilt`] for another kind; [`DesignError::Tolerance`] for a tolerance out of the kind's range, and
-/// [`DesignError::NotSolved`] where Newton's method loses the solution.
-pub(super) fn solve(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<(f64, Shape), DesignError> {
-    let form = match kind {
-        ShaperKind::SmoothMzv => return mzv().ok_or_else(|| lost(kind, mode, 0.0)),
-        ShaperKind::SmoothTwoHumpEi => TWO_HUMP_EI,
-        ShaperKind::SmoothZvdEi => ZVD_EI,
-        ShaperKind::SmoothSi => SI,
-        _ => return Err(DesignError::NotBuilt { kind }),
-    };
-    let [least, most] = form.tolerance;
+/// [`DesignError::Tolerance`] for a tolerance out of the kind's range, and [`DesignError::NotSolved`] where Newton's method
+/// loses the solution.
+pub(super) fn solve(
+    conditions: &HumpConditions,
+    kind: ShaperKind,
+    mode: &Mode,
+    tolerance: f64,
+) -> Result<Form, DesignError> {
+    let [least, most] = conditions.tolerance;
     if !(least..=most).contains(&tolerance) {
         return Err(DesignError::Tolerance {
             kind,
@@ -102,14 +101,17 @@ pub(super) fn solve(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<(f6
     }
     let way = (tolerance / KNOWN_TOLERANCE).ln();
     let steps = (way.abs() / STEP.ln()).ceil();
-    let mut found = DVector::from_row_slice(form.known);
+    let mut found = DVector::from_row_slice(conditions.known);
     for step in 0..=steps as u32 {
         let part = if steps > 0.0 { f64::from(step) / steps } else { 1.0 };
         let level = KNOWN_TOLERANCE * (part * way).exp();
-        found = newton::solve(|unknowns| form.equations(unknowns, level), found, ACCURACY)
+        found = newton::solve(|unknowns| conditions.equations(unknowns, level), found, ACCURACY)
             .ok_or_else(|| lost(kind, mode, part))?;
     }
-    Ok((PI * found[0], (form.shape)(found[1], found[2])))
+    Ok(Form {
+        theta: PI * found[0],
+        shape: (conditions.shape)(found[1], found[2]),
+    })
 }
 
 fn lost(kind: ShaperKind, mode: &Mode, reached: f64) -> DesignError {
@@ -120,7 +122,7 @@ fn lost(kind: ShaperKind, mode: &Mode, reached: f64) -> DesignError {
     }
 }
 
-impl Form {
+impl HumpConditions {
     fn equations(&self, unknowns: &DVector<f64>, tolerance: f64) -> DVector<f64> {
         let theta = PI * unknowns[0];
         let shape = (self.shape)(unknowns[1], unknowns[2]);
@@ -136,13 +138,20 @@ impl Form {
     }
 }
 
-/// `q = (y − c)²`, with three humps as `mzv` has three impulses, and the two zeros of `mzv`.
-fn mzv() -> Option<(f64, Shape)> {
+/// Returns the kernel of `smooth_mzv`: `q = (y − c)²`, with three humps as `mzv` has three impulses, and the two zeros of `mzv`.
+///
+/// # Errors
+/// [`DesignError::NotSolved`] where Newton's method does not find them.
+pub(super) fn mzv(kind: ShaperKind, mode: &Mode) -> Result<Form, DesignError> {
     let shape = |c: f64| [c * c, -2.0 * c, 1.0, 0.0];
     let equations = |unknowns: &DVector<f64>| {
         let (theta, shape) = (PI * unknowns[0], shape(unknowns[1]));
         DVector::from_row_slice(&[1.0, MZV_ZERO].map(|ratio| response(&shape, ratio * theta)))
     };
-    let found = newton::solve(equations, DVector::from_row_slice(&[0.9435, 0.2385]), ACCURACY)?;
-    Some((PI * found[0], shape(found[1])))
+    let found = newton::solve(equations, DVector::from_row_slice(&[0.9435, 0.2385]), ACCURACY)
+        .ok_or_else(|| lost(kind, mode, 0.0))?;
+    Ok(Form {
+        theta: PI * found[0],
+        shape: shape(found[1]),
+    })
 }

@@ -49,7 +49,7 @@ mod tests;
 use self::conditions::{Conditions, most_damping, theta_zv};
 use self::moments::Shape;
 use super::DesignError;
-use super::kind::ShaperKind;
+use super::kind::{Design, KindRow, Promise, ShaperKind};
 use crate::digitise::TAPS_MAX;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -58,6 +58,92 @@ use crate::mode::Mode;
 const PIECES: u32 = 8;
 /// Largest deviation of the kernel's residual at the mode from what its kind promises.
 const ACCURACY: f64 = 1e-9;
+
+/// `smooth_zv`.
+pub(super) const ZV: KindRow = KindRow::new(
+    "smooth_zv",
+    Promise::Zero,
+    Design::Kernel(|_, _, _| {
+        Ok(Form {
+            theta: theta_zv(),
+            shape: [0.0, 1.0, 0.0, 0.0],
+        })
+    }),
+    "a kernel without jumps, a zero at the mode; the shortest smooth kind",
+);
+
+/// `smooth_mzv`.
+pub(super) const MZV: KindRow = KindRow::new(
+    "smooth_mzv",
+    Promise::Zero,
+    Design::Kernel(|kind, mode, _| humps::mzv(kind, mode)),
+    "a kernel with the zeros of `mzv`",
+);
+
+/// `smooth_ei`.
+pub(super) const EI: KindRow = KindRow::new(
+    "smooth_ei",
+    Promise::Tolerance,
+    Design::Kernel(between_zeros),
+    "a kernel with `tolerance` at the mode, between two zeros",
+);
+
+/// `smooth_zvd`.
+pub(super) const ZVD: KindRow = KindRow::new(
+    "smooth_zvd",
+    Promise::Zero,
+    Design::Kernel(between_zeros),
+    "a kernel with a double zero at the mode",
+);
+
+/// `smooth_si`.
+pub(super) const SI: KindRow = KindRow::new(
+    "smooth_si",
+    Promise::Zero,
+    Design::Kernel(|kind, mode, tolerance| humps::solve(&humps::SI, kind, mode, tolerance)),
+    "a kernel with at most `tolerance`, 0.01 to 0.4, at every frequency above the mode",
+);
+
+/// `smooth_zvd_ei`.
+pub(super) const ZVD_EI: KindRow = KindRow::new(
+    "smooth_zvd_ei",
+    Promise::Zero,
+    Design::Kernel(|kind, mode, tolerance| humps::solve(&humps::ZVD_EI, kind, mode, tolerance)),
+    "a kernel with a double zero at the mode and `tolerance`, 0.0001 to 0.4, above it",
+);
+
+/// `smooth_2hump_ei`.
+pub(super) const TWO_HUMP_EI: KindRow = KindRow::new(
+    "smooth_2hump_ei",
+    Promise::Zero,
+    Design::Kernel(|kind, mode, tolerance| humps::solve(&humps::TWO_HUMP_EI, kind, mode, tolerance)),
+    "a kernel with at most `tolerance`, 0.0001 to 0.4, on either side of the mode",
+);
+
+/// A kernel for the damped frequency of its mode: `θ` at the mode, and `q`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Form {
+    theta: f64,
+    shape: Shape,
+}
+
+/// The kernel with what its kind promises as a peak, or a double zero, at the mode.
+fn between_zeros(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<Form, DesignError> {
+    let promised = kind.promised(tolerance).unwrap_or_default();
+    let ratio = mode.decay() / mode.omega_damped();
+    let (theta, c) = Conditions { promised, ratio }
+        .solve()
+        .ok_or_else(|| DesignError::Damping {
+            kind,
+            mode: *mode,
+            most: most_damping(promised),
+            instead: ShaperKind::SmoothZvd,
+        })?;
+    Ok(Form {
+        theta,
+        shape: [c * c, -2.0 * c, 1.0, 0.0],
+    })
+}
 
 /// A kernel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,30 +159,15 @@ impl Kernel {
     /// The kernel of a kind for a mode; `tolerance` is that of the kinds with humps.
     ///
     /// # Errors
-    /// [`DesignError::Mode`] for an invalid mode, [`DesignError::NotBuilt`] for a kind that is not smooth,
+    /// [`DesignError::Mode`] for an invalid mode, [`DesignError::OtherFamily`] for a kind that is not smooth,
     /// [`DesignError::Damping`] where `smooth_ei` does not exist, [`DesignError::Tolerance`] where another kind with humps does not.
     pub fn new(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<Self, DesignError> {
         DesignError::check_mode(mode)?;
-        let ratio = mode.decay() / mode.omega_damped();
-        let (theta, shape, promised) = match kind {
-            ShaperKind::SmoothZv => (theta_zv(), [0.0, 1.0, 0.0, 0.0], 0.0),
-            ShaperKind::SmoothZvd | ShaperKind::SmoothEi => {
-                let promised = if kind == ShaperKind::SmoothEi { tolerance } else { 0.0 };
-                let (theta, c) = Conditions { promised, ratio }
-                    .solve()
-                    .ok_or_else(|| DesignError::Damping {
-                        kind,
-                        mode: *mode,
-                        most: most_damping(promised),
-                        instead: ShaperKind::SmoothZvd,
-                    })?;
-                (theta, [c * c, -2.0 * c, 1.0, 0.0], promised)
-            }
-            _ => {
-                let (theta, shape) = humps::solve(kind, mode, tolerance)?;
-                (theta, shape, 0.0)
-            }
+        let Design::Kernel(design) = kind.row().design else {
+            return Err(DesignError::OtherFamily { kind });
         };
+        let Form { theta, shape } = design(kind, mode, tolerance)?;
+        let promised = kind.promised(tolerance).unwrap_or_default();
         let kernel = Self {
             shape,
             duration_s: 2.0 * theta / mode.omega_damped(),
