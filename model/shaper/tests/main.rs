@@ -2,5 +2,6 @@
 #![cfg(test)]
 
 mod hump_limits;
+mod kind_tables;
 mod motor_held;
 mod prop_kinds;

@@ -28,7 +28,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::switch(
         "modulo",
         "A rotary axis without end stops: the position wraps at the end of its word.",
-    ),
+    )
+    .rule("needs words of 18 to 32 bits, builds the shaper for motion, and any `travel` fits"),
     Key::new(
         "shaper",
         Values::Table(shaper::KEYS),
@@ -43,12 +44,14 @@ pub(super) const KEYS: &[Key] = &[
         "mechanics",
         Values::Table(mechanics::KEYS),
         "Data-sheet figures of a ball screw, from which the mode is computed, in place of `[[axis.mode]]`.",
-    ),
+    )
+    .rule("the unit of the axis must be a length"),
     Key::new(
         "family",
         Values::Table(moving::KEYS),
         "Choice of the tap tables for an axis whose modes move.",
-    ),
+    )
+    .rule("needs a mode with `points`"),
     Key::new(
         "encoder",
         Values::Table(encoder::KEYS),

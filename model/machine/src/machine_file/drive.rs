@@ -74,12 +74,14 @@ pub(super) const KEYS: &[Key] = &[
         "full_scale_a",
         Values::Number(POSITIVE),
         "Current at full duty, in A. `torque` needs it.",
-    ),
+    )
+    .rule("not with `velocity`"),
     Key::new(
         "full_scale_velocity",
         Values::Quantity(POSITIVE),
         "Velocity at full duty, in the axis's unit/s. `velocity` needs it.",
-    ),
+    )
+    .rule("not with `torque`"),
     Key::new(
         "bandwidth_hz",
         Values::Number(POSITIVE),

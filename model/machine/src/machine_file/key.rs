@@ -1,7 +1,7 @@
 //! The keys of a table of the machine file, as data: name, allowed values, default, meaning.
 //!
 //! A reader gives its list to [`Table::allow`](super::table::Table::allow), which refuses every other key; [`super::schema`] writes
-//! the same list as JSON Schema. The ranges are the constants that the reader checks with.
+//! the same list as JSON Schema, and [`super::page`] as the tables of `docs/machine-file.md`. The ranges are the constants that the reader checks with.
 
 use super::range::NumberRange;
 
@@ -21,6 +21,8 @@ pub(super) struct Key {
     pub(super) needed_by: Option<&'static str>,
     /// Meaning and unit, in a sentence.
     pub(super) about: &'static str,
+    /// What the reader demands beyond `values`, in words for the page; often empty.
+    pub(super) rule: &'static str,
 }
 
 /// Values that a key may have.
@@ -86,6 +88,7 @@ impl Key {
             chosen_by: None,
             needed_by: None,
             about,
+            rule: "",
         }
     }
 
@@ -124,6 +127,11 @@ impl Key {
             needed_by: Some(other),
             ..self
         }
+    }
+
+    /// Says on the page what the reader demands of the value beyond its type and range.
+    pub(super) const fn rule(self, rule: &'static str) -> Self {
+        Self { rule, ..self }
     }
 
     /// Makes an optional boolean, false by default.

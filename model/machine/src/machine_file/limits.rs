@@ -159,69 +159,82 @@ pub(super) const KEYS: &[Key] = &[
         "travel",
         Values::Pair(POSITION),
         "Lowest and highest position in the axis's unit, [low, high]: the soft limits of an axis with a controller.",
-    ),
+    )
+    .rule("`low` below `high`, both within the position word"),
     Key::switch(
         "soft_limits_after_homing",
         "Whether the soft limits of `travel` act only once the host has homed the axis.",
-    ),
+    )
+    .rule("needs `travel`"),
     Key::new(
         "stop_deceleration",
         Values::Quantity(MOTION),
         "Deceleration of a quick stop, in the axis's unit/s². Absent: `acceleration`.",
-    ),
+    )
+    .rule("at most 127.99 counts per tick²"),
     Key::new(
         "following_error",
         Values::Quantity(MOTION),
         "Largest distance of the position from the shaped command, in the axis's unit. Absent: not checked.",
-    ),
+    )
+    .rule("2^−16 to 32767.99 counts"),
     Key::new(
         "deviation",
         Values::Quantity(MOTION),
         "Largest distance of the motor from the scale, in the axis's unit; needs [axis.scale].",
-    ),
+    )
+    .rule("1 to 2,147,483,646 counts"),
     Key::or_zero(
         "saturation_s",
         SECONDS,
         "How long the controller's command may be clamped, in s. 0: not checked.",
-    ),
+    )
+    .rule("1 to 65,535 ticks, or 0"),
     Key::or_zero(
         "encoder_lost_s",
         SECONDS,
         "How long the encoder may stand still, or go the wrong way, under a command, in s. 0: not checked.",
-    ),
+    )
+    .rule("1 to 65,535 ticks, or 0"),
     Key::new(
         "encoder_lost_command",
         Values::Number(PART_BELOW),
         "Fraction of full scale above which a command must move the encoder; needs `encoder_lost_s`.",
     )
+    .rule("below `current_limit_a`/`full_scale_a`")
     .default(Absent::Number(DEFAULT_LOST_COMMAND)),
     Key::or_zero(
         "watchdog_s",
         SECONDS,
         "How long the host may be silent, in s. 0: no watchdog.",
-    ),
+    )
+    .rule("1 to 65,535 ticks, or 0"),
     Key::or_zero(
         "brake_release_s",
         SECONDS,
         "Time in s from releasing the brake until it is open.",
-    ),
+    )
+    .rule("at most 65,535 ticks"),
     Key::or_zero(
         "brake_apply_s",
         SECONDS,
         "Time in s from applying the brake until it holds.",
-    ),
+    )
+    .rule("at most 65,535 ticks"),
     Key::or_zero(
         "line_filter_s",
         SECONDS,
         "Pulses of up to this length, in s, on the lines (emergency stop, limit switches, home, drive ready) are \
         ignored.",
-    ),
+    )
+    .rule("at most 63 clocks"),
     Key::new(
         "off",
         Values::Words(|| CHOICES.map(Cause::name).to_vec()),
         "Causes that switch the outputs off at once; the others lead to a quick stop. The list replaces the whole \
         default.",
-    ),
+    )
+    .rule("a list of the [causes](#axislimits) below; may be empty"),
     Key::new(
         "direct_duty",
         Values::Number(PART),
@@ -232,12 +245,14 @@ pub(super) const KEYS: &[Key] = &[
         "direct_hold_s",
         Values::Number(LASTING),
         "Bring-up: how long a manual duty stays applied without a new request, in s.",
-    ),
+    )
+    .rule("1 to 65,535 ticks; absent: 0.2 s, or the longest that fits"),
     Key::new(
         "excitation",
         Values::Quantity(MOTION),
         "Bring-up: largest amplitude of test signals, in the axis's unit.",
-    ),
+    )
+    .rule("2^−8 to 255.99 counts; absent: 4 counts"),
 ];
 /// How many of the keys are limits of moves.
 const OF_MOVES: usize = 4;

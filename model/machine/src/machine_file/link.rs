@@ -108,12 +108,14 @@ pub(super) const KEYS: &[Key] = &[
         Values::Integer(*BAUD.start(), *BAUD.end()),
         "Baud rate of a serial line, 8 data bits, no parity, 1 stop bit. The clock must make it within 2 %.",
     )
+    .rule("any from a clock of 23.53 MHz on")
     .chosen_by("line", UART),
     Key::new(
         "sck_hz",
         Values::Integer(*SCK_HZ.start(), *SCK_HZ.end()),
         "Clock of the host in Hz, where the line is SPI: at most an eighth of that of the machine.",
     )
+    .rule("6.25 MHz at 50 MHz")
     .instead_of("baud")
     .chosen_by("line", SPI),
     Key::new(

@@ -54,7 +54,8 @@ pub(super) const KEYS: &[Key] = &[
         "link",
         Values::Table(link::KEYS),
         "A line, serial or SPI, through which a host reads and writes the registers of the stage.",
-    ),
+    )
+    .rule("needs encoder, PWM, drive and controller on every axis"),
 ];
 
 const CLOCK_KEYS: &[Key] = &[
@@ -64,6 +65,7 @@ const CLOCK_KEYS: &[Key] = &[
         Values::Number(CLOCK_HZ),
         "Sample tick in Hz, one shaped position per tick: it divides `frequency_hz`.",
     )
+    .rule("1 to 1,000,000 clocks per sample")
     .required(),
 ];
 

@@ -59,7 +59,8 @@ pub(super) const KEYS: &[Key] = &[
         COUPLING[0],
         Values::Number(SMALL_M),
         "Diameter of a steel coupling in m. Absent: the coupling is rigid.",
-    ),
+    )
+    .rule("with `coupling_length_m`"),
     Key::new(COUPLING[1], Values::Number(SMALL_M), "Length of that coupling in m."),
     Key::new(
         COUPLING_STIFFNESS,
@@ -94,12 +95,14 @@ pub(super) const KEYS: &[Key] = &[
         Values::Number(FORCE),
         "Breakaway friction of the table in N. The simulated machine is then a motor and a table with stick-slip \
         friction.",
-    ),
+    )
+    .rule("at least `coulomb`; needs a torque drive with `bandwidth_hz`"),
     Key::new(
         STRIBECK,
         Values::Number(VELOCITY),
         "Velocity in m/s over which friction falls from `breakaway` to `coulomb`.",
     )
+    .rule("needs `breakaway`")
     .default(Default::Number(DEFAULT_STRIBECK)),
 ];
 

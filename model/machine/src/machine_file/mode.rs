@@ -64,6 +64,7 @@ pub(super) const KEYS: &[Key] = &[
         "State of the motor while the mode was measured: held, as by a position loop, or free. A free mode is \
         converted.",
     )
+    .rule("`free` needs both masses, except with kind `custom` or `none`")
     .default(Default::Word(MOTOR_HELD)),
     Key::new(
         MASSES[0],
@@ -79,7 +80,8 @@ pub(super) const KEYS: &[Key] = &[
         "shaper",
         Values::Word(shaper::of_modes),
         "Kind of shaper for this mode, instead of the axis's.",
-    ),
+    )
+    .rule("a [kind](#kinds) with one shaper per mode; under an axis's kind for all modes only `zv`, `zvd` under `simultaneous`"),
     Key::new(
         "tolerance",
         Values::Number(shaper::TOLERANCE),
@@ -91,17 +93,20 @@ pub(super) const KEYS: &[Key] = &[
         Values::Number(DAMPING),
         "By how much the frequency may be off, relative and to either side: 0.1 is ±10 %. `optimal` is designed for all of it.",
     )
+    .rule("the band must end below half of `sample_hz`")
     .default(Default::Number(0.0)),
     Key::new(
         DAMPING_BAND,
         Values::PlainPair(DAMPING),
         "[low, high], the damping ratios that the mode may have; else just `damping`.",
-    ),
+    )
+    .rule("`damping` between them"),
     Key::new(
         "participation",
         Values::Number(PARTICIPATION),
         "Modal participation, the mode's share of the axis's response; only ratios count.",
     )
+    .rule("not 0 in every mode")
     .default(Default::Number(1.0)),
 ];
 

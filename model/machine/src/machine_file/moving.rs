@@ -38,13 +38,15 @@ pub(super) const KEYS_OF_MODE: [Key; 2] = [
         Values::Rows(&[VALUE, mode::FREQUENCY_HZ, mode::DAMPING], MAX_POINTS),
         "A mode that moves, as rows [value, frequency_hz, damping] with increasing values, in place of these two keys.",
     )
+    .rule("at least 2; one range for all moving modes of an axis")
     .instead_of("frequency_hz"),
     Key::new(
         MOVES_WITH,
         Values::Name,
         "Variable of `points`: `position` is the axis's own, in its unit; a variable of any other name is measured by \
         the host.",
-    ),
+    )
+    .rule("beside `points`, the same for all modes of an axis"),
 ];
 
 /// The keys of `[axis.family]`.
@@ -54,12 +56,14 @@ pub(super) const KEYS: &[Key] = &[
         Values::Number(VALUE),
         "Value of the variable after reset, whose table is in the ROM. Absent: the first of `values`, else of the \
         points.",
-    ),
+    )
+    .rule("within the points, and one of `values` if they are given"),
     Key::new(
         VALUES,
         Values::Numbers(VALUE, MAX_TABLES),
         "Values of the variable that get a table each. Absent: as few as cover all points.",
-    ),
+    )
+    .rule("increasing, within the points; neighbouring tables must overlap"),
 ];
 
 /// `[axis.family]`: the variable with which the modes of an axis move.

@@ -95,12 +95,14 @@ pub(super) const KEYS: &[Key] = &[
         Values::Number(FREQUENCY_HZ),
         "PWM frequency in Hz: it divides the clock, and is a multiple of `sample_hz`.",
     )
+    .rule("2 to 65,536 clocks per period")
     .required(),
     Key::or_zero(
         "dead_time_s",
         SHORT_S,
         "Time in s for which both switches of a leg are off. It is rounded up to clocks.",
-    ),
+    )
+    .rule("with `minimum_pulse_s` below half the period"),
     Key::or_zero(
         "minimum_pulse_s",
         SHORT_S,

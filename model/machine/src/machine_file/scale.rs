@@ -45,6 +45,7 @@ pub(super) const KEYS: &[Key] = &[
         "monitor: it is compared with the motor's position. position: the loop runs on it, with the velocity from the \
         motor.",
     )
+    .rule("`position` needs `[axis.controller]`")
     .default(Default::Word("monitor")),
     Key::switch(
         "invert",

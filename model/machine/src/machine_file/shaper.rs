@@ -47,7 +47,7 @@ const IMPULSES: &str = "impulses";
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("kind", Values::Word(all), "Kind of shaper.").required(),
+    Key::new("kind", Values::Word(all), "Kind of shaper.").rule("a word of the [list](#kinds)").required(),
     Key::new(
         "tolerance",
         Values::Number(TOLERANCE),
@@ -60,6 +60,7 @@ pub(super) const KEYS: &[Key] = &[
         Values::Number(TOLERANCE),
         "Bound of the residual of `vibrationless`.",
     )
+    .rule("at least 1e-6, and for the orders 1 to 5 at most 0.5, 0.5, 0.38, 0.2, 0.06")
     .default(Default::Number(DEFAULT_EPSILON)),
     Key::new(
         "base",
@@ -71,7 +72,8 @@ pub(super) const KEYS: &[Key] = &[
         "lowest_frequency_hz",
         Values::Number(NumberRange::positive(LOWEST_HZ).open_above()),
         "End of the search of `periodic`, in Hz. Absent: a tenth of the lowest mode's frequency.",
-    ),
+    )
+    .rule("below half of `sample_hz`"),
     Key::new(
         "amplitude",
         Values::Word(|| AMPLITUDES.to_vec()),
@@ -95,6 +97,7 @@ pub(super) const KEYS: &[Key] = &[
         Values::WordOrPair(|| vec![POSITIVE], SUMS),
         "What a step may do behind `optimal`: `positive`, only rise; or [low, high], stay between these multiples of itself.",
     )
+    .rule("`low` below `high`, `low` ≤ 1 ≤ `high`")
     .default(Default::Word(POSITIVE)),
     Key::new(
         AMPLITUDE_BOUNDS,
@@ -117,7 +120,8 @@ pub(super) const KEYS: &[Key] = &[
         IMPULSES,
         Values::Pairs(IMPULSE, MAX_IMPULSES),
         "Impulses of `custom`, [time_s, amplitude]: first time 0, times increasing, sum of the amplitudes 1.",
-    ),
+    )
+    .rule("sum within 1e-9"),
 ];
 
 /// The key `order`, which the shapers of an axis and of a mode share.

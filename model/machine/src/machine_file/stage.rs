@@ -33,7 +33,8 @@ pub(super) const KEYS: &[Key] = &[
         SHORT_S,
         "Delay in s that every axis gets in addition to that of the slowest, for devices that are slower than the \
         axes.",
-    ),
+    )
+    .rule("as far as the ring buffers reach"),
     Key::new(
         "contour_speed",
         Values::Number(SPEED),
@@ -43,7 +44,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::switch(
         ARRIVE_TOGETHER,
         "Design the `optimal` shapers of all axes as one: the least common duration at which they have one delay, and the least delay there.",
-    ),
+    )
+    .rule("every axis needs kind `optimal` and modes that do not move"),
 ];
 
 /// Reads the table.

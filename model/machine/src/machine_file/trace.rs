@@ -17,6 +17,7 @@ pub(super) const KEYS: &[Key] = &[Key::new(
     Values::OneOf(&SAMPLES),
     "Words that the memory holds; the recorded signals share them.",
 )
+.rule("1024 hold 1024 rows of one signal, 512 of two or 256 of four")
 .required()];
 
 /// Reads the table; `None` where a value is refused.

@@ -6,6 +6,7 @@ mod errors;
 mod files;
 mod hints;
 mod joint_kinds;
+mod key_tables;
 mod limits;
 mod link;
 mod mechanics;

@@ -177,33 +177,6 @@ fn the_speed_of_a_line_goes_with_its_kind() {
 }
 
 #[test]
-fn every_key_has_a_row_in_the_documentation() {
-    let page = std::fs::read_to_string(root().join("docs/machine-file.md")).unwrap();
-    for (path, _) in all_keys() {
-        let (name, tables) = path.split_last().unwrap();
-        let heading = match tables.join(".").as_str() {
-            "" => "\n## Top level\n".to_owned(),
-            table @ ("axis" | "axis.mode") => format!("\n## `[[{table}]]`\n"),
-            table => format!("\n## `[{table}]`\n"),
-        };
-        let section = page
-            .split_once(&heading)
-            .unwrap_or_else(|| panic!("no section {heading}"))
-            .1;
-        let section = section.split("\n## ").next().unwrap_or_default();
-        let forms = [
-            format!("`{name}`"),
-            format!("`[{}]`", path.join(".")),
-            format!("`[[{}]]`", path.join(".")),
-        ];
-        assert!(
-            forms.iter().any(|form| section.contains(form)),
-            "{name} is not in{heading}"
-        );
-    }
-}
-
-#[test]
 fn golden_the_committed_schema_is_what_the_keys_say() {
     let written = serde_json::to_string_pretty(&machine_file::schema()).unwrap() + "\n";
     let path = root().join("docs/machine-file.schema.json");
