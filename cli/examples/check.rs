@@ -130,10 +130,7 @@ fn row(block: &dyn Block, clocks: u64, yosys: &Yosys) -> Result<bool, Failure> {
         0 => "equal".to_owned(),
         count => format!("**{count} wrong**"),
     };
-    let same = match outcome.is_good() {
-        true => "equal",
-        false => "**different**",
-    };
+    let same = if outcome.is_good() { "equal" } else { "**different**" };
     let ports: Vec<Port> = block.model(0).ports().to_vec();
     let area = yosys
         .estimate_alone(sources.files(), &block.top(), &ports, Family::Cyclone2)?

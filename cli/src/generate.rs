@@ -41,9 +41,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         servo_hz: args.hal.then_some(args.servo_hz),
     };
     let generated = generate(&options, &Terminal)?;
-    let text = match args.verbose {
-        true => generated.document.list(),
-        false => generated.text,
+    let text = if args.verbose {
+        generated.document.list()
+    } else {
+        generated.text
     };
     output::show(Outcome { text, ..generated }, args.json)
 }

@@ -139,9 +139,10 @@ fn usage(command: &clap::Command) -> Vec<Inline> {
         .filter(|argument| !argument.is_hide_set() && !["help", "version"].contains(&argument.get_id().as_str()));
     let (arguments, options): (Vec<&Arg>, Vec<&Arg>) = shown.partition(|argument| argument.is_positional());
     for argument in options.into_iter().chain(arguments) {
-        let (open, close) = match argument.is_required_set() {
-            true => (" ", ""),
-            false => (" [", "]"),
+        let (open, close) = if argument.is_required_set() {
+            (" ", "")
+        } else {
+            (" [", "]")
         };
         line.push(roman(open));
         let short = argument.get_short().map(|short| format!("-{short}"));

@@ -23,9 +23,10 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 /// Prints text with coloured verdicts; leaves the colours out if nobody would see them.
 pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
     let colours = AutoStream::choice(&std::io::stdout()) != ColorChoice::Never;
-    match colours {
-        true => print(text),
-        false => print(&strip_str(text).to_string()),
+    if colours {
+        print(text)
+    } else {
+        print(&strip_str(text).to_string())
     }
 }
 
@@ -53,10 +54,7 @@ pub(crate) fn show<D: Serialize>(outcome: Outcome<D>, json: bool) -> Result<(), 
 
 /// How the document of a step is shown.
 pub(crate) fn form(json: bool) -> ResultForm {
-    match json {
-        true => ResultForm::Document,
-        false => ResultForm::Text,
-    }
+    if json { ResultForm::Document } else { ResultForm::Text }
 }
 
 /// Prints one JSON document on standard output.

@@ -187,9 +187,10 @@ fn number_text(number: f64) -> String {
     }
     let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
     let text = format!("{number:.decimals$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }
 
@@ -284,9 +285,12 @@ fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure
             curves: figure
                 .curves
                 .into_iter()
-                .map(|curve| match curve.reference {
-                    true => Curve::reference(curve.name, curve.points),
-                    false => Curve::new(curve.name, curve.points),
+                .map(|curve| {
+                    if curve.reference {
+                        Curve::reference(curve.name, curve.points)
+                    } else {
+                        Curve::new(curve.name, curve.points)
+                    }
                 })
                 .collect(),
             ..Panel::default()

@@ -39,9 +39,10 @@ pub(crate) fn hint(machine: &Path) -> String {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let text = match args.report {
-        true => json_text(&posicast_flow::run::schema())?,
-        false => json_text(&machine_file::schema())?,
+    let text = if args.report {
+        json_text(&posicast_flow::run::schema())?
+    } else {
+        json_text(&machine_file::schema())?
     };
     let Some(path) = &args.output else {
         return output::print(&text);

@@ -190,9 +190,10 @@ pub(crate) fn require_installed(tools: impl IntoIterator<Item = MissingTool>) ->
             missing.push(tool);
         }
     }
-    match missing.is_empty() {
-        true => Ok(()),
-        false => Err(failure(Error::ToolMissing(missing))),
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(failure(Error::ToolMissing(missing)))
     }
 }
 
@@ -289,9 +290,10 @@ fn until_then(reports: &[LockstepReport], all: usize) -> String {
         )
     };
     let rows: Vec<String> = reports.iter().flat_map(|report| &report.blocks).map(of_row).collect();
-    match rows.is_empty() {
-        true => "nothing was compared until then".to_owned(),
-        false => format!("compared until then, {} of {all}: {}", reports.len(), rows.join("; ")),
+    if rows.is_empty() {
+        "nothing was compared until then".to_owned()
+    } else {
+        format!("compared until then, {} of {all}: {}", reports.len(), rows.join("; "))
     }
 }
 

@@ -50,9 +50,10 @@ pub(crate) fn words(
             }
         };
         let (bits, fraction) = (machine.fixed_point.command_bits, machine.fixed_point.command_fraction);
-        let of_positions = match axis.modulo {
-            true => modulo_words(&positions, counts_per_unit, bits, fraction, &tables.table),
-            false => command_words(&positions, counts_per_unit, bits, fraction),
+        let of_positions = if axis.modulo {
+            modulo_words(&positions, counts_per_unit, bits, fraction, &tables.table)
+        } else {
+            command_words(&positions, counts_per_unit, bits, fraction)
         };
         words.push(of_positions.map_err(|e| axis_failure(axis, e))?);
     }

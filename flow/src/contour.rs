@@ -320,16 +320,15 @@ fn speed_of(machine: &Machine, limits: &ContourLimits, asked: Option<f64>) -> Re
             .min(limits.velocity));
     };
     let speed = unit.to_si(asked);
-    match speed > limits.velocity * (1.0 + 1e-9) {
-        true => {
-            let [found, most] = [speed, limits.velocity].map(|speed| unit.show_round(speed, "/s"));
-            Err(refused(
-                "--speed",
-                &ContourError::Speed { found, most }.to_string(),
-                "give a lower speed, or raise `velocity` in [axis.limits]",
-            ))
-        }
-        false => Ok(speed),
+    if speed > limits.velocity * (1.0 + 1e-9) {
+        let [found, most] = [speed, limits.velocity].map(|speed| unit.show_round(speed, "/s"));
+        Err(refused(
+            "--speed",
+            &ContourError::Speed { found, most }.to_string(),
+            "give a lower speed, or raise `velocity` in [axis.limits]",
+        ))
+    } else {
+        Ok(speed)
     }
 }
 

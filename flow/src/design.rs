@@ -88,9 +88,10 @@ pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
     let mut report = DesignReport::new(&machine, &options.machine)?;
     report.certify = options.certify;
     report.warn(observer);
-    let fronts = match options.front {
-        true => front::of_axes(&report, observer)?,
-        false => Vec::new(),
+    let fronts = if options.front {
+        front::of_axes(&report, observer)?
+    } else {
+        Vec::new()
     };
     let moves = match &options.distance {
         Some(distance) => given_move::of_axes(&report, distance)?,
@@ -459,15 +460,16 @@ impl AxisReport<'_> {
             trimmed(screw.motor_mass(), 4),
         );
         let mode = |mode: Mode| format!("{:.3} Hz and {:.4}", mode.frequency_hz, mode.damping);
-        match self.is_motor_free() {
-            true => format!(
+        if self.is_motor_free() {
+            format!(
                 "  {between}; the motor free, as behind a torque drive; held it would be {}\n",
                 mode(screw.held_mode())
-            ),
-            false => format!(
+            )
+        } else {
+            format!(
                 "  {between}; the motor held; free it would be {}\n",
                 mode(screw.free_mode())
-            ),
+            )
         }
     }
 

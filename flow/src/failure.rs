@@ -31,9 +31,10 @@ impl Failure {
         let path = path.display().to_string();
         move |error| {
             let error = error.to_string();
-            match error.contains(&path) {
-                true => Self::from(miette::miette!("{error}")),
-                false => Self::from(miette::miette!("{path}: cannot {doing}: {error}")),
+            if error.contains(&path) {
+                Self::from(miette::miette!("{error}"))
+            } else {
+                Self::from(miette::miette!("{path}: cannot {doing}: {error}"))
             }
         }
     }

@@ -15,11 +15,12 @@ pub enum ResultForm {
 
 /// Refuses a document if a file that the step writes is the standard output.
 pub(crate) fn one_document(outputs: &OutputFiles, form: ResultForm) -> Result<(), Failure> {
-    match form == ResultForm::Document && outputs.take_standard_output() {
-        false => Ok(()),
-        true => Err(Failure::from(miette::miette!(
+    if form == ResultForm::Document && outputs.take_standard_output() {
+        Err(Failure::from(miette::miette!(
             help = "name a file for it, or leave out --json",
             "--json: standard output takes one document, and a file is written there already"
-        ))),
+        )))
+    } else {
+        Ok(())
     }
 }

@@ -159,9 +159,10 @@ fn line_of(file: &Path, axis: usize, key: &str) -> String {
 
 /// The machine file; `path` may also be the folder that contains it.
 fn file_of(path: &Path) -> PathBuf {
-    match path.is_dir() {
-        true => path.join("machine.toml"),
-        false => path.to_owned(),
+    if path.is_dir() {
+        path.join("machine.toml")
+    } else {
+        path.to_owned()
     }
 }
 

@@ -126,9 +126,10 @@ impl MachineDraft {
         if let Some(place) = self.place(at, key) {
             let comment = self.text[place.end..].find(|c| c != ' ').unwrap_or(0);
             let width = place.len() + comment;
-            let padded = match self.text[place.end + comment..].starts_with('#') {
-                true => format!("{value:width$}", width = width.max(value.chars().count() + 1)),
-                false => value.to_owned(),
+            let padded = if self.text[place.end + comment..].starts_with('#') {
+                format!("{value:width$}", width = width.max(value.chars().count() + 1))
+            } else {
+                value.to_owned()
             };
             text.replace_range(place.start..place.end + comment, &padded);
         }

@@ -13,9 +13,10 @@ use std::path::Path;
 /// # Errors
 /// [`Failure`] that names the file, if it cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    let name = match path == Path::new("-") {
-        true => Path::new("standard output"),
-        false => path,
+    let name = if path == Path::new("-") {
+        Path::new("standard output")
+    } else {
+        path
     };
     write_whole(path, text).map_err(Failure::of_file(name, "write it"))
 }

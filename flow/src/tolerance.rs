@@ -49,9 +49,10 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
             if found <= asked * (1.0 + BETWEEN_SAMPLES) {
                 continue;
             }
-            let remedy = match mode.residual > asked {
-                true => "the impulses leave as much: choose another kind, or raise the tolerance of the mode",
-                false => "the impulses themselves do not: leave coefficient_fraction out, or raise sample_hz",
+            let remedy = if mode.residual > asked {
+                "the impulses leave as much: choose another kind, or raise the tolerance of the mode"
+            } else {
+                "the impulses themselves do not: leave coefficient_fraction out, or raise sample_hz"
             };
             let text = format!(
                 "axis {}, mode of {:.3} Hz: the integer taps leave {:.2} % of the vibration, {:.2} % is the tolerance; {remedy}",

@@ -122,9 +122,10 @@ pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
         report,
     };
     document.reason = document.failed();
-    let reached = match options.with_reached {
-        true => reached::text(&document.report) + "\n",
-        false => String::new(),
+    let reached = if options.with_reached {
+        reached::text(&document.report) + "\n"
+    } else {
+        String::new()
     };
     let text = reached + &document.text();
     Ok(Outcome {

@@ -73,9 +73,10 @@ fn shaper_config(chance: &mut Chance) -> ShaperConfig {
         channels: 1 + chance.below(3) as u32,
         modulo: chance.is(),
     };
-    match chance.is() {
-        true => plain.clone().for_motion(motion).unwrap_or(plain),
-        false => plain,
+    if chance.is() {
+        plain.clone().for_motion(motion).unwrap_or(plain)
+    } else {
+        plain
     }
 }
 

@@ -161,12 +161,13 @@ impl<L: Read + Write> Link<L> {
             return Err(LinkError::Refused(reply.status));
         }
         let asked = if request.is_write() { 0 } else { request.words() };
-        match reply.words.len() == asked {
-            true => Ok(reply.words),
-            false => Err(LinkError::Words {
+        if reply.words.len() == asked {
+            Ok(reply.words)
+        } else {
+            Err(LinkError::Words {
                 asked,
                 found: reply.words.len(),
-            }),
+            })
         }
     }
 

@@ -86,9 +86,10 @@ impl<L: Read + Write> HostedStage<'_, L> {
         let limited = section
             .limits
             .is_some_and(|limits| limits.travel.is_some() && !limits.soft_limits_after_homing);
-        let [minus, plus] = match limited {
-            true => limits,
-            false => [i32::MIN, i32::MAX].map(f64::from),
+        let [minus, plus] = if limited {
+            limits
+        } else {
+            [i32::MIN, i32::MAX].map(f64::from)
         };
         if !(minus..=plus).contains(&end) {
             let counts = |word: f64| word / f64::from(1u32 << WORD_FRACTION);

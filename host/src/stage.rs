@@ -265,9 +265,10 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         let [tick, stamp] = self.time()?;
         left.still = if stamp == left.stamp { left.still + 1 } else { 0 };
         left.stamp = stamp;
-        match left.still < STILL_LOOKS {
-            true => Ok(tick.wrapping_sub(left.from) <= left.ticks),
-            false => Err(HostError::Standstill),
+        if left.still < STILL_LOOKS {
+            Ok(tick.wrapping_sub(left.from) <= left.ticks)
+        } else {
+            Err(HostError::Standstill)
         }
     }
 

@@ -75,9 +75,10 @@ impl Bench {
     }
 
     fn bit(&mut self, mosi: bool) -> bool {
-        let fault = match self.one_in != 0 && self.below(self.one_in) == 0 {
-            true => 1 + self.below(4),
-            false => 0,
+        let fault = if self.one_in != 0 && self.below(self.one_in) == 0 {
+            1 + self.below(4)
+        } else {
+            0
         };
         self.faults += u64::from(fault != 0);
         // A bit that is changed on the way there or back, an edge that is lost, an edge that is invented.

@@ -78,9 +78,10 @@ pub(crate) fn that_ring(mut modes: Vec<FoundMode>) -> Vec<FoundMode> {
     let rung: f64 = modes.iter().map(|found| found.ringing(1.0)).sum();
     let whole: f64 = modes.iter().map(|found| found.participation).sum();
     modes.retain(|found| {
-        let least = match found.participation >= LEAST_PARTICIPATION * whole {
-            true => LEAST_RINGING_OF_SEEN,
-            false => LEAST_RINGING,
+        let least = if found.participation >= LEAST_PARTICIPATION * whole {
+            LEAST_RINGING_OF_SEEN
+        } else {
+            LEAST_RINGING
         };
         found.ringing(1.0) >= least * rung
     });

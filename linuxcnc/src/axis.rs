@@ -87,12 +87,11 @@ impl Axis {
             }
         }
         let [shaped, ..] = self.shaper.push([self.word, 0, 0]);
-        let (word_in, unwrapped) = match self.modulo {
-            true => {
-                let turned = wrap(self.word, self.word_bits);
-                (turned, self.word.wrapping_add(wrap(shaped - turned, self.word_bits)))
-            }
-            false => (self.word, shaped),
+        let (word_in, unwrapped) = if self.modulo {
+            let turned = wrap(self.word, self.word_bits);
+            (turned, self.word.wrapping_add(wrap(shaped - turned, self.word_bits)))
+        } else {
+            (self.word, shaped)
         };
         Shaped {
             position: unwrapped as f64 / self.lsb_per_unit,
@@ -112,9 +111,10 @@ impl Axis {
         }
         // A cast of a number that is too large gives the largest.
         let word = words as i64;
-        let largest = match self.modulo {
-            true => 1 << 62,
-            false => (1 << (self.word_bits - 1)) - 1,
+        let largest = if self.modulo {
+            1 << 62
+        } else {
+            (1 << (self.word_bits - 1)) - 1
         };
         self.word = word.clamp(-largest - 1, largest);
         self.word != word

@@ -161,9 +161,10 @@ impl Band {
                 }
                 let at = look as f64 * step;
                 let (share, ratio) = narrow(value, (at - step).max(0.0), (at + step).min(1.0));
-                match ratio > found {
-                    true => peaks.push((ratio, edge.at(share))),
-                    false => peaks.push((found, edge.at(at))),
+                if ratio > found {
+                    peaks.push((ratio, edge.at(share)))
+                } else {
+                    peaks.push((found, edge.at(at)))
                 }
             }
         }
@@ -188,8 +189,9 @@ fn narrow(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> (f64, f64) 
             at_high = value(high);
         }
     }
-    match at_low > at_high {
-        true => (low, at_low),
-        false => (high, at_high),
+    if at_low > at_high {
+        (low, at_low)
+    } else {
+        (high, at_high)
     }
 }

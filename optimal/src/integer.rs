@@ -107,9 +107,10 @@ fn by_sums(taps: &[Tap], unity: i64, low: f64, high: f64) -> Vec<Units> {
     let mut units = Vec::with_capacity(taps.len());
     for (index, tap) in taps.iter().enumerate() {
         sum += tap.1;
-        let rounded = match index == last {
-            true => unity,
-            false => ((sum * unity as f64).round() as i64).clamp(low, high),
+        let rounded = if index == last {
+            unity
+        } else {
+            ((sum * unity as f64).round() as i64).clamp(low, high)
         };
         units.push((tap.0, rounded - before));
         before = rounded;

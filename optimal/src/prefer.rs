@@ -27,9 +27,10 @@ const BUDGET_REACH: u32 = 4;
 pub(crate) fn choose(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
     let least = held.last().map_or(0, |tap| tap.0);
     let taps = preferred(request, held, points)?;
-    match taps.len() <= request.most_taps {
-        true => Ok(taps),
-        false => within_budget(request, least, points),
+    if taps.len() <= request.most_taps {
+        Ok(taps)
+    } else {
+        within_budget(request, least, points)
     }
 }
 

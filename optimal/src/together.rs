@@ -204,12 +204,13 @@ fn earliest_taps(partner: &Partner, samples: u32) -> Result<Vec<Tap>, OptimalErr
         let few = extreme_delay(request, &support(&taps, NONE), &mut points, false, level)?;
         return Ok(few.map_or_else(|| significant(&taps), |(few, _)| few));
     }
-    match partner.alone.taps.last().is_none_or(|tap| tap.0 <= samples) {
-        true => Ok(partner.alone.taps.clone()),
-        false => Err(OptimalError::Solver {
+    if partner.alone.taps.last().is_none_or(|tap| tap.0 <= samples) {
+        Ok(partner.alone.taps.clone())
+    } else {
+        Err(OptimalError::Solver {
             samples,
             status: "the shaper of least delay was not found".into(),
-        }),
+        })
     }
 }
 
@@ -235,9 +236,10 @@ fn at(partners: &[Partner], samples: u32, ends: Vec<End>, shorter: Option<Shorte
     }
     let mut taps = Vec::with_capacity(partners.len());
     for (axis, partner) in partners.iter().enumerate() {
-        let found = match axis == latest_axis {
-            true => Ok(decided.clone()),
-            false => with_delay(&partner.request, samples, delay_samples - partner.lag_samples),
+        let found = if axis == latest_axis {
+            Ok(decided.clone())
+        } else {
+            with_delay(&partner.request, samples, delay_samples - partner.lag_samples)
         };
         let found = found.and_then(|found| within_budget(&partner.request, samples, found));
         taps.push(found.map_err(|cause| TogetherError { axis, cause })?);
@@ -293,13 +295,14 @@ fn exactly(mut taps: Vec<Tap>, delay: f64) -> Vec<Tap> {
 
 /// Refuses more taps than a budget allows.
 fn within_budget(request: &Request, samples: u32, taps: Vec<Tap>) -> Result<Vec<Tap>, OptimalError> {
-    match taps.len() <= request.most_taps {
-        true => Ok(taps),
-        false => Err(OptimalError::TapBudget {
+    if taps.len() <= request.most_taps {
+        Ok(taps)
+    } else {
+        Err(OptimalError::TapBudget {
             budget: request.most_taps,
             fewest: taps.len(),
             samples,
             longest_samples: samples,
-        }),
+        })
     }
 }

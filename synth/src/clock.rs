@@ -232,9 +232,10 @@ fn wrapper(top: &str, ports: &[TopPort]) -> Result<String, String> {
     let mut connections = String::from(".clk(clk)");
     let mut next = [0, 0];
     for TopPort { name, is_input, width } in ports.iter().filter(|port| port.name != "clk") {
-        let (word, from) = match is_input {
-            true => ("from", &mut next[0]),
-            false => ("to", &mut next[1]),
+        let (word, from) = if *is_input {
+            ("from", &mut next[0])
+        } else {
+            ("to", &mut next[1])
         };
         let _ = write!(connections, ", .{name}({word}[{}:{from}])", *from + width - 1);
         *from += width;

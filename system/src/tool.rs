@@ -37,11 +37,12 @@ pub fn executables(variable: &str, names: &[&str]) -> Vec<PathBuf> {
 pub fn located(program: &Path) -> Option<PathBuf> {
     let plain = program.components().count() == 1;
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut found = match plain {
-        true => std::env::split_paths(&path)
+    let mut found = if plain {
+        std::env::split_paths(&path)
             .map(|folder| folder.join(program))
-            .collect(),
-        false => vec![program.to_owned()],
+            .collect()
+    } else {
+        vec![program.to_owned()]
     };
     found.retain(|file| runs(file));
     found.into_iter().next()
@@ -92,9 +93,10 @@ pub fn run_within(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     log.seek(SeekFrom::Start(0))?;
     log.read_to_end(&mut printed)?;
     let printed = String::from_utf8_lossy(&printed).into_owned();
-    Ok(match status.success() {
-        true => Ended::Well(printed),
-        false => Ended::Badly { status, printed },
+    Ok(if status.success() {
+        Ended::Well(printed)
+    } else {
+        Ended::Badly { status, printed }
     })
 }
 

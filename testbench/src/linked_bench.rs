@@ -212,9 +212,10 @@ impl Write for LinkedBench {
 /// A host in the same thread reads; no time passes.
 impl Read for LinkedBench {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        match self.coming.is_empty() {
-            true => Err(ErrorKind::TimedOut.into()),
-            false => self.coming.read(bytes),
+        if self.coming.is_empty() {
+            Err(ErrorKind::TimedOut.into())
+        } else {
+            self.coming.read(bytes)
         }
     }
 }

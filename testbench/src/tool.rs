@@ -92,9 +92,10 @@ impl Tool {
     }
 
     fn success(&self, output: Output, doing: &'static str) -> Result<Output, Error> {
-        match output.status.success() {
-            true => Ok(output),
-            false => Err(self.failed(doing, output.status.to_string(), &text(&output))),
+        if output.status.success() {
+            Ok(output)
+        } else {
+            Err(self.failed(doing, output.status.to_string(), &text(&output)))
         }
     }
 

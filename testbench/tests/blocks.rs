@@ -110,15 +110,16 @@ fn verilog_has_the_ports_of_the_model(trial: &Trial) -> Result<(), Failed> {
     let modules = trial.block.modules()?;
     let top = modules.last().ok_or("no module")?;
     let model = trial.block.model(1);
-    match top.name == trial.block.top() && top.ports == model.ports() {
-        true => Ok(()),
-        false => Err(format!(
+    if top.name == trial.block.top() && top.ports == model.ports() {
+        Ok(())
+    } else {
+        Err(format!(
             "`{}` has the ports {:?}, and the model {:?}",
             top.name,
             top.ports,
             model.ports()
         )
-        .into()),
+        .into())
     }
 }
 
@@ -151,9 +152,10 @@ fn reaches_every_case(run: &Run, least: u64) -> Result<(), Failed> {
     let mut rare = run.rare(least);
     let is_rare = |(name, count): &&(String, u64)| OFTEN.contains(&name.as_str()) && *count <= 20;
     rare.extend(run.coverage.iter().filter(is_rare).map(|(name, _)| name.as_str()));
-    match rare.is_empty() {
-        true => Ok(()),
-        false => Err(format!("too rare: {rare:?} of {:?}", run.coverage).into()),
+    if rare.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("too rare: {rare:?} of {:?}", run.coverage).into())
     }
 }
 
@@ -201,9 +203,12 @@ fn is_found(name: &str, mutant: &BlockMutant) -> Result<(), Failed> {
         block.stimuli(mutant.clocks, 1).as_mut(),
         &instances,
         &LockstepOptions::cycles(mutant.clocks),
-        &mut |clock: &lockstep::Clock<'_>| match clock.expected == clock.actual {
-            true => ControlFlow::Continue(()),
-            false => ControlFlow::Break(()),
+        &mut |clock: &lockstep::Clock<'_>| {
+            if clock.expected == clock.actual {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         },
         &mut |_| {},
     )?;
@@ -211,8 +216,9 @@ fn is_found(name: &str, mutant: &BlockMutant) -> Result<(), Failed> {
         return Err(format!("`{}` is not found in {} clocks", mutant.to, mutant.clocks).into());
     };
     let text = first.to_string();
-    match text.contains(&first.time.to_string()) && text.contains("(device)") {
-        true => Ok(()),
-        false => Err(format!("the mismatch does not show its clock: {text}").into()),
+    if text.contains(&first.time.to_string()) && text.contains("(device)") {
+        Ok(())
+    } else {
+        Err(format!("the mismatch does not show its clock: {text}").into())
     }
 }

@@ -143,9 +143,10 @@ fn a_wrong_sign_trips_in_hold_and_in_a_move() {
         for when in [When::Hold, When::Move, When::InMotion] {
             for following_error in [true, false] {
                 let found = of_wrong_sign(text, following_error, LOST_S, when);
-                let (cause, most) = match following_error {
-                    true => (Cause::FollowingError, MOST_COUNTS_BY_ERROR),
-                    false => (Cause::EncoderLost, MOST_COUNTS),
+                let (cause, most) = if following_error {
+                    (Cause::FollowingError, MOST_COUNTS_BY_ERROR)
+                } else {
+                    (Cause::EncoderLost, MOST_COUNTS)
                 };
                 assert_eq!(found.causes, cause.bit(), "{drive}, {when:?}: {found:?}");
                 let in_bounds = found.counts < most && found.ticks < MOST_TICKS;

@@ -314,9 +314,10 @@ fn in_parts(parts: &[(i64, i64)], values: [&str; 2]) -> String {
     let changes = values.map(|digits| {
         let digit = |index: i64| char::from(digits.as_bytes()[digits.len() - 1 - index as usize]);
         let part = |(at, &(left, right)): (usize, &(i64, i64))| {
-            let all: String = match left < right {
-                true => (left..=right).map(digit).collect(),
-                false => (right..=left).rev().map(digit).collect(),
+            let all: String = if left < right {
+                (left..=right).map(digit).collect()
+            } else {
+                (right..=left).rev().map(digit).collect()
             };
             format!("b{all} i{at}\n")
         };

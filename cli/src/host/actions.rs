@@ -47,9 +47,10 @@ pub(super) fn move_axes<'m>(
     stage.switch_on(&axes, clears_faults).map_err(failure)?;
     let moved = stage.move_axes(&moves);
     // In any case, the axes end as the user wants them: off. A fault has already switched them off.
-    let off = match holds && moved.is_ok() {
-        true => Ok(()),
-        false => stage.switch_off(&axes),
+    let off = if holds && moved.is_ok() {
+        Ok(())
+    } else {
+        stage.switch_off(&axes)
     };
     moved.and(off).map_err(failure)?;
     super::text::status(&mut stage, false)
@@ -164,19 +165,19 @@ fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Pat
 
 fn write(args: &TraceArgs, trace: &RecordedTrace) -> Result<(), Failure> {
     let outputs = outputs(args)?;
-    let text = match is_vcd(&args.output)? {
-        false => trace.csv(),
-        true => {
-            let mut bytes = Vec::new();
-            trace.vcd(&mut bytes).map_err(Failure::because)?;
-            String::from_utf8_lossy(&bytes).into_owned()
-        }
+    let text = if is_vcd(&args.output)? {
+        let mut bytes = Vec::new();
+        trace.vcd(&mut bytes).map_err(Failure::because)?;
+        String::from_utf8_lossy(&bytes).into_owned()
+    } else {
+        trace.csv()
     };
     write_text(&args.output, text.as_str())?;
     let names: Vec<&str> = trace.signals.iter().map(|signal| signal.name.as_str()).collect();
-    let next = match args.shake.is_some() && !is_vcd(&args.output)? {
-        true => format!("next: posicast identify {}\n", shell_word(&args.output)),
-        false => String::new(),
+    let next = if args.shake.is_some() && !is_vcd(&args.output)? {
+        format!("next: posicast identify {}\n", shell_word(&args.output))
+    } else {
+        String::new()
     };
     output::print_beside(
         &outputs,

@@ -37,9 +37,10 @@ struct AxisDocument {
 pub(super) fn status(stage: &mut Port<'_>, json: bool) -> Result<(), Failure> {
     let all = stage.status().map_err(failure)?;
     let machine = stage.machine();
-    match json {
-        true => output::print_json(&document(machine, &all)),
-        false => output::print(&text(machine, &all)),
+    if json {
+        output::print_json(&document(machine, &all))
+    } else {
+        output::print(&text(machine, &all))
     }
 }
 

@@ -146,9 +146,10 @@ fn fits(draft: &MachineDraft) -> Result<(), String> {
     let machine = draft.machine().map_err(|error| {
         let lines = error.problems().iter().map(|problem| {
             let cause = problem.cause.to_string();
-            match cause.contains(&problem.remedy) {
-                true => format!("{}: {cause}", problem.key),
-                false => format!("{}: {cause}; {}", problem.key, problem.remedy),
+            if cause.contains(&problem.remedy) {
+                format!("{}: {cause}", problem.key)
+            } else {
+                format!("{}: {cause}; {}", problem.key, problem.remedy)
             }
         });
         lines.collect::<Vec<_>>().join("\n  ")

@@ -362,9 +362,12 @@ fn ball_screw(key: &str, value: &str) -> String {
 /// Replaces the value of every line that begins with this key.
 fn with_value(text: &str, key: &str, value: &str) -> String {
     let start = format!("{key} = ");
-    let lines = text.lines().map(|line| match line.starts_with(&start) {
-        true => format!("{start}{value}\n"),
-        false => format!("{line}\n"),
+    let lines = text.lines().map(|line| {
+        if line.starts_with(&start) {
+            format!("{start}{value}\n")
+        } else {
+            format!("{line}\n")
+        }
     });
     let changed: String = lines.collect();
     assert_ne!(changed, text, "{key}");

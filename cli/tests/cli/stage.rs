@@ -93,12 +93,11 @@ fn cli_a_file_in_millimetres_gives_the_hardware_of_the_file_in_metres() {
 fn texts_below(folder: &Path, root: &Path, texts: &mut BTreeMap<PathBuf, Vec<u8>>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        match path.is_dir() {
-            true => texts_below(&path, root, texts),
-            false => {
-                let place = path.strip_prefix(root).unwrap().to_owned();
-                texts.insert(place, std::fs::read(&path).unwrap());
-            }
+        if path.is_dir() {
+            texts_below(&path, root, texts)
+        } else {
+            let place = path.strip_prefix(root).unwrap().to_owned();
+            texts.insert(place, std::fs::read(&path).unwrap());
         }
     }
 }

@@ -83,9 +83,6 @@ pub(crate) fn rust_sources(packages: &[&str]) -> Vec<PathBuf> {
 
 fn files_below(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let files = entries.map(|path| match path.is_dir() {
-        true => files_below(&path),
-        false => vec![path],
-    });
+    let files = entries.map(|path| if path.is_dir() { files_below(&path) } else { vec![path] });
     files.flatten().collect()
 }

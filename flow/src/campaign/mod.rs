@@ -236,9 +236,10 @@ fn finished(head: &CampaignHead, part: &CampaignPart) -> Result<Option<Vec<UnitR
     if document.head == *head && document.shard == part.shard {
         return Ok(Some(document.results));
     }
-    let what = match document.shard == part.shard {
-        true => "has this shard of another campaign: seed, options, machine or posicast differ".to_owned(),
-        false => format!("has shard {}", document.shard),
+    let what = if document.shard == part.shard {
+        "has this shard of another campaign: seed, options, machine or posicast differ".to_owned()
+    } else {
+        format!("has shard {}", document.shard)
     };
     Err(Failure::from(miette::miette!(
         help = "name another file, or another folder for each campaign; nothing was changed",

@@ -77,9 +77,10 @@ struct Sweep<'a> {
 pub(super) fn of<'a>(options: &'a SweepOptions, observer: &'a dyn Observer) -> Result<impl Units + use<'a>, Failure> {
     let file = machine::read(&options.machine)?;
     let beside = file.beside.iter().map(|(_, text)| text.as_bytes());
-    let (yosys, router) = match options.area || options.clock {
-        true => synth::tools(options.clock).map(|(yosys, router)| (Some(yosys), router))?,
-        false => (None, None),
+    let (yosys, router) = if options.area || options.clock {
+        synth::tools(options.clock).map(|(yosys, router)| (Some(yosys), router))?
+    } else {
+        (None, None)
     };
     let sweep = Sweep {
         path: &options.machine,

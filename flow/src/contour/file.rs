@@ -37,16 +37,17 @@ impl<'a> PathFile<'a> {
         let mut kept = Vec::new();
         let read = file.take(PIPED_BYTES + 1).read_to_end(&mut kept);
         let bytes = read.map_err(|error| unreadable(path, &error.to_string()))? as u64;
-        match bytes > PIPED_BYTES {
-            true => Err(unreadable(
+        if bytes > PIPED_BYTES {
+            Err(unreadable(
                 path,
                 &format!("through a pipe it has more than {PIPED_BYTES} bytes; write it into a file"),
-            )),
-            false => Ok(Self {
+            ))
+        } else {
+            Ok(Self {
                 path,
                 bytes,
                 kept: Some(kept),
-            }),
+            })
         }
     }
 

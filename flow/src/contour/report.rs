@@ -100,12 +100,13 @@ impl Report<'_> {
             .take(2)
             .map(|axis| axis.name.as_str())
             .collect();
-        let rapids = match self.survey.rapid_length > 0.0 {
-            true => format!(
+        let rapids = if self.survey.rapid_length > 0.0 {
+            format!(
                 " ({} of it rapids)",
                 self.unit().show_round(self.survey.rapid_length, "")
-            ),
-            false => String::new(),
+            )
+        } else {
+            String::new()
         };
         let mut text = format!(
             "{}: {} of axes {}, {}{rapids} in {}, {}\nlargest distance of the load from the path{}, its modes at\n",

@@ -120,24 +120,27 @@ impl<'a> FamilyReport<'a> {
 
     /// A value of the variable with few digits.
     fn show(&self, value: f64) -> String {
-        match self.family.is_position() {
-            true => trimmed(self.axis.unit.from_si(value), DIGITS),
-            false => trimmed(value, DIGITS),
+        if self.family.is_position() {
+            trimmed(self.axis.unit.from_si(value), DIGITS)
+        } else {
+            trimmed(value, DIGITS)
         }
     }
 
     fn variable(&self) -> String {
-        match self.family.is_position() {
-            true => format!("{} {}", self.family.variable, self.axis.unit.symbol()),
-            false => self.family.variable.clone(),
+        if self.family.is_position() {
+            format!("{} {}", self.family.variable, self.axis.unit.symbol())
+        } else {
+            self.family.variable.clone()
         }
     }
 
     /// Label of the variable's axis in a picture.
     fn axis_label(&self) -> String {
-        match self.family.is_position() {
-            true => format!("{}, {}", self.family.variable, self.axis.unit.symbol()),
-            false => self.family.variable.clone(),
+        if self.family.is_position() {
+            format!("{}, {}", self.family.variable, self.axis.unit.symbol())
+        } else {
+            self.family.variable.clone()
         }
     }
 
@@ -192,9 +195,10 @@ impl<'a> FamilyReport<'a> {
         text += &table.text("  ");
         let fastest = self.tables.fastest_per_s(self.sample_hz);
         if fastest.is_finite() {
-            let per_s = match self.family.is_position() {
-                true => self.axis.unit.show_round(fastest, "/s"),
-                false => format!("{} per s", trimmed(fastest, DIGITS)),
+            let per_s = if self.family.is_position() {
+                self.axis.unit.show_round(fastest, "/s")
+            } else {
+                format!("{} per s", trimmed(fastest, DIGITS))
             };
             let _ = writeln!(
                 text,
@@ -231,9 +235,12 @@ impl<'a> FamilyReport<'a> {
                 .map(|mode| residual_vibration(&taps, &mode.at(value)));
             100.0 * modes.fold(0.0, f64::max)
         };
-        let shown = |value: f64| match self.family.is_position() {
-            true => self.axis.unit.from_si(value),
-            false => value,
+        let shown = |value: f64| {
+            if self.family.is_position() {
+                self.axis.unit.from_si(value)
+            } else {
+                value
+            }
         };
         let (mut chosen, mut nominal, mut now) = (Vec::new(), Vec::new(), 0);
         for point in 0..POINTS {

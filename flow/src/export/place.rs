@@ -106,11 +106,12 @@ fn is_klipper(format: ExportFormat) -> bool {
 
 /// Refuses to change a file that is not an export.
 fn owned(what: &str, format: ExportFormat) -> Failure {
-    let remedy = match is_klipper(format) {
-        true => format!(
+    let remedy = if is_klipper(format) {
+        format!(
             "name a file of its own, --include {SUGGESTED}, and add the line [include {SUGGESTED}] to printer.cfg, above the SAVE_CONFIG block"
-        ),
-        false => "name another file, or remove that one yourself".to_owned(),
+        )
+    } else {
+        "name another file, or remove that one yourself".to_owned()
     };
     Failure::from(miette::miette!(
         help = remedy,
@@ -125,18 +126,20 @@ fn refuse_to_append(format: ExportFormat) -> Result<(), Failure> {
         .metadata()
         .is_ok_and(|found| found.is_file() && found.len() > 0);
     // If it cannot be read, nothing is refused.
-    let before = match appends && is_klipper(format) {
-        true => std::fs::read(standard_output).unwrap_or_default(),
-        false => return Ok(()),
+    let before = if appends && is_klipper(format) {
+        std::fs::read(standard_output).unwrap_or_default()
+    } else {
+        return Ok(());
     };
-    match String::from_utf8_lossy(&before)
+    if String::from_utf8_lossy(&before)
         .lines()
         .any(|line| line.starts_with(AUTOSAVE))
     {
-        true => Err(owned(
+        Err(owned(
             "standard output is appended to a configuration with Klipper's SAVE_CONFIG block, which Klipper would drop",
             format,
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }

@@ -99,9 +99,10 @@ impl Findings {
     /// The template for a machine with these modes.
     pub(super) fn kind(&self) -> MachineKind {
         const SLOW_HZ: f64 = 2.0;
-        match self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ) {
-            true => MachineKind::Crane,
-            false => MachineKind::Printer,
+        if self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ) {
+            MachineKind::Crane
+        } else {
+            MachineKind::Printer
         }
     }
 }
@@ -289,13 +290,15 @@ fn identify_output(log: &AccelerationLog) -> Result<Findings, Failure> {
 
 fn identify_position(log: &PositionLog) -> Result<Findings, Failure> {
     let found = position::identify(log).map_err(position_failure)?;
-    let (source, method_name) = match found.is_forced {
-        true => ("command and response", "output-error"),
-        false => ("response", "decay"),
+    let (source, method_name) = if found.is_forced {
+        ("command and response", "output-error")
+    } else {
+        ("response", "decay")
     };
-    let driven = match found.is_forced {
-        true => "modes under the command, held between samples",
-        false => "modes that decay freely",
+    let driven = if found.is_forced {
+        "modes under the command, held between samples"
+    } else {
+        "modes that decay freely"
     };
     let remarks = found.remarks.iter().map(ToString::to_string).collect();
     Ok(Findings {

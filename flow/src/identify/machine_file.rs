@@ -47,12 +47,13 @@ pub(super) fn from_template(
 /// Replaces the first step in the head of a template if the log has answered all of it.
 fn without_stale_step(text: String) -> String {
     const STEP: &str = "Measure what is marked MEASURE and write it in";
-    match to_measure(&text).is_empty() {
-        true => text.replace(
+    if to_measure(&text).is_empty() {
+        text.replace(
             STEP,
             "The modes are from the log, with their 95 % intervals; check the other values",
-        ),
-        false => text,
+        )
+    } else {
+        text
     }
 }
 

@@ -75,9 +75,12 @@ pub(super) fn draw_chart(
             Ok(())
         })?;
     }
-    let y_label = |value: &f64| match panel.y_is_whole && (value - value.round()).abs() > 1e-9 {
-        true => String::new(),
-        false => axis_label(*value),
+    let y_label = |value: &f64| {
+        if panel.y_is_whole && (value - value.round()).abs() > 1e-9 {
+            String::new()
+        } else {
+            axis_label(*value)
+        }
     };
     let x_label = |value: &f64| axis_label(*value);
     let mut mesh = chart.configure_mesh();

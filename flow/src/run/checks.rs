@@ -160,14 +160,16 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &LockstepReport) -> Check {
         Simulator::Rusthdl => "RustHDL description equals the bit-exact model in every clock",
         Simulator::Verilator | Simulator::Icarus => "RTL equals the bit-exact model in every clock",
     };
-    let check = match lockstep.cycles > 0 && lockstep.samples > 0 {
-        true => Check::new(name, lockstep.result == LockstepVerdict::Match, detail),
-        false => Check::not_exercised(name, false, &detail),
+    let check = if lockstep.cycles > 0 && lockstep.samples > 0 {
+        Check::new(name, lockstep.result == LockstepVerdict::Match, detail)
+    } else {
+        Check::not_exercised(name, false, &detail)
     };
     Check {
-        coverage: match is_short {
-            true => Coverage::TooFewClocks,
-            false => check.coverage,
+        coverage: if is_short {
+            Coverage::TooFewClocks
+        } else {
+            check.coverage
         },
         ..check
     }

@@ -132,9 +132,10 @@ fn shown(name: &str, width: u32, bits: &str) -> String {
         return bits.to_owned();
     };
     let is_negative = (name.ends_with("_x") || name.ends_with("_y")) && value >> (width - 1) == 1;
-    match is_negative {
-        true => (i128::from(value) - (1i128 << width)).to_string(),
-        false => value.to_string(),
+    if is_negative {
+        (i128::from(value) - (1i128 << width)).to_string()
+    } else {
+        value.to_string()
     }
 }
 

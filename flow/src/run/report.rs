@@ -237,9 +237,10 @@ impl RunReport<'_> {
             posicast: env!("CARGO_PKG_VERSION"),
             command: self.command.clone(),
             name: self.machine.name.clone(),
-            result: match self.checks.iter().all(|check| check.passed) {
-                true => RunVerdict::Pass,
-                false => RunVerdict::Fail,
+            result: if self.checks.iter().all(|check| check.passed) {
+                RunVerdict::Pass
+            } else {
+                RunVerdict::Fail
             },
             simulator: self.simulator,
             seed: self.seed,

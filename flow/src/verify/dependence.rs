@@ -132,9 +132,10 @@ pub(super) fn in_verilog(text: &str) -> Vec<Dependent> {
                     _ => {
                         let argument = identifier(rest.text.trim_start_matches([' ', '\t']));
                         let names_macro = ["ifdef", "ifndef", "elsif"].contains(&name);
-                        add(match names_macro {
-                            true => format!("`{name} {argument}"),
-                            false => format!("`{name}"),
+                        add(if names_macro {
+                            format!("`{name} {argument}")
+                        } else {
+                            format!("`{name}")
                         });
                     }
                 }

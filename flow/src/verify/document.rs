@@ -156,9 +156,10 @@ impl Document {
             .iter()
             .any(|block| block.name == "shaper" && block.samples.is_some());
         if report.result == LockstepVerdict::Match && self.replayed.is_none() {
-            compared.push(match shapers {
-                true => "every tap and bank of the shapers and every flag of all rows exercised".to_owned(),
-                false => "every flag of all rows exercised".to_owned(),
+            compared.push(if shapers {
+                "every tap and bank of the shapers and every flag of all rows exercised".to_owned()
+            } else {
+                "every flag of all rows exercised".to_owned()
             });
         }
         compared.extend(self.replayed.as_ref().map(Replayed::summary));

@@ -45,9 +45,12 @@ impl Sizes<'_> {
             let (path, signal) = (node.path.clone(), signal.replace('$', "."));
             move |cause| EmitError::new(&path, &signal, cause)
         };
-        let alike = |same: bool, what: &str| match same {
-            true => Ok(()),
-            false => Err(EmitCause::SizesDiffer(what.to_owned())),
+        let alike = |same: bool, what: &str| {
+            if same {
+                Ok(())
+            } else {
+                Err(EmitCause::SizesDiffer(what.to_owned()))
+            }
         };
         let all = |same: &dyn Fn(&Node) -> bool| others.iter().all(|other| same(other));
         alike(all(&|other| other.raw == node.raw), "name of a block").map_err(at(""))?;

@@ -19,9 +19,10 @@ pub(super) fn wrapped(line: &str) -> String {
     };
     let mut lines = Vec::new();
     while rest.chars().count() > COLUMNS {
-        let place = match code.starts_with("//") {
-            true => between_words(&rest, lead.len()),
-            false => at_an_operator(&rest, lead.len()),
+        let place = if code.starts_with("//") {
+            between_words(&rest, lead.len())
+        } else {
+            at_an_operator(&rest, lead.len())
         };
         let Some(place) = place else { break };
         let after = format!("{lead}{}", rest[place..].trim_start());

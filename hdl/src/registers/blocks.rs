@@ -125,9 +125,10 @@ fn by_bytes(lines: &mut Lines, condition: &str, fields: &[Field], prefix: &str) 
         let taken: Vec<String> = parts
             .map(|(field, taken)| {
                 let name = format!("{prefix}{}", field.name);
-                let target = match taken.width == field.width {
-                    true => name,
-                    false => part(&name, &Field::new("", taken.low - field.low, taken.width, "")),
+                let target = if taken.width == field.width {
+                    name
+                } else {
+                    part(&name, &Field::new("", taken.low - field.low, taken.width, ""))
                 };
                 format!("{target} <= {};", part("avs_writedata", &taken))
             })
@@ -154,9 +155,10 @@ pub(super) fn guarded(lines: &mut Lines, register: &Register, while_low: &str) {
     }
     let minima = register.fields.iter().filter(|field| field.minimum > 0).map(|field| {
         // A concatenation is unsigned, even of signed values.
-        let next = match field.is_signed() {
-            true => format!("{{next_{}}}", field.name),
-            false => format!("next_{}", field.name),
+        let next = if field.is_signed() {
+            format!("{{next_{}}}", field.name)
+        } else {
+            format!("next_{}", field.name)
         };
         format!("{next} >= {}", bits(field.width).literal(field.minimum.into()))
     });

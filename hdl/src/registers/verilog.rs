@@ -169,18 +169,20 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
     };
     if is_flagged(map, FlagSource::PartialWrite) {
         let terms = named(&Access::whole_words, &|name| format!("write_{name}"));
-        match terms.is_empty() {
-            true => lines.line("wire bus_partial = 1'd0;"),
-            false => joined(lines, "wire bus_partial = !whole && (", &terms, " || ", ");"),
+        if terms.is_empty() {
+            lines.line("wire bus_partial = 1'd0;")
+        } else {
+            joined(lines, "wire bus_partial = !whole && (", &terms, " || ", ");")
         }
     }
     if is_flagged(map, FlagSource::GuardRefused) {
         let terms = named(&|access| matches!(access, Access::Guarded { .. }), &|name| {
             format!("(write_{name} && !allow_{name})")
         });
-        match terms.is_empty() {
-            true => lines.line("wire bus_refused = 1'd0;"),
-            false => joined(lines, "wire bus_refused = ", &terms, " || ", ";"),
+        if terms.is_empty() {
+            lines.line("wire bus_refused = 1'd0;")
+        } else {
+            joined(lines, "wire bus_refused = ", &terms, " || ", ";")
         }
     }
     if is_flagged(map, FlagSource::CommitRejected) {
@@ -189,9 +191,10 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
             format!("(write_{name} && whole)")
         });
         let terms = [commit, staged].concat();
-        match terms.is_empty() {
-            true => lines.line("wire bus_rejected = 1'd0;"),
-            false => joined(lines, "wire bus_rejected = waits && (", &terms, " || ", ");"),
+        if terms.is_empty() {
+            lines.line("wire bus_rejected = 1'd0;")
+        } else {
+            joined(lines, "wire bus_rejected = waits && (", &terms, " || ", ");")
         }
     }
 }

@@ -26,9 +26,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     println!("\n{} cases, {} failed, seed {seed}", all.len(), failed.len());
-    match failed.is_empty() {
-        true => Ok(()),
-        false => Err("there are failures".into()),
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err("there are failures".into())
     }
 }
 

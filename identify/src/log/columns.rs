@@ -154,9 +154,10 @@ pub(super) fn read(text: &[u8], options: &ReadOptions) -> Result<Table, LogError
         let Some(rate_hz) = options.rate_hz.or(said.rate_hz) else {
             return Err(LogError::NoRate);
         };
-        times = match is_numbered && times.len() == lines.len() {
-            true => times.iter().map(|number| number / rate_hz).collect(),
-            false => (0..lines.len()).map(|row| row as f64 / rate_hz).collect(),
+        times = if is_numbered && times.len() == lines.len() {
+            times.iter().map(|number| number / rate_hz).collect()
+        } else {
+            (0..lines.len()).map(|row| row as f64 / rate_hz).collect()
         };
     }
     uses::decide(&mut columns, &mut remarks, question)?;

@@ -101,17 +101,19 @@ pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, Log
     let steps = Steps::from_times(times);
     let all = steps.indices(times);
     let missing = all.last().map_or(0, |last| last + 1).saturating_sub(times.len());
-    let range = match missing as f64 > MOST_MISSING * times.len() as f64 {
-        true => steps.longest_part(table, remarks),
-        false => 0..times.len(),
+    let range = if missing as f64 > MOST_MISSING * times.len() as f64 {
+        steps.longest_part(table, remarks)
+    } else {
+        0..times.len()
     };
     let used = &times[range.clone()];
     let first = all[range.start];
     let indices: Vec<usize> = all[range.clone()].iter().map(|index| index - first).collect();
     let last = indices.last().copied().unwrap_or(0);
-    let sample_s = match steps.is_irregular && last + 1 > used.len() {
-        true => steps.sample_s,
-        false => (used[used.len() - 1] - used[0]) / last.max(1) as f64,
+    let sample_s = if steps.is_irregular && last + 1 > used.len() {
+        steps.sample_s
+    } else {
+        (used[used.len() - 1] - used[0]) / last.max(1) as f64
     };
     let missing: Vec<Range<usize>> = indices
         .windows(2)
@@ -189,9 +191,10 @@ impl Steps {
         let longest_step = usual * if is_irregular { GAP_OF_IRREGULAR } else { 1.5 };
         let (mut sum, mut count, mut long) = (0.0, 0usize, 0usize);
         for step in &steps {
-            match *step < longest_step {
-                true => (sum, count) = (sum + step, count + 1),
-                false => long += 1,
+            if *step < longest_step {
+                (sum, count) = (sum + step, count + 1)
+            } else {
+                long += 1
             }
         }
         let mean = (times[times.len() - 1] - times[0]) / steps.len() as f64;
@@ -211,9 +214,10 @@ impl Steps {
     fn samples(&self, step_s: f64) -> usize {
         let whole = (step_s / self.sample_s).round();
         let least = if self.is_irregular { GAP_OF_IRREGULAR } else { 1.5 };
-        match self.has_gaps && step_s >= least * self.sample_s {
-            true => whole as usize,
-            false => 1,
+        if self.has_gaps && step_s >= least * self.sample_s {
+            whole as usize
+        } else {
+            1
         }
     }
 

@@ -210,9 +210,10 @@ fn use_axes_by_letter(header: &[Name], axes: &[usize], uses: &mut Uses) -> Resul
         return Err(question(header, axes));
     }
     uses.question = (!is_recorder).then(|| question(header, axes));
-    let (meaning, factor) = match is_recorder {
-        true => (Meaning::Acceleration, Some(GRAVITY)),
-        false => (Meaning::Axis, None),
+    let (meaning, factor) = if is_recorder {
+        (Meaning::Acceleration, Some(GRAVITY))
+    } else {
+        (Meaning::Axis, None)
     };
     for &field in axes {
         uses.add_column(header, field, meaning, factor);

@@ -223,9 +223,12 @@ impl<'a> Poles<'a> {
     /// Returns the complex coefficients of a pole's displacement and velocity.
     fn coefficients_of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> (Complex<f64>, Complex<f64>) {
         let half = coefficients.len() / 2;
-        let at = |column: usize| match self.is_free {
-            true => Complex::new(coefficients[column], coefficients[column + half]),
-            false => Complex::new(coefficients[column], 0.0),
+        let at = |column: usize| {
+            if self.is_free {
+                Complex::new(coefficients[column], coefficients[column + half])
+            } else {
+                Complex::new(coefficients[column], 0.0)
+            }
         };
         (at(2 * pole), at(2 * pole + 1))
     }
@@ -332,9 +335,10 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
                     .values(&solution.fitted)
                     .first()
                     .map_or(1.0, |value| value.norm());
-                match (lowest / STILL..lowest * STILL).contains(&still.abs()) {
-                    true => still,
-                    false => lowest,
+                if (lowest / STILL..lowest * STILL).contains(&still.abs()) {
+                    still
+                } else {
+                    lowest
                 }
             }
             Phase::Free => 1.0,

@@ -106,9 +106,10 @@ fn rows(command: &[f64], response: &[f64], order: usize) -> DMatrix<f64> {
     let count = response.len().min(command.len()).saturating_sub(order);
     DMatrix::from_fn(count, 2 * order, |row, column| {
         let k = row + order;
-        match column < order {
-            true => -response[k - 1 - column],
-            false => command[k - 1 - (column - order)],
+        if column < order {
+            -response[k - 1 - column]
+        } else {
+            command[k - 1 - (column - order)]
         }
     })
 }

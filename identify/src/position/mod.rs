@@ -278,9 +278,10 @@ fn largest(values: &[f64]) -> f64 {
 
 /// Finds the modes of a log scaled to a largest command and response of 1, so that its squares are finite in any unit.
 fn identify_scaled(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosition, PositionError> {
-    let begin = match held::moves(&log.command) {
-        true => 0,
-        false => onset(&log.response),
+    let begin = if held::moves(&log.command) {
+        0
+    } else {
+        onset(&log.response)
     };
     if begin > 0 && log.response.len() >= begin + LEAST_SAMPLES {
         let mut found = identify_scaled(
@@ -321,9 +322,10 @@ fn identify_scaled(log: &PositionLog, quantity: Quantity) -> Result<FoundInPosit
     }
     let modes = found.map_or(Vec::new(), |found| found.modes);
     let fastest = modes.iter().map(|mode| mode.frequency_hz).fold(0.0, f64::max);
-    let wanted = match fastest > 0.0 {
-        true => (1.0 / (fastest * log.sample_s * ROWS_PER_PERIOD)).round() as usize,
-        false => coarse,
+    let wanted = if fastest > 0.0 {
+        (1.0 / (fastest * log.sample_s * ROWS_PER_PERIOD)).round() as usize
+    } else {
+        coarse
     };
     let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
     let last = problem(0..samples, decimation);
@@ -468,9 +470,10 @@ fn remarks(
     let mut remarks = reasons_not_reported(problem, found);
     if modes.is_empty() {
         if remarks.is_empty() {
-            remarks.push(match problem.is_forced() {
-                true => PositionRemark::NoRinging { noise },
-                false => PositionRemark::NoExcitation,
+            remarks.push(if problem.is_forced() {
+                PositionRemark::NoRinging { noise }
+            } else {
+                PositionRemark::NoExcitation
             });
         }
         return remarks;

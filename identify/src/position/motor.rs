@@ -72,9 +72,10 @@ pub fn identify(log: &DriveLog) -> Result<FoundAtMotor, PositionError> {
 /// Returns a log whose command comes `delay` samples later.
 fn later(log: &PositionLog, delay: isize) -> PositionLog {
     let (samples, by) = (log.response.len(), delay.unsigned_abs());
-    let (command, response) = match delay >= 0 {
-        true => (0..samples - by, by..samples),
-        false => (by..samples, 0..samples - by),
+    let (command, response) = if delay >= 0 {
+        (0..samples - by, by..samples)
+    } else {
+        (by..samples, 0..samples - by)
     };
     PositionLog {
         command: log.command[command].to_vec(),
@@ -160,9 +161,10 @@ fn identify_scaled(log: &PositionLog) -> Result<FoundAtMotor, PositionError> {
 
 fn decimation(log: &PositionLog, samples: usize, coarse: usize, modes: &[Mode]) -> usize {
     let fastest = modes.iter().map(|mode| mode.frequency_hz).fold(0.0, f64::max);
-    let wanted = match fastest > 0.0 {
-        true => (1.0 / (fastest * log.sample_s * ROWS_PER_PERIOD)).round() as usize,
-        false => coarse,
+    let wanted = if fastest > 0.0 {
+        (1.0 / (fastest * log.sample_s * ROWS_PER_PERIOD)).round() as usize
+    } else {
+        coarse
     };
     wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1))
 }
@@ -332,9 +334,10 @@ impl Model {
         });
         // Residue of 1/(s²·x/u), which is m·(2ζωs + ω²)/(s − p*) at s = p.
         let [velocity, force, _] = self.rigid(&self.parameters);
-        match self.is_force() {
-            true => (below / slope * (2.0 * at.im) / at.powu(4)).norm() * (force / (unit * unit)).abs(),
-            false => (below / slope * (2.0 * at.im) / at.powu(3)).norm() * (velocity / unit).abs(),
+        if self.is_force() {
+            (below / slope * (2.0 * at.im) / at.powu(4)).norm() * (force / (unit * unit)).abs()
+        } else {
+            (below / slope * (2.0 * at.im) / at.powu(3)).norm() * (velocity / unit).abs()
         }
     }
 
@@ -451,9 +454,10 @@ fn remarks(
         return vec![PositionRemark::NoDrive];
     }
     if modes.is_empty() {
-        return vec![match is_force {
-            true => PositionRemark::RigidMotor,
-            false => PositionRemark::StiffDrive,
+        return vec![if is_force {
+            PositionRemark::RigidMotor
+        } else {
+            PositionRemark::StiffDrive
         }];
     }
     let few = modes.iter().filter_map(|found| {

@@ -107,9 +107,10 @@ pub(super) fn clipped(response: &[f64]) -> Vec<bool> {
         clipped.extend(std::iter::repeat_n(is_clipped, run.len()));
     }
     let samples = clipped.iter().filter(|clipped| **clipped).count() as f64;
-    match runs >= RUNS && samples < MOST * response.len() as f64 {
-        true => clipped,
-        false => vec![false; response.len()],
+    if runs >= RUNS && samples < MOST * response.len() as f64 {
+        clipped
+    } else {
+        vec![false; response.len()]
     }
 }
 
@@ -118,9 +119,10 @@ pub(super) fn is_tone(mode: &Mode, is_forced: bool, seconds: f64) -> bool {
     /// Damping ratio below that of any machine, and smallest decrease of the amplitude during a log that shows a decay.
     const UNDAMPED: f64 = 1e-4;
     const DECREASE: f64 = 0.1;
-    match is_forced {
-        true => mode.damping < UNDAMPED,
-        false => mode.decay() * seconds < DECREASE,
+    if is_forced {
+        mode.damping < UNDAMPED
+    } else {
+        mode.decay() * seconds < DECREASE
     }
 }
 

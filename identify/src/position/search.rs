@@ -87,9 +87,10 @@ fn strongest(problem: &HeldModes<'_>, fit: &Solution) -> Option<(f64, Mode)> {
     let basis = problem.basis(&fit.unknowns);
     let gram = Gram::of(&basis)?;
     let residual = problem.measured() - &fit.fitted;
-    let (least_periods, damping) = match problem.has_body() {
-        true => (LEAST_PERIODS_OF_MOTOR, &TRIED_DAMPING[..]),
-        false => (LEAST_PERIODS, &TRIED_DAMPING[..2]),
+    let (least_periods, damping) = if problem.has_body() {
+        (LEAST_PERIODS_OF_MOTOR, &TRIED_DAMPING[..])
+    } else {
+        (LEAST_PERIODS, &TRIED_DAMPING[..2])
     };
     let seconds = problem.row_s() * problem.len() as f64;
     let (lowest, highest) = (least_periods / seconds, 0.45 / problem.row_s());

@@ -44,9 +44,10 @@ pub(super) fn likelier(
 }
 
 fn least_gain(first: &FoundInSweep, second: &FoundInSweep) -> f64 {
-    match second.wave.is_some() && second.sweep.end_hz < first.sweep.end_hz {
-        true => LIKELIER_EARLIER,
-        false => LIKELIER,
+    if second.wave.is_some() && second.sweep.end_hz < first.sweep.end_hz {
+        LIKELIER_EARLIER
+    } else {
+        LIKELIER
     }
 }
 

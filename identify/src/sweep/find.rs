@@ -173,9 +173,10 @@ impl Course {
     /// The likeliest last frequency.
     fn end_hz(&self, start_hz: f64) -> f64 {
         let (raw, tolerance_hz) = (self.raw_end_hz(start_hz), self.end_tolerance_hz());
-        match (raw - KLIPPERS_OLD_END_HZ).abs() < 1.5 * tolerance_hz {
-            true => KLIPPERS_OLD_END_HZ,
-            false => snapped(raw, &[5.0, 1.0, 0.5], tolerance_hz),
+        if (raw - KLIPPERS_OLD_END_HZ).abs() < 1.5 * tolerance_hz {
+            KLIPPERS_OLD_END_HZ
+        } else {
+            snapped(raw, &[5.0, 1.0, 0.5], tolerance_hz)
         }
     }
 }

@@ -56,9 +56,10 @@ pub(super) fn with_rate(delays: &[Delay], rate_hz_per_s: f64) -> Line {
 
 pub(super) fn middle(mut values: Vec<f64>) -> f64 {
     let half = values.len() / 2;
-    match values.is_empty() {
-        true => 0.0,
-        false => *values.select_nth_unstable_by(half, f64::total_cmp).1,
+    if values.is_empty() {
+        0.0
+    } else {
+        *values.select_nth_unstable_by(half, f64::total_cmp).1
     }
 }
 

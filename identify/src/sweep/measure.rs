@@ -56,9 +56,10 @@ impl Placed {
             }
         });
         Self {
-            integrals: match 1.0 / grid.fine_s() < FAST_HZ && !grid.is_cut() {
-                true => grid.folded_integrals(pulses, &lines, start_s).into(),
-                false => Vec::new(),
+            integrals: if 1.0 / grid.fine_s() < FAST_HZ && !grid.is_cut() {
+                grid.folded_integrals(pulses, &lines, start_s).into()
+            } else {
+                Vec::new()
             },
             pulses_sampled,
             pulses: lines,

@@ -130,9 +130,10 @@ fn long_enough(log: &AccelerationLog) -> Result<(), SweepError> {
     const LEAST_S: f64 = 2.0;
     let samples = log.directions.iter().map(|(_, record)| record.len()).min().unwrap_or(0);
     let seconds = samples as f64 * log.sample_s;
-    match seconds < LEAST_S {
-        true => Err(SweepError::Short { samples, seconds }),
-        false => Ok(()),
+    if seconds < LEAST_S {
+        Err(SweepError::Short { samples, seconds })
+    } else {
+        Ok(())
     }
 }
 

@@ -108,9 +108,10 @@ impl Filter {
             }
             let (mut value, mut level) = (before, before);
             for (at, acceleration) in edges[settled..].iter().take_while(|(at, _)| *at <= now + reach) {
-                let part = match averages {
-                    true => self.response_to_edge(now - at),
-                    false => self.response_to_sampled_edge(now - at),
+                let part = if averages {
+                    self.response_to_edge(now - at)
+                } else {
+                    self.response_to_sampled_edge(now - at)
                 };
                 value += (acceleration - level) * part;
                 level = *acceleration;
@@ -183,9 +184,10 @@ impl<'a> Reduced<'a> {
     /// Returns the log with its frequencies up to `highest_hz`. If samples are missing, all are kept, because a missing one would spoil all
     /// around it.
     pub(super) fn new(log: &'a AccelerationLog, highest_hz: f64) -> Self {
-        let filter = match log.missing.is_empty() {
-            true => Filter::up_to(highest_hz.max(KEPT_HZ), log.sample_s),
-            false => Filter::new(1),
+        let filter = if log.missing.is_empty() {
+            Filter::up_to(highest_hz.max(KEPT_HZ), log.sample_s)
+        } else {
+            Filter::new(1)
         };
         let all = log.directions.iter().map(|(_, values)| values.len()).min().unwrap_or(0);
         let kept = |(name, values): &'a (String, Vec<f64>)| (name.as_str(), filter.kept(&values[..all]));

@@ -237,9 +237,10 @@ impl Estimate {
     pub(super) fn gain(&self, at_top: bool) -> f64 {
         const PIECES: usize = 20;
         let seen: Vec<&Piece> = self.seen().collect();
-        let few = match at_top {
-            true => &seen[seen.len().saturating_sub(PIECES)..],
-            false => &seen[..seen.len().min(PIECES)],
+        let few = if at_top {
+            &seen[seen.len().saturating_sub(PIECES)..]
+        } else {
+            &seen[..seen.len().min(PIECES)]
         };
         let (sum, weight) = few.iter().fold((0.0, 0.0), |(sum, weight), piece| {
             let fitted = &piece.fitted;

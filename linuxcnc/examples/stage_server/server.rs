@@ -47,12 +47,11 @@ impl Server {
     /// Starts the stage with its machine at rest; with its Verilog beside the model if `with_rtl`.
     pub(crate) fn new(machine: &Machine, stage: &MachineStage, with_rtl: bool) -> Outcome<Self> {
         let component = Component::stage(&stage.config)?;
-        let device = match with_rtl {
-            true => {
-                let block = ComponentBlock::new(component.clone(), &format!("{}_stage", machine.name), "stage");
-                Some(Box::new(Sources::write(&block)?.verilated(&block, 1)?) as Box<dyn Device>)
-            }
-            false => None,
+        let device = if with_rtl {
+            let block = ComponentBlock::new(component.clone(), &format!("{}_stage", machine.name), "stage");
+            Some(Box::new(Sources::write(&block)?.verilated(&block, 1)?) as Box<dyn Device>)
+        } else {
+            None
         };
         let options = PlantOptions {
             index_at: INDEX_AT,

@@ -107,9 +107,10 @@ impl Moore for DividerShare {
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let called = [0, 1, 2 + 2 * self.channels].iter().any(|at| inputs[*at] & 1 != 0);
-        match called || self.start || self.valid.is_some() {
-            true => 0,
-            false => FOREVER,
+        if called || self.start || self.valid.is_some() {
+            0
+        } else {
+            FOREVER
         }
     }
 

@@ -122,10 +122,7 @@ impl Moore for Group {
                 group.refused,
             )
         };
-        match shown(&next) == shown(self) {
-            true => FOREVER,
-            false => 0,
-        }
+        if shown(&next) == shown(self) { FOREVER } else { 0 }
     }
 }
 

@@ -131,9 +131,10 @@ fn note(name: &str, is_array: bool, meaning: &[&str], unit: &str) -> PortNote {
     let sentence = meaning.split(". ").next().unwrap_or_default().trim_end_matches('.');
     PortNote {
         port: format!("{name}{}", if is_array { "_0" } else { "" }),
-        text: match sentence.to_lowercase().contains(unit) {
-            true => sentence.to_owned(),
-            false => format!("{sentence} [{unit}]"),
+        text: if sentence.to_lowercase().contains(unit) {
+            sentence.to_owned()
+        } else {
+            format!("{sentence} [{unit}]")
         },
     }
 }

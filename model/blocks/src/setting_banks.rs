@@ -117,9 +117,10 @@ impl SettingBanks {
         }
         self.read_waits = inputs.setting_read || self.read_waits && !self.served;
         self.served = serves;
-        self.setting = match serves {
-            true => self.word(inputs.setting_bank, inputs.setting_row),
-            false => self.word(inputs.bank, inputs.row),
+        self.setting = if serves {
+            self.word(inputs.setting_bank, inputs.setting_row)
+        } else {
+            self.word(inputs.bank, inputs.row)
         };
         self.refused = inputs.setting_write && !loadable;
         if inputs.setting_write && loadable {
@@ -152,9 +153,10 @@ impl Moore for SettingBanks {
         };
         let stays = self.setting == self.word(inputs.bank, inputs.row) && !self.refused;
         let reads = inputs.setting_read && !self.read_waits || self.read_waits && (self.served || !inputs.busy);
-        match stays && !reads && !inputs.rst && !inputs.setting_write {
-            true => FOREVER,
-            false => 0,
+        if stays && !reads && !inputs.rst && !inputs.setting_write {
+            FOREVER
+        } else {
+            0
         }
     }
 

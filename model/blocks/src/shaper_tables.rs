@@ -245,9 +245,10 @@ fn tables_of<'d>(value: &'d DeValue<'d>) -> Option<Vec<Keys<'d>>> {
 }
 
 fn positive(key: &'static str, found: f64) -> Result<(), ShaperTablesError> {
-    match found.is_finite() && found > 0.0 {
-        true => Ok(()),
-        false => Err(ShaperTablesError::Positive { key, found }),
+    if found.is_finite() && found > 0.0 {
+        Ok(())
+    } else {
+        Err(ShaperTablesError::Positive { key, found })
     }
 }
 

@@ -408,9 +408,10 @@ fn a_limit_blocks_its_own_direction_only() {
         (false, JERK, false),
     ] {
         let mut bench = Bench::run(jerk);
-        match plus {
-            true => bench.inputs.limit_plus_n = false,
-            false => bench.inputs.limit_minus_n = false,
+        if plus {
+            bench.inputs.limit_plus_n = false
+        } else {
+            bench.inputs.limit_minus_n = false
         }
         let state = bench.ticks(2).state;
         let cause = if plus { Cause::LimitPlus } else { Cause::LimitMinus };

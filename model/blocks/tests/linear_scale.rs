@@ -121,10 +121,7 @@ proptest! {
         way in proptest::collection::vec(-4_000_000i32..4_000_000, 1..20),
         start: (i32, i32),
     ) {
-        let ratio = match use_scale {
-            true => ScaleRatio::new(motor_counts, scale_counts),
-            false => ScaleRatio::for_monitor(motor_counts, scale_counts),
-        };
+        let ratio = if use_scale { ScaleRatio::new(motor_counts, scale_counts) } else { ScaleRatio::for_monitor(motor_counts, scale_counts) };
         let Ok(ratio) = ratio else { return Ok(()) };
         let tied = tied(&ratio, use_scale);
         let mut scale = LinearScale::new();

@@ -58,9 +58,10 @@ impl Bench {
             if !inputs.avm_waitrequest {
                 self.waited = 0;
                 self.accessed.push((self.busy_clocks, self.clocks));
-                match asked.avm_write {
-                    true => self.registers.write(asked.avm_address, asked.avm_writedata),
-                    false => inputs.avm_readdata = self.registers.read(asked.avm_address),
+                if asked.avm_write {
+                    self.registers.write(asked.avm_address, asked.avm_writedata)
+                } else {
+                    inputs.avm_readdata = self.registers.read(asked.avm_address)
                 }
             }
         }

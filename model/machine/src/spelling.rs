@@ -112,9 +112,10 @@ pub fn did_you_mean(found: &str, allowed: &[&str], quote: char) -> Option<String
         .iter()
         .map(|word| format!("{quote}{word}{quote}"))
         .collect();
-    match words.is_empty() {
-        true => None,
-        false => Some(format!("did you mean {}?", words.join(" or "))),
+    if words.is_empty() {
+        None
+    } else {
+        Some(format!("did you mean {}?", words.join(" or ")))
     }
 }
 

@@ -128,9 +128,10 @@ impl AxisUnit {
 
     /// A figure without its last digits, which a conversion to another unit and back may change.
     fn without_rounding(self, figure: f64) -> f64 {
-        match self.per_si() == 1.0 {
-            true => figure,
-            false => format!("{figure:.13e}").parse().unwrap_or(figure),
+        if self.per_si() == 1.0 {
+            figure
+        } else {
+            format!("{figure:.13e}").parse().unwrap_or(figure)
         }
     }
 
@@ -182,9 +183,12 @@ impl AxisUnit {
     /// those that would be less than a thousandth of it.
     pub fn show_all<const N: usize>(self, figures: [f64; N]) -> [String; N] {
         let unit = self.for_largest(figures);
-        figures.map(|figure| match unit.of(figure).abs() < LEAST && figure != 0.0 {
-            true => self.show(figure, 3),
-            false => unit.show(figure, 3),
+        figures.map(|figure| {
+            if unit.of(figure).abs() < LEAST && figure != 0.0 {
+                self.show(figure, 3)
+            } else {
+                unit.show(figure, 3)
+            }
         })
     }
 

@@ -15,9 +15,10 @@ const COUNT: f64 = 1e-6;
 /// The XY stage's axis X with another drive and controller. With a torque drive, the loop contains the mode of motor
 /// against table.
 fn machine(drive: &str, controller: &str) -> Machine {
-    let (frequency_hz, damping) = match drive.contains("torque") {
-        true => (283.665, 0.329),
-        false => (131.1, 0.158),
+    let (frequency_hz, damping) = if drive.contains("torque") {
+        (283.665, 0.329)
+    } else {
+        (131.1, 0.158)
     };
     let text = format!(
         "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\

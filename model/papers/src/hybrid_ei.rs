@@ -173,9 +173,10 @@ fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
             let designed = designed.as_ref().map_err(Clone::clone)?;
             let left = 100.0 * residual_vibration(designed.impulses(), &mode_of_omega(omega, 0.0));
             let item = format!("Table 2: residual of {name} at {omega} rad/s, %");
-            match right {
-                true => sheet.equal(item, printed, left),
-                false => sheet.erratum(item, printed, left, "the paper's own formula gives ours; a misprint"),
+            if right {
+                sheet.equal(item, printed, left)
+            } else {
+                sheet.erratum(item, printed, left, "the paper's own formula gives ours; a misprint")
             }
         }
     }

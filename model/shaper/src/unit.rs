@@ -63,9 +63,10 @@ pub fn show_seconds(time_s: f64, digits: usize) -> String {
 
 /// Writes a number for a message: a whole one as it is, any other with at most six significant digits.
 pub fn short(value: f64) -> String {
-    match value.fract() == 0.0 && value.abs() < 1e15 {
-        true => value.to_string(),
-        false => trimmed(value, 6),
+    if value.fract() == 0.0 && value.abs() < 1e15 {
+        value.to_string()
+    } else {
+        trimmed(value, 6)
     }
 }
 

@@ -55,9 +55,10 @@ fn show(band: Insensitivity) -> String {
 }
 
 fn row(kind: ShaperKind) -> String {
-    let [count, duration, band] = match kind.treats_modes_together() {
-        true => ["–", "–", "–"].map(str::to_owned),
-        false => figures(kind),
+    let [count, duration, band] = if kind.treats_modes_together() {
+        ["–", "–", "–"].map(str::to_owned)
+    } else {
+        figures(kind)
     };
     let row = kind.row();
     let order = match row.default_order {

@@ -34,9 +34,12 @@ fn sw_tcl<'a>(driver: &StageDriver<'_>, paths: impl Iterator<Item = &'a str>) ->
     let inside = paths.filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
     let mut lines: Vec<String> = inside
         .filter(|path| !path.starts_with("linux/") && !path.starts_with(bare_metal::FOLDER))
-        .map(|path| match path.ends_with(".c") {
-            true => format!("add_sw_property c_source {path}"),
-            false => format!("add_sw_property include_source {path}"),
+        .map(|path| {
+            if path.ends_with(".c") {
+                format!("add_sw_property c_source {path}")
+            } else {
+                format!("add_sw_property include_source {path}")
+            }
         })
         .collect();
     lines.sort();

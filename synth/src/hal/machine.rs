@@ -77,9 +77,10 @@ fn is_rotary(axis: &AxisSection) -> bool {
 
 /// LinuxCNC's units in one m or rad.
 fn units_per_si(axis: &AxisSection) -> f64 {
-    match is_rotary(axis) {
-        true => AxisUnit::Degree.per_si(),
-        false => AxisUnit::Millimetre.per_si(),
+    if is_rotary(axis) {
+        AxisUnit::Degree.per_si()
+    } else {
+        AxisUnit::Millimetre.per_si()
     }
 }
 

@@ -228,9 +228,12 @@ module {machine}_example #(
     );
     for shaper in kit.shapers {
         for port in shaper.ports() {
-            let wire = connected(shaper, &port).unwrap_or_else(|| match is_input(&port) {
-                true => format!("{}'d0", port.width),
-                false => format!("unused_{}_{}", shaper.axis, port.name),
+            let wire = connected(shaper, &port).unwrap_or_else(|| {
+                if is_input(&port) {
+                    format!("{}'d0", port.width)
+                } else {
+                    format!("unused_{}_{}", shaper.axis, port.name)
+                }
             });
             let _ = write!(text, ",\n        .{}_{}({wire})", shaper.axis, port.name);
         }

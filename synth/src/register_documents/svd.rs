@@ -71,9 +71,10 @@ fn write_register(text: &mut String, map: &RegisterMap, register: &Register) {
             Software::ReadWrite | Software::ReadClear => "<access>read-write</access>",
         },
     );
-    let (reset, mask) = match has_reset(&register.access) {
-        true => (register.reset(), u32::MAX),
-        false => (0, 0),
+    let (reset, mask) = if has_reset(&register.access) {
+        (register.reset(), u32::MAX)
+    } else {
+        (0, 0)
     };
     line(1, &format!("<resetValue>{reset:#x}</resetValue>"));
     line(1, &format!("<resetMask>{mask:#x}</resetMask>"));

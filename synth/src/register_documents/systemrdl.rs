@@ -71,9 +71,10 @@ fn write_field(text: &mut String, register: &Register, field: &Field) {
         text.push_str(" };\n");
         encode = format!(" encode = {enumeration};");
     }
-    let reset = match has_reset(&register.access) {
-        true => format!(" = {:#x}", field.reset & field.ones()),
-        false => String::new(),
+    let reset = if has_reset(&register.access) {
+        format!(" = {:#x}", field.reset & field.ones())
+    } else {
+        String::new()
     };
     let _ = writeln!(
         text,
@@ -97,9 +98,10 @@ fn about(register: &Register) -> String {
 
 /// Returns a name, escaped if it is a word of the language.
 fn identifier(name: &str) -> String {
-    match KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
-        true => format!("\\{name}"),
-        false => name.to_owned(),
+    if KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
+        format!("\\{name}")
+    } else {
+        name.to_owned()
     }
 }
 

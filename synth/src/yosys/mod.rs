@@ -342,8 +342,9 @@ fn to_logic_elements(top: &str, mapping: Mapping) -> String {
 fn module_name(top: &str) -> Result<&str, YosysError> {
     let legal = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let starts_well = top.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    match starts_well && top.chars().all(legal) {
-        true => Ok(top),
-        false => Err(YosysError::Top(top.to_owned())),
+    if starts_well && top.chars().all(legal) {
+        Ok(top)
+    } else {
+        Err(YosysError::Top(top.to_owned()))
     }
 }

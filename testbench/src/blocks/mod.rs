@@ -268,9 +268,10 @@ pub fn judge(
             let exercised = exercise.as_ref().is_none_or(|exercise| exercise.missing().is_empty());
             exercised && !reach.reached().iter().any(|(_, count)| count.is_low())
         };
-        match looks && is_enough() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if looks && is_enough() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     };
     let report = run(

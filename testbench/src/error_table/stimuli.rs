@@ -358,9 +358,10 @@ impl ErrorTableCoverage {
         let origin = inputs.origin.wrapping_add(self.first_counts);
         let is_on = shown.error_weight != 0;
         let new = shown.compensated_valid && !inputs.rst;
-        let counts = match inputs.on_measured {
-            true => inputs.measured,
-            false => inputs.position_reference >> 8,
+        let counts = if inputs.on_measured {
+            inputs.measured
+        } else {
+            inputs.position_reference >> 8
         };
         let place = i64::from(counts.wrapping_sub(self.base)) * 256 + i64::from(inputs.position_reference & 0xff);
         let of_table = new && is_on;

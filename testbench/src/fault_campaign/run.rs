@@ -330,9 +330,10 @@ impl Running<'_> {
         }
         let [before, after] = ABOUT_TICK_CLOCKS;
         let phase = (now - last_tick) % TICK_CLOCKS;
-        match (after..TICK_CLOCKS - before).contains(&phase) {
-            true => TICK_CLOCKS - before - phase,
-            false => 1,
+        if (after..TICK_CLOCKS - before).contains(&phase) {
+            TICK_CLOCKS - before - phase
+        } else {
+            1
         }
     }
 

@@ -154,9 +154,10 @@ impl Block for LinkedStageBlock {
 
     fn least_clocks(&self) -> u64 {
         let line = (LEAST_BYTES * LinkedStageRandom::byte_clocks(&self.config, self.clock_hz)) as u64;
-        match self.waits_for_a_move() {
-            true => line.max((self.brake_ticks + MOVE_TICKS) * self.tick_clocks),
-            false => line,
+        if self.waits_for_a_move() {
+            line.max((self.brake_ticks + MOVE_TICKS) * self.tick_clocks)
+        } else {
+            line
         }
     }
 

@@ -160,9 +160,10 @@ impl LinkedStageRandom {
         }
         let most = *pick(&mut self.rng, &WRITTEN_WORDS);
         let (writes, waiting) = self.pins.due_writes(most);
-        let (request, waiting) = match writes.is_empty() {
-            false => (self.written(writes), waiting),
-            true => (self.idle_request(), 0),
+        let (request, waiting) = if writes.is_empty() {
+            (self.idle_request(), 0)
+        } else {
+            (self.written(writes), waiting)
         };
         self.sequence = self.sequence % u8::MAX + 1;
         let bytes = request.encode(self.sequence).unwrap_or_default();
@@ -188,12 +189,13 @@ impl LinkedStageRandom {
     fn written(&mut self, writes: Vec<(u32, u32)>) -> Request {
         let pairs: Vec<(u16, u32)> = writes.into_iter().map(|(offset, word)| (offset as u16, word)).collect();
         let follow = pairs.windows(2).all(|pair| pair[0].0 + 1 == pair[1].0);
-        match follow && one_in(&mut self.rng, 2) {
-            true => Request::Write {
+        if follow && one_in(&mut self.rng, 2) {
+            Request::Write {
                 address: pairs[0].0,
                 words: pairs.iter().map(|(_, word)| *word).collect(),
-            },
-            false => Request::WriteList(pairs),
+            }
+        } else {
+            Request::WriteList(pairs)
         }
     }
 

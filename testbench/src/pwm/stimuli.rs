@@ -66,9 +66,10 @@ impl PwmRandom {
 
     /// Changes period, dead time and minimum pulse: mostly while the PWM is off, as a host should.
     fn timing(&mut self, running: bool) {
-        let changes = match running {
-            true => self.one_in(4000),
-            false => self.interrupts(900),
+        let changes = if running {
+            self.one_in(4000)
+        } else {
+            self.interrupts(900)
         };
         if !changes {
             return;
@@ -76,9 +77,10 @@ impl PwmRandom {
         let any = self.rng.next_u32() as u16;
         // A period of 0 means 65,536 clocks.
         let seldom = if self.one_in(4) { 0 } else { 2 };
-        let short = match self.is_calm() {
-            true => any >> self.rng.random_range(0..9),
-            false => self.rng.random_range(64..160),
+        let short = if self.is_calm() {
+            any >> self.rng.random_range(0..9)
+        } else {
+            self.rng.random_range(64..160)
         };
         self.inputs.period = *pick(
             &mut self.rng,
@@ -207,9 +209,10 @@ impl Stimuli for PwmRandom {
         self.time_base(running);
         self.faults();
         self.inputs.rst = self.clock < 2 || self.interrupts(20_000);
-        let toggles = match self.inputs.enable {
-            true => self.interrupts(2500),
-            false => self.one_in(300),
+        let toggles = if self.inputs.enable {
+            self.interrupts(2500)
+        } else {
+            self.one_in(300)
         };
         if toggles {
             self.inputs.enable = !self.inputs.enable;

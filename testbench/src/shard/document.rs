@@ -122,9 +122,10 @@ impl ShardDocument {
             FORMAT => {}
             format => return Err(other(format!("its format is {format}, not {FORMAT}"))),
         }
-        match output::is_ours(path).map_err(|cause| of_file(path, "read it", cause))? {
-            true => Ok(Some(document)),
-            false => Err(DocumentError::Changed { path: path.to_owned() }),
+        if output::is_ours(path).map_err(|cause| of_file(path, "read it", cause))? {
+            Ok(Some(document))
+        } else {
+            Err(DocumentError::Changed { path: path.to_owned() })
         }
     }
 

@@ -106,9 +106,10 @@ pub fn read_folder(folder: &Path) -> Result<Vec<(PathBuf, ShardDocument)>, Merge
         // A file that was removed meanwhile is a shard that is missing.
         documents.extend(ShardDocument::read(&path)?.map(|document| (path, document)));
     }
-    match documents.is_empty() {
-        true => Err(MergeError::Empty(folder.to_owned())),
-        false => Ok(documents),
+    if documents.is_empty() {
+        Err(MergeError::Empty(folder.to_owned()))
+    } else {
+        Ok(documents)
     }
 }
 

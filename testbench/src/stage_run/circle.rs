@@ -299,10 +299,7 @@ pub(super) fn stream_some(
             }
         }
     }
-    match whole {
-        true => Ok(host.arrive(SPARE_TICKS)?),
-        false => Ok(None),
-    }
+    if whole { Ok(host.arrive(SPARE_TICKS)?) } else { Ok(None) }
 }
 
 /// Drives the circle in the model.

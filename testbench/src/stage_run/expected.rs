@@ -234,17 +234,16 @@ fn expected(
             load: at.load,
         })
         .collect();
-    let friction = match push > 0.0 {
-        false => 0.0,
-        true => {
-            let pushed = FollowLimits {
-                input: f64::INFINITY,
-                disturbance: push,
-            };
-            let still = vec![[0.0; 3]; references.len()];
-            let errors = sampled.follow(&derived.linear, &pushed, &still);
-            errors.iter().fold(0.0f64, |peak, at| peak.max(at.error.abs()))
-        }
+    let friction = if push > 0.0 {
+        let pushed = FollowLimits {
+            input: f64::INFINITY,
+            disturbance: push,
+        };
+        let still = vec![[0.0; 3]; references.len()];
+        let errors = sampled.follow(&derived.linear, &pushed, &still);
+        errors.iter().fold(0.0f64, |peak, at| peak.max(at.error.abs()))
+    } else {
+        0.0
     };
     Expected {
         distance: f64::from(end) / scales[0],

@@ -63,9 +63,10 @@ impl fmt::Display for Trouble {
             "axis {} should have {}, and was in {state} in clock {}",
             self.axis, self.wanted, self.clock
         )?;
-        match causes.is_empty() {
-            true => Ok(()),
-            false => write!(f, ", because of {}", causes.join(", ")),
+        if causes.is_empty() {
+            Ok(())
+        } else {
+            write!(f, ", because of {}", causes.join(", "))
         }
     }
 }
@@ -117,12 +118,11 @@ impl<'a> Host<'a> {
                 return Ok(());
             }
             // Tables follow the position from tick to tick.
-            let left = match self.tables.is_empty() {
-                true => left,
-                false => {
-                    self.follow()?;
-                    left.min(self.tick_clocks())
-                }
+            let left = if self.tables.is_empty() {
+                left
+            } else {
+                self.follow()?;
+                left.min(self.tick_clocks())
             };
             let Some(pause) = self.kick_clocks else {
                 self.bench.clocks(left)?;

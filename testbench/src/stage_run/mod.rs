@@ -132,9 +132,10 @@ impl<'a> StageRun<'a> {
         moves: &[AxisMove],
     ) -> Result<Self, StageRunError> {
         let moving = machine.axes.iter().any(|axis| axis.family.is_some());
-        let families = match moving {
-            true => designed(machine)?.families,
-            false => Vec::new(),
+        let families = if moving {
+            designed(machine)?.families
+        } else {
+            Vec::new()
         };
         Self::with_families(machine, config, seed, moves, families)
     }

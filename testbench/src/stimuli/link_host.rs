@@ -86,9 +86,10 @@ impl LinkHost {
         let length = *pick(rng, &[9, 13, 8, 10, other as usize % 250]);
         let sequence = *pick(rng, &[self.sequence, 0, any as u8]);
         let write_without_sequence = (0, 0x11, 1, 13);
-        let (sequence, command, count, length) = match one_in(rng, 4) {
-            true => write_without_sequence,
-            false => (sequence, command, count, length),
+        let (sequence, command, count, length) = if one_in(rng, 4) {
+            write_without_sequence
+        } else {
+            (sequence, command, count, length)
         };
         let mut bytes = vec![sequence, command, count];
         bytes.resize(length.saturating_sub(4), any as u8);

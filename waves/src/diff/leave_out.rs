@@ -41,9 +41,10 @@ impl Plan {
             for (side, [slot, partner]) in [[pair.a, pair.b], [pair.b, pair.a]].into_iter().enumerate() {
                 let Some(slot) = slot else { continue };
                 let known = &mut partners[side][slot as usize];
-                *known = match std::mem::replace(&mut is_seen[side][slot as usize], true) {
-                    false => partner,
-                    true => known.filter(|known| Some(*known) == partner),
+                *known = if std::mem::replace(&mut is_seen[side][slot as usize], true) {
+                    known.filter(|known| Some(*known) == partner)
+                } else {
+                    partner
                 };
             }
         }

@@ -179,9 +179,10 @@ impl Partners<'_> {
             return;
         }
         let (top_a, top_b) = best_tops(self.a, self.b, &free_a, &free_b);
-        let by = match top_a.is_empty() && top_b.is_empty() {
-            true => MatchedBy::Name,
-            false => MatchedBy::Scopes,
+        let by = if top_a.is_empty() && top_b.is_empty() {
+            MatchedBy::Name
+        } else {
+            MatchedBy::Scopes
         };
         let mut targets: HashMap<&str, VecDeque<usize>> = HashMap::new();
         for at in free_b {

@@ -210,9 +210,10 @@ fn compare_once(
             comparison.incomparable(&format!("the {} file declares no signal", ["first", "second"][side]));
             return Ok((comparison, Default::default()));
         }
-        comparison.incomparable(match is_filtered && plan.names.iter().any(|names| names.left_out > 0) {
-            true => "of the signals that --only and --ignore leave, none but the clock is in both files",
-            false => "the files have no signal in common; say with --map A=B which belong together",
+        comparison.incomparable(if is_filtered && plan.names.iter().any(|names| names.left_out > 0) {
+            "of the signals that --only and --ignore leave, none but the clock is in both files"
+        } else {
+            "the files have no signal in common; say with --map A=B which belong together"
         });
         return Ok((comparison, Default::default()));
     }
@@ -351,9 +352,10 @@ impl Plan {
                 slot: slot_of(clock, of_b),
                 falling: options.edge == SamplingEdge::Falling,
             });
-            let file_end = match options.allow_truncated {
-                true => FileEnd::UpToLastTime,
-                false => FileEnd::Refuse,
+            let file_end = if options.allow_truncated {
+                FileEnd::UpToLastTime
+            } else {
+                FileEnd::Refuse
             };
             let (declarations, feed) = wave.play(watch, file_end)?;
             let Declarations { kinds, unit_fs, .. } = declarations;

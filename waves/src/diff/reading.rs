@@ -56,9 +56,10 @@ impl Reading {
         let kinds = &mut wave.declarations.kinds;
         kinds.extend(derived.iter().map(|derived| Kind::Bits(derived.width)));
         wave.declarations.names.extend(names);
-        let file_end = match up_to_last_time {
-            true => FileEnd::UpToLastTime,
-            false => FileEnd::AsFarAsPossible,
+        let file_end = if up_to_last_time {
+            FileEnd::UpToLastTime
+        } else {
+            FileEnd::AsFarAsPossible
         };
         let (declarations, feed) = wave.play(None, file_end)?;
         Ok(Reread {

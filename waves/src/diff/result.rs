@@ -146,9 +146,10 @@ impl Unsampled {
         };
         if self.changes > 0 {
             let (what, were, such) = named(self.changes, &self.signals);
-            notes.push(match self.between_edges {
-                true => format!("{what} between the edges {were} not compared{such}: --raw"),
-                false => format!("{what} {were} not compared, since others follow at the same time{such}"),
+            notes.push(if self.between_edges {
+                format!("{what} between the edges {were} not compared{such}: --raw")
+            } else {
+                format!("{what} {were} not compared, since others follow at the same time{such}")
             });
         }
         if self.changes_after > 0 {

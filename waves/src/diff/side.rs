@@ -192,9 +192,10 @@ impl Side {
 
     /// Returns the next edges up to which nothing changes, if the current step is an edge that was returned.
     pub(super) fn quiet_edges(&self) -> &[Step] {
-        match self.at_edge && self.reset.is_none() && self.lines.is_empty() {
-            true => self.feed.quiet_edges(),
-            false => &[],
+        if self.at_edge && self.reset.is_none() && self.lines.is_empty() {
+            self.feed.quiet_edges()
+        } else {
+            &[]
         }
     }
 

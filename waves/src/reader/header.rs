@@ -237,10 +237,13 @@ impl Declarations {
         let vector = format!("{}{name}", self.scope);
         let path = match range {
             // With the brackets that the file has.
-            Some(Range { left, right }) if left == right => match whole_name.ends_with(']') {
-                true => format!("{vector}[{left}]"),
-                false => format!("{}{whole_name}", self.scope),
-            },
+            Some(Range { left, right }) if left == right => {
+                if whole_name.ends_with(']') {
+                    format!("{vector}[{left}]")
+                } else {
+                    format!("{}{whole_name}", self.scope)
+                }
+            }
             _ => vector.clone(),
         };
         (path, vector, range)

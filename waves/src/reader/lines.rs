@@ -256,10 +256,7 @@ mod tests {
             let expected = expected.map(|(slot, [word, unknown])| WordLine {
                 slot,
                 word,
-                unknown: match digits.starts_with('x') {
-                    true => unknown | u64::MAX << (digits.len() - 1) & u64::MAX >> (64 - widths[slot as usize]),
-                    false => unknown,
-                },
+                unknown: if digits.starts_with('x') { unknown | u64::MAX << (digits.len() - 1) & u64::MAX >> (64 - widths[slot as usize]) } else { unknown },
                 end: vector[end],
                 next: end + 1,
             });

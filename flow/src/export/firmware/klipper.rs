@@ -168,9 +168,10 @@ fn lines_of_named_kind(
             Kind::EiOf { tolerance }
         }
         _ => {
-            let of_ei = match version.has_parameters {
-                true => "`ei` alone takes another, from 0.01 to 0.2",
-                false => "from Klipper v0.13.0-633 on, `ei` takes another",
+            let of_ei = if version.has_parameters {
+                "`ei` alone takes another, from 0.01 to 0.2"
+            } else {
+                "from Klipper v0.13.0-633 on, `ei` takes another"
             };
             return Err(Refusal::new(
                 format!(

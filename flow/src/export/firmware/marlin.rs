@@ -82,9 +82,10 @@ pub(crate) fn marlin_ft(selection: &Selection<'_>, wish: &Wish<'_>) -> Result<St
     };
     let told = |selected: &Selected<'_>, axis: &str| {
         if is_none(selected) {
-            let off_line = match version.has_axis_flags {
-                true => format!("M493 {} C0\n", axis.to_uppercase()),
-                false => format!("M493 {}0\n", axis.to_uppercase()),
+            let off_line = if version.has_axis_flags {
+                format!("M493 {} C0\n", axis.to_uppercase())
+            } else {
+                format!("M493 {}0\n", axis.to_uppercase())
             };
             return Ok(off(&off_line));
         }
@@ -162,9 +163,10 @@ fn m493(version: &MarlinVersion, axis: &str, kind: FtKind, frequency_hz: f64, da
         axis.to_uppercase(),
         if axis == "y" { ["B", "J", "R"] } else { ["A", "I", "Q"] },
     );
-    let ([frequency, ratio, bound], shaper) = match version.has_axis_flags {
-        true => (["A", "I", "Q"], format!("{upper} C{number}")),
-        false => (letters, format!("{upper}{number}")),
+    let ([frequency, ratio, bound], shaper) = if version.has_axis_flags {
+        (["A", "I", "Q"], format!("{upper} C{number}"))
+    } else {
+        (letters, format!("{upper}{number}"))
     };
     let bound = kind
         .humps()

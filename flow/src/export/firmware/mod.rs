@@ -114,16 +114,17 @@ fn of_version(firmware: Firmware, error: &VersionError) -> Failure {
 /// Returns the axis's name in lower case, which must be one that the firmware shapes.
 fn axis_of(selected: &Selected<'_>, version: &str, axes: &[&str]) -> Result<String, Refusal> {
     let name = selected.axis.name.to_lowercase();
-    match axes.contains(&name.as_str()) {
-        true => Ok(name),
-        false => Err(Refusal::new(
+    if axes.contains(&name.as_str()) {
+        Ok(name)
+    } else {
+        Err(Refusal::new(
             format!("{version} shapes the axes {}", joined(axes)),
             match name.as_str() {
                 "z" => "take a newer --firmware-version, or select the other axes with --axis",
                 _ => "name the axis so in the machine file, or select the axes that are with --axis",
             },
         )
-        .without_own()),
+        .without_own())
     }
 }
 

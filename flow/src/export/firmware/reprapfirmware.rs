@@ -53,15 +53,16 @@ pub(crate) fn reprapfirmware(selection: &Selection<'_>, wish: &Wish<'_>) -> Resu
         Err((selected, refusal)) => {
             let failure = own.refuse(&refusal, &all);
             // The message begins with the axis that differs, not with the first one.
-            return Err(match selected.axis.name == first.axis.name {
-                true => failure,
-                false => own.refuse(
+            return Err(if selected.axis.name == first.axis.name {
+                failure
+            } else {
+                own.refuse(
                     &Refusal {
                         has_own: true,
                         ..refusal
                     },
                     &reordered(&all, selected),
-                ),
+                )
             });
         }
     };

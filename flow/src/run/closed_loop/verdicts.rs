@@ -159,9 +159,10 @@ impl ClosedLoop<'_> {
                 expected.handover,
             ];
             let [of_shaper, of_design, most, bare_found, of_handovers] = axis.unit.show_compared(figures);
-            let handed = match expected.handover > 0.0 {
-                true => format!(", {of_handovers} for {}", counted(self.shaped.handovers, "hand-over")),
-                false => String::new(),
+            let handed = if expected.handover > 0.0 {
+                format!(", {of_handovers} for {}", counted(self.shaped.handovers, "hand-over"))
+            } else {
+                String::new()
             };
             let text = format!(
                 "axis {}: {of_shaper} with its shaper, {of_design} expected of its design, {most} allowed{handed}, {bare_found} without",
@@ -251,9 +252,10 @@ impl ClosedLoop<'_> {
 
 /// The check of a comparison; `end` names the end of a complete one.
 pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
-    let reach = match compared.whole {
-        true => format!("from reset over switch-on to {end}"),
-        false => format!("from reset on, not to {end}"),
+    let reach = if compared.whole {
+        format!("from reset over switch-on to {end}")
+    } else {
+        format!("from reset on, not to {end}")
     };
     let detail = match (&compared.first, &compared.trouble) {
         (Some(first), _) => {

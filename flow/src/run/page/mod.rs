@@ -173,9 +173,10 @@ impl RunReport<'_> {
 
 /// The detail of a check; one of several lines keeps its columns.
 fn detail(check: &Check) -> Markup {
-    match check.detail.contains('\n') {
-        true => html! { pre { (check.detail) } },
-        false => html! { span { (check.detail) } },
+    if check.detail.contains('\n') {
+        html! { pre { (check.detail) } }
+    } else {
+        html! { span { (check.detail) } }
     }
 }
 

@@ -31,15 +31,12 @@ impl RunReport<'_> {
     }
 
     fn where_from(&self) -> &'static str {
-        match self.gains.iter().any(|gain| gain.of == GainSource::ClosedLoop) {
-            true => {
-                "Times are those of the move in the closed loop: the stage with its controller on the simulated machine. A load is \
+        if self.gains.iter().any(|gain| gain.of == GainSource::ClosedLoop) {
+            "Times are those of the move in the closed loop: the stage with its controller on the simulated machine. A load is \
                  at rest when it stays within a count of where it ends."
-            }
-            false => {
-                "Times are those of the move on the simulated machine, which follows its command exactly. A load is at rest when it \
+        } else {
+            "Times are those of the move on the simulated machine, which follows its command exactly. A load is at rest when it \
                  stays within a count of its target."
-            }
         }
     }
 

@@ -129,9 +129,6 @@ pub(super) fn kinds_table(index: usize, kinds: &KindComparison) -> Markup {
 }
 
 fn share(part: f64, whole: f64) -> Markup {
-    let percent = match whole > 0.0 {
-        true => 100.0 * part / whole,
-        false => 0.0,
-    };
+    let percent = if whole > 0.0 { 100.0 * part / whole } else { 0.0 };
     html! { span.bar style=(format!("--part:{:.1}%", percent.min(100.0))) { (format!("{percent:.1} %")) } }
 }

@@ -157,16 +157,17 @@ impl Ground {
         };
         let dies = kind == Kind::HostDies || kind.restarts();
         let world = self.world(number, (faults, dies.then_some(bytes)), rng)?;
-        let first = match kind.streams() {
-            true => self
-                .host(&world)
-                .and_then(|host| servo::run(host, (&world, &self.bed.component), &moves, &late)),
-            false => self.life(&world, &moves),
+        let first = if kind.streams() {
+            self.host(&world)
+                .and_then(|host| servo::run(host, (&world, &self.bed.component), &moves, &late))
+        } else {
+            self.life(&world, &moves)
         };
         world.borrow_mut().requests.close(first.is_ok());
-        let last = match kind.restarts() {
-            true => self.restart(&world, &moves)?,
-            false => first,
+        let last = if kind.restarts() {
+            self.restart(&world, &moves)?
+        } else {
+            first
         };
         let mut outcome = Outcome {
             kind,

@@ -185,9 +185,10 @@ impl DriveCommand {
                 duty
             };
         }
-        let on_switch = match self.backward {
-            false => !inputs.limit_plus_ok,
-            true => !inputs.limit_minus_ok,
+        let on_switch = if self.backward {
+            !inputs.limit_minus_ok
+        } else {
+            !inputs.limit_plus_ok
         };
         let wanted = limited(inputs.direct_duty, inputs.direct_limit);
         let turns = (wrap(i64::from(inputs.direct_duty), DUTY_BITS) < 0) != self.backward;

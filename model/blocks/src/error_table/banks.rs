@@ -43,9 +43,10 @@ impl Banks {
 
     /// The entries of a bank.
     pub(super) fn entries(&self, loaded: bool) -> &[i32] {
-        match loaded {
-            true => &self.entries[..self.loaded],
-            false => &self.machine,
+        if loaded {
+            &self.entries[..self.loaded]
+        } else {
+            &self.machine
         }
     }
 

@@ -167,9 +167,10 @@ impl ErrorTable {
 
     /// Of the position, from the first entry on, in 256ths of a count.
     fn place(&self, inputs: &Inputs) -> i64 {
-        let (counts, fraction) = match inputs.on_measured {
-            true => (inputs.measured, 0),
-            false => (inputs.position_reference >> 8, inputs.position_reference & 0xff),
+        let (counts, fraction) = if inputs.on_measured {
+            (inputs.measured, 0)
+        } else {
+            (inputs.position_reference >> 8, inputs.position_reference & 0xff)
         };
         i64::from(counts.wrapping_sub(self.base)) << 8 | i64::from(fraction)
     }

@@ -136,9 +136,10 @@ impl LinearScale {
         let registers = &mut self.registers;
         let takes_positions = inputs.tick && registers.captured.is_none();
         let takes_velocity = inputs.velocity_valid && registers.velocity.is_none();
-        let [operand, position] = match inputs.use_scale {
-            true => [inputs.motor_position, inputs.scale_position],
-            false => [inputs.scale_position, inputs.motor_position],
+        let [operand, position] = if inputs.use_scale {
+            [inputs.motor_position, inputs.scale_position]
+        } else {
+            [inputs.scale_position, inputs.motor_position]
         };
         registers.shown.position = position;
         registers.shown.deviation_valid = false;
@@ -184,9 +185,10 @@ impl Registers {
         }
         self.pass = None;
         self.shown.deviation_valid = true;
-        self.shown.deviation = match self.aligning || self.asked {
-            true => 0,
-            false => saturated(pass.exact),
+        self.shown.deviation = if self.aligning || self.asked {
+            0
+        } else {
+            saturated(pass.exact)
         };
         let captured = self.captured.take();
         self.reference = captured.filter(|_| self.aligning).unwrap_or(self.reference);
@@ -207,9 +209,10 @@ impl Registers {
             self.aligning = std::mem::take(&mut self.asked);
             let product = product(operand.wrapping_sub(self.reference.operand));
             let other = i64::from(other.wrapping_sub(self.reference.other));
-            let exact = match inputs.use_scale {
-                true => product - other,
-                false => other - product,
+            let exact = if inputs.use_scale {
+                product - other
+            } else {
+                other - product
             };
             self.pass = Some(pass(true, operand, exact));
         } else if let Some(velocity) = self.velocity {

@@ -189,9 +189,10 @@ impl Command {
             2 * i32::from(around.dead_time),
             2 * i32::from(around.minimum_pulse),
         );
-        let load = match self.one_sided() {
-            true => (0, Fate::Seen),
-            false => (self.limited_duty(inputs), Fate::Kept),
+        let load = if self.one_sided() {
+            (0, Fate::Seen)
+        } else {
+            (self.limited_duty(inputs), Fate::Kept)
         };
         match (self.slot, self.rises) {
             (1, _) => (self.duty.abs(), Fate::Kept),

@@ -83,9 +83,10 @@ impl Trip {
         let waits = running && !inputs.feed;
         let starved = valley && inputs.watchdog_periods != 0 && self.unfed >= inputs.watchdog_periods;
         self.watchdog = (waits && starved) || (self.watchdog && keep);
-        self.unfed = match waits {
-            false => 0,
-            true => self.unfed.saturating_add(u8::from(valley)),
+        self.unfed = if waits {
+            self.unfed.saturating_add(u8::from(valley))
+        } else {
+            0
         };
     }
 }

@@ -12,9 +12,10 @@ pub fn markdown(map: &RegisterMap) -> String {
     let parts = (0..windows).map(|window| {
         let is_in = |register: &&Register| register.offset / WINDOW_WORDS == window;
         let registers: Vec<&Register> = map.registers().iter().filter(is_in).collect();
-        match has_windows {
-            true => format!("### {}\n\n{}", heading(window, &registers), tables(&registers)),
-            false => tables(&registers),
+        if has_windows {
+            format!("### {}\n\n{}", heading(window, &registers), tables(&registers))
+        } else {
+            tables(&registers)
         }
     });
     text.push_str(&parts.collect::<Vec<_>>().join("\n"));

@@ -176,12 +176,13 @@ impl StageConfig {
             }
         }
         let schedule = self.timing();
-        match schedule.duty_clocks() < tick {
-            true => Ok(()),
-            false => Err(StageError::Schedule {
+        if schedule.duty_clocks() < tick {
+            Ok(())
+        } else {
+            Err(StageError::Schedule {
                 schedule,
                 available: tick,
-            }),
+            })
         }
     }
 }

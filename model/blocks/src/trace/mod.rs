@@ -307,9 +307,10 @@ impl Moore for Trace {
         let ends = registers.active && (complete || registers.halting);
         let noted = (!inputs.halt || registers.halting) && (!inputs.trigger_event || registers.event);
         let chosen = registers.select == inputs.trigger_select && registers.data == self.read(inputs.read_address);
-        match called || ends || !noted || !chosen {
-            true => 0,
-            false => FOREVER,
+        if called || ends || !noted || !chosen {
+            0
+        } else {
+            FOREVER
         }
     }
 

@@ -128,9 +128,10 @@ impl Chord {
     fn element(&self) -> Element {
         let [x, y] = minus(self.to, self.from);
         let length = x.hypot(y);
-        let direction = match length > 0.0 {
-            true => [x / length, y / length],
-            false => self.direction.unwrap_or([1.0, 0.0]),
+        let direction = if length > 0.0 {
+            [x / length, y / length]
+        } else {
+            self.direction.unwrap_or([1.0, 0.0])
         };
         Element {
             begins: direction,
@@ -290,9 +291,10 @@ impl ContourLimits {
         let radius = side / (2.0 * (bend / 2.0).tan());
         let facets = self.on_curve(radius).max(deviated(std::f64::consts::FRAC_PI_2));
         let speed = deviated(bend).min(facets);
-        match bend > rules.stop_angle * (1.0 + STOP_ROUNDING) || speed <= 0.0 {
-            true => Corner::Stop,
-            false => Corner::Speed(speed),
+        if bend > rules.stop_angle * (1.0 + STOP_ROUNDING) || speed <= 0.0 {
+            Corner::Stop
+        } else {
+            Corner::Speed(speed)
         }
     }
 }

@@ -109,9 +109,10 @@ impl Piece {
                 // are the directions of travel turned by a right angle.
                 let after_first = dot(first, from_centre) >= 0.0;
                 let before_last = dot(last, from_centre) <= 0.0;
-                let is_beside = match is_wide {
-                    true => after_first || before_last,
-                    false => after_first && before_last,
+                let is_beside = if is_wide {
+                    after_first || before_last
+                } else {
+                    after_first && before_last
                 };
                 if is_beside {
                     return turn * (radius - length(from_centre));

@@ -201,9 +201,10 @@ impl<I: Iterator<Item = Result<Stroke, ContourError>>> Planner<I> {
             match self.corners.next() {
                 Some(Ok((stroke, corner))) => {
                     let limited = self.limited(&stroke, corner);
-                    match limited.corner == 0.0 && !self.read.is_empty() {
-                        true => self.next = Some(limited),
-                        false => self.read.push(limited),
+                    if limited.corner == 0.0 && !self.read.is_empty() {
+                        self.next = Some(limited)
+                    } else {
+                        self.read.push(limited)
                     }
                 }
                 Some(Err(error)) => (self.failed, self.ended) = (Some(error), true),
@@ -333,9 +334,10 @@ impl<I: Iterator<Item = Result<Stroke, ContourError>>> Iterator for Planner<I> {
 
     fn next(&mut self) -> Option<Self::Item> {
         self.read();
-        match self.read.is_empty() {
-            true => self.failed.take().map(Err),
-            false => Some(Ok(self.run())),
+        if self.read.is_empty() {
+            self.failed.take().map(Err)
+        } else {
+            Some(Ok(self.run()))
         }
     }
 }
@@ -410,9 +412,10 @@ impl Survey {
                 most: SAMPLES_MAX as u64,
             });
         }
-        match self.length > 0.0 && self.length.is_finite() {
-            true => Ok(self),
-            false => Err(ContourError::Empty("it has no length".to_owned())),
+        if self.length > 0.0 && self.length.is_finite() {
+            Ok(self)
+        } else {
+            Err(ContourError::Empty("it has no length".to_owned()))
         }
     }
 

@@ -167,9 +167,10 @@ impl Ramps {
         let used = |peak: f64| along.change_length(from, peak) + along.change_length(peak, to);
         let slowest = from.max(to);
         let most = most.max(slowest);
-        let peak = match used(most) <= length {
-            true => most,
-            false => narrowed(slowest, most, |peak| used(peak) - length),
+        let peak = if used(most) <= length {
+            most
+        } else {
+            narrowed(slowest, most, |peak| used(peak) - length)
         };
         let cruise = (length - used(peak)).max(0.0);
         Self {
@@ -210,9 +211,12 @@ impl Ramps {
         if self.peak <= speed {
             return false;
         }
-        let until = |end: f64| match speed <= end {
-            true => 0.0,
-            false => self.along.length_until(end, self.peak, speed),
+        let until = |end: f64| {
+            if speed <= end {
+                0.0
+            } else {
+                self.along.length_until(end, self.peak, speed)
+            }
         };
         length > until(self.from) && self.length - length > until(self.to)
     }

@@ -51,9 +51,10 @@ pub fn polyline(points: &[PlanePoint], speed: f64) -> Result<Vec<Stroke>, Contou
         Stroke::feed(Shape::Line { from, to }, speed)
     });
     let lines: Vec<Stroke> = lines.collect();
-    match lines.is_empty() {
-        true => Err(ContourError::Empty("it takes two points that differ".to_owned())),
-        false => Ok(lines),
+    if lines.is_empty() {
+        Err(ContourError::Empty("it takes two points that differ".to_owned()))
+    } else {
+        Ok(lines)
     }
 }
 
@@ -225,8 +226,9 @@ pub(super) fn centre(from: PlanePoint, to: PlanePoint, radius: f64, clockwise: b
 }
 
 fn positive(what: &'static str, found: f64) -> Result<(), ContourError> {
-    match found > 0.0 && found.is_finite() {
-        true => Ok(()),
-        false => Err(ContourError::Size { what, found }),
+    if found > 0.0 && found.is_finite() {
+        Ok(())
+    } else {
+        Err(ContourError::Size { what, found })
     }
 }

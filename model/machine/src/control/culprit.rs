@@ -28,10 +28,7 @@ impl Culprit {
 
 impl fmt::Display for Culprit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let change = match self.found < self.usual {
-            true => "raise",
-            false => "lower",
-        };
+        let change = if self.found < self.usual { "raise" } else { "lower" };
         write!(f, "it comes from {} = {:e}: {change} it", self.key, self.found)
     }
 }
@@ -55,10 +52,10 @@ impl Numbers<'_> {
             let found = found.filter(|value| *value > 0.0)?;
             Some(Culprit { key, found, usual })
         });
-        let worst = given.fold(sample, |worst, next| match next.decades() > worst.decades() {
-            true => next,
-            false => worst,
-        });
+        let worst = given.fold(
+            sample,
+            |worst, next| if next.decades() > worst.decades() { next } else { worst },
+        );
         self.in_file(worst)
     }
 

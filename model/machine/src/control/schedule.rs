@@ -65,12 +65,13 @@ impl ControlSchedule {
     /// # Errors
     /// [`ScheduleError`] where a sample of `available` clocks is not longer than the schedule.
     pub fn fits(&self, available: u32) -> Result<(), ScheduleError> {
-        match self.clocks() < available {
-            true => Ok(()),
-            false => Err(ScheduleError {
+        if self.clocks() < available {
+            Ok(())
+        } else {
+            Err(ScheduleError {
                 schedule: *self,
                 available,
-            }),
+            })
         }
     }
 

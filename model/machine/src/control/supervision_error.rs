@@ -107,12 +107,13 @@ pub enum SupervisionError {
 /// The distance of a quick stop, with the keys from which it follows; nothing where the file does not say it.
 fn stop_text(unit: AxisUnit, stop: f64, deceleration: &str) -> String {
     let key = deceleration.rsplit('.').next().unwrap_or(deceleration);
-    match stop > 0.0 {
-        true => format!(
+    if stop > 0.0 {
+        format!(
             ", and a quick stop from `velocity` at `{key}` {}",
             unit.as_in_file(stop, "")
-        ),
-        false => String::new(),
+        )
+    } else {
+        String::new()
     }
 }
 
@@ -149,9 +150,10 @@ impl SupervisionError {
             } => {
                 let name = key.rsplit('.').next().unwrap_or(key);
                 let otherwise = OTHERWISE.iter().find(|(of, ..)| of == key);
-                let (end, more, otherwise) = match found > largest {
-                    true => (*largest, "less", otherwise.map_or("", |(_, above, _)| above)),
-                    false => (*smallest, "more", otherwise.map_or("", |(.., below)| below)),
+                let (end, more, otherwise) = if found > largest {
+                    (*largest, "less", otherwise.map_or("", |(_, above, _)| above))
+                } else {
+                    (*smallest, "more", otherwise.map_or("", |(.., below)| below))
                 };
                 match name {
                     "travel" => format!("keep each end of the travel within its range{otherwise}"),
@@ -160,9 +162,10 @@ impl SupervisionError {
             }
             Self::Reach { stop, deceleration, .. } => {
                 let key = deceleration.rsplit('.').next().unwrap_or(deceleration);
-                let of_stop = match *stop > 0.0 {
-                    true => format!(", raise `{key}` or lower `velocity`, from which the stop follows"),
-                    false => String::new(),
+                let of_stop = if *stop > 0.0 {
+                    format!(", raise `{key}` or lower `velocity`, from which the stop follows")
+                } else {
+                    String::new()
                 };
                 format!(
                     "shorten `travel`{of_stop}, choose a shaper that overshoots less, or lower the counts_per_unit of the loop"

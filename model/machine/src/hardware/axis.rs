@@ -112,9 +112,10 @@ fn shaper(
         channels: 1,
         modulo: axis.modulo,
     };
-    let config = match axis.modulo || axis.family.is_some() {
-        true => plain.and_then(|config| config.for_motion(motion)),
-        false => plain,
+    let config = if axis.modulo || axis.family.is_some() {
+        plain.and_then(|config| config.for_motion(motion))
+    } else {
+        plain
     };
     let config = config.map_err(|error| unfit("axis.shaper", error.to_string()))?;
     let available = machine.clock.clocks_per_sample();

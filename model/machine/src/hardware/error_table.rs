@@ -60,9 +60,10 @@ impl Places {
 fn unit(section: &ErrorTableSection, axis: &AxisSection) -> EntryUnit {
     let errors = section.points.iter().map(|(_, error)| error.abs());
     let largest = errors.fold(0.0, f64::max) * axis.loop_counts_per_unit();
-    match largest <= f64::from(LARGEST_ENTRY) * EntryUnit::Fine.counts() {
-        true => EntryUnit::Fine,
-        false => EntryUnit::Coarse,
+    if largest <= f64::from(LARGEST_ENTRY) * EntryUnit::Fine.counts() {
+        EntryUnit::Fine
+    } else {
+        EntryUnit::Coarse
     }
 }
 

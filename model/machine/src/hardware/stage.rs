@@ -215,9 +215,10 @@ fn scale(axis: &AxisSection) -> Result<Option<StageScale>, ScaleRatioError> {
         return Ok(None);
     };
     let closes_loop = scale.usage == ScaleUse::Position;
-    let ratio = match closes_loop {
-        true => ScaleRatio::new,
-        false => ScaleRatio::for_monitor,
+    let ratio = if closes_loop {
+        ScaleRatio::new
+    } else {
+        ScaleRatio::for_monitor
     };
     let [motor, of_scale] =
         [axis.counts_per_unit, scale.counts_per_unit].map(|counts| axis.unit.counts_in_file(counts));

@@ -203,9 +203,10 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
         let (least, most) = (MOTION_WORD_BITS.start(), MOTION_WORD_BITS.end());
         let found = format!("modulo = true with command words of {bits} bits");
         let allowed = format!("modulo = true with fixed_point.command_bits = {least} to {most}");
-        let remedy = match table.has("controller") {
-            true => format!("set fixed_point.command_bits = {most}, which a stage needs"),
-            false => format!("set fixed_point.command_bits = {least}"),
+        let remedy = if table.has("controller") {
+            format!("set fixed_point.command_bits = {most}, which a stage needs")
+        } else {
+            format!("set fixed_point.command_bits = {least}")
         };
         table.contradiction("modulo", found, allowed, remedy);
     }

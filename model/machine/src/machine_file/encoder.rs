@@ -34,9 +34,10 @@ pub(super) const KEYS: &[Key] = &[
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>) -> Option<Encoder> {
     table.allow(KEYS);
-    let filter_clocks = match table.has("filter_clocks") {
-        true => table.integer("filter_clocks", 0, FILTER_CLOCKS_MAX)?,
-        false => 0,
+    let filter_clocks = if table.has("filter_clocks") {
+        table.integer("filter_clocks", 0, FILTER_CLOCKS_MAX)?
+    } else {
+        0
     };
     Some(Encoder {
         filter_clocks,

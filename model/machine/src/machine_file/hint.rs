@@ -28,10 +28,7 @@ pub(super) fn written(value: f64) -> String {
         }
         text.push(digit);
     }
-    match value < 0.0 {
-        true => format!("-{text}"),
-        false => text,
-    }
+    if value < 0.0 { format!("-{text}") } else { text }
 }
 
 /// Asks whether a frequency was meant in another unit: the first of `units` in which it passes `right`.
@@ -112,9 +109,10 @@ pub(super) fn of_type(key: &str, found: &DeValue<'_>, allowed: &str, dotted: &st
 /// Where the unit of a key's number is said.
 fn unit_of(key: &str) -> String {
     let is_in_name = ["_hz", "_s", "_m", "_a"].iter().any(|unit| key.ends_with(unit));
-    match is_in_name {
-        true => format!("`{key}` has one unit, and its name says which"),
-        false => format!("`{key}` has one unit, which docs/machine-file.md says"),
+    if is_in_name {
+        format!("`{key}` has one unit, and its name says which")
+    } else {
+        format!("`{key}` has one unit, which docs/machine-file.md says")
     }
 }
 
@@ -157,18 +155,17 @@ pub(super) fn first_of_its_name(text: &str, place: usize) -> Option<usize> {
     };
     let repeated = *lines.get(before)?;
     let earlier = &lines[..before];
-    let found = match is_header(&repeated) {
-        true => earlier
+    let found = if is_header(&repeated) {
+        earlier
             .iter()
-            .rposition(|line| is_header(line) && table(line) == table(repeated)),
-        false => {
-            let begin = earlier.iter().rposition(is_header).map_or(0, |at| at + 1);
-            let name = key(repeated)?;
-            let at = earlier[begin..]
-                .iter()
-                .position(|line| key(line).as_ref() == Some(&name));
-            at.map(|at| begin + at)
-        }
+            .rposition(|line| is_header(line) && table(line) == table(repeated))
+    } else {
+        let begin = earlier.iter().rposition(is_header).map_or(0, |at| at + 1);
+        let name = key(repeated)?;
+        let at = earlier[begin..]
+            .iter()
+            .position(|line| key(line).as_ref() == Some(&name));
+        at.map(|at| begin + at)
     };
     found.map(|at| at + 1)
 }

@@ -130,18 +130,20 @@ pub(super) const KEYS: &[Key] = &[
 /// Reads the table. The checksum is that of nothing yet.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<LinkSection> {
     table.allow(KEYS);
-    let word = match table.has("line") {
-        true => table.choice("line", &[UART, SPI]),
-        false => Some(UART),
+    let word = if table.has("line") {
+        table.choice("line", &[UART, SPI])
+    } else {
+        Some(UART)
     };
     let line = match word {
         Some(UART) => read_uart(table),
         Some(_) => read_spi(table, clock),
         None => None,
     };
-    let timeout_s = match table.has("timeout_s") {
-        true => table.number("timeout_s", TIMEOUT_S),
-        false => Some(DEFAULT_TIMEOUT_S),
+    let timeout_s = if table.has("timeout_s") {
+        table.number("timeout_s", TIMEOUT_S)
+    } else {
+        Some(DEFAULT_TIMEOUT_S)
     };
     // Every problem is reported before the first ends this.
     let (line, timeout_s) = (line?, timeout_s?);
@@ -207,9 +209,10 @@ fn read_uart(table: &Table<'_, '_>) -> Option<LinkLine> {
         BAUD.end()
     );
     if table.has("sck_hz") {
-        let remedy = match table.has("baud") {
-            true => format!("remove sck_hz; or write `line = \"{SPI}\"` and remove baud"),
-            false => format!("write `line = \"{SPI}\"`; or replace sck_hz by baud"),
+        let remedy = if table.has("baud") {
+            format!("remove sck_hz; or write `line = \"{SPI}\"` and remove baud")
+        } else {
+            format!("write `line = \"{SPI}\"`; or replace sck_hz by baud")
         };
         table.contradiction(
             "sck_hz",
@@ -226,9 +229,10 @@ fn read_uart(table: &Table<'_, '_>) -> Option<LinkLine> {
 
 fn read_spi(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<LinkLine> {
     if table.has("baud") {
-        let remedy = match table.has("sck_hz") {
-            true => format!("remove baud; or write `line = \"{UART}\"` and remove sck_hz"),
-            false => format!("replace baud by sck_hz; or write `line = \"{UART}\"`"),
+        let remedy = if table.has("sck_hz") {
+            format!("remove baud; or write `line = \"{UART}\"` and remove sck_hz")
+        } else {
+            format!("replace baud by sck_hz; or write `line = \"{UART}\"`")
         };
         table.contradiction(
             "baud",
@@ -254,9 +258,10 @@ fn read_spi(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<LinkLi
             "raise clock.frequency_hz to at least {} Hz",
             u64::from(sck_hz) * LEAST_CLOCKS_PER_BIT
         );
-        let remedy = match SCK_HZ.contains(&most) {
-            true => format!("write `sck_hz = {}`, or {faster}", written(f64::from(most))),
-            false => faster,
+        let remedy = if SCK_HZ.contains(&most) {
+            format!("write `sck_hz = {}`, or {faster}", written(f64::from(most)))
+        } else {
+            faster
         };
         table.refuse(
             "sck_hz",

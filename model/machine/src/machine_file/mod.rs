@@ -125,9 +125,10 @@ pub fn parse_beside(
             let span = error.span().unwrap_or(text.len()..text.len());
             let line = reader.quote(reader.line_span(span.start));
             let remedy = hint::of_syntax(error.message(), &line);
-            let first = match error.message().contains("duplicate key") {
-                true => hint::first_of_its_name(text, span.start),
-                false => None,
+            let first = if error.message().contains("duplicate key") {
+                hint::first_of_its_name(text, span.start)
+            } else {
+                None
             };
             let first = first.map_or_else(String::new, |first| format!(", which line {first} has already"));
             let cause = ProblemCause::Syntax(format!("{}{first}, in `{}`", error.message(), line.trim()));

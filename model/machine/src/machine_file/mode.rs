@@ -300,9 +300,10 @@ fn read_damping_band(table: &Table<'_, '_>, mode: &Mode) -> Option<Option<[f64; 
     if low <= high && (moves || (low <= mode.damping && mode.damping <= high)) {
         return Some(Some([low, high]));
     }
-    let allowed = match moves {
-        true => "[low, high], low at most high".to_owned(),
-        false => format!("[low, high] with the damping of {} between them", short(mode.damping)),
+    let allowed = if moves {
+        "[low, high], low at most high".to_owned()
+    } else {
+        format!("[low, high] with the damping of {} between them", short(mode.damping))
     };
     table.refuse(
         DAMPING_BAND,

@@ -87,9 +87,10 @@ impl FamilySection {
 
     /// Writes a value of the variable for a report: a position in the axis's unit, any other as a plain number.
     pub fn show(&self, value: f64, unit: AxisUnit) -> String {
-        match self.is_position() {
-            true => unit.as_in_file(value, ""),
-            false => short(value),
+        if self.is_position() {
+            unit.as_in_file(value, "")
+        } else {
+            short(value)
         }
     }
 }

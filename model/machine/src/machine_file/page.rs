@@ -166,13 +166,13 @@ fn values(values: Values) -> String {
 }
 
 fn words(list: &[&str]) -> String {
-    match list.len() > WORDS_MAX {
-        true => String::new(),
-        false => list
-            .iter()
+    if list.len() > WORDS_MAX {
+        String::new()
+    } else {
+        list.iter()
             .map(|word| format!("`{word}`"))
             .collect::<Vec<_>>()
-            .join(", "),
+            .join(", ")
     }
 }
 

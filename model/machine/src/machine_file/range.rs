@@ -66,9 +66,10 @@ impl NumberRange {
     pub(super) fn at_most(self, high: f64, reason: &'static str) -> Self {
         let digits = 10f64.powf(5.0 - high.log10().floor());
         let high = (high * digits * (1.0 + ROUNDING)).floor() / digits;
-        match high < self.high {
-            true => Self { high, reason, ..self },
-            false => self,
+        if high < self.high {
+            Self { high, reason, ..self }
+        } else {
+            self
         }
     }
 
@@ -130,9 +131,10 @@ impl fmt::Display for NumberRange {
 /// Writes an end of a range, `1e9` for example without its ten digits.
 fn end(value: f64) -> String {
     let (plain, power) = (value.to_string(), format!("{value:e}"));
-    match plain.len() > 7 && power.len() < plain.len() {
-        true => power,
-        false => plain,
+    if plain.len() > 7 && power.len() < plain.len() {
+        power
+    } else {
+        plain
     }
 }
 

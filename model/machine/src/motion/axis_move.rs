@@ -164,9 +164,10 @@ impl AxisMove {
     fn default_at(axis: &AxisSection, words: &FixedPoint, velocity: Option<f64>) -> Self {
         let [of_limits, acceleration, jerk] = motion_limits(axis.limits.as_ref());
         let reached = velocity.map_or(0.0, |velocity| distance_to_reach(velocity, acceleration, jerk));
-        let wanted = match reached > LEAST_DISTANCE {
-            true => axis.unit.to_si(two_digits_up(axis.unit.in_file(reached))),
-            false => LEAST_DISTANCE,
+        let wanted = if reached > LEAST_DISTANCE {
+            axis.unit.to_si(two_digits_up(axis.unit.in_file(reached)))
+        } else {
+            LEAST_DISTANCE
         };
         let start = Self::start(axis);
         let travel = axis.limits.and_then(|limits| limits.travel);
@@ -185,9 +186,10 @@ impl AxisMove {
 
 /// Distance of the shortest move that reaches this velocity.
 fn distance_to_reach(velocity: f64, acceleration: f64, jerk: f64) -> f64 {
-    let seconds = match velocity * jerk < acceleration * acceleration {
-        true => 2.0 * (velocity / jerk).sqrt(),
-        false => velocity / acceleration + acceleration / jerk,
+    let seconds = if velocity * jerk < acceleration * acceleration {
+        2.0 * (velocity / jerk).sqrt()
+    } else {
+        velocity / acceleration + acceleration / jerk
     };
     velocity * seconds
 }
@@ -197,9 +199,10 @@ fn two_digits_up(figure: f64) -> f64 {
     let power = 1 - figure.log10().floor() as i32;
     let digits = (figure * 10f64.powi(power) * (1.0 - ROUNDING)).ceil();
     // A quotient of whole numbers equals what the decimal figure reads as.
-    match power >= 0 {
-        true => digits / 10f64.powi(power),
-        false => digits * 10f64.powi(-power),
+    if power >= 0 {
+        digits / 10f64.powi(power)
+    } else {
+        digits * 10f64.powi(-power)
     }
 }
 

@@ -132,9 +132,10 @@ pub fn end_velocity(points: &[(f64, f64)]) -> f64 {
         None => velocity,
     };
     let largest = lines.iter().map(|(_, velocity)| velocity.abs()).fold(0.0, f64::max);
-    match end * velocity > 0.0 && end.abs() > REST * largest {
-        true => end,
-        false => 0.0,
+    if end * velocity > 0.0 && end.abs() > REST * largest {
+        end
+    } else {
+        0.0
     }
 }
 

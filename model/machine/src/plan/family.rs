@@ -270,9 +270,12 @@ fn gap(covers: &[[f64; 2]], range: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 fn values_text(axis: &AxisSection, family: &FamilySection, chosen: &[Candidate]) -> String {
-    let in_file = |value: f64| match family.is_position() {
-        true => axis.unit.from_si(value),
-        false => value,
+    let in_file = |value: f64| {
+        if family.is_position() {
+            axis.unit.from_si(value)
+        } else {
+            value
+        }
     };
     let values: Vec<String> = chosen.iter().map(|candidate| short(in_file(candidate.value))).collect();
     format!("values = [{}]", values.join(", "))
@@ -306,31 +309,30 @@ impl Search<'_> {
     }
 
     fn check_count(&self, found: usize) -> Result<(), DesignError> {
-        match found > MAX_TABLES {
-            true => Err(DesignError::FamilySize {
+        if found > MAX_TABLES {
+            Err(DesignError::FamilySize {
                 axis: self.axis.name.clone(),
                 most: MAX_TABLES,
-            }),
-            false => Ok(()),
+            })
+        } else {
+            Ok(())
         }
     }
 
     /// The table farthest from `from` towards `end` that still overlaps it.
     fn next(&self, from: &Candidate, end: f64) -> Result<Candidate, DesignError> {
         let upward = end > from.value;
-        let (near, far) = match upward {
-            true => (0, 1),
-            false => (1, 0),
-        };
+        let (near, far) = if upward { (0, 1) } else { (1, 0) };
         let edge = from.covers[far];
         let overlaps = |candidate: &Candidate, way: f64| {
             // At full speed, the command that went into a table must have left it before its range ends.
             let passed =
                 PARTS * self.fastest_per_s() * from.longest_s(self.sample_hz).max(candidate.longest_s(self.sample_hz));
             let overlap = passed.clamp(OVERLAP[0] * way, OVERLAP[1] * way);
-            match upward {
-                true => candidate.covers[near] <= edge - overlap,
-                false => candidate.covers[near] >= edge + overlap,
+            if upward {
+                candidate.covers[near] <= edge - overlap
+            } else {
+                candidate.covers[near] >= edge + overlap
             }
         };
         let last = self.at(end)?;
@@ -353,9 +355,10 @@ impl Search<'_> {
         let mut beyond = end;
         for _ in 0..VALUE_BISECTIONS {
             let candidate = self.at(f64::midpoint(best.value, beyond))?;
-            match overlaps(&candidate, way) {
-                true => best = candidate,
-                false => beyond = candidate.value,
+            if overlaps(&candidate, way) {
+                best = candidate
+            } else {
+                beyond = candidate.value
             }
         }
         Ok(best)
@@ -441,9 +444,10 @@ fn step(axis: &AxisSection, family: &FamilySection, from: f64, end: f64) -> f64 
 fn bisected(mut inside: f64, mut outside: f64, within: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = f64::midpoint(inside, outside);
-        match within(middle) {
-            true => inside = middle,
-            false => outside = middle,
+        if within(middle) {
+            inside = middle
+        } else {
+            outside = middle
         }
     }
     inside

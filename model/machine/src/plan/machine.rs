@@ -75,12 +75,11 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
     for axis in &machine.axes {
         made.push(design_axis(axis.shaped(), sample_hz)?);
     }
-    let together = match machine.stage.is_some_and(|stage| stage.arrive_together) {
-        true => {
-            let lags_s: Vec<f64> = machine.axes.iter().map(matching::mode_lag_s).collect();
-            optimal::arrive_together(&lags_s, &mut made, sample_hz)?
-        }
-        false => None,
+    let together = if machine.stage.is_some_and(|stage| stage.arrive_together) {
+        let lags_s: Vec<f64> = machine.axes.iter().map(matching::mode_lag_s).collect();
+        optimal::arrive_together(&lags_s, &mut made, sample_hz)?
+    } else {
+        None
     };
     for (axis, design) in machine.axes.iter().zip(made) {
         let digitised = digitise(&design, how, sample_hz)?;

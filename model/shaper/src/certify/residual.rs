@@ -178,15 +178,16 @@ impl Edge {
     /// Returns the mode at a part of the edge; along an arc the angle `acos ζ` is linear.
     fn at(&self, part: f64) -> Mode {
         let between = |from: f64, to: f64| from + part * (to - from);
-        match self.is_arc {
-            false => Mode {
-                frequency_hz: between(self.from.frequency_hz, self.to.frequency_hz),
-                ..self.from
-            },
-            true => Mode {
+        if self.is_arc {
+            Mode {
                 damping: between(self.from.damping.acos(), self.to.damping.acos()).cos(),
                 ..self.from
-            },
+            }
+        } else {
+            Mode {
+                frequency_hz: between(self.from.frequency_hz, self.to.frequency_hz),
+                ..self.from
+            }
         }
     }
 

@@ -80,13 +80,14 @@ pub fn check_shorter(request: &Request, proof: &LowerBound) -> Result<CheckedBou
 /// Checks that amplitudes of at most `high` on the samples of a duration do not sum to 1.
 fn too_few(high: f64, samples: u32) -> Result<CheckedBound, ShorterError> {
     let most = (f64::from(samples) + 1.0) * high * (1.0 + 4.0 * UNIT);
-    match most < 1.0 {
-        true => Ok(CheckedBound {
+    if most < 1.0 {
+        Ok(CheckedBound {
             samples,
             ratio: f64::INFINITY,
             points: 0,
-        }),
-        false => Err(ShorterError::Loose { samples, ratio: 0.0 }),
+        })
+    } else {
+        Err(ShorterError::Loose { samples, ratio: 0.0 })
     }
 }
 

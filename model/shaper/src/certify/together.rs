@@ -86,14 +86,15 @@ pub fn check_together(partners: &[Partner], found: &Together) -> CheckedTogether
         } => {
             let samples = earliest.samples.min(latest.samples);
             let gap_samples = delay(*late_axis, earliest)? - delay(*early_axis, latest)?;
-            match gap_samples > 0.0 && !earliest.is_upper && latest.is_upper {
-                true => Ok(CheckedShorter::Apart {
+            if gap_samples > 0.0 && !earliest.is_upper && latest.is_upper {
+                Ok(CheckedShorter::Apart {
                     samples,
                     late_axis: *late_axis,
                     early_axis: *early_axis,
                     gap_samples,
-                }),
-                false => Err(ShorterError::Loose { samples, ratio: 0.0 }),
+                })
+            } else {
+                Err(ShorterError::Loose { samples, ratio: 0.0 })
             }
         }
     };

@@ -132,9 +132,10 @@ fn per_mode(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<(ImpulseSequence, Sh
     for axis_mode in axis.modes {
         let impulses = mode_impulses(axis, axis_mode, cell_s)?;
         // Impulses on one grid coincide in their convolution, which has few more than its factors.
-        let count = match axis.kind_of(axis_mode).is_smooth() {
-            true => whole.impulses().len(),
-            false => whole.impulses().len() * impulses.impulses().len(),
+        let count = if axis.kind_of(axis_mode).is_smooth() {
+            whole.impulses().len()
+        } else {
+            whole.impulses().len() * impulses.impulses().len()
         };
         if count > IMPULSES_MAX {
             return Err(DesignError::TooManyImpulses {

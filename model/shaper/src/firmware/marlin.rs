@@ -32,9 +32,10 @@ fn m593_fit(damping: f64) -> f64 {
 /// The impulses that `M593` makes of a frequency in Hz and a damping ratio; `None` for values that Marlin refuses.
 pub fn m593(frequency_hz: f64, damping: f64) -> Option<ImpulseSequence> {
     half_swing(damping)?;
-    let second = match damping > 0.0 {
-        true => m593_fit(damping).floor() / 128.0,
-        false => 0.5,
+    let second = if damping > 0.0 {
+        m593_fit(damping).floor() / 128.0
+    } else {
+        0.5
     };
     normalised(&[0.0, 0.5 / frequency_hz], &[1.0 - second, second])
 }
@@ -53,9 +54,10 @@ pub fn m593_damping(damping: f64) -> f64 {
     let (mut low, mut high) = (0.0, 0.9);
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
-        match m593_fit(middle) > nearest + 0.5 {
-            true => low = middle,
-            false => high = middle,
+        if m593_fit(middle) > nearest + 0.5 {
+            low = middle
+        } else {
+            high = middle
         }
     }
     if m593_fit(high).floor() == nearest {

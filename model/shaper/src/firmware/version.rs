@@ -214,9 +214,10 @@ impl KlipperVersion {
                 (true, false) => EiFormulas::FitsWithoutCubes,
                 (true, true) => EiFormulas::Fits,
             },
-            damping: match since(DAMPING_LIMITS) {
-                true => DampingLimits::ByKind,
-                false => DampingLimits::BelowOne,
+            damping: if since(DAMPING_LIMITS) {
+                DampingLimits::ByKind
+            } else {
+                DampingLimits::BelowOne
             },
             has_parameters: since(PARAMETERS),
             has_custom: false,

@@ -47,9 +47,10 @@ impl Blocks {
     pub(super) fn real(&self, value: &[u8]) -> f64 {
         let mut bytes = [0; 8];
         bytes.copy_from_slice(value);
-        match self.little_endian {
-            true => f64::from_le_bytes(bytes),
-            false => f64::from_be_bytes(bytes),
+        if self.little_endian {
+            f64::from_le_bytes(bytes)
+        } else {
+            f64::from_be_bytes(bytes)
         }
     }
 

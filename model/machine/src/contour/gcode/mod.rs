@@ -50,9 +50,10 @@ const OTHER_AXES: &[u8] = b"ZEABCUVW";
 pub fn strokes(program: &str) -> Result<Vec<Stroke>, ContourError> {
     let extrudes = extrudes(&mut program.as_bytes())?;
     let strokes: Vec<Stroke> = Program::new(Box::new(program.as_bytes()), extrudes).collect::<Result<_, _>>()?;
-    match strokes.is_empty() {
-        true => Err(ContourError::Empty("the program moves neither X nor Y".to_owned())),
-        false => Ok(strokes),
+    if strokes.is_empty() {
+        Err(ContourError::Empty("the program moves neither X nor Y".to_owned()))
+    } else {
+        Ok(strokes)
     }
 }
 
@@ -457,9 +458,10 @@ impl<'a> Program<'a> {
                 ));
             }
         };
-        match speed > 0.0 && speed.is_finite() {
-            true => Ok(speed),
-            false => Err(self.refused(format!("F{feed}"), "give another feed")),
+        if speed > 0.0 && speed.is_finite() {
+            Ok(speed)
+        } else {
+            Err(self.refused(format!("F{feed}"), "give another feed"))
         }
     }
 
@@ -554,9 +556,10 @@ impl<'a> Program<'a> {
         let square = chord[0] * chord[0] + chord[1] * chord[1];
         let off = minus(centre, middle);
         let along = (off[0] * chord[0] + off[1] * chord[1]) / square;
-        let centre = match square > 0.0 && along.is_finite() {
-            true => [centre[0] - along * chord[0], centre[1] - along * chord[1]],
-            false => centre,
+        let centre = if square > 0.0 && along.is_finite() {
+            [centre[0] - along * chord[0], centre[1] - along * chord[1]]
+        } else {
+            centre
         };
         Ok(arc(from, to, centre, clockwise))
     }

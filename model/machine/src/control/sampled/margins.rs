@@ -68,13 +68,12 @@ impl SampledLoop {
         let curve = self.curve(law, 0.0);
         let stable = self.is_stable(law);
         let crossings = axis_crossings(&curve);
-        let (gain_margin, gain_reduction) = match stable {
-            true => {
-                let above = crossings.iter().copied().filter(|factor| *factor > 1.0);
-                let below = crossings.iter().copied().filter(|factor| *factor <= 1.0);
-                (Some(above.fold(f64::INFINITY, f64::min)), below.reduce(f64::max))
-            }
-            false => (self.largest_stable(law, &crossings), None),
+        let (gain_margin, gain_reduction) = if stable {
+            let above = crossings.iter().copied().filter(|factor| *factor > 1.0);
+            let below = crossings.iter().copied().filter(|factor| *factor <= 1.0);
+            (Some(above.fold(f64::INFINITY, f64::min)), below.reduce(f64::max))
+        } else {
+            (self.largest_stable(law, &crossings), None)
         };
         let unity = unity_crossings(&curve);
         let distances = unity.iter().map(|(_, phase)| (PI - phase.abs()).to_degrees());

@@ -247,9 +247,10 @@ impl PlantTerms {
             poles.push(Complex::new(-decay, omega_damped));
             poles.push(Complex::new(-decay, -omega_damped));
             // The input of a torque drive's modes is its acceleration, s² times the driven coordinate.
-            let (zeros, share, without) = match torque {
-                true => (1, -of.share, 1),
-                false => (0, of.share * of.mode.omega().powi(2), 0),
+            let (zeros, share, without) = if torque {
+                (1, -of.share, 1)
+            } else {
+                (0, of.share * of.mode.omega().powi(2), 0)
             };
             let poles = rigid[without..].iter().copied().chain([at, at + 1]);
             load.push(Term {

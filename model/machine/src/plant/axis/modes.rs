@@ -126,8 +126,9 @@ impl LoadModes {
 
 /// Time by which a mode lags a ramp, s.
 fn lag_s(of: &PlantMode, trails: bool) -> f64 {
-    match trails {
-        true => 2.0 * of.mode.damping / of.mode.omega(),
-        false => 0.0,
+    if trails {
+        2.0 * of.mode.damping / of.mode.omega()
+    } else {
+        0.0
     }
 }

@@ -28,9 +28,10 @@ fn bisected(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let begins_positive = value(low) > 0.0;
     for _ in 0..ROUNDS {
         let middle = (low + high) / 2.0;
-        match (value(middle) > 0.0) == begins_positive {
-            true => low = middle,
-            false => high = middle,
+        if (value(middle) > 0.0) == begins_positive {
+            low = middle
+        } else {
+            high = middle
         }
     }
     (low + high) / 2.0

@@ -185,15 +185,12 @@ impl Driver {
         let back = self.is_odd(axis);
         let near = self.below(40 << 8) as i32;
         let far = i32::MAX >> (1 + self.below(3)) & !0xff | near;
-        match back {
-            true => {
-                self.tell(axis, "soft_limit_plus", far as u32);
-                self.beside(axis, "soft_limit_minus", -near);
-            }
-            false => {
-                self.beside(axis, "soft_limit_plus", near);
-                self.tell(axis, "soft_limit_minus", -far as u32);
-            }
+        if back {
+            self.tell(axis, "soft_limit_plus", far as u32);
+            self.beside(axis, "soft_limit_minus", -near);
+        } else {
+            self.beside(axis, "soft_limit_plus", near);
+            self.tell(axis, "soft_limit_minus", -far as u32);
         }
         self.tell(axis, "homed", 1);
         self.company(axis);
