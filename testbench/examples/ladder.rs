@@ -17,13 +17,14 @@ use std::time::Instant;
 
 use posicast_testbench::ladder::{Columns, Rung, rows, table};
 
-const RUNGS: [&str; 10] = [
+const RUNGS: [&str; 11] = [
     "lock step",
     "second simulator",
     "netlist",
     "reset",
     "formal",
     "mutation",
+    "wires",
     "coverage",
     "fuzz",
     "long tests",
@@ -82,9 +83,10 @@ fn main() -> ExitCode {
         }));
     }
     print!("{}", table(&rungs));
-    match rungs.iter().all(|rung| rung.holds) {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::FAILURE,
+    if rungs.iter().all(|rung| rung.holds) {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
     }
 }
 
@@ -115,11 +117,22 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
         // The mutation rung always uses the published sample: for other mutants, or in fewer clocks, some may stay
         // unknown.
         "mutation" => example(name, "mutate", &[], &[("mutants", "mutants"), ("unknown", "unknown")]),
+        // Likewise: all constants and wires of the stage.
+        "wires" => example(
+            name,
+            "mutate",
+            &["--wires".to_owned()],
+            &[("mutants", "mutants"), ("not found", "not found")],
+        ),
         "coverage" => example(
             name,
             "coverage",
             &[],
-            &[("holes explained", "holes explained"), ("bins", "bins")],
+            &[
+                ("conditions", "conditions"),
+                ("holes explained", "holes explained"),
+                ("bins", "bins"),
+            ],
         ),
         "fuzz" => {
             let cases = options.share(5_000, 50);

@@ -70,6 +70,7 @@ impl Units for Coverage {
             figures: figures([
                 ("lines", of(&measured.lines)),
                 ("toggles", of(&measured.toggles)),
+                ("conditions", of(&measured.conditions)),
                 ("bins", of(&measured.bins)),
             ]),
             failure: measured.problems(&self.explanations).into_iter().next(),

@@ -1,11 +1,11 @@
 //! Explanations of what is not reached: the table `testbench/coverage/holes.txt`.
 //!
 //! ```text
-//! BLOCK | MODULE | line, toggle or bin | WHAT | reason
+//! BLOCK | MODULE | line, toggle, condition or bin | WHAT | reason
 //! ```
 //!
 //! Block (with its instance), module and what are patterns: `*` stands for any characters, `?` for one. What is a line's
-//! text in the Verilog, a net with its bit, or the name of a bin; `not if (…)` is an `if` that was always true. A net's bits
+//! text in the Verilog, a net with its bit, a term with its value and its condition, or the name of a bin; `not if (…)` is an `if` that was always true. A net's bits
 //! are a list, as in `count[0,4,24-31]`. Lines that begin with `#` are comments.
 
 use std::fmt;
@@ -21,7 +21,7 @@ const TABLE: &str = include_str!("../../coverage/holes.txt");
 pub struct Hole {
     /// Name of the module; for a bin, of the block.
     pub module: String,
-    /// Kind: `line`, `toggle` or `bin`.
+    /// Kind: `line`, `toggle`, `condition` or `bin`.
     pub kind: &'static str,
     /// Description of the point.
     pub what: String,
@@ -120,7 +120,7 @@ pub fn parse(table: &str) -> Result<Vec<Explanation>, Error> {
         let cells = (|| Some((next()?, next()?, next()?, next()?)))();
         let found = cells.and_then(|(block, module, kind, rest)| {
             let (what, reason) = rest.rsplit_once(" | ")?;
-            let known = ["line", "toggle", "bin"].contains(&kind.as_str());
+            let known = ["line", "toggle", "condition", "bin"].contains(&kind.as_str());
             // If the reason ends with a bar it is empty.
             (known && !reason.ends_with('|')).then(|| Explanation {
                 what: what.trim().to_owned(),
@@ -130,7 +130,7 @@ pub fn parse(table: &str) -> Result<Vec<Explanation>, Error> {
                 kind,
             })
         });
-        let wanted = "BLOCK | MODULE | line, toggle or bin | WHAT | reason";
+        let wanted = "BLOCK | MODULE | line, toggle, condition or bin | WHAT | reason";
         found.ok_or_else(|| Error::Option(format!("holes.txt:{number}: `{row}` is not `{wanted}`")))
     })
     .collect()

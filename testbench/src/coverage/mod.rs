@@ -1,7 +1,7 @@
 //! Measures which lines, nets and situations of the emitted Verilog the lock step reaches.
 //!
 //! ```text
-//! block ─► Verilog ─► Verilator --coverage-line --coverage-toggle ─► lock step with the block's own stimuli
+//! block ─► Verilog ─► Verilator --coverage-line --coverage-toggle --coverage-user ─► lock step with the block's own stimuli
 //!                                                                       ├─► points at 0: holes ─┐
 //!                                                                       └─► bins at 0 ──────────┤
 //! testbench/coverage/holes.txt: explanations ────────────────────────────────────────────────────┴─► table, or errors
@@ -9,12 +9,14 @@
 //!
 //! - **Line**: the body that begins in a line was run; for an `if`, the other branch counts too.
 //! - **Toggle**: a bit of a net changed. Memories have no toggles.
+//! - **Condition**: a term of a condition was true, and was false, while it decided (`coverage/condition.rs`).
 //! - **Bins** are what the block's bench counts: saturation at each side, every flag, every state
 //!   ([`Bins`](crate::blocks::Bins)).
 //! - Toggles in the first clocks are not counted, because all nets leave their random start there.
 //! - A hole without an [explanation] is an error, and so is an explanation that no longer matches any hole.
 //! - A module that a block contains several times is counted once, over all its instances.
 
+mod condition;
 pub mod explanation;
 pub mod point;
 pub mod table;
@@ -62,6 +64,8 @@ pub struct Measured {
     pub lines: Share,
     /// Bits of nets.
     pub toggles: Share,
+    /// Terms of conditions, each twice: true and false while it decides.
+    pub conditions: Share,
     /// Bins of the bench.
     pub bins: Share,
     /// Points that were not reached, in the order of the files.
@@ -105,19 +109,21 @@ pub fn measure_with<'a>(
     stimuli: &dyn Fn() -> Box<dyn Stimuli + 'a>,
     clocks: u64,
 ) -> Result<Measured, Error> {
-    let sources = Sources::write(block)?;
     let folder =
         scratch::Folder::new(scratch::PREFIX).map_err(Error::file(&std::env::temp_dir(), "create a folder in"))?;
     let path = folder.path().join("coverage.dat");
-    let run = |clocks: u64| {
+    let run = |sources: &Sources, clocks: u64| {
         let mut device = sources.counting(block, SEED)?;
         let run = blocks::compare_with(block, &mut device, stimuli().as_mut(), clocks, SEED, &mut |_| {})?;
         let written = device.write_coverage(&path);
         written.map_err(|source| Error::Step { clock: clocks, source })?;
         Ok::<_, Error>((run, point::read(&path, sources.files())?))
     };
-    let (_, beginning) = run(BEGINNING_CLOCKS)?;
-    let (run, mut points) = run(clocks)?;
+    let sources = Sources::write(block)?;
+    let (_, beginning) = run(&sources, BEGINNING_CLOCKS)?;
+    let modules: Vec<_> = block.modules()?.iter().map(condition::with_points).collect();
+    let (_, with_conditions) = run(&Sources::of_modules(&modules)?, clocks)?;
+    let (run, mut points) = run(&sources, clocks)?;
     for (point, before) in points.iter_mut().zip(&beginning) {
         // A line is run or not, independent of the nets' random start; Verilator runs what depends on no input only
         // once.
@@ -125,6 +131,10 @@ pub fn measure_with<'a>(
             point.count -= before.count.min(point.count);
         }
     }
+    let conditions = with_conditions
+        .into_iter()
+        .filter(|point| point.kind == PointKind::Condition);
+    points.extend(conditions);
     Ok(Measured::new(block, &run, &points))
 }
 
@@ -149,6 +159,7 @@ impl Measured {
             instance: block.instance().to_owned(),
             lines: share(PointKind::Line),
             toggles: share(PointKind::Toggle),
+            conditions: share(PointKind::Condition),
             bins: Share {
                 reached: run.coverage.len() - missed.len(),
                 all: run.coverage.len(),

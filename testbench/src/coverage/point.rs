@@ -16,9 +16,9 @@ use crate::Error;
 pub struct CoveragePoint {
     /// Name of the module, as in the Verilog.
     pub module: String,
-    /// Kind: line or toggle.
+    /// Kind: line, toggle or condition.
     pub kind: PointKind,
-    /// For a line its text in the Verilog; for a toggle the net, with its bit if it has several.
+    /// For a line its text in the Verilog; for a toggle the net, with its bit if it has several; for a condition the term and its value.
     pub what: String,
     /// How often it was reached.
     pub count: u64,
@@ -31,6 +31,8 @@ pub enum PointKind {
     Line,
     /// A bit of a net changed, up or down.
     Toggle,
+    /// A term of a condition had a value and decided.
+    Condition,
 }
 
 impl PointKind {
@@ -39,6 +41,7 @@ impl PointKind {
         match self {
             Self::Line => "line",
             Self::Toggle => "toggle",
+            Self::Condition => "condition",
         }
     }
 }
@@ -80,15 +83,17 @@ fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<CoveragePoint, Error> 
     let kind = match page {
         "v_toggle" => PointKind::Toggle,
         "v_line" | "v_branch" => PointKind::Line,
+        "v_user" => PointKind::Condition,
         _ => return Err(strange()),
     };
     let what = match kind {
         PointKind::Toggle => value("o")?.to_owned(),
-        PointKind::Line => {
+        PointKind::Line | PointKind::Condition => {
             let number = value("l")?.parse().map_err(|_| strange())?;
             let text = verilog.line(Path::new(value("f")?), number)?;
             // The condition of an `if` may stand for its other branch.
             match value("o")? {
+                _ if kind == PointKind::Condition => text.split_once("// ").ok_or_else(strange)?.1.to_owned(),
                 "else" => format!("not {text}"),
                 _ => text,
             }

@@ -10,7 +10,8 @@ pub const MARKS: Marks = Marks {
     begin: "<!-- coverage: written by `--example coverage -- --write` -->",
     end: "<!-- coverage: end -->",
 };
-const HEAD: &str = "| block | instance | lines | toggles | holes explained | bins |\n|---|---|---|---|---|---|\n";
+const HEAD: &str =
+    "| block | instance | lines | toggles | holes explained | conditions | bins |\n|---|---|---|---|---|---|---|\n";
 
 /// A row per block.
 pub fn markdown(measured: &[Measured], explanations: &[Explanation]) -> String {
@@ -22,13 +23,14 @@ pub fn markdown(measured: &[Measured], explanations: &[Explanation]) -> String {
             .iter()
             .filter(|hole| explanations.iter().any(|e| e.explains(&name, hole)));
         table += &format!(
-            "| {} | {} | {} | {} | {} of {} | {} of {} |\n",
+            "| {} | {} | {} | {} | {} of {} | {} | {} of {} |\n",
             of.block,
             of.instance,
             percent(of.lines),
             percent(of.toggles),
             explained.count(),
             of.holes.len(),
+            percent(of.conditions),
             of.bins.reached,
             of.bins.all
         );

@@ -70,9 +70,15 @@ const FLAGS: [&str; 12] = [
 /// Exit status of a process whose simulation does not come back: that of bad input, here of its Verilog.
 const NO_ANSWER_STATUS: i32 = 2;
 
-/// Additional flags for a simulation that counts lines and toggles. Buses with more bits than given here are not
+/// Additional flags for a simulation that counts lines, toggles and `cover` statements. Buses with more bits than given here are not
 /// counted.
-const COVERAGE_FLAGS: [&str; 4] = ["--coverage-line", "--coverage-toggle", "--coverage-max-width", "1024"];
+const COVERAGE_FLAGS: [&str; 5] = [
+    "--coverage-line",
+    "--coverage-toggle",
+    "--coverage-user",
+    "--coverage-max-width",
+    "1024",
+];
 
 /// Verilog to simulate.
 #[derive(Debug, Clone)]
