@@ -5,7 +5,7 @@
 //! since a memory has no reset: others read as 0. A
 //! host reads any row back while the controller is not busy.
 
-use crate::emit::{self, EmitError, EmitOptions, Header, LIBRARY, Module, digest, shared_name};
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, own_name};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
 use posicast_blocks::setting_banks::{PORTS, ports};
@@ -119,21 +119,9 @@ pub fn simulate(machine: &Settings) -> Result<Box<dyn ClockedBlock>, SimulationE
     Ok(Box::new(Simulated::new("setting_banks", block, ports())?))
 }
 
-/// Name of the banks' module: `posicast_setting_banks_DIGEST`, or `setting_banks` where `prefix` is empty. The digest
-/// identifies the machine's settings, so that axes with the same settings share their banks.
-pub fn name(machine: &Settings, prefix: &str) -> String {
-    match prefix {
-        "" => "setting_banks".to_owned(),
-        _ => shared_name(prefix, &of_content("setting_banks", machine)),
-    }
-}
-
-fn of_content(base: &str, machine: &Settings) -> String {
-    let words: Vec<String> = SettingRow::ALL
-        .iter()
-        .map(|row| machine.word(*row as usize).to_string())
-        .collect();
-    format!("{base}_{:08x}", digest(&words.join(" ")))
+/// Name of the banks' module: `PREFIX_setting_banks`, or `setting_banks` where `prefix` is empty.
+pub fn name(prefix: &str) -> String {
+    own_name(prefix, "setting_banks")
 }
 
 /// Verilog of the banks with the machine's settings in bank 0; the last module is called [`name`].
@@ -141,19 +129,14 @@ fn of_content(base: &str, machine: &Settings) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let named = |base: &str| match prefix {
-        "" => base.to_owned(),
-        _ => of_content(base, machine),
-    };
     let options = EmitOptions {
-        top: named("setting_banks"),
-        // Modules with a machine's contents begin with the prefix; here the names already identify the contents.
-        prefix: if prefix.is_empty() { "" } else { LIBRARY }.to_owned(),
+        top: "setting_banks".to_owned(),
+        prefix: prefix.to_owned(),
         header: Header {
             about: String::new(),
             ports: port_notes(PORTS),
             parameters: Vec::new(),
         },
     };
-    emit::emit(&SettingBanks::new(machine, &named("machine_settings")), &options)
+    emit::emit(&SettingBanks::new(machine, "machine_settings"), &options)
 }

@@ -185,8 +185,6 @@ fn a_name_stands_for_one_content_in_all_machines() {
         "group_",
         "divider_share_",
         "sample_select_",
-        "shaper_registers_",
-        "pwm_registers_",
     ] {
         assert!(
             variants.get(sized).is_some_and(|count| *count > 1),

@@ -141,7 +141,7 @@ pub(crate) fn port_list(ports: &[(&str, Type, String)]) -> String {
 }
 
 /// The same, with what the ports are for behind them.
-fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
+pub(crate) fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
     if ports.is_empty() {
         return "();\n".to_owned();
     }

@@ -11,7 +11,7 @@ mod text;
 mod verilog;
 
 use crate::emit::names::check_name;
-use crate::emit::{EmitError, Header, Module, Parameter, digest, print, shared_name};
+use crate::emit::{EmitError, Header, Module, Parameter, digest, own_name, print};
 use posicast_blocks::registers::{Access, Field, Register, RegisterMap};
 
 /// Verilog of the bank; [`name`] gives its name.
@@ -20,7 +20,7 @@ use posicast_blocks::registers::{Access, Field, Register, RegisterMap};
 /// [`EmitError`] where `prefix` or a port is not a valid Verilog name.
 pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     let body = verilog::body(map);
-    let name = name_of(map, &body, prefix);
+    let name = name(map, prefix);
     check_name(&name).map_err(|cause| EmitError::new(&name, "", cause))?;
     for port in map.ports() {
         check_name(&port.name).map_err(|cause| EmitError::new(&name, &port.name, cause))?;
@@ -28,8 +28,10 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     let header = Header {
         about: format!(
             "Registers of {}: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.\n\
-             Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.",
-            map.name()
+             Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.\n\
+             Digest of the map: {:08x}.",
+            map.name(),
+            digest(&body)
         ),
         ports: Vec::new(),
         parameters: parameters(map),
@@ -42,19 +44,12 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     })
 }
 
-/// Name of the bank's module: `posicast_MAP_registers_DIGEST`, or `registers` where `prefix` is empty.
-///
-/// A bank has offsets, reset values and parameters of its build, far too many for a name. Their digest identifies
-/// them, so that two banks with the same name are equal.
+/// Name of the bank's module: `PREFIX_MAP_registers`, or `registers` where `prefix` is empty. A bank has offsets, reset values and
+/// parameters of its build, so it belongs to one machine, or to one axis.
 pub fn name(map: &RegisterMap, prefix: &str) -> String {
-    name_of(map, &verilog::body(map), prefix)
-}
-
-fn name_of(map: &RegisterMap, body: &str, prefix: &str) -> String {
     match prefix {
         "" => "registers".to_owned(),
-        // The body contains everything that the header says of the build, except the meanings of parameters.
-        _ => shared_name(prefix, &format!("{}_registers_{:08x}", map.name(), digest(body))),
+        _ => own_name(prefix, &format!("{}_registers", map.name())),
     }
 }
 

@@ -6,8 +6,8 @@ use super::blocks::{
 use super::text::{bits, joined, part};
 use crate::emit::Type;
 use crate::emit::print::{self, Lines};
-use posicast_blocks::Direction;
 use posicast_blocks::registers::{Access, Field, FlagSource, Register, RegisterMap};
+use posicast_blocks::{Direction, PortNote};
 
 pub(super) fn body(map: &RegisterMap) -> String {
     let clock = ("input  wire", bits(1), "clk".to_owned());
@@ -25,7 +25,7 @@ pub(super) fn body(map: &RegisterMap) -> String {
         };
         (keyword, ty, port.name.clone())
     });
-    let list = print::port_list(&[clock].into_iter().chain(ports).collect::<Vec<_>>());
+    let list = print::noted_port_list(&[clock].into_iter().chain(ports).collect::<Vec<_>>(), &notes(map));
     let mut lines = Lines::default();
     lines.nest(list.trim_end(), "endmodule", |lines| {
         offsets(lines, map);
@@ -42,6 +42,35 @@ pub(super) fn body(map: &RegisterMap) -> String {
         lines.section(|lines| unused(lines, map));
     });
     lines.text
+}
+
+/// What the ports are for: the meanings of the fields with their units, and what a strobe reports.
+fn notes(map: &RegisterMap) -> Vec<PortNote> {
+    let note = |port: &str, text: String| PortNote {
+        port: port.to_owned(),
+        text,
+    };
+    let mut notes = Vec::new();
+    for register in map.registers() {
+        let word = register.name.to_uppercase();
+        match &register.access {
+            Access::Guarded { while_low } => notes.push(note(while_low, format!("High: writes of {word} are refused"))),
+            Access::Commit { tick } => notes.push(note(tick, format!("Applies what {word} asked for"))),
+            Access::Command { strobe } => notes.push(note(strobe, format!("{word} was written, in this clock"))),
+            Access::Words {
+                strobe, word: place, ..
+            } => {
+                notes.push(note(strobe, format!("A word of {word} was written, in this clock")));
+                notes.push(note(place, format!("Index of that word of {word}")));
+            }
+            _ => {}
+        }
+        notes.extend(register.fields.iter().map(|field| match field.unit.as_str() {
+            "" => note(&field.name, field.meaning.clone()),
+            unit => note(&field.name, format!("{} [{unit}]", field.meaning)),
+        }));
+    }
+    notes
 }
 
 /// The fields of a register and the gaps between them, from bit 31 down, each field with the name that `name` gives

@@ -52,12 +52,17 @@ pub(super) fn register(text: &mut String, prefix: &str, register: &Register, fie
         let _ = writeln!(text, "#define {name}_RESET {:#x}u", register.reset());
     }
     for field in fields {
-        write_field(text, &name, field);
+        write_field(text, &name, &register.name, field);
     }
 }
 
-fn write_field(text: &mut String, register: &str, field: &Field) {
-    let name = format!("{register}_{}", field.name.to_uppercase());
+/// The macros of a field; the only field of a register, which has its name, has it once.
+fn write_field(text: &mut String, word: &str, register: &str, field: &Field) {
+    let name = if field.name == register {
+        word.to_owned()
+    } else {
+        format!("{word}_{}", field.name.to_uppercase())
+    };
     let _ = writeln!(text, "#define {name}_OFST {}u", field.low);
     let _ = writeln!(text, "#define {name}_MSK {:#x}u", field.mask());
     if let Format::Enumeration(choices) = &field.format {

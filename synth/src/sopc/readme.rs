@@ -32,6 +32,10 @@ pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
         return text;
     }
     boards(&mut text, design);
+    // What keeps a power stage safe comes before the steps that load the device.
+    if !projects.is_empty() {
+        resistors(&mut text, design);
+    }
     for (board, core, _) in projects {
         match core {
             Core::System => steps(&mut text, design.machine, *board),
@@ -39,7 +43,6 @@ pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
         }
     }
     if !projects.is_empty() {
-        resistors(&mut text, design);
         for (board, core, pins) in projects {
             pin_table(&mut text, design.machine, *board, *core, pins);
         }
@@ -55,7 +58,7 @@ fn contents(text: &mut String, design: &Design<'_>, projects: &[Project<'_>]) {
 # {machine}
 
 Written by posicast {posicast}. Do not edit what is here: change the machine file and generate anew. `posicast generate` refuses
-to overwrite a file that was edited, and says which.
+to overwrite a file that was edited, and names it.
 
 | folder or file | what |
 |---|---|
@@ -114,7 +117,7 @@ to overwrite a file that was edited, and says which.
          | `report.html`, `wave/`, `plots/` | after `posicast run`: the report to open in a browser, waveforms and pictures of its checks |\n\
          | `posicast.json` | which files are posicast's |\n\n\
          `wave/`, `plots/` and the report of a run are about the machine file and the Verilog here. Once either changes, \
-         `posicast generate`\nremoves them and says so.\n",
+         `posicast generate`\nremoves them and reports it.\n",
     );
 }
 
@@ -179,8 +182,8 @@ fn boards(text: &mut String, design: &Design<'_>) {
     }
     text.push_str(
         "\nThe versions do not mix: Cyclone II and this Nios II are not in 25.1std, Cyclone V projects with a Nios V not in 13.0sp1. \
-         The components are the same for both.\n\nPosicast checks these files without Quartus: its commands, its fitter and its timing have the last word. Whether the \
-         stage fits the device, by estimate and without the processor, says `posicast synth .`\n",
+         The components are the same for both.\n\nPosicast checks these files without Quartus: its commands, its fitter and its timing have the last word. Run \
+         `posicast synth .` to estimate whether the stage fits (without the processor).\n",
     );
 }
 
@@ -199,7 +202,7 @@ fn steps(text: &mut String, machine: &str, board: Board) {
 
 With {quartus}, in its {shell}, from this folder:
 
-1. Copy the project, for Quartus writes in it, and so will you:
+1. Work on a copy: Quartus and you will both edit it.
    `PACKAGE=$PWD; cp -r sopc/quartus/{board} ../{name}; cd ../{name}`.
 2. Build the system: `qsys-script --script=$PACKAGE/sopc/{system}.tcl \"--search-path=$PACKAGE/sopc,\\$\"`. This writes
    `{system}.qsys`.

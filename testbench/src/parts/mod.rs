@@ -237,7 +237,7 @@ impl Block for PartBlock {
             SmallPart::Group(axes) => group::name(*axes, prefix),
             SmallPart::TimeBase(config) => time_base::name(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
-            SmallPart::SettingBanks(settings) => setting_banks::name(settings, prefix),
+            SmallPart::SettingBanks(_) => setting_banks::name(prefix),
         }
     }
 

@@ -351,7 +351,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_0b6795ae u_registers (
+    xy_stage_stage_registers u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),

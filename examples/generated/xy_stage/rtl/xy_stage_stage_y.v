@@ -280,7 +280,7 @@ module xy_stage_stage_y (
         .tap_read_waits     (tap_read_waits)
     );
 
-    posicast_setting_banks_94eabf14 u_setting_banks (
+    xy_stage_y_setting_banks u_setting_banks (
         .clk                (clk),
         .rst                (rst),
         .setting_write      (setting_write),

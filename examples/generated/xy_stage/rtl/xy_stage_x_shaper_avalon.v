@@ -65,7 +65,7 @@ module xy_stage_x_shaper_avalon (
     wire [6:0]         loaded_delay;
     wire               tap_read_waits;
 
-    posicast_shaper_registers_a836fdf4 u_registers (
+    xy_stage_x_shaper_registers u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),

@@ -66,7 +66,7 @@ module xy_stage_x_sliding_mode_avalon (
     wire               overrun;
     wire               ends;
 
-    posicast_sliding_mode_registers_1e2606d4 u_registers (
+    xy_stage_x_sliding_mode_registers u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),
@@ -138,7 +138,7 @@ module xy_stage_x_sliding_mode_avalon (
         .x_4         (selected_velocity)
     );
 
-    posicast_setting_banks_94eabf14 u_setting_banks (
+    xy_stage_x_setting_banks u_setting_banks (
         .clk                (clk),
         .rst                (rst),
         .setting_write      (setting_write),

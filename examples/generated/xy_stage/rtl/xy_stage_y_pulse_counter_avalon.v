@@ -70,7 +70,7 @@ module xy_stage_y_pulse_counter_avalon (
     wire               saturated;
     wire               divider_overrun;
 
-    posicast_pulse_counter_registers_b6c14a58 u_registers (
+    xy_stage_y_pulse_counter_registers u_registers (
         .clk              (clk),
         .rst              (rst),
         .avs_address      (avs_address),

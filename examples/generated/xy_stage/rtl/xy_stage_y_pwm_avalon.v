@@ -65,7 +65,7 @@ module xy_stage_y_pwm_avalon (
     wire [9:0]         minimum_pulse_used;
     wire [3:0]         gates;
 
-    posicast_pwm_registers_afef7fa5 u_registers (
+    xy_stage_y_pwm_registers u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),

@@ -40,7 +40,7 @@ set_module_assignment embeddedsw.dts.compatible {posicast,stage-2.2}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_stage
-    add_fileset_file posicast_stage_registers_0b6795ae.v VERILOG PATH ../rtl/posicast_stage_registers_0b6795ae.v
+    add_fileset_file xy_stage_stage_registers.v VERILOG PATH ../rtl/xy_stage_stage_registers.v
     add_fileset_file posicast_time_base_5000.v VERILOG PATH ../rtl/posicast_time_base_5000.v
     add_fileset_file posicast_schedule_210.v VERILOG PATH ../rtl/posicast_schedule_210.v
     add_fileset_file posicast_divider_share_2.v VERILOG PATH ../rtl/posicast_divider_share_2.v
@@ -62,9 +62,9 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file posicast_product_32.v VERILOG PATH ../rtl/posicast_product_32.v
     add_fileset_file posicast_channel_sums_32x57x3_f16.v VERILOG PATH ../rtl/posicast_channel_sums_32x57x3_f16.v
     add_fileset_file xy_stage_x_motion_shaper_32x3.v VERILOG PATH ../rtl/xy_stage_x_motion_shaper_32x3.v
-    add_fileset_file posicast_machine_settings_94eabf14.v VERILOG PATH ../rtl/posicast_machine_settings_94eabf14.v
+    add_fileset_file xy_stage_x_machine_settings.v VERILOG PATH ../rtl/xy_stage_x_machine_settings.v
     add_fileset_file posicast_ram_32x32.v VERILOG PATH ../rtl/posicast_ram_32x32.v
-    add_fileset_file posicast_setting_banks_94eabf14.v VERILOG PATH ../rtl/posicast_setting_banks_94eabf14.v
+    add_fileset_file xy_stage_x_setting_banks.v VERILOG PATH ../rtl/xy_stage_x_setting_banks.v
     add_fileset_file posicast_sequencer.v VERILOG PATH ../rtl/posicast_sequencer.v
     add_fileset_file posicast_tracking.v VERILOG PATH ../rtl/posicast_tracking.v
     add_fileset_file posicast_operands.v VERILOG PATH ../rtl/posicast_operands.v
@@ -110,6 +110,8 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_y_machine_taps.v VERILOG PATH ../rtl/xy_stage_y_machine_taps.v
     add_fileset_file xy_stage_y_tap_banks.v VERILOG PATH ../rtl/xy_stage_y_tap_banks.v
     add_fileset_file xy_stage_y_motion_shaper_32x3.v VERILOG PATH ../rtl/xy_stage_y_motion_shaper_32x3.v
+    add_fileset_file xy_stage_y_machine_settings.v VERILOG PATH ../rtl/xy_stage_y_machine_settings.v
+    add_fileset_file xy_stage_y_setting_banks.v VERILOG PATH ../rtl/xy_stage_y_setting_banks.v
     add_fileset_file xy_stage_stage_y.v VERILOG PATH ../rtl/xy_stage_stage_y.v
     add_fileset_file xy_stage_stage.v VERILOG PATH ../rtl/xy_stage_stage.v
 }

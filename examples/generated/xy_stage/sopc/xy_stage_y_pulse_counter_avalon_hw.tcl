@@ -27,7 +27,7 @@ set_module_assignment embeddedsw.dts.compatible {posicast,pulse_counter-2.0}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_y_pulse_counter_avalon
-    add_fileset_file posicast_pulse_counter_registers_b6c14a58.v VERILOG PATH ../rtl/posicast_pulse_counter_registers_b6c14a58.v
+    add_fileset_file xy_stage_y_pulse_counter_registers.v VERILOG PATH ../rtl/xy_stage_y_pulse_counter_registers.v
     add_fileset_file posicast_time_base_5000.v VERILOG PATH ../rtl/posicast_time_base_5000.v
     add_fileset_file posicast_synchroniser.v VERILOG PATH ../rtl/posicast_synchroniser.v
     add_fileset_file posicast_glitch_filter.v VERILOG PATH ../rtl/posicast_glitch_filter.v

@@ -28,7 +28,7 @@ set_module_assignment embeddedsw.dts.compatible {posicast,pwm-1.0}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_y_pwm_avalon
-    add_fileset_file posicast_pwm_registers_afef7fa5.v VERILOG PATH ../rtl/posicast_pwm_registers_afef7fa5.v
+    add_fileset_file xy_stage_y_pwm_registers.v VERILOG PATH ../rtl/xy_stage_y_pwm_registers.v
     add_fileset_file posicast_sample_select_17x1.v VERILOG PATH ../rtl/posicast_sample_select_17x1.v
     add_fileset_file posicast_pwm_carrier.v VERILOG PATH ../rtl/posicast_pwm_carrier.v
     add_fileset_file posicast_pwm_timing_25x50.v VERILOG PATH ../rtl/posicast_pwm_timing_25x50.v

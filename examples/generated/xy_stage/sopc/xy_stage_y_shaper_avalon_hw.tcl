@@ -33,7 +33,7 @@ set_module_assignment embeddedsw.dts.compatible {posicast,shaper-1.1}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_y_shaper_avalon
-    add_fileset_file posicast_shaper_registers_a836fdf4.v VERILOG PATH ../rtl/posicast_shaper_registers_a836fdf4.v
+    add_fileset_file xy_stage_y_shaper_registers.v VERILOG PATH ../rtl/xy_stage_y_shaper_registers.v
     add_fileset_file posicast_sample_select_32x3.v VERILOG PATH ../rtl/posicast_sample_select_32x3.v
     add_fileset_file xy_stage_y_machine_taps.v VERILOG PATH ../rtl/xy_stage_y_machine_taps.v
     add_fileset_file posicast_ram_128x25.v VERILOG PATH ../rtl/posicast_ram_128x25.v

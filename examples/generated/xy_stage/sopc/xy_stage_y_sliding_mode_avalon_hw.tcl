@@ -26,11 +26,11 @@ set_module_assignment embeddedsw.dts.compatible {posicast,sliding_mode-1.1}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_y_sliding_mode_avalon
-    add_fileset_file posicast_sliding_mode_registers_1e2606d4.v VERILOG PATH ../rtl/posicast_sliding_mode_registers_1e2606d4.v
+    add_fileset_file xy_stage_y_sliding_mode_registers.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_registers.v
     add_fileset_file posicast_sample_select_32x5.v VERILOG PATH ../rtl/posicast_sample_select_32x5.v
-    add_fileset_file posicast_machine_settings_94eabf14.v VERILOG PATH ../rtl/posicast_machine_settings_94eabf14.v
+    add_fileset_file xy_stage_y_machine_settings.v VERILOG PATH ../rtl/xy_stage_y_machine_settings.v
     add_fileset_file posicast_ram_32x32.v VERILOG PATH ../rtl/posicast_ram_32x32.v
-    add_fileset_file posicast_setting_banks_94eabf14.v VERILOG PATH ../rtl/posicast_setting_banks_94eabf14.v
+    add_fileset_file xy_stage_y_setting_banks.v VERILOG PATH ../rtl/xy_stage_y_setting_banks.v
     add_fileset_file posicast_sequencer.v VERILOG PATH ../rtl/posicast_sequencer.v
     add_fileset_file posicast_tracking.v VERILOG PATH ../rtl/posicast_tracking.v
     add_fileset_file posicast_operands.v VERILOG PATH ../rtl/posicast_operands.v

@@ -75,14 +75,14 @@ posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis
     posicast_patience left = posicast_patience_for(stage, ticks);
     posicast_result result;
 
-    if (!is_axis(stage, axis) || bank > 2 || law > POSICAST_AXIS_LAW_LAW_PID)
+    if (!is_axis(stage, axis) || bank > 2 || law > POSICAST_AXIS_LAW_PID)
         return POSICAST_BAD_ARGUMENT;
     /* Writes are refused while a commit is pending, also one of another axis. */
     result = wait_for_commit(stage, &left);
     if (result != POSICAST_OK)
         return result;
     IOWR_POSICAST_AXIS_LAW(stage->base, axis,
-                           AS_FIELD(law, POSICAST_AXIS_LAW_LAW) | AS_FIELD(bank, POSICAST_AXIS_LAW_LAW_BANK));
+                           AS_FIELD(law, POSICAST_AXIS_LAW) | AS_FIELD(bank, POSICAST_AXIS_LAW_LAW_BANK));
     IOWR_POSICAST_STAGE_COMMIT(stage->base, 1u);
     return wait_for_commit(stage, &left);
 }
@@ -110,6 +110,6 @@ posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axi
             return result;
         settings->word[row] = (uint32_t)IORD_POSICAST_AXIS_SETTING_LOADED(stage->base, axis);
     }
-    settings->law = FIELD(IORD_POSICAST_AXIS_LAW(stage->base, axis), POSICAST_AXIS_LAW_LAW);
+    settings->law = FIELD(IORD_POSICAST_AXIS_LAW(stage->base, axis), POSICAST_AXIS_LAW);
     return POSICAST_OK;
 }

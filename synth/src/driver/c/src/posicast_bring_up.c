@@ -134,7 +134,7 @@ posicast_result posicast_trace_read(const posicast_stage *stage, uint32_t axis, 
     signals = signals_of(stage, axis);
     for (place = 0; place < signals && result == POSICAST_OK; place++) {
         IOWR_POSICAST_AXIS_TRACE_ADDRESS(
-            stage->base, axis, AS_FIELD(row * signals + place, POSICAST_AXIS_TRACE_ADDRESS_TRACE_ADDRESS));
+            stage->base, axis, AS_FIELD(row * signals + place, POSICAST_AXIS_TRACE_ADDRESS));
         /* The memory needs some clocks, like the flags. */
         result = posicast_wait_flags(stage);
         words[place] = (int32_t)IORD_POSICAST_AXIS_TRACE_DATA(stage->base, axis);

@@ -344,7 +344,7 @@ int32_t posicast_command_position(const posicast_stage *stage, uint32_t axis)
 
 uint32_t posicast_causes(const posicast_stage *stage, uint32_t axis)
 {
-    return FIELD(IORD_POSICAST_AXIS_CAUSES(stage->base, axis), POSICAST_AXIS_CAUSES_CAUSES);
+    return FIELD(IORD_POSICAST_AXIS_CAUSES(stage->base, axis), POSICAST_AXIS_CAUSES);
 }
 
 const char *posicast_cause_name(uint32_t causes)

@@ -3,7 +3,7 @@
 
 #include "posicast_wait.h"
 
-#define ENTRY_MSK (POSICAST_AXIS_ERROR_ENTRY_ERROR_ENTRY_MSK >> POSICAST_AXIS_ERROR_ENTRY_ERROR_ENTRY_OFST)
+#define ENTRY_MSK (POSICAST_AXIS_ERROR_ENTRY_MSK >> POSICAST_AXIS_ERROR_ENTRY_OFST)
 
 static const int32_t largest_entry = (int32_t)(ENTRY_MSK / 2u);
 
@@ -115,7 +115,7 @@ posicast_result posicast_load_error_table(const posicast_stage *stage, uint32_t 
     for (entry = 0; entry < count; entry++) {
         address(stage, axis, 1, entry);
         IOWR_POSICAST_AXIS_ERROR_ENTRY(stage->base, axis,
-                                       AS_FIELD(entries[entry], POSICAST_AXIS_ERROR_ENTRY_ERROR_ENTRY));
+                                       AS_FIELD(entries[entry], POSICAST_AXIS_ERROR_ENTRY));
     }
     result = posicast_wait_flags(stage);
     if (result != POSICAST_OK)
@@ -169,7 +169,7 @@ posicast_result posicast_read_error_table(const posicast_stage *stage, uint32_t 
             result = wait_error_status(stage, axis, POSICAST_AXIS_ERROR_STATUS_ERROR_READ_WAITS_MSK, 0, ticks);
         if (result != POSICAST_OK)
             return result;
-        word = FIELD(IORD_POSICAST_AXIS_ERROR_LOADED(stage->base, axis), POSICAST_AXIS_ERROR_LOADED_ERROR_LOADED);
+        word = FIELD(IORD_POSICAST_AXIS_ERROR_LOADED(stage->base, axis), POSICAST_AXIS_ERROR_LOADED);
         entries[entry] = (int32_t)(word ^ sign) - (int32_t)sign;
     }
     return POSICAST_OK;

@@ -1,4 +1,4 @@
-// posicast_machine_settings_94eabf14
+// xy_stage_y_machine_settings
 // Block ROM, 16 of 16 words of 32 bits are used: data one clock after the address.
 // A memory with contents and a registered read is what becomes block RAM; a `case` would become
 // logic.
@@ -7,7 +7,7 @@
 
 `default_nettype none
 
-module posicast_machine_settings_94eabf14 (
+module xy_stage_y_machine_settings (
     input  wire        clk,
     input  wire [3:0]  address,
     output reg  [31:0] data

@@ -1,4 +1,4 @@
-// posicast_setting_banks_94eabf14
+// xy_stage_x_setting_banks
 // The settings of a controller that stands alone: bank 0 is a ROM with the machine's settings,
 // banks 1 and 2 can be loaded.
 //
@@ -10,7 +10,7 @@
 
 `default_nettype none
 
-module posicast_setting_banks_94eabf14 (
+module xy_stage_x_setting_banks (
     input  wire        clk,
     input  wire        rst,                // Synchronous reset
     input  wire        setting_write,      // One clock: writes `setting_word` to `setting_row` of
@@ -53,7 +53,7 @@ module posicast_setting_banks_94eabf14 (
     reg         served;
     reg  [31:0] read_back, read_back_next;
 
-    posicast_machine_settings_94eabf14 u_machine_settings (
+    xy_stage_x_machine_settings u_machine_settings (
         .clk     (clk),
         .address (read_row),
         .data    (machine_settings_data)
