@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-/// Returns the files under `folder` that the file `head`, which declares its modules, does not name.
-fn forgotten(folder: &Path, head: &Path) -> Vec<String> {
+/// Returns the files under `folder` that the file `head`, which declares its modules, does not name, and that `manifest` does not
+/// declare as programs of their own.
+fn forgotten(folder: &Path, head: &Path, manifest: &str) -> Vec<String> {
     let text = fs::read_to_string(head).unwrap();
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -12,14 +13,15 @@ fn forgotten(folder: &Path, head: &Path) -> Vec<String> {
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let inner = path.join("mod.rs");
         let is_module = path.extension().is_some_and(|end| end == "rs") || inner.is_file();
-        if !is_module || path == head {
+        let is_program = manifest.contains(&format!("[[test]]\nname = \"{name}\""));
+        if !is_module || is_program || path == head {
             continue;
         }
         if !text.lines().any(|line| line.ends_with(&format!("mod {name};"))) {
             found.push(path.display().to_string());
         }
         if inner.is_file() {
-            found.extend(forgotten(&path, &inner));
+            found.extend(forgotten(&path, &inner, ""));
         }
     }
     found
@@ -30,13 +32,15 @@ fn every_file_of_tests_is_named_in_the_suite_of_its_crate() {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let mut suites = 0;
     for entry in fs::read_dir(workspace).unwrap() {
-        let tests = entry.unwrap().path().join("tests");
+        let member = entry.unwrap().path();
+        let tests = member.join("tests");
         let head = tests.join("main.rs");
         if !head.is_file() {
             continue;
         }
         suites += 1;
-        let forgotten = forgotten(&tests, &head);
+        let manifest = fs::read_to_string(member.join("Cargo.toml")).unwrap();
+        let forgotten = forgotten(&tests, &head, &manifest);
         assert!(
             forgotten.is_empty(),
             "no `mod` in {} or below names {forgotten:?}",

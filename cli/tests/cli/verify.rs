@@ -177,7 +177,7 @@ fn verify(output: &Path, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn cli_verify_of_a_folder_compares_the_blocks_in_its_components_and_names_the_broken_row() {
+fn long_cli_verify_of_a_folder_compares_the_blocks_in_its_components_and_names_the_broken_row() {
     let folder = tempfile::tempdir().unwrap();
     let output = generated(folder.path());
     for (block, component, file, from, to) in [
