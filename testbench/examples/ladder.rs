@@ -139,7 +139,7 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
             tests(name, &["prop_"], Some(cases))
         }
         // `formal_` are the blocks that were broken on purpose.
-        "long tests" => tests(name, &["long_", "formal_"], None),
+        "long tests" => tests(name, &["long_", "formal_", "formal::"], None),
         _ => faults(options.share(10_000, 50)),
     }
 }

@@ -79,5 +79,36 @@ pub mod unset;
 pub mod verilator;
 pub mod wave;
 
+use blocks::registry::RegistryRow;
+
 pub use error::{BlockError, Error, MissingTool};
 pub use wavecmp::wording;
+
+/// Every kind of block, in the order of `posicast verify`.
+pub(crate) const REGISTRY: [RegistryRow; 25] = [
+    pulse_counter::ROW,
+    divider::ROW,
+    pwm::ROW,
+    sliding_mode::ROW,
+    shaper::ROW,
+    cascade::ROW,
+    segments::ROW,
+    axis::ROW,
+    drive_command::ROW,
+    trace::ROW,
+    linear_scale::ROW,
+    error_table::ROW,
+    encoder_generator::ROW,
+    excitation::ROW,
+    uart_bridge::ROW,
+    spi_bridge::ROW,
+    parts::TIME_BASE,
+    parts::SCHEDULE,
+    parts::DIVIDER_SHARE,
+    parts::GROUP,
+    parts::SAMPLE_SELECT,
+    parts::SETTING_BANKS,
+    registers::ROW,
+    component::ROW,
+    stage::ROW,
+];

@@ -8,16 +8,28 @@
 //! | `crosssim::BLOCK` | Icarus agrees with the model, and shows no `x` |
 //! | `rusthdl::BLOCK` | RustHDL's simulator agrees with the model |
 //! | `mutate::BLOCK::FAULT` | the stimuli find the fault in the Verilog |
+//! | `formal::FILE` | all proofs with the property file `testbench/src/*/FILE.sv` succeed, and all their covers are reached |
 //!
 //! Sizes and faults are rows in `testbench/src/BLOCK/trials.rs`.
 
-#![allow(clippy::print_stderr, reason = "this is a program")]
+#![allow(
+    clippy::print_stderr,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "this is a program of tests"
+)]
+
+#[path = "formal/results.rs"]
+mod results;
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use libtest_mimic::{Arguments, Failed, Trial as Test};
 use posicast_testbench::blocks::{self, Block, BlockMutant, BlockTrials, Run, Sources, Trial, rusthdl};
+use posicast_testbench::formal;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Device, LockstepOptions};
 use posicast_testbench::mutation::NamedMutant;
@@ -27,6 +39,8 @@ const CLOCKS: u64 = 1_000_000;
 const ICARUS_CLOCKS: u64 = 20_000;
 const RUSTHDL_CLOCKS: u64 = 3_000;
 const ICARUS_SEED: u64 = 4;
+/// Time of a proof whose result is not recorded.
+const PROOF_LIMIT: Duration = Duration::from_secs(500);
 /// Cases of a shaper that a million clocks reach often.
 const OFTEN: [&str; 4] = ["swaps", "saturated", "handovers", "handovers over"];
 
@@ -39,8 +53,55 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let tests = all.into_iter().flat_map(tests_of).collect();
+    let files = match property_files() {
+        Ok(files) => files,
+        Err(error) => {
+            eprintln!("the folders of the blocks cannot be read: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let proofs = files
+        .into_iter()
+        .map(|file| Test::test(format!("formal::{file}"), move || is_proven(&file)));
+    let tests = all.into_iter().flat_map(tests_of).chain(proofs).collect();
     libtest_mimic::run(&arguments, tests).exit_code()
+}
+
+/// Names of the property files in the folders of the blocks.
+fn property_files() -> std::io::Result<Vec<String>> {
+    let mut files = Vec::new();
+    for folder in Path::new(env!("CARGO_MANIFEST_DIR")).join("src").read_dir()? {
+        let folder = folder?.path();
+        if !folder.is_dir() {
+            continue;
+        }
+        for file in folder.read_dir()? {
+            let file = file?.path();
+            let name = file.file_stem().and_then(|name| name.to_str());
+            files.extend(
+                name.filter(|_| file.extension().is_some_and(|end| end == "sv"))
+                    .map(str::to_owned),
+            );
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn is_proven(file: &str) -> Result<(), Failed> {
+    for task in &blocks::proofs_named(file)? {
+        let result = results::known_or(task, "proven", || {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let outcome = formal::run(task, folder.path(), PROOF_LIMIT).expect("the proof runs");
+            assert!(outcome.is_good(), "{outcome:?}");
+            assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
+            format!("{} assertions, {} covers", outcome.assertions, outcome.covers.len())
+        });
+        if !result.ends_with(" covers") {
+            return Err(format!("{}: {result}", task.name).into());
+        }
+    }
+    Ok(())
 }
 
 fn tests_of(block: BlockTrials) -> Vec<Test> {

@@ -4,7 +4,8 @@
 //! model, its RustHDL simulation, its stimuli, and the cases that these are expected to reach. To try one:
 //!
 //! ```no_run
-//! use posicast_testbench::blocks::{self, Block, PulseCounterBlock, Sources};
+//! use posicast_testbench::blocks::{self, Block, Sources};
+//! use posicast_testbench::pulse_counter::PulseCounterBlock;
 //!
 //! let block = PulseCounterBlock::new("", "all axes");
 //! let sources = Sources::write(&block)?;
@@ -15,7 +16,7 @@
 //! # Ok::<(), posicast_testbench::Error>(())
 //! ```
 //!
-//! A new block adds a file here that implements [`Block`] and has a row in the registry, from which all rungs take it.
+//! A new block has a folder beside this one, with its [`Block`] and its row of the registry, from which all rungs take it.
 
 pub(crate) mod changes;
 pub(crate) mod inside;

@@ -8,7 +8,7 @@
 //! | [`areas`](RegistryRow::areas) | `docs/area.md` |
 //! | [`trials`](RegistryRow::trials), [`mutants`](RegistryRow::mutants) | the tests (`testbench/tests/blocks.rs`) |
 //!
-//! The row of a new block is in the file of its bench; add it to [`REGISTRY`].
+//! The row of a new block is in the file of its bench; name the block in `lib.rs`, as a module and in [`REGISTRY`].
 
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::pwm::PwmConfig;
@@ -18,42 +18,9 @@ use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::Module;
 
 use super::Block;
-use crate::Error;
 use crate::component::ComponentBlock;
 use crate::formal::Task;
-use crate::{
-    axis, cascade, component, divider, drive_command, encoder_generator, error_table, excitation, linear_scale, parts,
-    pulse_counter, pwm, registers, segments, shaper, sliding_mode, spi_bridge, stage, trace, uart_bridge,
-};
-
-/// Every kind of block, in the order of `posicast verify`.
-const REGISTRY: [RegistryRow; 25] = [
-    pulse_counter::ROW,
-    divider::ROW,
-    pwm::ROW,
-    sliding_mode::ROW,
-    shaper::ROW,
-    cascade::ROW,
-    segments::ROW,
-    axis::ROW,
-    drive_command::ROW,
-    trace::ROW,
-    linear_scale::ROW,
-    error_table::ROW,
-    encoder_generator::ROW,
-    excitation::ROW,
-    uart_bridge::ROW,
-    spi_bridge::ROW,
-    parts::TIME_BASE,
-    parts::SCHEDULE,
-    parts::DIVIDER_SHARE,
-    parts::GROUP,
-    parts::SAMPLE_SELECT,
-    parts::SETTING_BANKS,
-    registers::ROW,
-    component::ROW,
-    stage::ROW,
-];
+use crate::{Error, REGISTRY};
 
 /// Benches of blocks.
 pub(crate) type Benches = Vec<Box<dyn Block>>;

@@ -1,75 +1,10 @@
 //! Proofs of encoder, time base, PWM, segments, scale, trace, test signals and the bridge of the host link.
 
-use crate::formal::{fails, is_no_longer_proven, proven};
-
-#[test]
-fn formal_pulse_counter() {
-    proven("pulse_counter", 0);
-}
-
-#[test]
-fn formal_trace() {
-    proven("trace", 0);
-}
-
-#[test]
-fn formal_sample_select() {
-    proven("sample_select", 1);
-}
-
-#[test]
-fn formal_schedule() {
-    proven("schedule", 1);
-}
-
-#[test]
-fn formal_time_base() {
-    proven("time_base", 0);
-}
-
-#[test]
-fn formal_divider_share() {
-    proven("divider_share", 0);
-}
-
-#[test]
-fn formal_segments() {
-    proven("segments", 0);
-}
-
-#[test]
-fn formal_segments_range() {
-    proven("segments_range", 0);
-}
-
-#[test]
-fn formal_divider() {
-    proven("divider", 0);
-}
-
-#[test]
-fn formal_encoder_generator() {
-    proven("encoder_generator", 0);
-}
-
-#[test]
-fn formal_excitation() {
-    proven("excitation", 0);
-}
-
-#[test]
-fn formal_uart_bridge() {
-    proven("uart_bridge", 0);
-}
+use crate::formal::{fails, is_no_longer_proven};
 
 #[test]
 fn formal_a_request_whose_crc_is_wrong_is_found() {
     is_no_longer_proven("uart_bridge", "request_q <= whole", "request_q <= delimiter & begun");
-}
-
-#[test]
-fn formal_spi_bridge() {
-    proven("spi_bridge", 0);
 }
 
 #[test]
@@ -80,11 +15,6 @@ fn formal_a_byte_that_goes_on_in_the_next_selection_is_found() {
         "place_next = place",
         "known_lines",
     );
-}
-
-#[test]
-fn formal_uart_sequencer() {
-    proven("uart_sequencer", 0);
 }
 
 #[test]
@@ -105,20 +35,6 @@ fn formal_a_repeated_request_that_is_executed_again_is_found() {
         "1'b0",
         "known_again",
     );
-}
-
-#[test]
-fn formal_error_table() {
-    for size in 0..2 {
-        proven("error_table", size);
-    }
-}
-
-#[test]
-fn formal_error_lookup() {
-    for size in 0..2 {
-        proven("error_lookup", size);
-    }
 }
 
 #[test]
@@ -149,16 +65,6 @@ fn formal_a_neighbour_behind_the_table_is_found() {
 #[test]
 fn formal_an_average_that_is_rounded_down_is_found() {
     is_no_longer_proven("error_lookup", "rounded = average + half", "rounded = average");
-}
-
-#[test]
-fn formal_linear_scale() {
-    proven("linear_scale", 0);
-}
-
-#[test]
-fn formal_serial_ratio() {
-    proven("serial_ratio", 2);
 }
 
 #[test]

@@ -1,27 +1,6 @@
 //! Proofs of the blocks that the bus writes: registers, commits, settings.
 
-use crate::formal::{fails, is_no_longer_proven, proven};
-
-#[test]
-fn formal_registers() {
-    proven("registers", 0);
-}
-
-#[test]
-fn formal_commit() {
-    proven("commit", 0);
-    proven("commit", 1);
-}
-
-#[test]
-fn formal_setting_banks() {
-    proven("setting_banks", 0);
-}
-
-#[test]
-fn formal_law_and_bank() {
-    proven("law_and_bank", 0);
-}
+use crate::formal::{fails, is_no_longer_proven};
 
 #[test]
 fn formal_a_law_that_changes_in_a_pass_is_found() {

@@ -1,4 +1,4 @@
-//! Runs the quick proofs, and checks that each property file fails on a block with a deliberate fault.
+//! Checks that each property file fails on a block with a deliberate fault; `blocks.rs` proves the blocks themselves.
 //!
 //! A result that stands in `formal/results.txt` for the same fingerprint of the task is not computed again: see [`results`].
 
@@ -13,22 +13,9 @@ use crate::support;
 use std::time::Duration;
 
 use posicast_testbench::blocks::proofs_named;
-use posicast_testbench::formal::{ProofVerdict, Task, proves, run, search};
+use posicast_testbench::formal::{ProofVerdict, Task, proves, search};
 
 const LIMIT: Duration = Duration::from_secs(120);
-
-#[track_caller]
-pub(crate) fn proven(name: &str, size: usize) {
-    let task = &proofs_named(name).unwrap()[size];
-    let result = results::known_or(task, "proven", || {
-        let folder = tempfile::tempdir().unwrap();
-        let outcome = run(task, folder.path(), LIMIT).unwrap();
-        assert!(outcome.is_good(), "{outcome:?}");
-        assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
-        format!("{} assertions, {} covers", outcome.assertions, outcome.covers.len())
-    });
-    assert!(result.ends_with(" covers"), "{result}");
-}
 
 /// Replaces the first `from` in the block's Verilog by `to`, and requires a counterexample to a property whose name
 /// begins with `property`.

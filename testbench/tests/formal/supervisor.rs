@@ -1,37 +1,6 @@
 //! Proofs of the supervisor of an axis, its command to the drive, and the group.
 
-use crate::formal::{fails, proven};
-
-#[test]
-fn formal_axis() {
-    for subject in [
-        "axis",
-        "axis_table",
-        "axis_causes",
-        "axis_brake",
-        "axis_monitors",
-        "axis_lines",
-    ] {
-        proven(subject, 0);
-    }
-}
-
-#[test]
-fn formal_drive_command() {
-    proven("drive_command", 0);
-}
-
-#[test]
-fn formal_axes_of_a_stage() {
-    for axis in [0, 1] {
-        proven("stage_axis", axis);
-    }
-}
-
-#[test]
-fn formal_group() {
-    proven("group", 0);
-}
+use crate::formal::fails;
 
 #[test]
 fn formal_a_brake_that_opens_with_the_outputs_off_is_found() {

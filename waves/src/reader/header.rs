@@ -112,7 +112,7 @@ pub(crate) struct Declarations {
     /// The slot of all signals without a wanted name; it has no bits, so that no change of it is kept.
     unwanted: Option<u32>,
     /// Number of times that a path was declared, and its first slot.
-    seen: HashMap<String, (u32, u32)>,
+    seen: HashMap<String, (u32, Owner)>,
 }
 
 impl Declarations {
@@ -265,7 +265,7 @@ impl Declarations {
         Ok(self.kinds.len() as u32 - 1)
     }
 
-    /// Adds a name for a slot, in the open scopes. If it was declared before for the same slot, nothing happens.
+    /// Adds a name for a slot, in the open scopes. If it was declared before for the same slot and range, nothing happens.
     pub(crate) fn add_name(&mut self, name: &str, slot: u32) -> Result<(), String> {
         let (mut path, vector, range) = self.path(name, self.kinds[slot as usize]);
         self.name_bytes += vector.len();
@@ -275,9 +275,10 @@ impl Declarations {
         if self.names.len() as u64 == MOST_SIGNALS {
             return Err(too_many_signals());
         }
-        let (count, first) = self.seen.entry(path.clone()).or_insert((0, slot));
+        let own = Owner { slot, range };
+        let (count, first) = self.seen.entry(path.clone()).or_insert((0, own));
         *count += 1;
-        if *count > 1 && *first == slot {
+        if *count > 1 && first.is(own) {
             return Ok(());
         }
         if *count > 1 {
@@ -286,10 +287,33 @@ impl Declarations {
                 Some(Range { left, right }) if left != right => format!("{vector}[{left}:{right}]"),
                 _ => format!("{path}#{count}"),
             };
+            // Parts of a vector may have the same identifier: each is a name, once.
+            if self
+                .seen
+                .insert(path.clone(), (1, own))
+                .is_some_and(|(_, before)| before.is(own))
+            {
+                return Ok(());
+            }
         }
         let part = range.map(|range| (vector, range));
         self.names.push(Named { path, slot, part });
         Ok(())
+    }
+}
+
+/// What a name was declared for.
+#[derive(Debug, Clone, Copy)]
+struct Owner {
+    slot: u32,
+    range: Option<Range>,
+}
+
+impl Owner {
+    /// Whether it is the same signal; a declaration without a range fits any.
+    fn is(self, other: Self) -> bool {
+        let ranges = self.range.zip(other.range);
+        self.slot == other.slot && ranges.is_none_or(|(one, two)| one == two)
     }
 }
 
@@ -369,5 +393,16 @@ mod tests {
         let part = |at: usize| declarations.names[at].part.clone();
         assert_eq!(part(9), Some(("t.net".to_owned(), Range { left: -1, right: -1 })));
         assert_eq!(part(10), None);
+    }
+
+    #[test]
+    fn parts_of_a_vector_with_one_identifier_are_two_names() {
+        let mut declarations = Declarations::default();
+        let nibble = declarations.add_slot(Kind::Bits(4)).unwrap();
+        for name in ["a[7:4]", "a[3:0]", "a[3:0]", "a[7:4]", "a"] {
+            declarations.add_name(name, nibble).unwrap();
+        }
+        let parts = declarations.names.iter().map(|name| (name.path.as_str(), name.slot));
+        assert_eq!(parts.collect::<Vec<_>>(), [("a", nibble), ("a[3:0]", nibble)]);
     }
 }
