@@ -7,8 +7,8 @@
 //!
 //! It is checked on the netlist that Yosys makes of the emitted Verilog (flattened, processes turned into flip-flops), pin by pin:
 //! every reader of the pin is the data input of a flip-flop, and its output has exactly one reader, again the data input of a
-//! flip-flop. Logic before the first or between the two, and a second reader, are findings; an inverter is none, as it cannot glitch. A
-//! pin that several axes share may have a synchroniser in each.
+//! flip-flop. Logic before the first or between the two is a finding, and so is a second reader. An inverter is allowed, since it cannot
+//! glitch. A pin that several axes share may have a synchroniser in each.
 //!
 //! This shows the structure. It does not show that the two flip-flops are placed side by side, nor their settling time.
 
@@ -32,7 +32,7 @@ pub const CROSSINGS_MARKS: Marks = Marks {
 /// Cells that invert a bit.
 const INVERTERS: [&str; 3] = ["$not", "$logic_not", "$_NOT_"];
 
-/// What is behind an asynchronous pin.
+/// The logic that reads an asynchronous pin.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Crossing {
     /// Name of the pin.
@@ -41,7 +41,7 @@ pub struct Crossing {
     pub synchronisers: Vec<String>,
     /// Number of cells that read the second flip-flops.
     pub readers: usize,
-    /// Other readers: logic before a flip-flop, or beside it.
+    /// Unexpected readers: logic before a flip-flop, or beside it.
     pub findings: Vec<String>,
 }
 

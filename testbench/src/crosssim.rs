@@ -208,7 +208,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn initial_values_go_and_nothing_else() {
+    fn only_initial_values_are_removed() {
         let modules = posicast_hdl::axis::emit("").unwrap();
         let before: usize = modules
             .iter()

@@ -128,7 +128,7 @@ pub struct MissingTool {
     pub tool: String,
     /// Purpose of the program.
     pub purpose: &'static str,
-    /// How to install it.
+    /// Instruction that installs the tool.
     pub remedy: &'static str,
 }
 

@@ -105,8 +105,8 @@ impl Icarus {
 
         let mut compile = ICARUS.command();
         compile.env("TMPDIR", folder.path());
-        // Icarus only warns about a port of another width, with a text that it uses for nothing else; this is made an
-        // error below.
+        // Icarus only warns about a port whose width differs, in a text that it uses for no other problem. The code below
+        // turns this warning into an error.
         compile
             .args(["-g2005", "-Wall", "-s", SCOPE, "-o"])
             .arg(folder.path().join(PROGRAM))
@@ -269,7 +269,7 @@ impl ClockedBlock for Icarus {
     }
 }
 
-/// What Icarus needs and is not installed.
+/// Returns the tools that Icarus needs and that are not installed.
 pub fn missing_tools() -> Vec<MissingTool> {
     [ICARUS, VVP].iter().filter_map(Tool::missing).collect()
 }

@@ -89,7 +89,7 @@ fn cells(line: &str) -> Option<Vec<&str>> {
     Some(inner.split('|').map(str::trim).collect())
 }
 
-/// The number with which a cell begins; 0 if there is none.
+/// Returns the number at the start of a cell; 0 if there is none.
 fn number(cell: &str) -> u64 {
     let digits: String = cell
         .chars()

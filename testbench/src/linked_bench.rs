@@ -77,7 +77,7 @@ impl Bus for Registers<'_> {
 }
 
 impl LinkedBench {
-    /// A stage behind the line `link`, for registers with word addresses below `address_limit`.
+    /// Puts a stage behind the line `link`, for registers with word addresses below `address_limit`.
     pub fn new(bench: StageBench, link: &LinkSection, clock: &ClockSection, address_limit: u16) -> Self {
         Self {
             bench,
@@ -145,12 +145,12 @@ impl LinkedBench {
         self.bridge.dropped()
     }
 
-    /// Serves a host at this line until `ends`. Time passes with the bytes, and a fifth of a millisecond at a time while the line is silent:
-    /// a host should take its time from the stage. The line's `read` must return after a short while, with [`ErrorKind::TimedOut`] where
-    /// nothing has come.
+    /// Serves a host at this line until `ends`. Each byte advances the simulated time, and silence advances it in steps of a fifth of a
+    /// millisecond, so a host should take its time from the stage. The line's `read` must return after a short while, with
+    /// [`ErrorKind::TimedOut`] if no byte has arrived.
     ///
     /// # Errors
-    /// [`Error::Step`] where the model stops. Errors of the line are those of a host that has gone, and end nothing.
+    /// [`Error::Step`] where the model stops. Errors of the line are ignored: they mean that the host has gone.
     pub fn serve(&mut self, line: impl Read + Write, ends: &AtomicBool) -> Result<(), Error> {
         let silent_clocks = (self.clock_hz * SILENT_S) as u64;
         serve(line, ends, |heard| match heard {
@@ -160,11 +160,11 @@ impl LinkedBench {
     }
 }
 
-/// Serves a host at `line` until `ends`: `answer` gets each byte and returns the reply that it completes, and gets `None` if nothing
-/// has come for the time that a read takes.
+/// Serves a host at `line` until `ends`. `answer` gets each byte and returns the reply that it completes. It gets `None` if no byte has
+/// arrived while a read waited.
 ///
 /// # Errors
-/// Those of `answer`. Errors of the line are those of a host that has gone, and end nothing.
+/// Those of `answer`. Errors of the line are ignored: they mean that the host has gone.
 pub fn serve<E>(
     mut line: impl Read + Write,
     ends: &AtomicBool,

@@ -1,8 +1,8 @@
 //! Notices a simulation that no longer answers.
 //!
-//! A simulation of Verilog that loops without end never comes back from a clock. Reading a clock's time in every clock would
-//! slow a fast simulation down, so the simulation only counts: odd while it works on a call, even between two calls. A thread
-//! looks at that number now and then.
+//! A simulation of Verilog with an endless loop never returns from a clock. Reading the time in every clock would slow a fast
+//! simulation down, so the simulation only increments a counter, which is odd during a call and even between two calls. A
+//! thread looks at the counter now and then.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -10,9 +10,9 @@
 //! | [`random_with_resets`] | do reads agree with the description after any writes, with resets in between? |
 //! | [`byte_enables`] | does a write reach the enabled bytes, for all sixteen patterns? |
 //!
-//! They know only the description, and nothing of model or Verilog, so both are tested against it. What the hardware
-//! may change by itself (live words, flags from outside, and registers that a pin guards) is left out unless
-//! [`RegisterHardware::Still`] says that the test controls the pins: inputs are then 0, and guards open.
+//! They use only the description, so they test both the model and the Verilog against it. They leave out what the
+//! hardware may change (live words, flags from outside, and registers that a pin guards) unless the test controls the
+//! pins ([`RegisterHardware::Still`]): inputs are then 0, and guards open.
 
 use posicast_blocks::registers::{Access, FlagSource, Register, RegisterMap};
 use posicast_blocks::{ClockedBlock, Direction};
@@ -28,7 +28,7 @@ pub enum RegisterHardware {
     Running,
 }
 
-/// A test; the error says what was found where.
+/// A test; the error reports the register and the word that was found.
 pub type Test = fn(&mut Host<'_>) -> Result<(), String>;
 
 /// All six tests with their names.

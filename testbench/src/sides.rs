@@ -1,7 +1,7 @@
 //! Two designs with the same ports, side by side: Yosys joins them, and ABC decides whether an output ever differs.
 //!
-//! Kept modules, such as memories, are cut out of both: their ports are compared like outputs, and what they give is any value, the same
-//! in both.
+//! Kept modules, such as memories, are cut out of both designs: their inputs are compared like outputs of the designs, and their outputs
+//! are free, with the same value in both.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -66,7 +66,7 @@ impl<'a> Sides<'a> {
         files.collect()
     }
 
-    /// The commands that make a side of these files, and keep it as the design `name`.
+    /// Returns the commands that make a side from these files and keep it as the design `name`.
     pub(crate) fn side(&self, files: &str, name: &str) -> String {
         let Self {
             read_kept, top, cut, ..
@@ -77,8 +77,9 @@ impl<'a> Sides<'a> {
         )
     }
 
-    /// Runs the script `NAME.ys`, which writes `NAME.aig` with an assertion that no output differs, and decides it. A difference is searched
-    /// for in so many clocks; each of ABC's engines gets the time limit `limit`. `doing` says for messages what is joined and compared.
+    /// Runs the script `NAME.ys`, which writes `NAME.aig` with an assertion that no output differs, and decides the assertion. The search
+    /// for a difference covers `searched_clocks` clocks; each of ABC's engines gets the time limit `limit`. `joining` and `comparing`
+    /// describe the two steps in messages.
     ///
     /// # Errors
     /// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses the Verilog; [`Error::File`].

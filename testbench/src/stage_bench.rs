@@ -58,7 +58,7 @@ pub mod state {
     pub const RUN: u32 = SupervisorState::Run as u32;
     /// The command slows down.
     pub const QUICK_STOP: u32 = SupervisorState::QuickStop as u32;
-    /// There was a fault, until its causes are cleared.
+    /// A fault has occurred and its causes are not cleared.
     pub const FAULT: u32 = SupervisorState::Fault as u32;
 }
 
@@ -109,8 +109,8 @@ pub enum Wire {
 }
 
 impl Wire {
-    /// The lines with the fault.
-    fn of(self, lines: EncoderPins) -> EncoderPins {
+    /// Returns the lines with the fault applied.
+    fn apply(self, lines: EncoderPins) -> EncoderPins {
         match self {
             Self::AStuck(a) => EncoderPins { a, ..lines },
             Self::BStuck(b) => EncoderPins { b, ..lines },
@@ -268,7 +268,7 @@ impl StageBench {
         }
     }
 
-    /// What was observed at an axis's pins since the start, in every clock.
+    /// Observations at an axis's pins in every clock since the start.
     pub fn watched(&self, axis: usize) -> &Watched {
         &self.watched[axis]
     }
@@ -278,12 +278,12 @@ impl StageBench {
         self.shown[axis]
     }
 
-    /// Forces the lines of an axis's encoder from the next clock on; `None`: they follow the plant.
+    /// Forces the lines of an axis's encoder from the next clock on; with `None` they follow the plant again.
     pub fn force_encoder(&mut self, axis: usize, pins: Option<EncoderPins>) {
         self.faults[axis].encoder = pins;
     }
 
-    /// Breaks a wire of an axis's encoder from the next clock on; `None`: none is broken.
+    /// Breaks a wire of an axis's encoder from the next clock on; `None` repairs it.
     pub fn break_wire(&mut self, axis: usize, wire: Option<Wire>) {
         self.faults[axis].wire = wire;
     }
@@ -357,7 +357,7 @@ impl StageBench {
         Ok(self.at(self.probe(net)?))
     }
 
-    /// A handle with which a net can be read often.
+    /// Returns a handle for frequent reads of a net.
     ///
     /// # Errors
     /// [`Error::Unlike`] if there is no such net.
@@ -392,7 +392,7 @@ impl StageBench {
             let axes = self.plants.iter().zip(&self.places).zip(&self.faults);
             for (((plant, places), fault), watched) in axes.zip(&mut self.watched) {
                 watched.look(self.model.value(places.recorded[2]), plant);
-                let lines = fault.wire.map_or(plant.encoder(), |wire| wire.of(plant.encoder()));
+                let lines = fault.wire.map_or(plant.encoder(), |wire| wire.apply(plant.encoder()));
                 let pins = fault.encoder.unwrap_or(lines);
                 for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
                     self.inputs[place] = level.into();

@@ -16,10 +16,10 @@ use crate::error::MissingTool;
 pub(crate) const LIMIT_VARIABLE: &str = "POSICAST_TOOL_LIMIT_S";
 /// Time limit of a program that translates or compiles.
 const WORK_LIMIT: Duration = Duration::from_secs(3600);
-/// Time limit of an answer that takes no work: a version, or a clock of a simulation.
+/// Time limit of a short answer: a version, or a clock of a simulation.
 const ANSWER_LIMIT: Duration = Duration::from_secs(120);
 
-/// The time limit that the user set, else this one.
+/// Returns the time limit that the user set, otherwise `limit`.
 fn limit_or(limit: Duration) -> Duration {
     let set = std::env::var(LIMIT_VARIABLE).ok().and_then(|text| text.parse().ok());
     set.filter(|seconds: &f64| *seconds > 0.0)
@@ -85,7 +85,7 @@ impl Tool {
         self.output_within(command, doing, limit_or(WORK_LIMIT))
     }
 
-    /// Output of a success that takes seconds, such as a version.
+    /// Runs a command that takes seconds, such as one for a version, and returns its output. A failure is an error.
     pub(crate) fn answer(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         let output = self.output_within(command, doing, answer_limit())?;
         self.success(output, doing)
@@ -110,7 +110,7 @@ impl Tool {
         }
     }
 
-    /// Output of a success; `None` if the command did not end within `limit` and was stopped.
+    /// Runs the command and returns its output. `None` if it was stopped at `limit`; a failure is an error.
     pub(crate) fn run_within(
         &self,
         command: &mut Command,
@@ -131,7 +131,7 @@ impl Tool {
         self.failed(doing, "not started".to_owned(), &cause.to_string())
     }
 
-    /// The error of a program that failed: that another program is missing, where its output says so.
+    /// Returns the error of a program that failed. If its output reports a missing program, that is the error.
     pub(crate) fn failed(&self, doing: &'static str, status: String, output: &str) -> Error {
         if let Some(tool) = absent_program(output) {
             return Error::ToolMissing(vec![MissingTool {
@@ -149,7 +149,7 @@ impl Tool {
     }
 }
 
-/// How the command ended, and its output; `None` if it was stopped at its time limit.
+/// Runs the command and returns its exit status and output; `None` if it was stopped at its time limit.
 fn outcome(command: &mut Command, limit: Duration) -> std::io::Result<Option<Output>> {
     // The output goes to files, not pipes, so that nobody has to read while the program runs.
     let mut streams = [scratch::unnamed()?, scratch::unnamed()?];
@@ -170,7 +170,7 @@ fn outcome(command: &mut Command, limit: Duration) -> std::io::Result<Option<Out
     }))
 }
 
-/// Name of the program that make, a shell or `env` did not find, if the output says that.
+/// Returns the name of the program that make, a shell or `env` reports as missing in this output.
 fn absent_program(output: &str) -> Option<&str> {
     output.lines().find_map(absent_in_line)
 }
@@ -206,7 +206,7 @@ mod tests {
     };
 
     #[test]
-    fn a_missing_program_is_told_from_a_failing_one() {
+    fn a_missing_program_is_distinguished_from_a_failing_one() {
         let missing = NOTHING.run(&mut NOTHING.command(), "testing").unwrap_err();
         assert!(missing.is_missing_tool(), "{missing}");
         assert!(missing.to_string().contains("Nothing helps"));

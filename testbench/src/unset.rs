@@ -1,4 +1,4 @@
-//! Proves that no value from before the reset reaches an output: two copies of a block begin in any two states and show the same after it.
+//! Proves that no value from before the reset reaches an output: two copies of a block begin in any two states, and agree after it.
 //!
 //! ```text
 //!  inputs, any ─┬─► block without initial values, in any state ────────┬─► equal in every clock after the reset?
@@ -6,12 +6,12 @@
 //! ```
 //!
 //! - Both are in reset in the first [`RESET_CLOCKS`] clocks; afterwards reset is an input like all others.
-//! - A register without a reset, or one whose reset takes more clocks, has another value in each copy: if an output, or the port of a
-//!   memory, depended on it, it would differ. So this is the question of a simulation with `x`, for all inputs and without the
-//!   pessimism of an `if` over `x`.
-//! - Memories, ROMs and multipliers are cut out as for [netlists](crate::netlist): their ports are compared like outputs, and what they give
-//!   is any value, the same in both. That no word of a memory is shown before it was written is not proven here; the second simulator
-//!   begins with `x` in all of them.
+//! - A register without a reset, or one whose reset takes more clocks, may differ between the copies. If an output or the port of a
+//!   memory depended on it, it would differ too. A simulation with `x` asks the same question, but only for some inputs, and an `if`
+//!   over `x` makes it pessimistic.
+//! - Memories, ROMs and multipliers are cut out as for [netlists](crate::netlist): their inputs are compared like outputs of the block,
+//!   and their outputs are free, with the same value in both copies. This does not prove that a word of a memory is written before it
+//!   is read; the second simulator checks it, since it starts with `x` in all of them.
 
 use std::path::Path;
 use std::time::Duration;

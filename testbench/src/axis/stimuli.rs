@@ -1,5 +1,5 @@
 //! Seeded random inputs for the supervisor of an axis: a host that enables, starts, stops and clears; segments that
-//! follow what the supervisor tells them, or ignore it; lines with glitches of about the filter's length; every
+//! obey the supervisor or ignore it; lines with glitches of about the filter's length; every
 //! fault, rarely and often; registers that change in any clock.
 
 use std::ops::Range;

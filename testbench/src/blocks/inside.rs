@@ -49,7 +49,7 @@ pub(crate) fn of_component(component: &Component, prefix: &str, axis: &str) -> R
             Part::SampleSelect { .. } | Part::SettingBanks(_) | Part::TimeBase(_)
         );
         if !joins {
-            blocks.extend(of_part(part, &place)?);
+            blocks.extend(block_of_part(part, &place)?);
         }
     }
     Ok(blocks)
@@ -72,7 +72,7 @@ pub(crate) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dy
             let mut there = blocks.iter();
             there.any(|there| there.top() == block.top() && there.instance() == block.instance())
         };
-        if let Some(block) = of_part(part, place)?.filter(|block| !is_there(block.as_ref())) {
+        if let Some(block) = block_of_part(part, place)?.filter(|block| !is_there(block.as_ref())) {
             blocks.push(block);
         }
         Ok(())
@@ -93,7 +93,7 @@ pub(crate) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dy
     Ok(blocks)
 }
 
-fn of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>>, Error> {
+fn block_of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>>, Error> {
     let Place { prefix, instance } = *place;
     let small = |part| -> Box<dyn Block> { Box::new(PartBlock::new(part, prefix).called(instance)) };
     Ok(Some(match part {

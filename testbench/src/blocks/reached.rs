@@ -8,7 +8,7 @@
 //! | registers written, read: those at whose offset a word other than 0 was written or read | see [`REGISTERS_PER_CENT`] |
 //! | words: changes of the outputs of more than one bit | 1, where there is such an output |
 //!
-//! A row below its bar has not done what its name says, whatever the comparison says.
+//! A row below its bar has not exercised its block, even if every compared value was equal.
 
 use std::collections::HashSet;
 
@@ -66,7 +66,7 @@ fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
     ports.position(|port| port.name == name)
 }
 
-/// What a block shows at its ports. Several blocks side by side have their names before those of the ports.
+/// Counts at the ports of a block. The ports of several blocks side by side begin with the block's name.
 #[derive(Debug, Clone)]
 pub(crate) struct AtThePorts {
     instance: String,
@@ -217,14 +217,14 @@ struct InsideAxis {
     /// `state`, `command_position`, `shaper_valid`, `tap_write`, `tap_coefficient`.
     nets: Vec<usize>,
     position: u64,
-    /// Whether it has moved since it entered RUN.
+    /// Whether the axis has moved since it entered RUN.
     moved: bool,
     samples: u64,
     moves: u64,
     taps: u64,
 }
 
-/// What a stage does, whatever its bus is: at the nets inside its model.
+/// Counts at the nets inside the model of a stage, so it serves a stage on any bus.
 #[derive(Debug, Clone)]
 pub(crate) struct InsideAStage {
     instance: String,

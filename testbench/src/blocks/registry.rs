@@ -29,10 +29,10 @@ pub(crate) type Benches = Vec<Box<dyn Block>>;
 pub(crate) struct RegistryRow {
     /// The name that the block has everywhere. Each component and each stage has its own name.
     pub(crate) name: &'static str,
-    /// Makes its benches for a machine: one, or one for each such block of the machine.
+    /// Creates the benches for a machine: one in all, or one for each block of this kind in the machine.
     pub(crate) benches: fn(&BenchSizes) -> Result<Benches, Error>,
-    /// Makes it at a small size, with a name for the size: it has every path, and few mutants that repeat each other in
-    /// the bits of wide words.
+    /// Creates the block at a small, named size: it has every path of the logic, but few mutants that repeat each other
+    /// in the bits of wide words.
     pub(crate) small: fn() -> Result<Vec<SmallBench>, Error>,
     /// Makes its proofs.
     pub(crate) proofs: fn() -> Result<Vec<Task>, Error>,
@@ -173,7 +173,7 @@ pub struct BlockMutant {
     pub size: &'static str,
     /// Text of the Verilog.
     pub from: &'static str,
-    /// What replaces it.
+    /// Text that replaces `from`.
     pub to: &'static str,
     /// Number of clocks in which the stimuli must find it.
     pub clocks: u64,
@@ -260,7 +260,7 @@ pub fn proofs() -> Result<Vec<Task>, Error> {
     joined(|row| (row.proofs)())
 }
 
-/// Returns the proofs with this property file; all of them are of one row.
+/// Returns the proofs that use this property file; they all belong to one row.
 ///
 /// # Errors
 /// As [`proofs`], and [`Error::Option`] if there are none.
@@ -309,7 +309,7 @@ mod tests {
 
     /// Each row makes blocks with its name, for every rung, except components and stages, which have their own names.
     #[test]
-    fn a_row_is_of_one_block() {
+    fn each_row_creates_blocks_with_its_own_name() {
         let sizes = library_sizes().unwrap();
         for row in REGISTRY.iter().filter(|row| !matches!(row.name, "component" | "stage")) {
             let mut benches = (row.benches)(&sizes).unwrap();

@@ -19,10 +19,10 @@ use posicast_hdl::emit::Module;
 /// Prefix of the nets that are added.
 pub(super) const PREFIX: &str = "condition_";
 
-/// What a statement of a module is in.
+/// The construct that encloses a statement of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// No block: an `assign`.
+    /// Outside of blocks: an `assign`.
     Module,
     /// `always @(*)`, whose points are sampled at the next edge.
     Combinational,
@@ -30,7 +30,7 @@ enum Place {
     Sequential,
 }
 
-/// A condition, with those that must be false before it is looked at.
+/// A condition, with the earlier conditions that must be false for it to be evaluated.
 struct Condition {
     before: Vec<String>,
     text: String,
@@ -91,7 +91,7 @@ struct Points {
     number: usize,
     /// Nets of the points, and their descriptions.
     sampled: Vec<(String, String)>,
-    /// Whether the nets are assigned in the block, and not where they are declared.
+    /// Whether the nets are assigned in the block instead of at their declaration.
     in_block: bool,
 }
 
@@ -231,7 +231,7 @@ fn chain(lines: &[&str]) -> Vec<Condition> {
     conditions
 }
 
-/// What is in the parentheses with which the text begins.
+/// Returns the text between the parentheses at the start of `text`.
 fn parenthesised(text: &str) -> Option<&str> {
     let mut depth = 0;
     for (at, letter) in text.char_indices() {
@@ -333,7 +333,7 @@ fn is_operand(text: &str) -> bool {
     in_parentheses(text).is_some() || text.chars().all(is_letter)
 }
 
-/// What is in parentheses that enclose the whole text.
+/// Returns the text between parentheses that enclose all of `text`; `None` if none do.
 fn in_parentheses(text: &str) -> Option<&str> {
     let inside = parenthesised(text).filter(|_| text.starts_with('('))?;
     (inside.len() + 2 == text.len()).then_some(inside)
@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn comparisons_and_reductions_are_terms_and_constants_are_none() {
+    fn comparisons_and_reductions_are_terms_but_constants_are_not() {
         assert_eq!(points("(|word) & 1'd1"), ["(1'd1) && (|word)", "(1'd1) && !(|word)"]);
         assert_eq!(points("a == b"), ["(a == b)", "!(a == b)"]);
         assert_eq!(points("!(a ^ b)"), ["(a ^ b)", "!(a ^ b)"]);
@@ -424,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn an_else_if_is_looked_at_where_those_before_it_are_false() {
+    fn an_else_if_is_evaluated_where_the_conditions_before_it_are_false() {
         let lines = [
             "        if (a) begin",
             "            x = b;",

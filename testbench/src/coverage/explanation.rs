@@ -62,12 +62,12 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Whether it applies to this block, by name and instance.
+    /// Whether the explanation applies to this block, by name and instance.
     pub fn concerns(&self, block: &str) -> bool {
         fits(&self.block, block)
     }
 
-    /// Whether it explains this hole of this block.
+    /// Whether the explanation covers this hole of this block.
     pub fn explains(&self, block: &str, hole: &Hole) -> bool {
         self.concerns(block) && self.kind == hole.kind && fits(&self.module, &hole.module) && self.names(&hole.what)
     }
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn patterns_fit_as_they_say() {
+    fn a_star_matches_any_text_and_other_characters_themselves() {
         for (pattern, text, fit) in [
             ("*", "", true),
             ("a*c", "abcbc", true),
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_are_a_list() {
+    fn a_bit_list_matches_its_numbers_and_ranges() {
         let rows = parse("b | m | toggle | *count[0,4,24-31] | slow").unwrap();
         let hole = |what: &str| Hole {
             module: "m".to_owned(),

@@ -32,7 +32,7 @@ use crate::stimuli::Stimuli;
 use explanation::{Explanation, Hole};
 use point::{CoveragePoint, PointKind};
 
-/// Number of clocks of a measurement, for which the explanations hold: with fewer there are other holes.
+/// Number of clocks of a measurement. The explanations assume this number: a shorter run leaves other holes.
 pub const CLOCKS: u64 = 1_000_000;
 /// Seed of a measurement.
 pub const SEED: u64 = 1;
@@ -44,7 +44,7 @@ const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
 /// Suffix of the instances of components and of the stage.
 const ON_A_BUS: &str = ", Avalon";
 
-/// How much of something was reached.
+/// Reached points and all points, of one kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Share {
     /// Number that was reached.
@@ -53,7 +53,7 @@ pub struct Share {
     pub all: usize,
 }
 
-/// What the lock step of a block reached.
+/// Coverage of a block after its lock step.
 #[derive(Debug, Clone)]
 pub struct Measured {
     /// Name of the block.
@@ -169,7 +169,7 @@ impl Measured {
         }
     }
 
-    /// Problems of the measurement: holes that nothing explains, and wrong values.
+    /// Problems of the measurement: unexplained holes, and wrong values.
     pub fn problems(&self, explanations: &[Explanation]) -> Vec<String> {
         let name = format!("{} {}", self.block, self.instance);
         let unexplained = self

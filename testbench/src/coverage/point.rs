@@ -18,9 +18,9 @@ pub struct CoveragePoint {
     pub module: String,
     /// Kind: line, toggle or condition.
     pub kind: PointKind,
-    /// For a line its text in the Verilog; for a toggle the net, with its bit if it has several; for a condition the term and its value.
+    /// Line: its text in the Verilog. Toggle: the net, with the bit if it has several. Condition: the term and its value.
     pub what: String,
-    /// How often it was reached.
+    /// Number of times that the point was reached.
     pub count: u64,
 }
 
@@ -46,8 +46,8 @@ impl PointKind {
     }
 }
 
-/// The points in the file at `path`. Lines are looked up in these Verilog files by file name, because the folder in
-/// Verilator's file is the one in which the simulation was built.
+/// Reads the points in the file at `path`. Lines are looked up in `files` by file name, because the paths in
+/// Verilator's file lead to the folder in which the simulation was built.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be read, [`Error::Option`] where a line is not as above.

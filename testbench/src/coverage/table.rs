@@ -44,7 +44,7 @@ fn percent(share: Share) -> String {
     format!("{}.{} % of {}", tenths / 10, tenths % 10, share.all)
 }
 
-/// For each of these blocks its row of `new`, else that of `old`.
+/// Returns one row for each of these blocks: that of `new` if it has one, otherwise that of `old`.
 pub fn merged(old: &str, new: &str, subjects: &[Box<dyn Block>]) -> String {
     let row_of = |block: &dyn Block| {
         let first_cells = format!("| {} | {} |", block.name(), block.instance());
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn only_all_is_all() {
+    fn percent_rounds_down_so_that_only_all_is_100() {
         let share = Share {
             reached: 1999,
             all: 2000,

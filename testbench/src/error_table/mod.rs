@@ -149,7 +149,7 @@ fn table_proof(config: &ErrorTableConfig) -> Result<Task, Error> {
     )
 }
 
-/// The proof of the block's arithmetic, for the part that computes it alone.
+/// Creates the proof of the arithmetic, on `lookup` alone.
 fn lookup_proof(config: &ErrorTableConfig) -> Result<Task, Error> {
     let macros = [
         ("FRACTION", format!("7'd{}", config.format().spacing_bits + 8)),

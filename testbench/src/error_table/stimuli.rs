@@ -48,7 +48,7 @@ const SCENE_PASSES: u32 = 24;
 /// A host writes an entry of [`Scene::Load`] once in this many clocks.
 const LOAD_CLOCKS: u32 = 3;
 
-/// What holds for a while.
+/// Settings of the stimuli that hold for `clocks` clocks.
 #[derive(Debug, Clone, Copy, Default)]
 struct Life {
     clocks: u32,
@@ -57,7 +57,7 @@ struct Life {
     coarse: bool,
     origin: i32,
     positions: Where,
-    /// Something is off once in so many clocks.
+    /// A disturbance happens once in so many clocks.
     off_pace: u32,
     write_pace: u32,
     scene: Option<Scene>,
@@ -183,8 +183,8 @@ impl ErrorTableRandom {
         }
     }
 
-    /// Writes an entry of bank 1, after which so many are left. The first entry is positive and the last one is negative, and none differs
-    /// too much from another. Before the first one, entry 1 is written, which is out of turn.
+    /// Writes an entry of bank 1; `left` more follow it. The first entry is positive, the last one is negative, and no two differ by more
+    /// than the largest step. Entry 1 is written before the first one, which is out of turn.
     fn loads(&mut self, left: u32) {
         let half = self.config.format().most_step() / 2;
         let any = self.rng.random_range(-half..=half);
@@ -298,7 +298,7 @@ impl Stimuli for ErrorTableRandom {
     }
 }
 
-/// What is counted.
+/// Names of the counted events.
 const NAMES: [&str; 20] = [
     "resets",
     "references with weight 0",
@@ -322,7 +322,7 @@ const NAMES: [&str; 20] = [
     "entries read back",
 ];
 
-/// How often things happened in a lock step of the error table.
+/// Counts of events in a lock step of the error table.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorTableCoverage {
     first_counts: i32,
@@ -335,7 +335,7 @@ pub struct ErrorTableCoverage {
 }
 
 impl ErrorTableCoverage {
-    /// Nothing yet.
+    /// Starts with all counts at 0.
     pub fn new(config: &ErrorTableConfig) -> Self {
         Self {
             first_counts: config.format().first_counts,
@@ -401,7 +401,7 @@ impl ErrorTableCoverage {
         self.runs = !inputs.rst && (inputs.valid || self.runs && !shown.compensated_valid);
     }
 
-    /// What happened how often.
+    /// Returns each event's name and count.
     pub fn counts(&self) -> [(&'static str, u64); NAMES.len()] {
         std::array::from_fn(|bin| (NAMES[bin], self.counts[bin]))
     }

@@ -71,7 +71,7 @@ impl Case {
         }
     }
 
-    /// Whether this axis is hit.
+    /// Whether the fault hits this axis.
     pub fn hits(&self, axis: usize) -> bool {
         self.axes >> axis & 1 != 0
     }

@@ -36,7 +36,7 @@ pub enum Others {
     GoOn,
 }
 
-/// Condition by which a fault is detected at a tick.
+/// Condition that detects a fault at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seen {
     /// |e| exceeds its limit.
@@ -87,7 +87,7 @@ pub enum Due {
 pub enum Lasts {
     /// Until the axes have stopped.
     Held,
-    /// At least and at most this many clocks.
+    /// Between these two numbers of clocks.
     Clocks(u64, u64),
     /// Either of these.
     HeldOrClocks(u64, u64),
@@ -100,7 +100,7 @@ pub struct Expectation {
     pub hit: Hit,
     /// Reaction of these axes.
     pub reaction: Reaction,
-    /// Causes of which at least one must be set.
+    /// At least one of these causes must be set; 0: no cause is required.
     pub causes: u32,
     /// Causes that may also be set, as consequences of the first one.
     pub also: u32,
@@ -116,13 +116,13 @@ pub struct Expectation {
     pub position_known: bool,
     /// Duration of the fault.
     pub lasts: Lasts,
-    /// Whether it comes in HOLD, without a move.
+    /// Whether the fault is injected in HOLD, without a move.
     pub in_hold: bool,
     /// Range of its time, in percent of the move.
     pub within_percent: [u64; 2],
 }
 
-/// A fault of an axis, for which the others stop.
+/// A fault of one axis that stops the others too.
 pub(super) const FAULT: Expectation = Expectation {
     hit: Hit::Axis,
     reaction: Reaction::Fault,

@@ -11,7 +11,7 @@ use crate::stage_bench::{StageBench, Wire};
 
 /// Number of ticks of the watchdog.
 const WATCHDOG_TICKS: u32 = 5;
-/// Jerk after which the velocity exceeds its word within a few ticks, Q8.32 counts per tick³.
+/// Jerk that makes the velocity exceed its word within a few ticks, Q8.32 counts per tick³.
 const HUGE_JERK: i64 = 127 << 32;
 /// Number of entries, more than the FIFO takes.
 const MANY_ENTRIES: usize = 70;
@@ -19,7 +19,7 @@ const MANY_ENTRIES: usize = 70;
 const SWAP_TO_1: u32 = 1 | 1 << 4;
 /// Value of the register `law`: PD with the settings of bank 3, which are all 0.
 const NO_SETTINGS: u32 = 1 | 3 << 8;
-/// The entry after which the velocity exceeds its word.
+/// Entry that makes the velocity exceed its word.
 const OVERFLOWING: Entry = Entry {
     ticks: 100,
     motion: EntryMotion::Jerk(HUGE_JERK),
@@ -31,7 +31,7 @@ const PUSH_COUNTS: f64 = 3.0;
 /// Distance in counts to a point that is within the position word, but so far away that e exceeds its own word.
 const FAR_COUNTS: i32 = 4_000_000;
 
-/// The last entry of a move, for a kind that is an entry.
+/// Returns the last entry of the move if the fault is an entry.
 pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
     let side = case.counts[axis].signum() as i32;
     match case.row.kind {
@@ -49,7 +49,7 @@ pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
     }
 }
 
-/// For a kind that is a line, its name and the level that is the fault; names of shared lines have no axis.
+/// Returns the name of the axis's line and its faulty level if the fault is on such a line.
 fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
     let forward = case.counts[axis] > 0;
     Some(match case.row.kind {
@@ -65,7 +65,7 @@ fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
     })
 }
 
-/// For a kind that is a shared line its name; low is the fault.
+/// Returns the name of the shared line if the fault is on one. Its faulty level is low.
 fn shared_line(kind: FaultKind) -> Option<&'static str> {
     match kind {
         FaultKind::EmergencyStop | FaultKind::EmergencyStopGlitch => Some("emergency_stop_n"),
@@ -219,8 +219,8 @@ fn malformed(bench: &mut StageBench, name: &str) -> Result<(), Error> {
     words(&[(0, 5), (1, 0), (3, 7 | 1 << 24)])
 }
 
-/// Removes a fault that does not end by itself. `way_back`: a limit switch stays active, since the axis must be able
-/// to move away from it.
+/// Removes a fault that lasts. `way_back` leaves a limit switch active, since the axis must be able to move away from
+/// it.
 pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result<(), Error> {
     let kind = case.row.kind;
     if kind == FaultKind::Reset {

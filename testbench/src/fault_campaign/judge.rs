@@ -235,7 +235,7 @@ impl Judge<'_> {
         Some(change)
     }
 
-    /// Clock from which times count: that of the fault, or of its detection.
+    /// Clock from which times are counted: the clock of the fault, or of its detection.
     fn base(&self, observed: &Observation) -> u64 {
         match self.seen.case.row.expects.due {
             Due::Seen(_) => observed.seen.unwrap_or(self.seen.start),
@@ -304,7 +304,7 @@ impl Judge<'_> {
         });
     }
 
-    /// Checks that one of the causes of this kind is set, and none to which it does not lead.
+    /// Checks that an expected cause of this fault is set, and no cause that the fault cannot lead to.
     fn causes(&mut self, causes: u32, group: u32) {
         let expects = &self.seen.case.row.expects;
         let there = expects.causes == 0 || causes & (expects.causes | group) != 0;

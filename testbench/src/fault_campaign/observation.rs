@@ -1,4 +1,4 @@
-//! Records what happens to an axis from the fault on, and in which clock.
+//! Records the events of an axis from the fault on, each with its clock.
 
 use posicast_blocks::axis::SupervisorState;
 use posicast_blocks::stage::Supervision;

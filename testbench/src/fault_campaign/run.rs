@@ -24,7 +24,7 @@ const ABOUT_TICK_CLOCKS: [u64; 2] = [2, 24];
 const PATIENCE_TICKS: u64 = 400;
 /// Number of ticks after the end in which nothing may change.
 const STAY_TICKS: u64 = 3;
-/// Clocks after which a load that was stopped at once no longer rings: four time constants of the slower mode.
+/// Clocks until a load that was stopped at once no longer rings: four time constants of the slower mode.
 const RINGING_CLOCKS: u64 = 225_000;
 /// Number of clocks in which lines and encoders settle after a fault.
 const SETTLE_CLOCKS: u64 = 200;

@@ -4,7 +4,7 @@ use super::tool::{ABC, YOSYS};
 use crate::error::MissingTool;
 use crate::tool::Tool;
 
-/// What the proofs need and is not installed.
+/// Returns the tools that the proofs need and that are not installed.
 pub fn missing_tools() -> Vec<MissingTool> {
     [YOSYS, ABC].iter().filter_map(Tool::missing).collect()
 }

@@ -8,7 +8,7 @@
 //!                          └────► covers.aig ──► abc bmc3 ───────► clocks until each cover is reached
 //! ```
 //!
-//! A property file holds one module, `NAME_properties`. Its inputs are the block's ports, for which the macro `PORTS` stands, and
+//! A property file holds one module, `NAME_properties`. Its inputs are the block's ports (the macro `PORTS`) and
 //! registers inside of the block, which the attribute `peek` names: `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The
 //! top written here leaves all inputs of the block free in every clock, resets included, and joins both. Rows start at power-up, where
 //! every register has its reset value. Block RAM is left out but where a task keeps it: what is read from it is anything, in every

@@ -17,7 +17,7 @@ pub(super) struct Peek {
 
 const MARK: &str = "(* peek = \"";
 
-/// The peeks of a property file, in order. Other lines are ignored.
+/// Returns the peeks of a property file, in order. Other lines are ignored.
 pub(super) fn peeks(text: &str) -> Vec<Peek> {
     let line = |line: &str| {
         let (path, rest) = line.trim().strip_prefix(MARK)?.split_once("\" *)")?;
@@ -51,7 +51,7 @@ fn declared(port: &Port) -> String {
     format!("{signed}{range}{}", port.name)
 }
 
-/// `formal_top`: the block and its properties, with every input of the block free.
+/// Writes `formal_top`: the block and its properties, with every input of the block free.
 pub(super) fn formal_top(top: &str, properties: &str, ports: &[Port], peeks: &[Peek]) -> String {
     let of = |direction| ports.iter().filter(move |port| port.direction == direction);
     let mut text = String::from("module formal_top (\n    input wire clk");

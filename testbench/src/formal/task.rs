@@ -20,7 +20,7 @@ pub enum Engine {
     },
 }
 
-/// What proofs by induction take: invariants stated so that one clock leads to the next.
+/// Induction over one clock, for properties that include the invariants it needs.
 pub(crate) const INDUCTION: Engine = Engine::Induction { clocks: 1 };
 
 impl Engine {
@@ -47,12 +47,12 @@ pub struct Task {
     pub(crate) top: String,
     pub(crate) ports: Vec<Port>,
     pub(crate) properties: String,
-    /// Whether multipliers are left out: what they give is anything, in every clock.
+    /// Whether multipliers are cut out: their outputs are then free in every clock.
     pub(crate) leaves_products_open: bool,
-    /// Whether memories are in the proof, each word a register; else what is read from one is anything, in every clock.
+    /// Whether memories are part of the proof, with a register for each word; otherwise their outputs are free in every clock.
     pub(crate) keeps_memories: bool,
-    /// Registers that begin with another value than 0, with that value. For counters that nothing loads: what comes after
-    /// more clocks than can be searched.
+    /// Registers with an initial value other than 0, and that value. It lets a proof reach the end of a counter that cannot
+    /// be loaded and would take more clocks than the search has.
     pub(crate) begins: Vec<(&'static str, &'static str)>,
 }
 
@@ -77,7 +77,7 @@ impl Task {
         }
     }
 
-    /// With more macros.
+    /// Adds macros.
     pub(crate) fn macros(mut self, macros: &[(String, String)]) -> Self {
         for (name, value) in macros {
             let _ = writeln!(self.properties, "`define {name} {value}");
@@ -85,7 +85,7 @@ impl Task {
         self
     }
 
-    /// With a property file, after macros for this size and `PORTS`, all ports of the block as inputs.
+    /// Adds a property file. It is preceded by these macros and by `PORTS`, which declares all ports of the block as inputs.
     pub(crate) fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
         for (name, value) in macros {
             let _ = writeln!(self.properties, "`define {name} {value}");
@@ -104,7 +104,7 @@ pub(crate) fn refused(error: impl std::fmt::Display) -> Error {
     Error::Option(error.to_string())
 }
 
-/// A module of a block as a block of its own.
+/// Returns a module of a block as a block of its own.
 pub(crate) fn part(mut modules: Vec<Module>, name: &str) -> Result<(Vec<Module>, Vec<Port>), Error> {
     let at = modules.iter().position(|module| module.is(name));
     let part = modules.remove(at.ok_or_else(|| refused(format!("the block has no `{name}`")))?);

@@ -100,7 +100,7 @@ impl Bins for LinearScaleCoverage {
     }
 }
 
-/// The proof of the block's arithmetic, for the part that computes it alone.
+/// Creates the proof of the arithmetic, on the module that computes it.
 fn serial_ratio(shift: u32) -> Result<Task, Error> {
     let block = part(emit("")?, "serial_ratio")?;
     let size = format!("all mantissas, 2^-{shift}");

@@ -138,7 +138,7 @@ const NAMES: [&str; 13] = [
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LinearScaleCoverage {
     counts: [u64; NAMES.len()],
-    /// Whether a tick was taken and its deviation is not yet computed.
+    /// Whether the deviation of an accepted tick is still being computed.
     computes: bool,
     asked: bool,
 }

@@ -34,15 +34,15 @@ use crate::uart_bridge::UartBridgeBlock;
 
 /// Number of bytes on the line that a run must have at least.
 const LEAST_BYTES: f64 = 1000.0;
-/// Ticks in which the first scene comes to a move, besides those in which the brake opens.
+/// Ticks that the first scene takes to start a move, in addition to those in which the brake opens.
 const MOVE_TICKS: u64 = 60;
-/// Most ticks of an opening brake for which a run at the machine's own ticks waits.
+/// A run at the machine's own ticks waits at most this many ticks for a brake to open.
 const MOST_BRAKE_TICKS: u64 = 20;
-/// Clocks of the dense row in which each axis has moved and a table was loaded, with every seed that was tried.
+/// Clocks in which every tried seed of the dense row moved each axis and loaded a table.
 const DENSE_LEAST_CLOCKS: u64 = 300_000;
-/// Moves and taps of each axis, and per cent of the registers, of a match of the dense row. One tap is that of the write to every
-/// register, so that two are a table. In its least clocks it wrote 71 of 67 words that can be written (some at random addresses) and
-/// read 63 to 65 of 98 as other words than 0.
+/// Bars of the dense row: moves and taps of each axis, and per cent of the registers. The write to every register already counts as one
+/// tap, so two prove that a table was loaded. In its least clocks the row wrote 71 words (67 are writable, some writes went to random
+/// addresses) and read 63 to 65 of 98 registers as words other than 0.
 const DENSE_BARS: [u64; 3] = [1, 2, 60];
 /// The fastest serial line: a baud rate and a clock with eight clocks per bit, and a time-out in seconds.
 const FASTEST: (u64, u32, f64) = (24_000_000, 3_000_000, 0.01);

@@ -30,7 +30,7 @@ const BUS_INPUTS: usize = 5;
 const WRITTEN_WORDS: [usize; 4] = [4, 12, 24, 40];
 /// Largest number of words of a read, so that reads do not hold up the driver.
 const READ_WORDS: u8 = 6;
-/// Clocks of silence after which a host gives up: a reply to a request of 40 words begins earlier.
+/// A host gives up after this many clocks of silence. The reply to a request of 40 words begins earlier.
 const PATIENCE_CLOCKS: f64 = 3000.0;
 /// Bits of a byte on a serial line.
 const FRAME_BITS: u32 = 10;
@@ -38,7 +38,7 @@ const FRAME_BITS: u32 = 10;
 const HALF_CLOCKS: f64 = LEAST_CLOCKS_PER_BIT as f64 / 2.0;
 /// Clocks, and levels of the silent line, of the reset after the opening.
 const OPENING_RESET_CLOCKS: u32 = 16;
-/// Factor by which a mood lasts longer than on the bus: an access takes that much more time.
+/// A mood lasts this many times as long as on the bus, because an access takes that much longer.
 const LONGER_MOODS: u64 = 8;
 /// The levels of idle lines.
 const IDLE_UART: Levels = [true, false, false];
@@ -169,7 +169,8 @@ impl LinkedStageRandom {
         let bytes = request.encode(self.sequence).unwrap_or_default();
         let frame = Frame { bytes, waiting };
         match self.rng.random_range(0..40) {
-            // The same again: the bridge repeats its reply and does nothing. A damaged frame does nothing either, and is sent again.
+            // The bridge answers the same request with the same reply and does not execute it again. A damaged frame has no effect, and
+            // is sent again.
             0..=2 => self.frames.push_back(frame.clone()),
             3 => {
                 self.frames.push_back(frame.clone());

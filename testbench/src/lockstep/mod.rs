@@ -99,7 +99,7 @@ pub struct LockstepOptions {
     pub cycles: u64,
     /// Number of clocks to keep before and after the first mismatch.
     pub window_clocks: usize,
-    /// Number of wrong values, over all blocks, after which the run ends early.
+    /// The run ends early after this many wrong values, over all blocks.
     pub mismatch_limit: u64,
 }
 
@@ -195,14 +195,14 @@ pub struct Lockstep {
     expected: Vec<u64>,
     actual: Vec<u64>,
     unknown: Vec<u64>,
-    /// What the device takes and shows, in its own order.
+    /// Values of the device's ports, in the device's own order.
     device_inputs: Vec<u64>,
     device_outputs: Vec<u64>,
     device_unknown: Vec<u64>,
 }
 
 impl Lockstep {
-    /// Of a model and a device with these ports.
+    /// Prepares the comparison of a model and a device with these ports.
     ///
     /// # Errors
     /// [`Error::Unlike`] if the ports differ or an instance names no output.
@@ -257,12 +257,12 @@ impl Lockstep {
         Ok(())
     }
 
-    /// What the model showed in the last clock.
+    /// Outputs of the model in the last clock.
     pub fn expected(&self) -> &[u64] {
         &self.expected
     }
 
-    /// What was compared so far.
+    /// Reports the comparison so far.
     pub fn report(&self) -> LockstepReport {
         self.comparison.report(self.time)
     }

@@ -111,7 +111,7 @@ impl LockstepReport {
         self.blocks.iter().map(|block| block.not_exercised.len()).sum()
     }
 
-    /// What was not exercised, each with the name of its row.
+    /// Names of what was not exercised, each with the name of its row.
     pub fn not_exercised_names(&self) -> Vec<String> {
         let of_block = |block: &BlockReport| -> Vec<String> {
             let name = |what: &String| format!("{} {}: {what}", block.name, block.instance);
@@ -182,7 +182,7 @@ struct Table {
 }
 
 impl Mismatch {
-    /// What the model says and what the device shows, as people read it.
+    /// Values of model and device, in readable form.
     pub fn shown(&self) -> [&str; 2] {
         self.shown.each_ref().map(String::as_str)
     }

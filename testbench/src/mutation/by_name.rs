@@ -1,28 +1,28 @@
-//! A fault that someone thought of: a text of the Verilog replaced by another.
+//! A deliberate fault: one text of the Verilog is replaced by another.
 
 use posicast_hdl::emit::Module;
 
 use crate::Error;
 
-/// One of them. A text that is no longer there is an error: a mutant that is not put in proves nothing.
+/// A named fault. A missing text is an error, because a mutant that is not applied proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NamedMutant<'a> {
-    /// What the fault does, in words.
+    /// Description of the fault.
     pub name: &'a str,
-    /// What the module is called, without a size; several of these all get the fault, and each has the text once. Without a
-    /// module: the first that has the text, where it has it first.
+    /// Name of the module without its size. Every module of that name gets the fault, and must contain the text exactly once.
+    /// `None`: the first occurrence in the first module that contains the text.
     pub module: Option<&'a str>,
-    /// What is there.
+    /// Text in the Verilog.
     pub from: &'a str,
-    /// And what is put there.
+    /// Text that replaces it.
     pub to: &'a str,
 }
 
 impl NamedMutant<'_> {
-    /// These modules with the fault in them.
+    /// Returns these modules with the fault applied.
     ///
     /// # Errors
-    /// [`Error::Option`] where no module has that name, or its text is not there.
+    /// [`Error::Option`] where no module has that name, or the text is missing or, in a named module, occurs more than once.
     pub fn put_into(&self, modules: &[Module]) -> Result<Vec<Module>, Error> {
         let mut modules = modules.to_vec();
         let mut found = false;

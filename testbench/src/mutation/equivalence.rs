@@ -24,7 +24,7 @@ enum Without {
 }
 
 impl Without {
-    /// The commands that remove modules with such cells, except `kept`. ROMs stay, because their words are known.
+    /// Returns the commands that remove modules with such cells, except `kept`. ROMs stay, because their words are known.
     fn script(self, kept: &str) -> String {
         let cells = match self {
             Self::MemoriesAndProducts => "t:$memwr* %m t:$mul %m %u",
@@ -35,10 +35,10 @@ impl Without {
     }
 }
 
-/// Time limit of ABC's `dprove`, which is done in seconds or never.
+/// Time limit of ABC's `dprove`, which either finishes within seconds or not at all.
 const DPROVE_LIMIT: Duration = Duration::from_secs(30);
 
-/// Compares, for at most about eight times `limit`.
+/// Compares a mutant with its block. It takes at most about eight times `limit`.
 ///
 /// It first compares without memories and multipliers; if that gives no proof, with the multipliers, then with the
 /// memories too, as registers that begin as 0 in both. The module of the mutant is always included.
@@ -69,8 +69,8 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
 
 /// Whether `miter.aig` is proven to have no difference.
 fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<bool, Error> {
-    // Signals that are equal in both, by induction, are merged; the remainder is small, and mostly empty. Counters
-    // that never get far are quick with BDDs and slow with PDR, which needs a clause for each value.
+    // Signals that induction proves equal in both are merged; the remainder is small, and mostly empty. Counters that
+    // only take few values are fast with BDDs and slow with PDR, which needs a clause for each value.
     let at = |name: &str| netlist.folder().join(name);
     // If the first engine does not finish, the others use its input.
     std::fs::copy(at("miter.aig"), at("merged.aig")).map_err(Error::file(&at("merged.aig"), "write"))?;
@@ -81,7 +81,7 @@ fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<bool, Error> {
             ),
             limit.saturating_mul(2),
         ),
-        // Induction, retiming and reachability in turn succeed soon or never.
+        // Induction, retiming and reachability in turn succeed quickly or not at all.
         ("read_aiger merged.aig; dprove -T 5".to_owned(), DPROVE_LIMIT),
         (
             format!("read_aiger merged.aig; pdr -m -T {}", seconds(limit)),
@@ -109,14 +109,14 @@ fn seconds(limit: Duration) -> u64 {
     limit.as_secs().max(1)
 }
 
-/// What ABC says; `None` if it did not end in time.
+/// Returns ABC's output; `None` if ABC exceeded its time limit.
 fn abc(netlist: &Netlist<'_>, commands: &str, limit: Duration) -> Result<Option<String>, Error> {
     let mut abc = ABC.command_in(netlist.folder());
     abc.args(["-c", commands]);
     ABC.run_within(&mut abc, "comparing a mutant", limit)
 }
 
-/// The script that writes `miter.aig`, whose one output tells that an output differs.
+/// Returns the script that writes `miter.aig`. Its one output is 1 if an output of the two designs differs.
 fn miter(top: &str, mutant: &Mutant, without: Without) -> String {
     let Mutant { arguments, module, .. } = mutant;
     let boxes = without.script(module);

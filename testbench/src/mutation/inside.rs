@@ -1,13 +1,13 @@
-//! Named mutants inside a stage: faults in a stage's Verilog that a check of its folder once did not find.
+//! Named mutants inside a stage: faults in a stage's Verilog that the check of its folder once missed.
 //!
 //! ```text
 //!  stage's modules ─► one text replaced by another ─► every row of the folder's check whose files have changed ─► found, or not
 //! ```
 //!
-//! The other mutants of this folder are chosen at random, in blocks that stand alone. These are faults that were
-//! thought of by name, put into the modules as they are in a stage, and searched by exactly the rows that
-//! `posicast verify DIR` compares there, with its default clocks. A text that no longer exists, or exists twice, is
-//! an error: a mutant that is not applied proves nothing.
+//! The other mutants of this folder are chosen at random, in single blocks. These are deliberate faults, applied to
+//! the modules as they are in a stage. They must be found by exactly the rows that `posicast verify DIR` compares
+//! there, with its default clocks. A text that is missing, or occurs twice, is an error: a mutant that is not applied
+//! proves nothing.
 
 use std::fmt::Write as _;
 
@@ -122,7 +122,7 @@ pub struct Found {
 /// where all of them match.
 ///
 /// # Errors
-/// As [`NamedMutant::put_into`], and what a simulator says.
+/// As [`NamedMutant::put_into`], and the errors of a simulator.
 pub fn hunt(
     mutant: &NamedMutant<'_>,
     config: &StageConfig,

@@ -85,10 +85,10 @@ pub enum Fate {
     Property(String),
     /// It is proven equivalent to the block.
     Equivalent,
-    /// None of these.
+    /// Neither detected nor proven equivalent.
     Unknown {
-        /// Number of clocks after power-up after which some input distinguishes it from the block, if the search
-        /// found one.
+        /// Number of clocks from power-up until some input distinguishes it from the block; `None` if the search
+        /// found no such input.
         differs: Option<u32>,
     },
 }

@@ -7,8 +7,8 @@ use super::{Mutant, Subject};
 use crate::Error;
 use crate::formal::{self, ProofVerdict};
 
-/// Name of a property that the mutant breaks; `None` if there is none, or the block has no property file at this
-/// size.
+/// Returns the name of a property that the mutant breaks; `None` if it breaks none, or the block has no property file
+/// at this size.
 pub(super) fn broken(
     subject: &Subject,
     netlist: &Netlist<'_>,

@@ -15,7 +15,7 @@ pub const MARKS: Marks = Marks {
 };
 const HEAD: &str = "| block | size | mutants | lock step | of these late | property | equivalent | unknown |\n\
                     |---|---|---|---|---|---|---|---|\n";
-/// Number of clocks after which a detection counts as late, as one in a later run than the first does.
+/// A detection counts as late after this many clocks of the first run, and always in a later run.
 const LATE_CLOCKS: u64 = 10_000;
 
 /// Row of a block, with its unknown mutants.

@@ -1,4 +1,4 @@
-//! Mutants of a stage's description: each constant that the machine file ties, and each wire between two blocks.
+//! Mutants of a stage's description: each constant from the machine file, and each wire between two blocks.
 //!
 //! ```text
 //! composition of the stage and of each axis ─► every input of every part ─┬─ tied: the constant + 1, − 1
@@ -7,9 +7,9 @@
 //!   ─► one Verilog, in which `mutsel` chooses the mutant ─► Verilator, short ticks, the stimuli of the stage's row ─► found, or not
 //! ```
 //!
-//! The list is made from the parts and connections of the description, not by hand. A net has many others of its width, of which
-//! one is chosen by the seed. A mutant that is not found gets its reason: the two wires never differed in the run, or by how many
-//! clocks they did.
+//! The list is made from the parts and connections of the description, not by hand. Many nets have the same width; the seed
+//! chooses the one that replaces a net. A mutant that is not found is reported with the number of clocks in which the two wires
+//! differed: 0 means that the run cannot distinguish them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -39,7 +39,7 @@ pub const WIRES_MARKS: Marks = Marks {
     end: "<!-- end of wires of the stage -->",
 };
 
-/// What a mutant changes.
+/// Kind of connection that a mutant changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WireKind {
     /// A constant, by one.
@@ -54,7 +54,7 @@ impl WireKind {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Constant, Self::Beside, Self::OtherAxis];
 
-    /// What it is called in a table.
+    /// Name in a table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Constant => "constant ± 1",
@@ -67,20 +67,20 @@ impl WireKind {
 /// A changed connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WireMutant {
-    /// What it changes.
+    /// Kind of the changed connection.
     pub kind: WireKind,
     /// Axis whose blocks it joins; empty for the stage's own level.
     pub axis: String,
     /// Part and port whose connection changes.
     pub port: [String; 2],
-    /// The connection, and what it becomes: a net or a constant.
+    /// The original net or constant.
     pub from: String,
-    /// What it becomes.
+    /// The net or constant that replaces it.
     pub to: String,
 }
 
 impl WireMutant {
-    /// The exchange of the wire `from` by `to` at a port of a part, in the blocks of `axis` or, if that is empty, of the stage.
+    /// Replaces the wire `from` by `to` at a port of a part, in the blocks of `axis` or, if `axis` is empty, of the stage.
     pub fn exchange(axis: &str, [part, port]: [&str; 2], from: &str, to: &str) -> Self {
         Self {
             kind: WireKind::Beside,
@@ -99,7 +99,7 @@ impl WireMutant {
         }
     }
 
-    /// Where it is and what it does, in words.
+    /// Describes the place and the change.
     pub fn describe(&self) -> String {
         let axis = if self.axis.is_empty() {
             String::new()
@@ -111,7 +111,7 @@ impl WireMutant {
     }
 }
 
-/// A mutant with its first wrong clock, or why it was not found.
+/// A mutant with its first wrong clock, or a reason why it was not found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WireFate {
     /// The mutant.
@@ -127,16 +127,21 @@ fn list(block: &StageBlock, seed: u64) -> Vec<WireMutant> {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
     let component = block.component();
     let axes: Vec<&str> = block.axes().iter().map(String::as_str).collect();
-    let mut mutants = of_level(component.composition(), "", &axes, &mut rng);
+    let mut mutants = mutants_of_level(component.composition(), "", &axes, &mut rng);
     for part in component.blocks() {
         if let ComponentPart::Joined(axis) = part {
-            mutants.extend(of_level(axis.composition(), axis.name(), &[], &mut rng));
+            mutants.extend(mutants_of_level(axis.composition(), axis.name(), &[], &mut rng));
         }
     }
     mutants
 }
 
-fn of_level(composition: &Composition, axis: &str, axes: &[&str], rng: &mut Xoshiro256PlusPlus) -> Vec<WireMutant> {
+fn mutants_of_level(
+    composition: &Composition,
+    axis: &str,
+    axes: &[&str],
+    rng: &mut Xoshiro256PlusPlus,
+) -> Vec<WireMutant> {
     let nets = composition.nets();
     let mut mutants = Vec::new();
     let parts = composition.parts().iter().zip(composition.connections());
@@ -341,7 +346,7 @@ fn look_for(
         .collect())
 }
 
-/// For each wire that was not found, the number of clocks of the run in which it and the one in its place had other values.
+/// Returns, for each mutated wire that was not found, the number of clocks in which it and its replacement had different values.
 fn differences(
     block: &StageBlock,
     mutants: &[WireMutant],

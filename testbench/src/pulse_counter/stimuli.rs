@@ -230,7 +230,7 @@ impl PulseCounterCoverage {
     pub fn observe(&mut self, inputs: &[u64], shown: &[u64]) {
         self.resets += inputs.first().copied().unwrap_or(0);
         let fell = |at: usize| shown[at] < self.before[at];
-        // The velocity became zero with steps to divide: a reversal. It was held: it is below its bound.
+        // A velocity that becomes zero although there were steps: a reversal. One that a result leaves unchanged: it was held.
         self.reversals += u64::from(shown[16] != 0 && shown[15] == 0 && self.before[15] != 0);
         self.held += u64::from(shown[16] != 0 && shown[15] == self.before[15] && fell(14));
         for (at, (value, before)) in shown.iter().zip(&mut self.before).enumerate() {

@@ -382,7 +382,7 @@ pub struct SegmentsCoverage {
     late_ticks: u64,
 }
 
-/// What is counted.
+/// Names of the counted events.
 const NAMES: [&str; 19] = [
     "hold",
     "move",

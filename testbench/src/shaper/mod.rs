@@ -251,7 +251,7 @@ impl Block for MachineShapers {
     }
 }
 
-/// What each shaper reaches.
+/// Counts at the ports of each shaper.
 struct SideBySideReach(Vec<AtThePorts>);
 
 impl SideBySideReach {

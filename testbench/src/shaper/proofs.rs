@@ -66,7 +66,7 @@ fn motion() -> Result<Task, Error> {
     let block = (shaper::emit(&config, "")?, ports(&config));
     let text = include_str!("shaper_motion.sv");
     let size = "3 channels, 64 samples, 64 taps";
-    Ok(of_motion("shaper_motion", size, &config, block, text))
+    Ok(motion_task("shaper_motion", size, &config, block, text))
 }
 
 /// The part of the motion shaper that computes, alone.
@@ -75,7 +75,7 @@ fn channel_sums(modulo: bool) -> Result<Task, Error> {
     let block = part(shaper::emit(&config, "")?, "channel_sums")?;
     let text = include_str!("channel_sums.sv");
     let size = if modulo { "24 bits, position wraps" } else { "24 bits" };
-    Ok(of_motion("channel_sums", size, &config, block, text))
+    Ok(motion_task("channel_sums", size, &config, block, text))
 }
 
 /// A motion shaper with all channels, and the smallest words and memories.
@@ -86,7 +86,7 @@ fn motion_config(modulo: bool) -> Result<ShaperConfig, Error> {
     config.map_err(refused)
 }
 
-fn of_motion(
+fn motion_task(
     name: &'static str,
     size: &str,
     config: &ShaperConfig,

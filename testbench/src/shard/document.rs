@@ -12,7 +12,7 @@ use super::Shard;
 /// Version of the format of the files.
 pub const FORMAT: u32 = 1;
 
-/// What makes two shards parts of the same campaign.
+/// Settings that all shards of a campaign share.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CampaignHead {
     /// Version of the files' format, [`FORMAT`].
@@ -25,7 +25,7 @@ pub struct CampaignHead {
     pub machine: Option<MachineFileHash>,
     /// Seed of the campaign; that of a unit follows from it.
     pub seed: u64,
-    /// All that decides what the units are and do, by the names of the options.
+    /// Options that determine the units, by name.
     pub options: Map<String, Value>,
     /// Number of units of the whole campaign.
     pub units: u64,
@@ -45,11 +45,11 @@ pub struct MachineFileHash {
 pub struct UnitResult {
     /// Number of the unit, from 0.
     pub unit: u64,
-    /// What was looked at. Units of the same name are one row of the table, in which numbers are added.
+    /// Name of the subject. Units with the same name form one row of the table, which adds their numbers.
     pub name: String,
     /// Figures by the names of their columns: numbers, and texts for what is the same in all units of the name.
     pub figures: Map<String, Value>,
-    /// What is wrong; `None` where everything holds.
+    /// Description of the failure; `None` if the unit passed.
     pub failure: Option<String>,
 }
 
@@ -59,9 +59,9 @@ pub struct ShardDocument {
     /// The campaign.
     #[serde(flatten)]
     pub head: CampaignHead,
-    /// Which part of it.
+    /// Part of the campaign.
     pub shard: Shard,
-    /// The command that does unit N alone, after which `--unit N` is written.
+    /// Command that runs a single unit N when `--unit N` is appended.
     pub repeat: String,
     /// Duration of the units in seconds.
     pub seconds: f64,
@@ -71,7 +71,7 @@ pub struct ShardDocument {
     pub results: Vec<UnitResult>,
 }
 
-/// A file that is not that of a shard.
+/// Reason why a file is not usable as that of a shard.
 #[derive(Debug, thiserror::Error)]
 pub enum DocumentError {
     /// It cannot be read or written.
@@ -79,7 +79,7 @@ pub enum DocumentError {
     File {
         /// The file.
         path: PathBuf,
-        /// What was tried.
+        /// The attempted action.
         doing: &'static str,
         /// Why it failed.
         cause: std::io::Error,
@@ -104,10 +104,10 @@ pub enum DocumentError {
 }
 
 impl ShardDocument {
-    /// Reads a file; `None` if there is none.
+    /// Reads a file; `None` if it does not exist.
     ///
     /// # Errors
-    /// [`DocumentError`] for a file that cannot be read, that is something else, or that was changed since it was written.
+    /// [`DocumentError`] for a file that cannot be read, has other contents, or was changed since it was written.
     pub fn read(path: &Path) -> Result<Option<Self>, DocumentError> {
         let text = match std::fs::read(path) {
             Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
@@ -129,7 +129,7 @@ impl ShardDocument {
         }
     }
 
-    /// Writes the file, all at once: it is never there in part.
+    /// Writes the file atomically: it never exists in part.
     ///
     /// # Errors
     /// [`DocumentError::File`].

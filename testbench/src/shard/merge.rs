@@ -18,7 +18,7 @@ pub enum MergeError {
     /// A file is not that of a shard.
     #[error(transparent)]
     Document(#[from] DocumentError),
-    /// There is none.
+    /// The folder has no file of a shard.
     #[error("{}: no file of a shard (*.json) is in this folder", .0.display())]
     Empty(PathBuf),
     /// Two files are of different campaigns.
@@ -44,11 +44,11 @@ pub enum MergeError {
     /// Shards are missing.
     #[error("{count} of {of} shards are missing: {named}")]
     Missing {
-        /// How many are missing.
+        /// Number of missing shards.
         count: u64,
-        /// How many there should be.
+        /// Number of shards of the campaign.
         of: u64,
-        /// The first of them.
+        /// Names of the first missing ones.
         named: String,
     },
     /// A shard's results are not those of its units.
@@ -69,7 +69,7 @@ pub struct Merged {
     pub head: CampaignHead,
     /// One row for each name, with the sums of its figures.
     pub rows: Vec<MergedRow>,
-    /// The units in which something is wrong, in their order.
+    /// The units that failed, in their order.
     pub failures: Vec<UnitResult>,
     /// Results of all units, in their order.
     pub results: Vec<UnitResult>,
@@ -89,13 +89,13 @@ pub struct MergedRow {
 /// Reads the files `*.json` of a folder, in the order of their names.
 ///
 /// # Errors
-/// [`MergeError::Document`] for a file of something else, [`MergeError::Empty`] where there is none.
+/// [`MergeError::Document`] for a file that is not usable, [`MergeError::Empty`] for a folder without files of shards.
 pub fn read_folder(folder: &Path) -> Result<Vec<(PathBuf, ShardDocument)>, MergeError> {
     let entries = std::fs::read_dir(folder).map_err(|cause| of_file(folder, "read the folder", cause))?;
     let mut paths = Vec::new();
     for entry in entries {
         let path = entry.map_err(|cause| of_file(folder, "read the folder", cause))?.path();
-        // The part of a shard that is being written begins with a dot, and has no such ending.
+        // A file that is still being written begins with a dot and has another ending.
         if path.extension().is_some_and(|extension| extension == "json") {
             paths.push(path);
         }
@@ -103,7 +103,7 @@ pub fn read_folder(folder: &Path) -> Result<Vec<(PathBuf, ShardDocument)>, Merge
     paths.sort();
     let mut documents = Vec::with_capacity(paths.len());
     for path in paths {
-        // A file that was removed meanwhile is a shard that is missing.
+        // If the file was removed in the meantime, its shard counts as missing.
         documents.extend(ShardDocument::read(&path)?.map(|document| (path, document)));
     }
     if documents.is_empty() {
@@ -197,7 +197,7 @@ fn missing(shards: &BTreeMap<Shard, &PathBuf>, of: u64) -> Result<(), MergeError
     Err(MergeError::Missing { count, of, named })
 }
 
-/// One row for each name, in the order in which the names appear.
+/// Returns one row for each name, in the order in which the names first appear.
 pub fn rows(results: &[UnitResult]) -> Vec<MergedRow> {
     let mut rows: Vec<MergedRow> = Vec::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_each_shard_of_one_campaign_once_is_named() {
+    fn missing_doubled_and_foreign_shards_are_named() {
         let said = |documents| merge(documents).unwrap_err().to_string();
         let mut lost = shards(3);
         lost.remove(1);

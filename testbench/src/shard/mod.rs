@@ -7,9 +7,9 @@
 //!  shard 3/3        ▪        ▪        ▪      ─► 3.json ─┘
 //! ```
 //!
-//! A unit knows nothing of the shard that does it. So the merged results are the same, byte for byte, whatever the number of shards
-//! is; times are in the shards only. A shard's file appears when the shard is finished, all at once: what was interrupted leaves no
-//! file, and is done again; what has its file is not done again.
+//! A unit does not depend on the shard that runs it, so the merged results are the same, byte for byte, for any number of shards; times
+//! are in the shards only. A shard's file is written as a whole when the shard is finished. An interrupted shard leaves no file and is
+//! run again; a shard that has its file is not.
 
 mod document;
 mod merge;
@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use self::document::{CampaignHead, DocumentError, FORMAT, MachineFileHash, ShardDocument, UnitResult};
 pub use self::merge::{MergeError, Merged, MergedRow, merge, read_folder, rows};
 
-/// Which part of a campaign: `3/40` is the third of forty.
+/// A part of a campaign: `3/40` is the third of forty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Shard {
@@ -44,7 +44,7 @@ impl Shard {
         self.of
     }
 
-    /// The numbers of its units, of a campaign with this many.
+    /// Returns the numbers of the part's units, in a campaign of `all` units.
     pub fn units(self, all: u64) -> impl Iterator<Item = u64> {
         let mut next = Some(self.number - 1);
         std::iter::from_fn(move || {

@@ -24,7 +24,7 @@ pub(crate) fn tasks() -> Result<Vec<Task>, Error> {
     ])
 }
 
-/// The controller's Verilog with products of any value, because nothing drives them; only one times a word is the word.
+/// Returns the controller's Verilog with free products: they have no driver, except that one times a word is the word.
 fn controller_of_any_products() -> Result<Vec<Module>, Error> {
     let mut modules = sliding_mode::emit("")?;
     for module in &mut modules {
@@ -54,7 +54,7 @@ fn pass() -> Result<Task, Error> {
     )
 }
 
-/// A lemma about the arithmetic, for one part of the controller alone.
+/// Creates the proof of a lemma about the arithmetic of one part of the controller.
 fn lemma(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
     let part = part(controller_of_any_products()?, name)?;
     Ok(Task::new(name, size, INDUCTION, part).properties(&[], properties))

@@ -119,7 +119,8 @@ impl SlidingModeRandom {
         }
     }
 
-    /// Applies the largest e of one sign with half the integral as the command: its ends show, and nothing limits it.
+    /// Applies the largest e of one sign with half the integral as the command, so that the integral reaches its ends and
+    /// the command is not limited.
     fn wind_up(&mut self) {
         self.starts += 1;
         let high = self.starts <= WIND_UP_TICKS[0];

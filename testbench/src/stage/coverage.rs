@@ -31,7 +31,7 @@ const NEVER: [&str; 6] = [
 /// none.
 const NEVER_CAUSES: [Cause; 2] = [Cause::Schedule, Cause::Deviation];
 
-/// What a counter counts.
+/// The event that a counter counts.
 #[derive(Debug, Clone, Copy)]
 enum Counts {
     /// Clocks in which the bits of a net under this mask have this value.

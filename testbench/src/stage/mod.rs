@@ -59,7 +59,7 @@ pub struct StageBlock {
 pub(crate) const BARS: [u64; 3] = [1, 1, 35];
 /// The bars of a run with so few ticks that an axis may not come to its first move.
 pub(crate) const FEW_TICKS_BARS: [u64; 3] = [0, 0, 10];
-/// Clocks per tick from which on a run has few ticks.
+/// A run with at least this many clocks per tick counts as one with few ticks.
 const LONG_TICK_CLOCKS: u32 = 1500;
 
 impl StageBlock {

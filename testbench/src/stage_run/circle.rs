@@ -15,8 +15,7 @@ const PART_OF_VELOCITY: f64 = 0.4;
 const PART_OF_ACCELERATION: f64 = 0.125;
 /// Acceleration along the path as a fraction of the limit: together they stay below it.
 const PART_ALONG_PATH: f64 = 0.5;
-/// Fraction of the speed from which on a point counts: points at rest, and while starting and stopping, are not
-/// compared.
+/// Points below this fraction of the speed are not compared: those at rest, and while starting and stopping.
 const PART_OF_SPEED: f64 = 0.5;
 /// Fraction of the travel that a circle may take.
 const PART_OF_TRAVEL: f64 = 0.9;

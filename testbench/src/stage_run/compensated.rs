@@ -1,4 +1,4 @@
-//! What an error table does for an axis: how far the load rests from its target with the table and without it.
+//! Effect of an error table: the distance of the resting load from its target, with and without the table.
 
 use posicast_blocks::stage::StageAxis;
 use posicast_machine::hardware::error_table_departure_counts;
@@ -6,11 +6,11 @@ use posicast_machine::machine_file::{AxisSection, ErrorTableSection, ErrorUse};
 
 use super::{Expected, Moved};
 
-/// A table is exercised by a move after which, without the table, the load rests at least this many times as far from
-/// its target as is allowed with it.
+/// A move exercises a table if, without the table, the load comes to rest at least this many times as far from its
+/// target as is allowed with it.
 const EXERCISED: f64 = 1.5;
 
-/// Where the load of an axis with an error table rests after its move. Lengths are in m or rad.
+/// Rest positions of the load of an axis with an error table, after its move. Lengths are in m or rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensated {
     /// Distance from the target without the table, with its sign.
@@ -22,7 +22,7 @@ pub struct Compensated {
 }
 
 impl Compensated {
-    /// Figures of the axis at this place; `None` if it has no error table, or one of the moves was not made.
+    /// Returns the figures of the axis with index `place`; `None` if it has no error table, or one of the moves was not made.
     ///
     /// `with` and `without` are the same move with the table and without it.
     pub fn of_axis(
@@ -38,24 +38,24 @@ impl Compensated {
             without: without.axes.get(place)?.offset,
             with: with.axes.get(place)?.offset,
             // The loop rests within half a count of its target, and the compensated target is rounded.
-            allowed: expected.count + expected.friction + departure + of_place(section),
+            allowed: expected.count + expected.friction + departure + error_of_place(section),
         })
     }
 
-    /// Whether the load rests where it should.
+    /// Whether the load rests within the allowed distance.
     pub fn holds(&self) -> bool {
         self.with.abs() <= self.allowed
     }
 
-    /// Whether the move shows what the table does.
+    /// Whether the move exercises the table.
     pub fn is_exercised(&self) -> bool {
         self.without.abs() >= EXERCISED * self.allowed
     }
 }
 
-/// Largest error that remains because the error is looked up at the reference, which is the true position, and was
-/// measured over the counted one: error times slope.
-fn of_place(section: &ErrorTableSection) -> f64 {
+/// Returns the largest error that remains because the table is read at the reference, which is the true position, but
+/// was measured over the counted position: error times slope.
+fn error_of_place(section: &ErrorTableSection) -> f64 {
     if section.apply == ErrorUse::Feedback {
         return 0.0;
     }

@@ -15,19 +15,18 @@ use super::moves;
 use super::{Shaping, StageRun, StageRunError};
 use crate::stage_bench::AxisSample;
 
-/// Fraction of an expected figure by which the stage may differ, because of the drive's limits, the clocks of the
+/// The stage may differ by this fraction of an expected figure, because of the drive's limits, the clocks of the
 /// schedule and the fixed-point arithmetic.
 const MODEL_PART: f64 = 0.1;
-/// Counts of the encoder by which an error may exceed what is expected: half a count is not resolved, and the
+/// An error may exceed the expected one by this many counts of the encoder: half a count is not resolved, and the
 /// measured velocity moves the command by a count.
 const TRACKING_COUNTS: f64 = 2.0;
-/// Counts by which the load's ringing may exceed what is expected: the driven coordinate rests within half a count of
-/// its target, and a mode overshoots such a step by itself.
+/// The load's ringing may exceed the expected one by this many counts: the driven coordinate rests within half a count
+/// of its target, and a mode overshoots such a step by up to its size.
 const RINGING_COUNTS: f64 = 1.0;
 /// Largest allowed error as a fraction of the move.
 const MOVE_PART: f64 = 0.5;
-/// A shaper is exercised by a move that, without the shaper, would ring at least this many times as much as is
-/// allowed.
+/// A move exercises a shaper if, without the shaper, it would ring at least this many times as much as is allowed.
 const EXERCISED: f64 = 1.5;
 /// If the ringing without a shaper is not at least this many times as much as is allowed, the move is made harsher.
 const CLEARLY: f64 = 4.0;

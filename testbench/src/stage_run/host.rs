@@ -12,7 +12,7 @@ use crate::stage_bench::{StageBench, state};
 
 /// Number of clocks in which filters and encoders settle after a reset.
 const SETTLE_CLOCKS: u64 = 1000;
-/// Number of ticks after which a stage that has not done what it should counts as stuck.
+/// A stage counts as stuck if it has not reacted after this many ticks.
 const PATIENCE_TICKS: u64 = 100;
 /// Word that kicks the watchdog: `KICK`.
 const KICK: u32 = 0x4b49_434b;
@@ -26,7 +26,7 @@ pub struct Trouble {
     pub clock: u64,
     /// Name of the axis.
     pub axis: String,
-    /// What it should have done.
+    /// The expected action.
     pub wanted: &'static str,
     /// State that it was in instead, numbered as in [`state`].
     pub state: u32,

@@ -84,13 +84,13 @@ pub enum StageRunError {
 pub struct Compared {
     /// Number of clocks compared, including the reset.
     pub clocks: u64,
-    /// Whether they reach to standstill; only the beginning of a very long move is compared.
+    /// Whether the compared clocks reach standstill; only the beginning of a very long move is compared.
     pub whole: bool,
     /// Number of differing outputs, over all clocks.
     pub mismatches: u64,
-    /// The first.
+    /// The first differing output.
     pub first: Option<Mismatch>,
-    /// What the stage did not do.
+    /// Set if the stage did not do what it should.
     pub trouble: Option<Trouble>,
 }
 
@@ -183,8 +183,8 @@ impl<'a> StageRun<'a> {
         self
     }
 
-    /// Whether the move of an axis has no jerk limit: with one it would excite the modes too little to show what the
-    /// shaper does.
+    /// Whether the move of an axis has no jerk limit. With a limit it would excite the modes too little to show the effect
+    /// of the shaper.
     pub fn is_harsh(&self, axis: usize) -> bool {
         self.harsh.get(axis).copied().unwrap_or(false)
     }
@@ -284,8 +284,8 @@ impl<'a> StageRun<'a> {
         Ok(Host::new(bench, &self.config, tables.collect(), self.homes))
     }
 
-    /// The samples of a run. The load of an axis with an error table is where it truly is: beyond what the counter
-    /// says by the measured error of the machine file.
+    /// Returns the samples of a run. The load of an axis with an error table is at its true position, which is the counted
+    /// one plus the measured error of the machine file.
     fn recorded(&self, host: &mut Host<'_>) -> Vec<Vec<AxisSample>> {
         let mut samples = host.bench.recorded();
         for (samples, axis) in samples.iter_mut().zip(&self.machine.axes) {

@@ -14,7 +14,7 @@ use crate::stage_bench::AxisSample;
 const COMPARED_CLOCKS: u64 = 24_000_000;
 /// Longest time for which a machine is simulated after the end of its shaped command, s.
 const LONGEST_SETTLE_S: f64 = 2.0;
-/// Number of ticks after plan and shapers after which a move counts as over.
+/// A move counts as over this many ticks after the end of plan and shapers.
 const SPARE_TICKS: u64 = 1000;
 /// Number of ticks at the end in which nothing moves any more.
 const STANDSTILL_TICKS: u64 = 20;
@@ -119,7 +119,7 @@ fn shaper_ticks(run: &StageRun<'_>) -> u64 {
     own.chain(families).max().unwrap_or(0).into()
 }
 
-/// Ticks for which a machine is simulated after the end of its commands: the shapers' tail, and settling.
+/// Returns the ticks that a machine is simulated after the end of its commands: the shapers' tail, and settling.
 pub(super) fn settle_ticks(run: &StageRun<'_>) -> u64 {
     let clock = &run.machine.clock;
     let modes = run.machine.axes.iter().flat_map(|axis| &axis.modes);

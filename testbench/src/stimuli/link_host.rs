@@ -1,5 +1,5 @@
-//! A host of the link, whatever its line is: requests of every kind, right and wrong, frames that are damaged in every way; and what
-//! such a run must reach.
+//! A host of the link, for any line: it sends valid and invalid requests of every kind, and frames with every kind of damage. This file
+//! also lists the events that such a run must reach.
 
 use std::collections::VecDeque;
 
@@ -99,7 +99,7 @@ impl LinkHost {
         frame
     }
 
-    /// Whether directed requests are left: nothing of the line or the registers' side changes before they are over.
+    /// Whether directed requests are left. Until they are over, the line and the registers' side stay undisturbed.
     pub(crate) fn is_directed(&self) -> bool {
         !self.directed.is_empty()
     }
@@ -114,7 +114,7 @@ impl LinkHost {
         if one_in(rng, 8) {
             return self.no_request(rng);
         }
-        // A count from 0 alone would seldom come to the upper bits: it begins anew too often.
+        // Counting from 0 alone would seldom reach the upper bits, because the count restarts too often.
         self.sequence = match rng.random_range(0..20) {
             0 => 0,
             1 | 2 => rng.random(),
@@ -153,9 +153,9 @@ pub(crate) fn damage(rng: &mut Xoshiro256PlusPlus, frame: &mut Vec<u8>) {
     }
 }
 
-/// Requests at the borders of what a bridge takes, with which each conversation begins: sequence numbers that differ in their upper
-/// bits alone, one request with the number 0 twice, addresses at and beside `limit`. Words are written to `address` alone, and to
-/// the last one.
+/// Each conversation begins with these requests, at the limits of what a bridge accepts: sequence numbers that differ only in their
+/// upper bits, a request with the number 0 sent twice, addresses at and beside `limit`. Words are written only to `address` and to the
+/// last address.
 pub(crate) fn border_cases(limit: u16, address: u16) -> Vec<Vec<u8>> {
     let last = limit.wrapping_sub(1);
     let read = |address, count| Request::Read { address, count };
@@ -197,7 +197,7 @@ pub(crate) fn border_cases(limit: u16, address: u16) -> Vec<Vec<u8>> {
     frames.filter_map(Result::ok).collect()
 }
 
-/// Tells when a reply is over: the byte 0 after other bytes.
+/// Detects the end of a reply: the byte 0 after other bytes.
 #[derive(Debug, Clone)]
 pub(crate) struct ReplyEnd {
     bit_clocks: f64,
@@ -210,7 +210,7 @@ pub(crate) struct ReplyEnd {
 }
 
 impl ReplyEnd {
-    /// For a line with this many clocks per bit, if it is serial.
+    /// Creates the detector; `bit_clocks` is the number of clocks per bit of a serial line.
     pub(crate) fn new(bit_clocks: f64) -> Self {
         Self {
             bit_clocks,
@@ -222,7 +222,7 @@ impl ReplyEnd {
         }
     }
 
-    /// A request is being sent.
+    /// Starts to wait for the reply to a request that is being sent.
     pub(crate) fn begin(&mut self) {
         let bit_clocks = self.bit_clocks;
         *self = Self {
@@ -231,17 +231,17 @@ impl ReplyEnd {
         };
     }
 
-    /// No reply is awaited any more.
+    /// Whether the reply is complete.
     pub(crate) fn is_over(&self) -> bool {
         self.over
     }
 
-    /// Nothing comes at the moment.
+    /// Whether no byte of a reply is arriving or has arrived.
     pub(crate) fn is_silent(&self) -> bool {
         self.look.is_none() && !self.began
     }
 
-    /// The level of the serial line to the host in a clock.
+    /// Takes the level of the serial line to the host, once per clock.
     pub(crate) fn serial(&mut self, level: bool) {
         let Some(look) = &mut self.look else {
             if !level {
@@ -263,7 +263,7 @@ impl ReplyEnd {
         self.bits += 1;
     }
 
-    /// The level of MISO at a rising edge of the clock.
+    /// Takes the level of MISO at a rising edge of the SPI clock.
     pub(crate) fn spi_bit(&mut self, level: bool) {
         self.byte = self.byte << 1 | u32::from(level);
         self.bits += 1;
@@ -281,11 +281,11 @@ impl ReplyEnd {
     }
 }
 
-/// What a bridge hears in a clock, and its registers' side.
+/// Inputs of a bridge in a clock: the line, and the registers' side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeardClock {
     pub(crate) rst: u64,
-    /// The host says something.
+    /// Whether the host is sending.
     pub(crate) speaks: bool,
     pub(crate) address_limit: u64,
     pub(crate) waits: bool,

@@ -136,7 +136,7 @@ impl TraceRandom {
     }
 }
 
-/// Number of settings that [`TraceRandom::change`] knows.
+/// Number of settings that [`TraceRandom::change`] chooses from.
 const SETTINGS: u32 = 7;
 
 impl Stimuli for TraceRandom {

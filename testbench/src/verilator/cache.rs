@@ -87,7 +87,7 @@ mod tests {
     use std::time::SystemTime;
 
     #[test]
-    fn only_what_is_old_and_ours_is_removed() {
+    fn only_old_files_of_the_cache_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let make = |name: &str, days: u64| {
             let path = folder.path().join(name);

@@ -7,7 +7,7 @@ use posicast_system::tool;
 use super::VERILATOR;
 use crate::error::MissingTool;
 
-/// The compiler where the makefile does not say which: that of Debian's Verilator.
+/// The compiler if the makefile names none: that of Debian's Verilator.
 const USUAL: &str = "g++";
 /// Verilator's makefile, below its root.
 const MAKEFILE: &str = "include/verilated.mk";
@@ -16,7 +16,7 @@ const MAKEFILE: &str = "include/verilated.mk";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Compiler(String);
 
-/// The compiler of the installed Verilator, with which it was built.
+/// Returns the compiler that built the installed Verilator.
 pub(super) fn of_verilator() -> Compiler {
     let makefile = || {
         VERILATOR.missing().is_none().then_some(())?;
@@ -30,7 +30,7 @@ pub(super) fn of_verilator() -> Compiler {
     Compiler(in_makefile(&makefile().unwrap_or_default()).unwrap_or(USUAL).to_owned())
 }
 
-/// The program to which a makefile sets `CXX`.
+/// Returns the value of `CXX` in a makefile.
 fn in_makefile(text: &str) -> Option<&str> {
     let value = text.lines().find_map(|line| {
         let (name, value) = line.split_once('=')?;

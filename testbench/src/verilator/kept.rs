@@ -5,9 +5,9 @@
 //!  verilator-5f70….so.sha256    64 hexadecimal digits
 //! ```
 //!
-//! A file that was cut, or changed by a damaged disk, an incomplete copy or a hand, must never be used: a half of a shared
-//! object ends the process with SIGBUS as soon as it is loaded. So the checksum is compared before each use, and a file that
-//! does not fit counts as absent. It is not removed: what replaces it is renamed over it.
+//! A file that is truncated or was changed (by a damaged disk, an incomplete copy or a person) must never be used: half a
+//! shared object ends the process with SIGBUS as soon as it is loaded. So the checksum is compared before each use, and a file
+//! that does not match counts as absent. It is not removed; its replacement is renamed over it.
 
 use std::fs::{self, File};
 use std::io::{self, Read};

@@ -184,7 +184,7 @@ impl ClockedBlock for Verilated {
     }
 }
 
-/// The warnings of Verilator's `--lint-only -Wall` about the files; an empty list if there are none.
+/// Returns the warnings of Verilator's `--lint-only -Wall` about the files.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Verilator.
@@ -220,18 +220,18 @@ pub fn is_built(source: &VerilogSource<'_>) -> Result<bool, Error> {
     Ok(Build::new(&cache::folder(), source, false)?.is_held())
 }
 
-/// What is needed to build a simulation and is not installed.
+/// Returns the tools that building a simulation needs and that are not installed.
 pub fn missing_tools() -> Vec<MissingTool> {
     let tools = [VERILATOR, MAKE].iter().filter_map(Tool::missing);
     tools.chain(compiler::of_verilator().missing()).collect()
 }
 
-/// Whether a kept simulation is taken.
+/// When a kept simulation is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kept {
     /// If its checksum fits.
     IfItFits,
-    /// It is built anew.
+    /// Never: it is built again.
     Never,
 }
 

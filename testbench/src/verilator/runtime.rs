@@ -17,7 +17,7 @@ pub(super) struct Runtime {
 }
 
 impl Runtime {
-    /// What a cache folder has. The key represents everything on which it depends.
+    /// Names the runtime in a cache folder. `key` must represent everything on which the objects depend.
     pub(super) fn new(folder: &Path, key: &str) -> Self {
         Self {
             folder: folder.to_owned(),

@@ -13,7 +13,7 @@ use super::harness::CLASS;
 /// The C++ files that Verilator wrote, in the order of their names.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Classes {
-    /// What runs in every clock.
+    /// Code that runs in every clock.
     fast: Vec<String>,
     /// Constructors, initial values, tables of names.
     slow: Vec<String>,

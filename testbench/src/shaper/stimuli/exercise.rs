@@ -19,7 +19,7 @@ use crate::shaper::{AxisLayout, Layout};
 /// Least number of times that a tap must be seen: once could be chance.
 const LEAST_TIMES: u32 = 2;
 
-/// Flags of which both levels must be seen.
+/// Flags that must be seen at both levels.
 const FLAGS: [&str; 5] = ["saturated", "overrun", "refused", "swap_pending", "tap_read_waits"];
 
 /// What each shaper of a layout has exercised so far.

@@ -117,8 +117,7 @@ impl Driver {
         }
     }
 
-    /// Makes a plan for an axis that has nothing to do, once in `pace` clocks. `on` tells whether its drive is
-    /// enabled.
+    /// Makes a plan for an idle axis, once in `pace` clocks. `on`: its drive is enabled.
     pub(crate) fn plan(&mut self, axis: usize, on: bool, pace: u32) {
         if !self.axes[axis].script.is_empty() || !self.one_in(pace) {
             return;
@@ -446,7 +445,7 @@ impl Driver {
             // This entry does not end at rest.
             3..=6 => self.entry(axis, 2, EntryMotion::Jerk(1 << 28), true),
             9..=11 => self.batch(axis),
-            // An entry of no ticks is none.
+            // An entry of 0 ticks is ignored.
             7 => self.entry(axis, 0, EntryMotion::Jerk(1), true),
             // These are more entries than the FIFO holds.
             8 => (0..70).for_each(|_| self.entry(axis, 1, EntryMotion::Jerk(0), false)),

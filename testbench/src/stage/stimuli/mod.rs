@@ -79,7 +79,7 @@ struct Line {
     axis: Option<usize>,
     name: &'static str,
     at: usize,
-    /// Factor by which it is low more rarely than other lines.
+    /// The line is low this many times more rarely than other lines.
     pace: u32,
     low: u32,
 }
@@ -335,10 +335,11 @@ impl StageRandom {
     }
 }
 
-/// For a host at a line, whose accesses take hundreds of clocks.
+/// Functions for a host at a line, whose accesses take hundreds of clocks.
 impl StageRandom {
-    /// Makes `rst` and the pins of a clock, and plans; leaves the bus alone. Time stands still for the axes in the mask
-    /// `waiting`, whose writes are on the line. A mood lasts `longer` times as long as on the bus.
+    /// Sets `rst` and the pins for a clock, and plans; it does not touch the bus. The pauses of the axes in the mask
+    /// `waiting` do not elapse, because their writes are still on the line. A mood lasts `longer` times as long as on the
+    /// bus.
     pub(crate) fn beside_a_line(&mut self, seen: &[u64], inputs: &mut [u64], waiting: u32, longer: u64) {
         self.change_mood(longer);
         self.pins(seen);
@@ -350,7 +351,7 @@ impl StageRandom {
         self.clock += 1;
     }
 
-    /// Returns at most so many writes that the driver would make now, and the mask of the axes that they belong to.
+    /// Returns at most `most` writes that the driver would make now, and the mask of their axes.
     pub(crate) fn due_writes(&mut self, most: usize) -> (Vec<(u32, u32)>, u32) {
         self.driver.due_writes(most)
     }

@@ -69,7 +69,7 @@ impl ReadBack {
     }
 }
 
-/// Reads what `CLEAR_FAULTS` clears in each of the clocks after it: only there a flag is seen that goes a clock too early.
+/// Reads what `CLEAR_FAULTS` clears in each of the clocks after it. Only these reads reveal a flag that is cleared a clock too early.
 #[derive(Debug, Clone)]
 pub(crate) struct Clears {
     /// Per axis, the offset of the command, then those of the words with flags.
