@@ -1,4 +1,4 @@
-//! The asynchronous pins of the example's stage: what is behind each, on the netlist.
+//! Checks the logic behind each asynchronous pin of the example's stage, on the netlist.
 
 use posicast_hdl::emit::Module;
 use posicast_machine::plan::design_machine;
@@ -25,8 +25,8 @@ fn found(modules: &[Module]) -> Vec<Crossing> {
     crossings(modules, folder.path()).unwrap()
 }
 
-/// Pins whose path is asynchronous on purpose: they switch the gates off without a clock. That of the drive's fault passes a register and
-/// the choice of the self-test, then the synchroniser of the PWM.
+/// Pins that are asynchronous on purpose, because they switch the gates off without a clock. The pin of the drive's fault passes a
+/// register and the multiplexer of the self-test, then the synchroniser of the PWM.
 const OTHERWISE: [&str; 3] = ["pll_locked", "x_drive_fault_n", "x_fault_n"];
 
 #[test]
@@ -38,7 +38,7 @@ fn long_every_asynchronous_pin_has_one_synchroniser_and_nothing_beside_it() {
         assert_eq!(crossing.findings.is_empty(), !otherwise, "{crossing:?}");
         assert_eq!(crossing.synchronisers.len(), 1, "{crossing:?}");
     }
-    // Behind the fault latch and beside it, the gates: nothing else reads these pins.
+    // Only the fault latch and the gates read these pins.
     for pin in ["pll_locked", "x_fault_n"] {
         let crossing = all.iter().find(|crossing| crossing.pin == pin).unwrap();
         let is_the_latch = |finding: &String| finding.contains("pwm.guard");

@@ -61,7 +61,7 @@ fn crosssim_a_wire_that_nothing_drives_is_found_in_the_waveforms() {
 
 /// The simulators read different Verilog, here because of a macro, as if one of them had a bug.
 #[test]
-fn crosssim_a_simulator_with_a_mind_of_its_own_is_found() {
+fn crosssim_a_difference_between_the_simulators_is_found() {
     let from = "        refused_q <= start & blocked;";
     let to = format!("`ifdef __ICARUS__\n        refused_q <= start;\n`else\n{from}\n`endif");
     let outcome = after(&PartBlock::new(SmallPart::Group(2), ""), from, &to);

@@ -25,7 +25,7 @@ fn the_scenes_reach_everything_on_any_seed() {
     }
 }
 
-/// What `docs/error_table.md` says of positions that are far from the table: its ends hold up to where a place comes round.
+/// `docs/error_table.md`, positions far from the table: the values at its ends hold until the position word wraps around.
 #[test]
 fn the_ends_of_a_table_hold_until_the_position_comes_round() {
     let config = ErrorTableBlock::of_size(9, 6).unwrap();

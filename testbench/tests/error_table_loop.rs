@@ -145,7 +145,7 @@ fn long_figure_the_error_of_a_screw_with_and_without_its_table() {
 }
 
 #[test]
-fn unit_nothing_jumps_when_the_table_comes_and_goes() {
+fn nothing_jumps_on_the_model_when_the_table_comes_and_goes() {
     nothing_jumps_when_the_table_comes_and_goes(false);
 }
 

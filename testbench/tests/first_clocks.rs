@@ -12,8 +12,8 @@ const CLOCKS: [u64; 3] = [200, 3, 400];
 /// Pins that switch something on, after the axis's name.
 const SWITCHES: [&str; 6] = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
 
-/// The first clock and pin that is not low, from power-up on, in a simulator that knows `x`; lines do what they want, a host writes
-/// nothing.
+/// Returns the first clock in which a pin is not low, and the pin, from power-up on in a simulator with `x`. The lines change at random,
+/// and the host does not write.
 fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
     let mut device = Sources::of_modules(modules).unwrap().icarus(block).unwrap();
     let model = block.model(0);

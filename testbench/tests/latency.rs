@@ -1,4 +1,4 @@
-//! How many clocks after a host's write the pins of a stage change: the figures of `docs/hosts.md`.
+//! Measures the clocks from a host's write to a change at the pins of a stage, the figures of `docs/hosts.md`.
 
 use posicast_blocks::component::Component;
 use posicast_blocks::segments::{CubicEntry, Entry, EntryMotion};

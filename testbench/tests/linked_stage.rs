@@ -1,5 +1,5 @@
-//! The stage with its line, serial or SPI: the Verilog of stage and bridge, joined, compared with the model, and what a host at the line
-//! sees.
+//! The stage with its line, serial or SPI: compares the joined Verilog of stage and bridge with the model, and checks the replies that a
+//! host at the line gets.
 
 use posicast_blocks::component::Component;
 use posicast_blocks::link::{Reply, Request};
@@ -51,7 +51,7 @@ fn block(line: &str) -> (StageConfig, LinkedStageBlock) {
     (stage, block)
 }
 
-/// The same, as dense as it can be.
+/// The same block with the fastest line and short ticks, so that the most happens per clock.
 fn dense(line: &str) -> DenseLinkBlock {
     let (stage, machine) = block(line);
     DenseLinkBlock::new(&stage, &machine).unwrap().unwrap()
@@ -77,7 +77,7 @@ fn lockstep_a_host_at_the_spi_lines_of_a_stage() {
     a_few_requests_agree(SPI);
 }
 
-/// What the stimuli reach, on the model alone: a driver at the line does what one at the bus does.
+/// A driver at the line reaches the same as one at the bus. Only the model runs, so this tests the stimuli alone.
 fn reaches_everything(line: &str, clocks: u64) {
     let block = dense(line);
     let mut model = posicast_testbench::lockstep::TwoValued(block.model(1));

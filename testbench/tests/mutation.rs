@@ -1,4 +1,4 @@
-//! The mutation rung on small blocks: the fate of every mutant is known, and stimuli that find nothing are reported.
+//! The mutation rung on small blocks: the fate of every mutant is known, and stimuli that do not detect a mutant are reported.
 
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};

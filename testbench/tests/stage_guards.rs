@@ -1,5 +1,5 @@
-//! What a stage refuses, and what it waits for: a change of the feedback's sign with the drive on, a PWM out of step,
-//! an interrupt that cannot be cleared; and limits that wait for homing.
+//! Checks the guards of a stage: changes of the feedback's sign with the drive on are refused, an axis waits for a PWM
+//! that is out of step, every interrupt can be cleared, and soft limits may wait for homing.
 
 use posicast_blocks::axis::Cause;
 use posicast_blocks::component::Component;
@@ -10,8 +10,8 @@ use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, EncoderPins, PlantOptions};
 use posicast_testbench::stage_bench::{StageBench, state};
 
-/// Returns the example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`:
-/// encoder and scale of X are wired backwards, and the file says so.
+/// Returns the example's stage with a linear scale and an encoder generator at X, on its simulated machine. With
+/// `invert`, encoder and scale of X are wired backwards and the file sets `invert`.
 fn bench(invert: bool) -> StageBench {
     bench_of(invert, "")
 }
@@ -83,7 +83,7 @@ fn the_feedback_is_not_changed_while_the_drive_is_on() {
     assert_eq!(bench.read("flags").unwrap(), 0);
 }
 
-/// The lines of this machine count backwards, and its file says so: the documented bring-up keeps the sign.
+/// The lines of this machine count backwards, which its file states; the documented bring-up keeps the sign.
 #[test]
 fn a_machine_wired_backwards_moves_by_its_file() {
     let mut bench = bench(true);

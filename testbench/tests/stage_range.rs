@@ -1,7 +1,7 @@
-//! The end of the position's word on a stage: what stops a command that runs away, with soft limits and without.
+//! The end of the position word on a stage: checks what stops a command that runs away, with and without soft limits.
 //!
-//! The axis follows its shaped command ideally, by its encoder's lines, at most one count per clock. So the way to
-//! the end of the word, with the outputs off, takes as many clocks as counts.
+//! The encoder's lines follow the shaped command exactly, at most one count per clock. So moving to the end of the word
+//! with the outputs off takes as many clocks as counts.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_blocks::axis::Cause;
@@ -194,7 +194,7 @@ fn no_command_runs_away_beyond_the_position_word() {
     assert!((limit..REACH_COUNTS).contains(&bed.furthest), "{}", bed.furthest);
     assert_eq!(bed.net("segments_out_of_range"), 0);
 
-    // Without one, the end of the range does, with half of the remaining way before it.
+    // Without a soft limit the end of the range stops it, within half of the remaining distance.
     bed.write("x_soft_limit_plus", 0, 0);
     bed.switch_on();
     assert_eq!(bed.run_away(), Cause::Segments.bit());

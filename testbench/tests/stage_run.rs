@@ -146,7 +146,7 @@ fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
 }
 
 #[test]
-fn a_loop_that_swings_after_its_commands_is_seen() {
+fn a_loop_that_oscillates_after_its_commands_is_reported() {
     let (moved, _) = wild_wrist(WRIST, 120.0);
     let trouble = moved.trouble.unwrap().to_string();
     assert!(
@@ -165,7 +165,7 @@ fn a_loop_that_swings_after_its_commands_is_seen() {
 }
 
 #[test]
-fn a_move_of_a_few_counts_is_none() {
+fn a_move_of_a_few_counts_is_too_short_to_compare() {
     let coarse = XY.replace("counts_per_unit = 1_000_000", "counts_per_unit = 80");
     let machine = machine(&coarse);
     let run = StageRun::new(&machine, &stage(&machine).config, 1).unwrap();

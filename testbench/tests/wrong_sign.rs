@@ -104,7 +104,7 @@ enum When {
 }
 
 /// Runs a machine of the wrong sign, with every other supervision disabled.
-fn of_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: When) -> RunAway {
+fn run_with_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: When) -> RunAway {
     let machine = machine(text, |axis| {
         let limits = axis.limits.as_mut().unwrap();
         limits.travel = None;
@@ -142,7 +142,7 @@ fn a_wrong_sign_trips_in_hold_and_in_a_move() {
     for (drive, text) in [("velocity", VELOCITY), ("torque", TORQUE)] {
         for when in [When::Hold, When::Move, When::InMotion] {
             for following_error in [true, false] {
-                let found = of_wrong_sign(text, following_error, LOST_S, when);
+                let found = run_with_wrong_sign(text, following_error, LOST_S, when);
                 let (cause, most) = if following_error {
                     (Cause::FollowingError, MOST_COUNTS_BY_ERROR)
                 } else {
@@ -159,7 +159,7 @@ fn a_wrong_sign_trips_in_hold_and_in_a_move() {
 #[test]
 fn without_both_watches_a_wrong_sign_goes_on_to_the_end_of_the_errors_word() {
     for text in [VELOCITY, TORQUE] {
-        let found = of_wrong_sign(text, false, 0.0, When::Hold);
+        let found = run_with_wrong_sign(text, false, 0.0, When::Hold);
         assert_ne!(found.causes & Cause::Range.bit(), 0, "{found:?}");
         assert!(found.counts > 30_000, "{found:?}");
     }

@@ -88,7 +88,7 @@ fn formal_a_limit_that_trips_where_it_is_reached_is_found() {
 }
 
 #[test]
-fn formal_an_emergency_stop_that_is_only_told_to_others_is_found() {
+fn formal_an_emergency_stop_that_only_stops_the_other_axes_is_found() {
     fails(
         "axis_lines",
         "emergency = own_emergency | group_emergency_stop",

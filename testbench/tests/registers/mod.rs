@@ -1,5 +1,5 @@
-//! Register banks and components: their Verilog compared with their bit-exact models, every output in every clock;
-//! and what their registers guarantee to a host.
+//! Compares the Verilog of register banks and components with their bit-exact models, every output in every clock, and
+//! checks what their registers guarantee to a host.
 
 mod bank;
 mod classic;

@@ -1,7 +1,7 @@
-//! Checks what must hold at the pins of a PWM or of a stage's axis in every clock, whatever the traffic is.
+//! Checks the safety rules at the pins of a PWM or of a stage's axis in every clock, under any traffic.
 //!
-//! Both sides of a leg are never on, and the dead time is between them; no gate is on in a clock of a raw fault; with
-//! the drive disabled no gate is on, and the brake is applied.
+//! The two sides of a leg are never on together, and the dead time separates them. No gate is on in a clock of a raw
+//! fault. With the drive disabled no gate is on, and the brake is applied.
 
 use posicast_blocks::pwm::ActiveLow;
 use posicast_blocks::{Direction, Port};

@@ -1,5 +1,5 @@
-//! Adds any traffic on the bus, legal or not, to what a bench does: model and RTL stay equal, every read returns what
-//! the register map promises, and the pins stay safe.
+//! Adds arbitrary traffic on the bus, legal or not, to the stimuli of a bench: model and RTL must stay equal, every
+//! read must return what the register map promises, and the pins must stay safe.
 //!
 //! Proptest makes the traffic and shortens it after a failure. `PROPTEST_CASES` sets the number of cases.
 

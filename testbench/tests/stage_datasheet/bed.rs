@@ -171,7 +171,7 @@ impl Bed {
         self.clocks(clocks % PIECE as u64);
     }
 
-    /// Up to and with the clock of the next tick.
+    /// Runs up to and including the clock of the next tick.
     pub(super) fn next_tick(&mut self) {
         self.clock();
         while self.pin("tick") == 0 {
@@ -266,7 +266,7 @@ impl Bed {
         }
     }
 
-    /// Sixteen counts per tick, for many ticks: from rest in one tick of jerk.
+    /// Moves at sixteen counts per tick for many ticks, after a tick of jerk and a tick of the opposite jerk.
     pub(super) fn long_move(&mut self, axis: usize, up: bool) {
         let jerk = if up { 16 << 32 } else { -(16 << 32) };
         self.jerk(axis, jerk, 1);
@@ -274,7 +274,7 @@ impl Bed {
         self.jerk(axis, 0, 100_000);
     }
 
-    /// Both axes to HOLD, supervised by nothing that a standing encoder trips, with causes that stop and do not switch off.
+    /// Brings both axes to HOLD. The monitors that a standing encoder would trip are off, and causes stop without switching off.
     pub(super) fn hold(&mut self) {
         self.clocks(1000);
         for axis in 0..2 {

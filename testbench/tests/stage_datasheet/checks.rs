@@ -249,7 +249,7 @@ fn an_emergency_stop_switches_both_off(bed: &mut Bed) {
     }
 }
 
-/// axis.md: the switch in the direction of the motion is cause 3 or 4; the other one is none.
+/// axis.md: the switch in the direction of the motion is cause 3 or 4; the other switch causes no fault.
 fn a_limit_switch_stops_its_own_direction(bed: &mut Bed) {
     for (k, up) in [(0, true), (0, false), (1, true), (1, false)] {
         bed.set("rst", 1);

@@ -1,8 +1,8 @@
-//! A bench of the stage from its data sheets alone: `docs/stage.md`, `axis.md`, `segments.md`, `pulse_counter.md`, `pwm.md`,
-//! `drive_command.md` and `register-tables.md`, against the emitted Verilog through bus and pins.
+//! Tests the emitted Verilog of the stage through bus and pins against its data sheets alone: `docs/stage.md`, `axis.md`, `segments.md`,
+//! `pulse_counter.md`, `pwm.md`, `drive_command.md` and `register-tables.md`.
 //!
-//! The composition is one source for model and Verilog, so a wrong wire in it is in both, and lock step cannot see it. The expectations
-//! here are numbers of the data sheets. [`caught`] puts wrong wires into the Verilog and requires that a check fails.
+//! Model and Verilog share one composition, so a wrong wire in it is in both, and lock step cannot detect it. The expectations here are
+//! numbers from the data sheets. [`caught`] puts wrong wires into the Verilog and requires that a check fails.
 
 mod bed;
 mod caught;
