@@ -213,7 +213,7 @@ fn enabled(bytes: u32) -> u32 {
 /// Checks that every register reads as described after a reset, and again after a later reset.
 ///
 /// # Errors
-/// A message that says what was found.
+/// A message that names the register, the condition and the word that was read.
 pub fn reset_values(host: &mut Host<'_>) -> Result<(), String> {
     host.check_all("after a reset")?;
     for at in 0..host.map.registers().len() {
@@ -226,7 +226,7 @@ pub fn reset_values(host: &mut Host<'_>) -> Result<(), String> {
 /// Checks that every writable register keeps a word, and that writes to others change nothing that can be read.
 ///
 /// # Errors
-/// A message that says what was found.
+/// A message that names the register, the condition and the word that was read.
 pub fn read_write(host: &mut Host<'_>) -> Result<(), String> {
     for data in [0, u32::MAX, 0xaaaa_aaaa, 0x5555_5555, 0x0123_4567] {
         for at in 0..host.map.registers().len() {
@@ -246,7 +246,7 @@ pub fn read_write(host: &mut Host<'_>) -> Result<(), String> {
 /// Checks that every bit of a field can be set and cleared, and that no other bit changes with it.
 ///
 /// # Errors
-/// A message that says what was found.
+/// A message that names the register, the condition and the word that was read.
 pub fn bit_bash(host: &mut Host<'_>) -> Result<(), String> {
     for at in host.keepers() {
         for bit in 0..32 {
@@ -263,7 +263,7 @@ pub fn bit_bash(host: &mut Host<'_>) -> Result<(), String> {
 /// the window another.
 ///
 /// # Errors
-/// A message that says what was found.
+/// A message that names the register, the condition and the word that was read.
 pub fn aliasing(host: &mut Host<'_>) -> Result<(), String> {
     let word = |offset: u32| (offset + 1).wrapping_mul(0x9e37_79b9);
     for at in host.keepers() {
@@ -286,7 +286,7 @@ pub fn aliasing(host: &mut Host<'_>) -> Result<(), String> {
 /// Checks that reads agree with the description after arbitrary writes, with resets in between.
 ///
 /// # Errors
-/// A message that says what was found.
+/// A message that names the register, the condition and the word that was read.
 pub fn random_with_resets(host: &mut Host<'_>) -> Result<(), String> {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(6);
     for turn in 0..3000 {
@@ -310,7 +310,7 @@ pub fn random_with_resets(host: &mut Host<'_>) -> Result<(), String> {
 /// with the last pattern alone.
 ///
 /// # Errors
-/// A message that says what was found.
+/// A message that names the register, the condition and the word that was read.
 pub fn byte_enables(host: &mut Host<'_>) -> Result<(), String> {
     for at in 0..host.map.registers().len() {
         let access = host.map.registers()[at].access.clone();

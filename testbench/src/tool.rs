@@ -80,7 +80,7 @@ impl Tool {
         self.success(output, doing)
     }
 
-    /// Runs the command to its end, whatever its exit status is. It is stopped at its time limit.
+    /// Runs the command to its end, or stops it at its time limit. Any exit status is a success.
     pub(crate) fn output(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         self.output_within(command, doing, limit_or(WORK_LIMIT))
     }

@@ -111,7 +111,7 @@ fn largest(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |largest, error| error.abs().max(largest))
 }
 
-/// Positions over the travel, none of which is an entry of the table.
+/// Positions over the travel, between the entries of the table.
 const PLACES: [f64; 4] = [0.0371, 0.0628, -0.0214, -0.0907];
 
 /// Returns the largest errors at rest at these positions.

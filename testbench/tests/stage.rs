@@ -344,7 +344,7 @@ fn a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
     );
 }
 
-/// The schedule fits its tick, whatever a host does: no pass is late, and no start finds one running.
+/// The schedule fits its tick for any host: no pass is late, and none starts while the last one is running.
 #[test]
 fn no_pass_is_ever_missed() {
     for axes in [1, 4] {

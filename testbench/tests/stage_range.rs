@@ -194,7 +194,7 @@ fn no_command_runs_away_beyond_the_position_word() {
     assert!((limit..REACH_COUNTS).contains(&bed.furthest), "{}", bed.furthest);
     assert_eq!(bed.net("segments_out_of_range"), 0);
 
-    // Without a soft limit the end of the range stops it, within half of the remaining distance.
+    // Without a soft limit the end of the range stops it, before half of the remaining distance is used up.
     bed.write("x_soft_limit_plus", 0, 0);
     bed.switch_on();
     assert_eq!(bed.run_away(), Cause::Segments.bit());

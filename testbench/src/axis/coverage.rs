@@ -105,7 +105,7 @@ impl AxisCoverage {
     }
 }
 
-/// Checks what must hold in every clock, whatever the inputs are, of pins, brake and transitions.
+/// Checks rules for pins, brake and transitions that must hold in every clock, for any inputs.
 #[derive(Debug, Clone, Default)]
 pub struct AxisSafety {
     clock: u64,

@@ -14,7 +14,7 @@ use posicast_blocks::registers::{Access, Register, RegisterMap};
 
 use super::stimuli::{ADDRESS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 
-/// What a read must return.
+/// Value that a read must return.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Expected {
     Word(u32),

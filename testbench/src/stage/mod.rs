@@ -83,7 +83,7 @@ impl StageBlock {
         })
     }
 
-    /// Counts what a row of this stage reaches, whatever its bus is.
+    /// Counts what a row of this stage reaches, on any bus.
     pub(crate) fn reach_with(&self, instance: &str, bars: [u64; 3]) -> InsideAStage {
         InsideAStage::new(instance, &self.axes, self.component.map(), bars)
     }

@@ -46,8 +46,8 @@ impl Simulation {
         };
         // Verilator takes 31 bits; 0 means that it chooses a seed itself.
         let seed = ((seed ^ (seed >> 32)) as u32 & 0x7fff_fffe) | 1;
-        // SAFETY: the object's initialisers are those of Verilator's runtime library; the types are as the module doc
-        // says.
+        // SAFETY: the object's initialisers are those of Verilator's runtime library; the types are those of the module
+        // doc.
         let (library, new, free, message, run, coverage) = unsafe {
             let library = Library::new(object).map_err(|cause| refuse(cause.to_string()))?;
             let missing = |cause: libloading::Error| refuse(cause.to_string());

@@ -75,7 +75,7 @@ fn a_recorded_move_shows_the_machines_clock_and_true_times() {
     assert!(rises.iter().all(|time| time.is_multiple_of(20)), "{rises:?}");
     let gaps = rises.windows(2).filter(|pair| pair[1] - pair[0] != 20).count();
     assert_eq!(gaps, SAMPLES - 1);
-    // In a gap the clock is unknown, and the file says that it is not recorded.
+    // In a gap the clock is unknown, and the file marks it as not recorded.
     let unknown = changes["stage.clk"].iter().filter(|(_, value)| value == "x").count();
     let off = changes["stage.recording"]
         .iter()

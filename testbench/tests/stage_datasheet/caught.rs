@@ -1,4 +1,4 @@
-//! Wrong wires of a composition, each of which a check must find. In a stage's description they would be in model and Verilog alike.
+//! Wrong wires of a composition: a check must find each of them. In a stage's description they would be in model and Verilog alike.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

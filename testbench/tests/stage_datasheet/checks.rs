@@ -358,7 +358,7 @@ fn registers_show_their_own_axis(bed: &mut Bed) {
         [10, -7_i32 as u32],
         "a preset does not move the count"
     );
-    // An index presets where it says so; the preset's value is the last one written.
+    // An index presets the position if the register selects that; the value is the last one written.
     for (k, name, count) in [(0, "x", 15_i32), (1, "y", -2)] {
         bed.write_of(k, INDEX, 2);
         bed.write_of(k, INDEX_ARM, 0);
@@ -442,7 +442,7 @@ fn a_snapshot_is_of_one_clock(bed: &mut Bed) {
         assert_ne!(bed.of(0, POSITION), x, "the live word has moved on");
         let stamp = bed.read(SNAPSHOT_TIME_STAMP);
         let live = bed.read(TIME_STAMP);
-        // The read of the live word is two clocks, the first of which it shows.
+        // The read of the live word takes two clocks and returns the value of the first.
         assert_eq!(u64::from(live - stamp), bed.now - 2 - (taken - 1));
         let at_the_snapshot = bed.read(SNAPSHOT_TICK_COUNT);
         assert!(

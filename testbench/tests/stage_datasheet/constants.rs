@@ -12,7 +12,7 @@ use super::bed::*;
 const TIMEOUT_UNIT_CLOCKS: u64 = 65_536;
 /// A period of the example's PWM: 20 kHz at 50 MHz.
 const PERIOD_CLOCKS: u64 = 2500;
-/// Clocks after the tick at which the duty of the controller has come: register `DUTY_CLOCKS` says fewer.
+/// The controller's duty has arrived this many clocks after the tick; the register `DUTY_CLOCKS` states fewer.
 const AFTER_THE_DUTY: u64 = 1000;
 
 /// Whole units of the time-out after the last step in which each axis's velocity becomes 0.
@@ -70,8 +70,8 @@ fn watchdog_acts(bed: &mut Bed) -> [u64; 2] {
     periods
 }
 
-/// The stage with a line in each axis that stops its controller, and with these constants in place of others, of which the input
-/// `mutsel` chooses one.
+/// Returns the stage with a line in each axis that stops its controller. The input `mutsel` chooses which of these constants replaces
+/// the original one.
 fn with_constants(port: [&str; 2], from: u64, to: &[(&str, u64)]) -> Vec<Module> {
     let stopped = AXES.iter().fold(modules(), |modules, axis| {
         let start = ".start                  (control),";
@@ -103,7 +103,7 @@ fn long_the_velocity_of_each_axis_times_out_as_the_data_sheet_says() {
     }
 }
 
-/// stage.md: the periods of two ticks, which are four, without a command; the next valley trips, as pwm.md says.
+/// stage.md: two ticks, which are four periods, without a command; pwm.md: the next valley trips.
 #[test]
 fn long_the_watchdog_of_each_pwm_acts_as_the_data_sheet_says() {
     let others = [("x", 3), ("x", 5), ("y", 3), ("y", 5)];
