@@ -1,11 +1,12 @@
 //! Compares every kind of shaper on one axis: its costs and its residual vibration.
 //!
 //! Each kind that this version builds is designed for the axis's modes and tolerances, digitised and rounded as the
-//! machine file says, and judged by its integer taps, with which the hardware computes. A kind is *Pareto-optimal* if
-//! no other is at least as good in duration, worst residual and taps, and better in one of them.
+//! machine file requires, and judged by the integer taps that the hardware uses. A kind is *Pareto-optimal* if no
+//! other is at least as good in duration, worst residual and taps, and better in one of them.
 //!
-//! `optimal` is designed for the question that the comparison asks: for the band of the frequencies by which every kind is judged and for the tolerances of the
-//! modes, once without negative amplitudes and once with a step that stays within −1 … 1. An `optimal` of the machine file is a row of its own.
+//! `optimal` is designed for the conditions of the comparison: the frequency band in which every kind is judged, and the tolerances of
+//! the modes; once without negative amplitudes, and once with a shaped step that stays within −1 … 1. An `optimal` of the machine file
+//! has its own row.
 
 use thiserror::Error;
 
@@ -158,7 +159,7 @@ fn compare_axis(machine: &Machine, axis: &AxisSection, band: f64) -> KindCompari
     }
 }
 
-/// `optimal` for the band of the comparison: without negative amplitudes, and with a step that stays within −1 … 1.
+/// Returns the rows of `optimal` for the band of the comparison: without negative amplitudes, and with a step that stays within −1 … 1.
 fn optimal_rows(axis: &AxisSection, band: f64) -> Vec<Row> {
     let both_ways = Command::PartialSums { low: -1.0, high: 1.0 };
     let rows = [("", Command::Positive), (" ±1", both_ways)].map(|(bounds, command)| {
@@ -179,7 +180,7 @@ fn optimal_rows(axis: &AxisSection, band: f64) -> Vec<Row> {
     rows.into_iter().filter(|row| !row.axis.modes.is_empty()).collect()
 }
 
-/// The kinds that can be tried without further data, but `optimal`; on an axis without modes only `none`, which passes the
+/// Returns the kinds that need no further data, except `optimal`; on an axis without modes only `none`, which passes the
 /// command through.
 fn kinds_for(axis: &AxisSection) -> impl Iterator<Item = ShaperKind> {
     let modes = !axis.modes.is_empty();
@@ -310,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn pareto_means_beaten_by_none() {
+    fn every_other_kind_is_beaten_by_a_pareto_optimal_one() {
         let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
         // No kind is shorter than `none`; among those without negative impulses, none has fewer taps than zv and more
@@ -362,7 +363,7 @@ mod tests {
             let machine = machine(&format!("[axis.shaper]\nkind = \"zvd\"\ntolerance = {tolerance}"), MODE);
             let found = compare(&machine, band).remove(0);
             let (positive, both) = (find(&found, "optimal"), find(&found, "optimal ±1"));
-            // Its integer taps, looked at far more often than the table does.
+            // Evaluate the integer taps at far more frequencies than the table does.
             for optimal in [positive, both] {
                 assert!(
                     optimal.keeps_tolerance && optimal.worst_residual <= found.tolerances[0] * (1.0 + 1e-9),
@@ -380,7 +381,7 @@ mod tests {
                     other.keeps_tolerance && shortest[0].duration_s <= other.duration_s,
                     "{other:?}"
                 );
-                // Without negative amplitudes nothing is shorter than the optimum; a tap after the last impulse is worth a sample.
+                // Without negative amplitudes no shaper is shorter than the optimum; digitising may add a tap, and so a sample.
                 let no_shorter = other.partial_sums.min < -1e-9 || positive.duration_s <= other.duration_s + 1e-4;
                 assert!(
                     no_shorter || other.kind.contains("um-") || other.kind.contains("simultaneous"),
@@ -395,14 +396,14 @@ mod tests {
         let machine = machine("[axis.shaper]\nkind = \"optimal\"", MODE);
         let found = compare(&machine, 0.1).remove(0);
         let rows: Vec<&Candidate> = found.candidates.iter().filter(|c| c.kind == "optimal").collect();
-        // Designed for no error at all, that of the file leaves far more than the tolerance.
+        // The file's own `optimal` is designed for exact frequencies, so over the band it leaves far more than the tolerance.
         let own = rows.iter().find(|c| c.in_file).unwrap();
         assert!(!own.keeps_tolerance && own.worst_residual > 0.1, "{own:?}");
         assert!(
             rows.len() == 2 && rows.iter().any(|c| !c.in_file && c.keeps_tolerance),
             "{rows:?}"
         );
-        // One that is designed for the same band is the same row.
+        // An `optimal` of the file with the band of the comparison shares its row.
         let banded = machine_of_band(0.1);
         let found = compare(&banded, 0.1).remove(0);
         assert_eq!(found.candidates.iter().filter(|c| c.kind == "optimal").count(), 1);
@@ -426,14 +427,14 @@ mod tests {
                 assert!(least <= candidate.worst_residual * (1.0 + 1e-3) + 1e-4, "{candidate:?}");
             }
         }
-        // At 0.8 periods three impulses do far better than a kernel with two humps.
+        // At 0.8 periods three impulses leave far less than a kernel with two humps.
         let zv = find(&found, "smooth_zv");
         assert!(zv.least_residual.unwrap() < 0.7 * zv.worst_residual, "{zv:?}");
     }
 
     #[test]
     fn a_kind_that_does_not_exist_has_its_reason() {
-        // No shaper has a tolerance of 5 % at this damping.
+        // At this damping no EI shaper with a tolerance of 5 % exists.
         let machine = machine(
             "[axis.shaper]\nkind = \"zv\"",
             "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.9\n",

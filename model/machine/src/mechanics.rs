@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rigid_adds_nothing() {
+    fn a_rigid_part_in_series_adds_no_compliance() {
         let [x, _] = axes();
         let rigid = ScrewDrive {
             coupling_stiffness: f64::INFINITY,

@@ -27,7 +27,7 @@ pub struct ContourRow {
     pub in_file: bool,
     /// Whether the axes have equal delays.
     pub matched: bool,
-    /// The followed contour at each of [`FREQUENCY_FACTORS`]; the error says why the axes have no such tables.
+    /// The followed contour at each of [`FREQUENCY_FACTORS`]; the error is the reason why the axes have no such tables.
     pub followed: Result<[FollowedContour; 5], String>,
 }
 

@@ -21,10 +21,10 @@ use std::collections::VecDeque;
 
 /// Angle in radians below which a bend counts as straight, as the digits of programs leave it.
 const STRAIGHT: f64 = 1e-4;
-/// Relative amount by which a bend may exceed the stop angle: the facets of an octagon bend by 45 degrees and a
-/// rounding error.
+/// A bend may exceed the stop angle by this fraction: the facets of an octagon bend by 45 degrees plus a rounding
+/// error.
 const STOP_ROUNDING: f64 = 1e-6;
-/// Share of the tolerance by which points may deviate from a chord.
+/// Points may deviate from a chord by this share of the tolerance.
 const CHORD_SHARE: f64 = 0.25;
 /// Largest mean of the sides of a bend, as a multiple of the shorter one.
 const LONGEST_MEAN: f64 = 1.5;
@@ -61,9 +61,9 @@ impl Default for CornerRules {
 /// How a path goes on to a stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Corner {
-    /// It stops.
+    /// The path stops.
     Stop,
-    /// At most at this speed, m/s.
+    /// The path passes the corner at most at this speed, m/s.
     Speed(f64),
 }
 

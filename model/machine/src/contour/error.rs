@@ -11,9 +11,9 @@ pub enum ContourError {
     Line {
         /// Number of the line, from 1.
         line: u64,
-        /// What was found there.
+        /// Description of the problem.
         found: String,
-        /// What to do about it.
+        /// Remedy.
         remedy: String,
     },
     /// There is no path.
@@ -47,7 +47,7 @@ pub enum ContourError {
     Read {
         /// Number of lines that were read.
         line: u64,
-        /// What the operating system says.
+        /// The operating system's message.
         found: String,
     },
     /// A radius, a side or a speed is not a positive number.
@@ -69,7 +69,7 @@ pub enum ContourError {
 }
 
 impl ContourError {
-    /// What to do about the error, where the message does not say so itself.
+    /// Remedy, if the message does not contain it.
     pub fn remedy(&self) -> Option<&str> {
         match self {
             Self::Line { remedy, .. } => Some(remedy),

@@ -1,7 +1,7 @@
 //! Simulates machines on a contour: tap tables, modes, and the distance of the load from the path.
 //!
-//! The path is driven block by block. A block has the command in its samples, and as many before it as the longest
-//! table and the lag of the load take; of the path, only the strokes of that time are held. So the memory does not
+//! The path is driven block by block. A block holds the command in its samples, and in as many samples before them as
+//! the longest table and the lag of the load need. Only the strokes of that time are in memory, so the memory does not
 //! depend on the length of the path.
 
 use super::ContourError;
@@ -65,12 +65,12 @@ fn modes(machine: &Machine) -> impl Iterator<Item = Mode> {
     axes.flat_map(|axis| &axis.modes).map(|mode| mode.mode)
 }
 
-/// How far behind the command the load may be, and how the distance is measured.
+/// Limits of the load's lag, and settings of the measurement.
 #[derive(Debug, Clone, Copy)]
 struct Measure {
-    /// Samples by which the load may lag: the delay of the shaper and a period of the slowest mode.
+    /// Largest lag of the load in samples: the delay of the shaper and a period of the slowest mode.
     lag: usize,
-    /// Length of the path, m, by which it may be further back: what the slowest mode rings by at most.
+    /// Additional lag along the path, m: the largest ringing of the slowest mode.
     ringing: f64,
     /// Samples after which shapers and modes have settled.
     settling: u64,
@@ -285,7 +285,7 @@ impl<const N: usize> Followers<N> {
         })
     }
 
-    /// Samples before a block that it takes.
+    /// Number of samples before a block that its computation needs.
     fn before(&self) -> usize {
         let taps = self.axes.iter().flat_map(|axis| &axis.taps);
         taps.map(|(delay, _)| *delay).fold(self.measure.lag, usize::max)

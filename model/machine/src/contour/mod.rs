@@ -10,7 +10,7 @@
 //! - [`Stroke`]: a line or an arc, with its speed;
 //! - [`shapes`] and [`gcode`]: strokes of a circle, a square, a list of points, a program, the last two line by line;
 //! - [`CornerRules`]: how fast bends are passed;
-//! - [`Survey`]: what a planned path is like; [`Contour`]: a planned path in memory;
+//! - [`Survey`]: length, duration, stops and extent of a planned path; [`Contour`]: a planned path in memory;
 //! - [`compare`]: the error of each kind of shaper, in memory that does not depend on the length of the path;
 //!   [`follow`]: that of one machine.
 //!

@@ -3,7 +3,7 @@
 use super::plan::Placed;
 use super::stroke::{PlanePoint, Shape, minus};
 
-/// Number of strokes behind the machine from which on they are dropped.
+/// Strokes are dropped once this many are behind the machine.
 const DROP: usize = 8192;
 
 /// A line or an arc, prepared for many distances from it.

@@ -16,8 +16,8 @@
 //! and at those bends that would otherwise be passed too fast. They are found one by one: the slowest bend of each
 //! ramp that exceeds it divides the ramp, until none does.
 //!
-//! Strokes are read as they are needed: up to the next stop, or [`LOOK_AHEAD`] of them, of which the first half is
-//! then driven as if the path stopped after the second.
+//! Strokes are read as they are needed: up to the next stop, or at most [`LOOK_AHEAD`] of them. Then the first half is
+//! driven as if the path stopped after the second half.
 
 use super::ContourError;
 use super::corners::{Corner, CornerRules, Corners};
@@ -346,7 +346,7 @@ fn is_same(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= SAME * a.abs().min(b.abs())
 }
 
-/// What there is to know of a path before it is driven.
+/// Figures of a path that are known before it is driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Survey {
     /// Start of the path.
@@ -458,7 +458,7 @@ pub struct ContourSample {
     pub(super) is_full: bool,
 }
 
-/// Fraction of the commanded speed from which on a stroke counts as driven at full speed.
+/// A stroke counts as driven at full speed from this fraction of the commanded speed on.
 const FULL: f64 = 0.999;
 
 /// The command of planned runs, sample by sample.

@@ -45,7 +45,7 @@ impl Along {
         narrowed(from, most, |speed| self.change_length(from, speed) - length)
     }
 
-    /// Length of the path after which a change from `from` to the higher `to` has reached `speed`, which lies between.
+    /// Length of the path that a change from `from` to the higher `to` takes to reach `speed`, which lies between them.
     fn length_until(&self, from: f64, to: f64, speed: f64) -> f64 {
         let (gained, left) = ((speed - from).max(0.0), (to - speed).max(0.0));
         let peak = self.acceleration.min((self.jerk * (to - from)).sqrt());
@@ -233,7 +233,7 @@ mod tests {
         jerk: 300.0,
     };
 
-    /// From rest to rest it is the move of an axis, which is planned otherwise.
+    /// A stretch from rest to rest equals the move of an axis, which another planner computes.
     #[test]
     fn from_rest_to_rest_it_is_the_profile_of_an_axis() {
         for length in [1e-7, 1e-3, 0.01, 0.1, 3.0] {

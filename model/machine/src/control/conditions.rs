@@ -139,7 +139,7 @@ pub enum ControlWarning {
 }
 
 impl ControlWarning {
-    /// The key of the machine file that it is about, dotted.
+    /// Dotted key of the machine file that the condition concerns.
     pub fn key(&self) -> &'static str {
         match self {
             Self::WeakSwitching { .. } | Self::SwitchingSaturates { .. } => "axis.controller.epsilon",

@@ -33,7 +33,7 @@ impl fmt::Display for Culprit {
     }
 }
 
-/// The numbers of the machine file of which an axis's gains are made.
+/// The numbers of the machine file that an axis's gains are products of.
 pub(super) struct Numbers<'a> {
     pub(super) axis: &'a AxisSection,
     pub(super) clock: ClockSection,

@@ -27,7 +27,7 @@ pub(super) struct Linear {
 }
 
 /// Gains of PD and PID: those of the file, and the rest computed from this lag.
-fn of_lag(controller: &Controller, mode: &DriveMode, lag_s: f64) -> Linear {
+fn gains_for_lag(controller: &Controller, mode: &DriveMode, lag_s: f64) -> Linear {
     let (proportional, derivative, integral, with_integral) = match *controller {
         Controller::SlidingMode { .. } => (None, None, None, false),
         Controller::Pd {
@@ -72,7 +72,7 @@ pub(super) fn default_linear(
     drive: &Drive,
     lag_s: f64,
 ) -> Linear {
-    let fastest = of_lag(controller, &drive.mode, lag_s);
+    let fastest = gains_for_lag(controller, &drive.mode, lag_s);
     let given = match controller {
         Controller::SlidingMode { .. } => matches!(drive.mode, DriveMode::Velocity { .. }),
         Controller::Pd {
@@ -99,7 +99,7 @@ pub(super) fn default_linear(
     let Some(loops) = loops.collect::<Option<Vec<_>>>() else {
         return fastest;
     };
-    let at = |slower: f64| of_lag(controller, &drive.mode, slower * lag_s);
+    let at = |slower: f64| gains_for_lag(controller, &drive.mode, slower * lag_s);
     let holds = |slower: f64| {
         let law = pd_pid(&at(slower), drive);
         loops.iter().all(|sampled| sampled.holds(&law, DEFAULT_MARGIN))

@@ -114,7 +114,7 @@ pub enum ControlError {
     },
 }
 
-/// Tells what to do about an unstable loop.
+/// Returns the remedy for an unstable loop.
 fn remedy(gain_margin_db: Option<f64>, largest_factor: Option<f64>, gains: &str) -> String {
     match (gain_margin_db, largest_factor) {
         (Some(margin), Some(factor)) => format!(

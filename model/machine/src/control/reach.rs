@@ -11,7 +11,7 @@ use crate::unit::AxisUnit;
 use posicast_blocks::segments::REACH_COUNTS;
 use posicast_taps::TapTable;
 
-/// Bounds of a shaper's table on which the words of a supervisor depend.
+/// Bounds of a shaper's table that determine the words of a supervisor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableBounds {
     /// Longest delay of the table, in samples.

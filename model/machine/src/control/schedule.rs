@@ -10,8 +10,8 @@ use crate::machine_file::{ClockSection, PwmSection};
 use posicast_blocks::divider::DIVISION_CLOCKS;
 use posicast_blocks::sliding_mode::CONTROL_CLOCKS;
 
-/// Clocks of a tick that belong to none of the steps: position and time are latched, the quotient is taken as the
-/// velocity, and shaper and controller each take their samples a clock late.
+/// Clocks of a tick outside of the steps: position and time are latched, the quotient becomes the velocity, and shaper
+/// and controller each take their samples a clock late.
 pub const CAPTURE_CLOCKS: u32 = 4;
 
 /// The steps of one axis in a tick, one after the other, in clocks. A step that an axis does not have takes 0.

@@ -18,8 +18,8 @@
 //! `watches_direction` is 1 where a motion against the command for `encoder_lost_s` can only be caused by a wrong
 //! sign ([`LostSign`]).
 //!
-//! So no limit is looser than the file asks for, no brake gets less time, and no filter passes shorter pulses. A
-//! value that is too large or too small for its word is an error: nothing is clamped. "Counts" are those of the loop,
+//! So no limit is looser than in the file, no brake gets less time, and no filter passes shorter pulses. A value that
+//! is too large or too small for its word is an error; it is never clamped. "Counts" are those of the loop,
 //! [`AxisSection::loop_counts_per_unit`].
 
 use super::reach::{TableBounds, check_travel};

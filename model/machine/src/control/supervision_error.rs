@@ -3,7 +3,7 @@
 use crate::unit::AxisUnit;
 use posicast_shaper::unit::short;
 
-/// Keys with what helps beside another value: where it is too large, and where it is too small.
+/// Keys with a further remedy besides another value: one for values that are too large, one for those that are too small.
 const OTHERWISE: [(&str, &str, &str); 9] = [
     ("axis.limits.saturation_s", "", "; 0 disables the check"),
     ("axis.limits.encoder_lost_s", "", "; 0 disables the check"),
@@ -55,7 +55,7 @@ pub enum SupervisionError {
         smallest: f64,
         /// Largest value that the word holds.
         largest: f64,
-        /// What sets the range.
+        /// Reason for the range.
         reason: &'static str,
     },
     /// The position word does not hold the travel wherever the axis stands at reset.
@@ -76,7 +76,7 @@ pub enum SupervisionError {
         high: f64,
         /// Distance from one end to the other, with the shaper's overshoot.
         shaped: f64,
-        /// Distance of a quick stop from the largest velocity; 0 where the file does not say it.
+        /// Distance of a quick stop from the largest velocity; 0 if the file does not determine it.
         stop: f64,
         /// Key of the deceleration of that stop: `stop_deceleration`, or `acceleration` in its place.
         deceleration: &'static str,
@@ -104,7 +104,7 @@ pub enum SupervisionError {
     },
 }
 
-/// The distance of a quick stop, with the keys from which it follows; nothing where the file does not say it.
+/// Text with the distance of a quick stop and its keys; empty if the file does not determine the distance.
 fn stop_text(unit: AxisUnit, stop: f64, deceleration: &str) -> String {
     let key = deceleration.rsplit('.').next().unwrap_or(deceleration);
     if stop > 0.0 {
@@ -134,7 +134,7 @@ impl SupervisionError {
         }
     }
 
-    /// What to do about it.
+    /// Returns the remedy.
     pub fn remedy(&self) -> String {
         match self {
             Self::Missing { table, .. } => format!("add [axis.{table}], or remove [axis.controller]"),

@@ -17,7 +17,7 @@ type Tables<'a> = (&'a AxisTables, Option<&'a TableFamily>);
 /// The hardware of an axis.
 #[derive(Debug, Clone)]
 pub struct AxisHardware {
-    /// Its shaper in the machine's top module; the error says why it cannot be built or not run at the sample rate.
+    /// The shaper in the machine's top module; the error gives the reason if it cannot be built or run at the sample rate.
     pub shaper: Result<ShaperConfig, HardwareError>,
     /// Its loop; `None` where it has no controller.
     pub control: Option<AxisLoop>,
@@ -36,7 +36,7 @@ pub struct AxisLoop {
     pub is_one_sided: bool,
     /// Whether only the position is shaped, and not velocity and acceleration.
     pub is_one_channel: bool,
-    /// Set where the file does not say how far the axis travels.
+    /// Set if the file does not state the travel of the axis.
     pub no_travel: Option<NoTravel>,
 }
 
@@ -97,8 +97,8 @@ impl AxisHardware {
     }
 }
 
-/// The shaper of an axis in the machine's top module. The error says why it cannot be built, or why it cannot run at
-/// the sample rate.
+/// Creates the shaper of an axis in the machine's top module. The error gives the reason if it cannot be built, or
+/// cannot run at the sample rate.
 fn shaper(
     machine: &Machine,
     index: usize,
@@ -161,8 +161,8 @@ fn component_shaper(axis: &AxisSection, top: &ShaperConfig) -> ShaperConfig {
     channels(3).or_else(|_| channels(1)).unwrap_or_else(|_| top.clone())
 }
 
-/// The times of the axis's blocks within a tick; `None` where its position is not measured, so that nothing must be
-/// in time.
+/// Returns the times of the axis's blocks within a tick; `None` if its position is not measured, since there is no
+/// deadline then.
 fn schedule(axis: &AxisSection, top: &ShaperConfig) -> Option<ControlSchedule> {
     let shaper = component_shaper(axis, top);
     match (&axis.controller, &axis.encoder) {
@@ -188,7 +188,7 @@ fn control(
     let (lag_s, derived) = match of_stage {
         Some(of_stage) => of_stage,
         None => {
-            // A shaper that cannot be built takes no clocks.
+            // A shaper that cannot be built counts as 0 clocks.
             let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
             let schedule = ControlSchedule::controlling(shape_clocks);
             let lag_s = loop_lag_s(drive, schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
@@ -211,8 +211,8 @@ fn control(
     }))
 }
 
-/// Number of clocks of which a sample must last a multiple, so that every axis's PWM has a whole number of periods in
-/// it.
+/// Returns the clocks that a sample must be a multiple of, so that it holds a whole number of periods of every axis's
+/// PWM.
 fn pwm_step_clocks(machine: &Machine) -> u64 {
     let periods = machine.axes.iter().filter_map(|axis| axis.pwm.as_ref());
     let periods = periods.map(|pwm| u64::from(pwm.period_clocks(&machine.clock)).max(1));

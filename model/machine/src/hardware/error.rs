@@ -12,7 +12,7 @@ pub struct HardwareError {
     pub key: String,
     /// The reason in words, with the remedy where `help` has none.
     pub reason: String,
-    /// What to do.
+    /// Remedy.
     pub help: Option<String>,
 }
 

@@ -7,10 +7,11 @@ use posicast_blocks::error_table::{
 };
 use posicast_blocks::stage::StageErrorTable;
 
-/// The axis's table, if it has one: as few counts apart as 256 entries allow, in the finest unit that holds them.
+/// Creates the axis's table, if it has one. The entries are as few counts apart as 256 entries allow, in the finest unit
+/// that holds them.
 ///
 /// # Errors
-/// [`ErrorTableConfigError`] where the entries do not fit; what the reader of the machine file lets through does.
+/// [`ErrorTableConfigError`] if the entries do not fit. Entries that the reader of the machine file accepts do fit.
 pub(super) fn of_axis(axis: &AxisSection) -> Result<Option<StageErrorTable>, ErrorTableConfigError> {
     let Some(section) = &axis.error_table else {
         return Ok(None);
@@ -67,7 +68,8 @@ fn unit(section: &ErrorTableSection, axis: &AxisSection) -> EntryUnit {
     }
 }
 
-/// By how much a table differs at most from the points that it was made of, in counts: it has their values where it has an entry.
+/// Returns the largest difference in counts between a table and the points that it was made from. At its entries the difference is
+/// only their rounding.
 pub fn departure_counts(axis: &AxisSection, table: &ErrorTableConfig) -> f64 {
     let (format, counts) = (table.format(), axis.loop_counts_per_unit());
     let Some(section) = &axis.error_table else {

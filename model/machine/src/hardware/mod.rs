@@ -140,7 +140,7 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// Makes the stage with its component. A machine whose shapers do not suit a stage has none, and `reason` says why.
+/// Makes the stage with its component. If the machine's shapers do not suit a stage, it returns `None` and sets `reason`.
 fn complete_stage(
     machine: &Machine,
     design: &MachineDesign,

@@ -1,4 +1,4 @@
-//! The stage of a machine: turns what its file says of the axes into the configuration of the hardware.
+//! The stage of a machine: converts the axes of its file to the configuration of the hardware.
 
 use super::axis::of_axis;
 use super::error_table;
@@ -30,7 +30,7 @@ pub struct MachineStage {
 }
 
 impl MachineStage {
-    /// Index of the axis whose name clashes with another one's: the first without whose name the stage `builds`.
+    /// Returns the index of the axis whose name clashes with another one's: the first axis that makes the stage `builds` if it is renamed.
     pub fn clashing_axis(&self, builds: impl Fn(&StageConfig) -> bool) -> usize {
         let renamed = |axis: &usize| {
             let mut config = self.config.clone();
@@ -106,7 +106,7 @@ pub enum MachineStageError {
 }
 
 impl MachineStageError {
-    /// Axis, from 0, and key of the machine file that are to blame.
+    /// Axis, from 0, and key of the machine file that cause the error.
     pub fn key(&self) -> (usize, String) {
         match self {
             Self::Tick(_) => (0, "clock.sample_hz".to_owned()),
@@ -120,7 +120,7 @@ impl MachineStageError {
         }
     }
 
-    /// What to do, where the text does not say it.
+    /// Remedy, if the text does not contain it.
     pub fn remedy(&self) -> Option<String> {
         match self {
             Self::Supervision { error, .. } => Some(error.remedy()),

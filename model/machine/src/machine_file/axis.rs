@@ -220,7 +220,7 @@ pub(super) struct Need {
     allowed: &'static str,
 }
 
-/// Which blocks of an axis cannot work without others.
+/// Blocks of an axis that need other blocks.
 pub(super) const NEEDS: [Need; 5] = [
     Need {
         block: "scale",

@@ -106,7 +106,7 @@ const GAINS: [(&str, &[&str]); 7] = [
 /// The gains that may be 0.
 const NOT_NEGATIVE_GAINS: [&str; 2] = ["k", "epsilon"];
 
-/// What to do where a gain of the sliding-mode law is missing, on an axis of this unit.
+/// Returns the remedy for a missing gain of the sliding-mode law, on an axis of this unit.
 fn sliding_mode_remedy(unit: AxisUnit) -> String {
     let [epsilon, boundary] = [4.0, 0.05].map(|figure| trimmed(unit.from_si(figure), 3));
     format!(

@@ -36,7 +36,7 @@ pub enum DriveMode {
 pub struct Drive {
     /// Quantity that the duty commands.
     pub mode: DriveMode,
-    /// Bandwidth with which the drive follows its command, in Hz; `None` where the file gives none.
+    /// Bandwidth of the drive's response to its command, in Hz; `None` if the file gives none.
     pub bandwidth_hz: Option<f64>,
     /// Viscous friction in N·s/m. Default 0.
     pub viscous: f64,

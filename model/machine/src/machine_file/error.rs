@@ -38,13 +38,13 @@ pub struct Problem {
     pub key: String,
     /// The table among several of its kind, such as `axis x, mode 2`; empty where there is only one.
     pub place: String,
-    /// What was found and what is allowed.
+    /// The problem: the value that was found, and the allowed ones.
     pub cause: ProblemCause,
-    /// What to do.
+    /// Remedy.
     pub remedy: String,
 }
 
-/// What is wrong, with what was found and what is allowed instead.
+/// Kinds of problems, with the value that was found and the allowed ones.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ProblemCause {
     /// The text is not valid TOML.

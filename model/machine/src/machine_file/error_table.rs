@@ -25,10 +25,10 @@ const COLUMNS: [&str; 2] = ["position", "error"];
 /// Where the error is looked up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorUse {
-    /// At the reference: where the axis is to be.
+    /// At the reference, the desired position of the axis.
     #[default]
     Reference,
-    /// At the feedback: where the axis is, by its counter.
+    /// At the feedback, the counted position of the axis.
     Feedback,
 }
 
@@ -86,7 +86,7 @@ struct Refused {
     remedy: &'static str,
 }
 
-/// What the points of an axis must agree with.
+/// Settings of an axis that its points must agree with.
 #[derive(Clone, Copy)]
 pub(super) struct OfAxis<'a> {
     pub(super) unit: AxisUnit,

@@ -1,6 +1,6 @@
 //! Guesses at the mistake behind a wrong value: percent, kilohertz, milliseconds, a number in quotes.
 //!
-//! A hint is the remedy of a problem. It asks whether the guess is right, and says what to write if it is.
+//! A hint is the remedy of a problem. It asks whether the guess is right, and shows the correct line if it is.
 
 use toml::de::DeValue;
 
@@ -106,7 +106,7 @@ pub(super) fn of_type(key: &str, found: &DeValue<'_>, allowed: &str, dotted: &st
     }
 }
 
-/// Where the unit of a key's number is said.
+/// Returns a sentence that tells the user where to find the unit of a key.
 fn unit_of(key: &str) -> String {
     let is_in_name = ["_hz", "_s", "_m", "_a"].iter().any(|unit| key.ends_with(unit));
     if is_in_name {
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_stands_twice_is_found_where_it_stood_first() {
+    fn a_repeated_key_is_traced_to_its_first_line() {
         let text = "name = \"m\"\n# damping = 1\n[a]\ndamping = 1\n[[b]]\ndamping = 2  # here\nx = 1\ndamping = 3\n[[a]] # again\n";
         let at = |line: usize| text.lines().take(line - 1).map(|line| line.len() + 1).sum::<usize>();
         assert_eq!(first_of_its_name(text, at(8)), Some(6));

@@ -21,7 +21,7 @@ pub(super) struct Key {
     pub(super) needed_by: Option<&'static str>,
     /// Meaning and unit, in a sentence.
     pub(super) about: &'static str,
-    /// What the reader demands beyond `values`, in words for the page; often empty.
+    /// Further requirements of the reader beyond `values`, as text for the page; often empty.
     pub(super) rule: &'static str,
 }
 
@@ -113,7 +113,7 @@ impl Key {
         }
     }
 
-    /// Says which word of another key goes with this one, where keys stand in place of each other.
+    /// Sets the word of another key that selects this one, for keys that replace each other.
     pub(super) const fn chosen_by(self, other: &'static str, word: &'static str) -> Self {
         Self {
             chosen_by: Some((other, word)),
@@ -121,7 +121,7 @@ impl Key {
         }
     }
 
-    /// Says that `other` is only valid beside this key.
+    /// Makes `other` valid only beside this key.
     pub(super) const fn needed_by(self, other: &'static str) -> Self {
         Self {
             needed_by: Some(other),
@@ -129,7 +129,7 @@ impl Key {
         }
     }
 
-    /// Says on the page what the reader demands of the value beyond its type and range.
+    /// Sets the text on the page about requirements beyond type and range.
     pub(super) const fn rule(self, rule: &'static str) -> Self {
         Self { rule, ..self }
     }

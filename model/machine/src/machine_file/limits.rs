@@ -80,13 +80,13 @@ pub struct LimitsSection {
     pub following_error: Option<f64>,
     /// Largest distance of the motor's position from the scale's, m; only with `[axis.scale]`.
     pub deviation: Option<f64>,
-    /// How long the command may be clamped, s; 0 disables the check.
+    /// Longest time that the command may be clamped, s; 0 disables the check.
     pub saturation_s: f64,
-    /// How long the encoder may stand still under a command, s; 0 disables the check.
+    /// Longest time that the encoder may stand still under a command, s; 0 disables the check.
     pub encoder_lost_s: f64,
     /// Fraction of full scale, 0 to below 1, above which a command must move the encoder. Default 0.5.
     pub encoder_lost_command: f64,
-    /// How long the host may be silent, s; 0 disables the watchdog.
+    /// Longest silence of the host, s; 0 disables the watchdog.
     pub watchdog_s: f64,
     /// Time from releasing the brake until it is open, s. Default 0.
     pub brake_release_s: f64,
@@ -99,7 +99,7 @@ pub struct LimitsSection {
     pub off_causes: u16,
     /// Largest manual duty, as a fraction of full duty. Default 0.1.
     pub direct_duty: f64,
-    /// How long a manual duty stays applied without a new request, s.
+    /// Time that a manual duty stays applied without a new request, s.
     pub direct_hold_s: Option<f64>,
     /// Largest amplitude of test signals, m.
     pub excitation: Option<f64>,
@@ -254,7 +254,7 @@ pub(super) const KEYS: &[Key] = &[
     )
     .rule("2^−8 to 255.99 counts; absent: 4 counts"),
 ];
-/// How many of the keys are limits of moves.
+/// Number of keys, from the first one, that limit moves.
 const OF_MOVES: usize = 4;
 
 /// Reads the limits of an axis. `word` has the loop's counts per unit and the number format that the travel must fit;

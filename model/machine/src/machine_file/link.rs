@@ -127,7 +127,7 @@ pub(super) const KEYS: &[Key] = &[
     .default(Default::Number(DEFAULT_TIMEOUT_S)),
 ];
 
-/// Reads the table. The checksum is that of nothing yet.
+/// Reads the table. The checksum is not set yet.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<LinkSection> {
     table.allow(KEYS);
     let word = if table.has("line") {
@@ -284,7 +284,7 @@ fn rounded_up(number: f64) -> f64 {
     (number / unit).ceil() * unit
 }
 
-/// What is allowed where the clock cannot make the baud rate, and what to do.
+/// Returns the allowed values and the remedy if the clock cannot generate the baud rate.
 fn slower(error: &UartBridgeConfigError) -> (String, String) {
     let UartBridgeConfigError::BaudError {
         baud,

@@ -287,7 +287,7 @@ fn nearest_divisor(frequency_hz: f64, wanted_hz: f64) -> f64 {
     }
 }
 
-/// The nearest such frequency that is a whole number of hertz; `None` where the fabric clock itself is not one.
+/// Returns the divided clock nearest to `wanted_hz` that is a whole number of hertz; `None` if the fabric clock itself is not one.
 fn nearest_whole_divisor(frequency_hz: f64, wanted_hz: f64) -> Option<f64> {
     let clocks = (1..=MAX_CLOCKS_PER_SAMPLE as u32).map(f64::from);
     let divisors = clocks

@@ -1,4 +1,4 @@
-//! The machine file: what an engineer knows of a machine, parsed and validated.
+//! Parses and validates the machine file, an engineer's description of a machine.
 //!
 //! The types here hold only values that passed validation; [`parse`] is the one way to make them from text. It reads
 //! the whole schema of `docs/machine-file.md`, checks every value, and reports all problems of a file at once.
@@ -84,7 +84,7 @@ use posicast_shaper::digitise::Digitise;
 use reader::Reader;
 use table::Table;
 
-/// Parses and validates a machine file. `file_name` appears in messages only: nothing is read from disk.
+/// Parses and validates a machine file. `file_name` only appears in messages; the function does not read from disk.
 ///
 /// # Errors
 /// [`SpecError`] lists every problem, up to [`MAX_PROBLEMS`], with file, line, key, what was found, what is allowed
@@ -95,11 +95,11 @@ pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
     })
 }
 
-/// The same for a machine file with others beside it, such as an error table: `beside` gives the text of the file of that name, or says why
-/// it cannot be read.
+/// Parses a machine file with other files beside it, such as an error table. `beside` returns the text of the file of that name, or the
+/// reason why it cannot be read.
 ///
 /// # Errors
-/// As [`parse`], and for what is wrong in those files.
+/// As [`parse`], and for problems in those files.
 pub fn parse_beside(
     file_name: &str,
     text: &str,

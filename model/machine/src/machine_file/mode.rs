@@ -1,8 +1,8 @@
 //! `[[axis.mode]]`: frequency and damping of a mode, and whether it was measured with the motor held or free.
 //!
 //! A shaper on the reference of a position loop is designed for the mode that rings while the loop holds the motor. A
-//! mode that was measured with the motor free is converted, for which the two masses are needed; a file that does not
-//! give them is refused, because nothing then says which shaper is right.
+//! mode that was measured with the motor free is converted, which needs the two masses. A file without them is refused,
+//! because the right shaper is then unknown.
 
 use super::hint::{self, KILO};
 use super::key::{Default, Key, Values};
@@ -25,7 +25,7 @@ pub(super) const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above
 const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 /// Masses in kg, or inertias in kg·m².
 const MASS: NumberRange = NumberRange::positive(1e12);
-/// Tells where to find how a mode's figures are measured.
+/// Reference to the page on measuring a mode, for messages.
 pub(super) const MEASURE: &str = "docs/modes.md explains how to measure frequency and damping";
 /// A sample rate below this was most likely given in kHz.
 const LIKELY_SAMPLE_HZ: f64 = 100.0;
@@ -257,8 +257,8 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Checks that a mode lies below half the sample rate. Its damped frequency does then too, and `ω_d·T_s < π`, without
-/// which two taps cannot place an impulse between two samples.
+/// Checks that a mode lies below half the sample rate. Then its damped frequency does too, so `ω_d·T_s < π`, which two
+/// taps need to place an impulse between two samples.
 fn check_below_half(table: &Table<'_, '_>, mode: &Mode, clock: ClockSection) -> Option<()> {
     let (half, hz) = (clock.sample_hz / 2.0, mode.frequency_hz);
     if hz < half {
@@ -276,7 +276,7 @@ fn check_below_half(table: &Table<'_, '_>, mode: &Mode, clock: ClockSection) -> 
     None
 }
 
-/// The whole band of a mode lies below half the sample rate.
+/// Checks that the whole band of a mode lies below half the sample rate.
 fn check_band_below_half(table: &Table<'_, '_>, mode: &Mode, band: f64, clock: ClockSection) -> Option<()> {
     let (half, high_hz) = (clock.sample_hz / 2.0, mode.frequency_hz * (1.0 + band));
     if high_hz < half {
@@ -290,7 +290,8 @@ fn check_band_below_half(table: &Table<'_, '_>, mode: &Mode, band: f64, clock: C
     None
 }
 
-/// The band of the damping; `Some(None)` where there is none. It holds the damping itself, which of a mode that moves is not one number.
+/// Reads the band of the damping; `Some(None)` if the file has none. The band must contain `damping`, unless the mode moves and has
+/// several.
 fn read_damping_band(table: &Table<'_, '_>, mode: &Mode) -> Option<Option<[f64; 2]>> {
     if !table.has(DAMPING_BAND) {
         return Some(None);
@@ -313,7 +314,7 @@ fn read_damping_band(table: &Table<'_, '_>, mode: &Mode) -> Option<Option<[f64; 
     None
 }
 
-/// What to do about a mode that the samples cannot follow.
+/// Returns the remedy for a mode above half the sample rate.
 fn above_half_remedy(mode_hz: f64, sample_hz: f64) -> String {
     let right = |hz: f64| sample_hz < LIKELY_SAMPLE_HZ && hz > 2.0 * mode_hz;
     let otherwise = format!(

@@ -66,7 +66,7 @@ pub(super) const KEYS: &[Key] = &[
     .rule("increasing, within the points; neighbouring tables must overlap"),
 ];
 
-/// `[axis.family]`: the variable with which the modes of an axis move.
+/// `[axis.family]`: the variable that the modes of an axis depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FamilySection {
     /// Name of the variable: `position` is the axis's own position; the host knows the value of any other.

@@ -21,7 +21,7 @@ const WORDS_MAX: usize = 8;
 /// Ends of a range from here on only keep absurd numbers out.
 const UNLIMITED: f64 = 1e9;
 
-/// Returns the page with its tables as the keys and kinds of this version say.
+/// Returns the page with its tables renewed from the keys and kinds of this version.
 ///
 /// # Errors
 /// The mark that the page lacks.
@@ -99,7 +99,7 @@ fn name(key: &Key, path: &str) -> String {
     }
 }
 
-/// What a key may be set to.
+/// Returns the allowed values of a key.
 fn allowed(key: &Key) -> String {
     let needs = NEEDS
         .iter()
@@ -113,7 +113,7 @@ fn allowed(key: &Key) -> String {
     parts.join("; ")
 }
 
-/// What a file means that does not have the key.
+/// Returns the meaning of an absent key.
 fn absent(key: &Key, keys: &[Key]) -> String {
     if let Some(default) = key.default {
         return match default {

@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_has_no_line() {
+    fn a_missing_key_or_table_has_no_line() {
         assert_eq!(line_of(TEXT, 2, "axis.name"), None);
         assert_eq!(line_of(TEXT, 0, "stage.extra_delay_s"), None);
         assert_eq!(line_of("no toml", 0, "name"), None);

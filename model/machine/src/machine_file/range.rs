@@ -54,15 +54,15 @@ impl NumberRange {
         }
     }
 
-    /// The range that holds a number of this one in whatever unit the axis has, between a millionth of a unit and a
-    /// million units.
+    /// Widens the range so that it holds its numbers in any unit of an axis, from a millionth of a unit to a million
+    /// units.
     pub(super) fn in_any_unit(self) -> Self {
         let wider = self.times(1e6);
         let low = if self.low > 0.0 { self.low * 1e-6 } else { wider.low };
         Self { low, ..wider }
     }
 
-    /// The range without the numbers above `high`, rounded down to six digits, for this reason.
+    /// Lowers the upper end to `high`, rounded down to six digits; `reason` explains it in messages.
     pub(super) fn at_most(self, high: f64, reason: &'static str) -> Self {
         let digits = 10f64.powf(5.0 - high.log10().floor());
         let high = (high * digits * (1.0 + ROUNDING)).floor() / digits;

@@ -5,7 +5,7 @@ use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use crate::unit::AxisUnit;
 
-/// What the scale's position is used for.
+/// Use of the scale's position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ScaleUse {
     /// The position is compared with the motor's, which the loop runs on.
@@ -25,7 +25,7 @@ impl ScaleUse {
 pub struct Scale {
     /// Counts per m or rad of the scale; those of the motor's encoder are the axis's.
     pub counts_per_unit: f64,
-    /// What the scale is used for. Default: comparison.
+    /// Use of the scale. Default: comparison.
     pub usage: ScaleUse,
     /// Whether the scale's lines count down where the motor's encoder counts up. Default: false.
     pub invert: bool,

@@ -1,7 +1,7 @@
 //! The machine file's keys as JSON Schema (draft 07), for editors that complete and check TOML, such as those that use Taplo.
 //!
-//! A schema says which values each key may have by itself. Only [`super::parse`] checks what keys must agree on (a
-//! PWM period of whole clocks, a travel that the word holds): a file that the schema accepts may still be refused.
+//! A schema limits the values of each key by itself. Only [`super::parse`] checks conditions on several keys (a PWM
+//! period of whole clocks, a travel that the word holds), so it may refuse a file that the schema accepts.
 
 use serde_json::{Map, Value, json};
 
@@ -56,8 +56,8 @@ fn table(keys: &[Key]) -> Map<String, Value> {
     schema
 }
 
-/// A table with this key of several, which must not have the others. `oneOf` says the latter by itself where no word of another key
-/// goes with this one.
+/// Returns the schema of a table with this key and without the other ones in `all`. If no word of another key selects this one, `oneOf`
+/// already excludes them.
 fn alternative(keys: &[Key], name: &str, all: &[&str]) -> Value {
     let key = keys.iter().find(|key| key.name == name);
     let Some((by, word)) = key.and_then(|key| key.chosen_by) else {

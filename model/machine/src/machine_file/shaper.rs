@@ -29,11 +29,11 @@ const LOWEST_HZ: f64 = 1e9;
 const AMPLITUDES: [&str; 2] = ["ps", "um"];
 /// Methods of `antisymmetric`.
 const METHODS: [&str; 3] = ["exact", "two-impulse", "three-impulse"];
-/// What a command behind `optimal` may do, in a word.
+/// Word for a command behind `optimal` without negative amplitudes.
 const POSITIVE: &str = "positive";
 /// Bounds of a shaped step, in steps.
 const SUMS: NumberRange = NumberRange::closed(-1000.0, 1000.0);
-/// Which of the shortest shapers `optimal` takes.
+/// Preferences of `optimal` among the shortest shapers.
 const PREFERENCES: [(&str, Prefer); 3] = [
     ("fewest-taps", Prefer::FewestTaps),
     ("least-residual", Prefer::LeastResidual),

@@ -43,12 +43,12 @@ impl<'r, 't> Table<'r, 't> {
         }
     }
 
-    /// The table with a place that tells it apart from others of its kind in messages.
+    /// Sets the place that distinguishes this table from others of its kind in messages.
     pub(super) fn at(self, place: String) -> Self {
         Self { place, ..self }
     }
 
-    /// The words by which messages tell this table from others of its kind.
+    /// Text that distinguishes this table from others of its kind in messages.
     pub(super) fn place(&self) -> &str {
         &self.place
     }
@@ -221,7 +221,7 @@ impl<'r, 't> Table<'r, 't> {
         boolean
     }
 
-    /// A text. `allowed` says for the message which texts are allowed.
+    /// Reads a text. `allowed` describes the allowed texts in messages.
     pub(super) fn text(&self, key: &str, allowed: impl Display) -> Option<&'r str> {
         let value = self.value(key)?;
         let text = value.get_ref().as_str();

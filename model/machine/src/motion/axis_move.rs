@@ -20,7 +20,7 @@ use posicast_shaper::unit::short;
 const LEAST_DISTANCE: f64 = 0.005;
 /// Fraction of the travel, and of the command word, that a default move covers at most.
 const PART_OF_ROOM: f64 = 0.5;
-/// Relative error by which rounding of a product may exceed a figure with two digits.
+/// Rounding of a product may exceed a figure with two digits by this relative error.
 const ROUNDING: f64 = 1e-9;
 
 /// A move of an axis. Lengths are in m or rad.

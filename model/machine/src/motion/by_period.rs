@@ -7,9 +7,9 @@
 //! a box of t leaves (1 − e^(−pt))/(pt) of a mode,  p = ω(ζ + j√(1−ζ²))
 //! ```
 //!
-//! so a box of one damped period leaves nothing of an undamped mode, and a move with such a jerk time needs no shaper. It pays by the
-//! time of that box. The three lengths in falling order `s_1 ≥ s_2 ≥ s_3` have the peaks `d/s_1`, `d/(s_1 s_2)` and `d/(s_1 s_2 s_3)`,
-//! which the limits bound.
+//! so a box of one damped period leaves no vibration of an undamped mode, and a move with such a jerk time needs no shaper. Its price
+//! is the time of that box. Three lengths `s_1 ≥ s_2 ≥ s_3` have the peaks `d/s_1`, `d/(s_1 s_2)` and `d/(s_1 s_2 s_3)`, which the
+//! limits bound.
 
 use super::profile::{Profile, motion_limits};
 use crate::machine_file::AxisSection;
@@ -18,7 +18,7 @@ use posicast_shaper::analysis::residual_vibration;
 use posicast_shaper::impulse::Impulse;
 use posicast_shaper::mode::{Mode, ModeBand};
 
-/// Frequencies of a band at which a residual is looked at.
+/// Number of frequencies of a band at which a residual is computed.
 const LOOKS: u32 = 200;
 /// Relative slack of a limit, for products that are equal to it but for rounding.
 const SLACK: f64 = 1.0 + 1e-12;
@@ -30,12 +30,12 @@ pub struct MoveFigures {
     pub command_s: f64,
     /// Time that the shaper adds in seconds.
     pub shaper_s: f64,
-    /// Largest amplitude in m or rad that a mode still has at the end, of those looked at over the bands.
+    /// Largest amplitude of a mode at the end, in m or rad, over the frequencies of the bands that were tried.
     pub residual: f64,
 }
 
 impl MoveFigures {
-    /// Time from the begin to the end in seconds.
+    /// Time from the beginning to the end in seconds.
     pub fn total_s(&self) -> f64 {
         self.command_s + self.shaper_s
     }
@@ -50,7 +50,7 @@ pub struct PeriodMove {
     pub jerk_s: f64,
     /// Largest velocity, acceleration and jerk.
     pub peaks: [f64; 3],
-    /// Its time and what it leaves.
+    /// Its time and residual.
     pub figures: MoveFigures,
 }
 
@@ -61,7 +61,7 @@ pub struct MoveComparison {
     pub shaped: MoveFigures,
     /// The moves whose jerk time is the period of a mode, in the order of the modes.
     pub by_period: Vec<PeriodMove>,
-    /// What is tolerated: the smallest tolerance, of the most that the fastest move can excite without a shaper.
+    /// Tolerated residual in m or rad: the smallest tolerance times the most that the fastest move can excite without a shaper.
     pub tolerated: f64,
 }
 
@@ -75,7 +75,7 @@ pub enum BetterMove {
 }
 
 impl MoveComparison {
-    /// The shortest way that leaves no more than is tolerated; `None` if every way leaves more.
+    /// Returns the shortest way within the tolerated residual; `None` if every way exceeds it.
     pub fn better(&self) -> Option<BetterMove> {
         let ways = std::iter::once((BetterMove::Shaped, self.shaped));
         let periods = self.by_period.iter().enumerate();
@@ -131,7 +131,7 @@ pub fn compare_move(axis: &AxisSection, taps: &[Impulse], distance: f64, velocit
     })
 }
 
-/// The largest residual over all bands, at the frequencies that are looked at and at both ends of the damping.
+/// Returns the largest residual over all bands, at the frequencies that are tried and at both ends of the damping.
 fn worst(modes: &[(ModeBand, f64)], residual: impl Fn(&Mode) -> f64) -> f64 {
     let mut worst = 0.0f64;
     for (band, _) in modes {
@@ -146,7 +146,7 @@ fn worst(modes: &[(ModeBand, f64)], residual: impl Fn(&Mode) -> f64) -> f64 {
     worst
 }
 
-/// What boxes leave of a mode at their end, as a part of the jump.
+/// Returns the residual of a mode at the end of these boxes, as a fraction of the jump.
 fn left_by_boxes(boxes: &[f64; 3], mode: &Mode) -> f64 {
     let pole = Complex::new(mode.decay(), mode.omega_damped());
     let left = boxes.iter().filter(|length_s| **length_s > 0.0).map(|length_s| {
@@ -156,7 +156,8 @@ fn left_by_boxes(boxes: &[f64; 3], mode: &Mode) -> f64 {
     left.product::<Complex<f64>>().norm()
 }
 
-/// The most that boxes of nearly these lengths leave of a mode in a band, as a part of the jump: `2/(ωt)`, at most 1, for each.
+/// Returns the largest residual of a mode in a band after boxes of nearly these lengths, as a fraction of the jump: the product of
+/// `2/(ωt)`, at most 1, for each.
 fn excited(boxes: &[f64; 3], band: &ModeBand) -> f64 {
     let omega = std::f64::consts::TAU * band.frequency_hz[0];
     boxes
@@ -170,10 +171,10 @@ fn sorted(mut boxes: [f64; 3]) -> [f64; 3] {
     boxes
 }
 
-/// The three boxes of the shortest move within the limits of which one has this length; `None` for numbers that are not finite.
+/// Returns the three boxes of the shortest move within the limits, given the length of one box; `None` for numbers that are not finite.
 ///
-/// The sum of the other two is least at a corner of what the limits allow or, where only their product is bounded, with both equal: so
-/// it is the best of a few candidates.
+/// The sum of the other two is least at a corner of the region that the limits allow or, where only their product is bounded, with both
+/// equal. So it is the best of a few candidates.
 fn least_boxes(distance: f64, [velocity, acceleration, jerk]: [f64; 3], given: f64) -> Option<[f64; 3]> {
     let is_allowed = |boxes: [f64; 3]| {
         let [first, second, third] = sorted(boxes);

@@ -3,7 +3,7 @@
 use super::profile::{ProfileError, SAMPLES_MAX};
 use posicast_shaper::mode::Mode;
 
-/// Periods of the slowest mode for which a command stands still at its end, so that ringing is visible.
+/// A command stands still at its end for this many periods of the slowest mode, so that ringing is visible.
 const SETTLE_PERIODS: f64 = 3.0;
 
 /// Why points are not a valid command.
@@ -35,7 +35,7 @@ pub enum PointsError {
     TooLong(#[from] ProfileError),
 }
 
-/// Time in seconds for which a command stands still at its end: the shaper's duration and some periods of the slowest
+/// Returns how long a command stands still at its end, in seconds: the shaper's duration and some periods of the slowest
 /// mode.
 pub fn settle_s(shaper_duration_s: f64, modes: impl IntoIterator<Item = Mode>) -> f64 {
     let slowest_s = modes.into_iter().map(|m| m.damped_period_s()).fold(0.0, f64::max);
@@ -87,7 +87,7 @@ pub fn resample(points: &[(f64, f64)], sample_hz: f64, settle_s: f64) -> Result<
     Ok((0..samples as u32).map(sample).collect())
 }
 
-/// Fraction of a limit by which a command may exceed it: rounding of its file.
+/// A command may exceed a limit by this fraction of it, because its file is rounded.
 const ROUNDING: f64 = 1e-6;
 
 /// Indices of the first point beyond `travel`, and of the first point that is reached faster than with `velocity`. Points are in time order;

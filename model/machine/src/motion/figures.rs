@@ -1,4 +1,4 @@
-//! Peak and root mean square of a command, which say what a shaper asks of the drive.
+//! Peak and root mean square of a command: the load that a shaper puts on the drive.
 //!
 //! Both are taken from the first jump of the command to the last, for the position or one of its derivatives. For a
 //! shaped unit step the peak is the magnitude of the largest partial sum; that of negative shapers exceeds 1.

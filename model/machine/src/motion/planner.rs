@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn to_and_fro_comes_back() {
+    fn moving_to_and_fro_ends_at_the_start() {
         let mut at = Integrator::default();
         let entries = plan_to_and_fro(0, 1_000 << 8, 3, &stage()).unwrap();
         play(&mut at, &entries);
@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_said() {
+    fn moves_that_do_not_fit_are_errors() {
         let limits = |velocity, acceleration, jerk| TickLimits {
             velocity,
             acceleration,

@@ -53,7 +53,7 @@ impl Cubic {
         [self.position, self.velocity, self.acceleration, self.jerk]
     }
 
-    fn of(derivatives: [f64; 4]) -> Self {
+    fn from_derivatives(derivatives: [f64; 4]) -> Self {
         let [position, velocity, acceleration, jerk] = derivatives;
         Self {
             position,
@@ -99,7 +99,7 @@ impl Trajectory {
             match merged.last_mut() {
                 Some(last) if last.time_s == jump.time_s => {
                     let (a, b) = (last.change.derivatives(), jump.change.derivatives());
-                    last.change = Cubic::of([0, 1, 2, 3].map(|k| a[k] + b[k]));
+                    last.change = Cubic::from_derivatives([0, 1, 2, 3].map(|k| a[k] + b[k]));
                 }
                 _ => merged.push(jump),
             }
@@ -202,7 +202,7 @@ impl Trajectory {
         let copies = impulses.iter().flat_map(|impulse| {
             self.jumps.iter().map(|jump| Jump {
                 time_s: jump.time_s + impulse.time_s,
-                change: Cubic::of(jump.change.derivatives().map(|d| d * impulse.amplitude)),
+                change: Cubic::from_derivatives(jump.change.derivatives().map(|d| d * impulse.amplitude)),
             })
         });
         Self::new(copies.collect())
@@ -241,7 +241,7 @@ impl Trajectory {
                         sum
                     };
                 }
-                cubic = Cubic::of(next);
+                cubic = Cubic::from_derivatives(next);
                 before_s = jump.time_s;
                 Piece {
                     start_s: jump.time_s,

@@ -45,7 +45,7 @@ pub enum CommandError {
         /// The next size that is large enough, or what else to do.
         remedy: String,
     },
-    /// A modulo axis turns farther than its word can tell within the shaper's delay.
+    /// A modulo axis turns so far within the shaper's delay that its word is ambiguous.
     #[error(
         "sample {sample}: the position moves by {counts} counts within the shaper's delay of {delay_samples} samples, and the \
          words of a modulo axis must stay below half a turn of the word ({largest_counts} counts): move slower, or set more \
@@ -94,7 +94,7 @@ pub fn command_words(
     positions.iter().enumerate().map(word).collect()
 }
 
-/// Converts positions of a modulo axis to words with their whole turns, of which the hardware gets the lowest
+/// Converts positions of a modulo axis to words that include the whole turns; the hardware gets their lowest
 /// `command_bits`. `table` is the shaper that they pass.
 ///
 /// # Errors
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none() {
+    fn numbers_that_are_not_finite_are_errors() {
         for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
             let error = command_words(&[0.0, bad], 1e6, 32, 8).unwrap_err();
             assert!(matches!(error, CommandError::NotFinite { sample: 1, .. }));

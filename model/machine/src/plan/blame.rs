@@ -36,13 +36,13 @@ pub struct DesignBlame {
     pub remedy: Option<String>,
 }
 
-/// The key that a design error of this machine comes from; `None` where the error is not about an axis of it.
+/// Returns the key that causes a design error of this machine; `None` if the error does not concern one of its axes.
 pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
-    of_modes(machine, error).map(|blame| as_written(machine, blame))
+    blame_modes(machine, error).map(|blame| as_written(machine, blame))
 }
 
-/// The key that the file has in place of a mode's: that of `[axis.mechanics]`, from which the mode follows, or of
-/// `[axis.shaper]`, from which its tolerance comes.
+/// Replaces a mode's key by the key in the file: one of `[axis.mechanics]` if the mode is computed from it, or of
+/// `[axis.shaper]` if that sets the tolerance.
 fn as_written(machine: &Machine, blame: DesignBlame) -> DesignBlame {
     let axis = machine.axes.get(blame.axis);
     let is_computed = axis.is_some_and(|axis| axis.mechanics.is_some());
@@ -61,7 +61,7 @@ fn as_written(machine: &Machine, blame: DesignBlame) -> DesignBlame {
     }
 }
 
-fn of_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
+fn blame_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
     let of_axis = |name: &str| machine.axes.iter().position(|axis| axis.name == name);
     let shaper = |axis: usize| DesignBlame {
         axis,
@@ -107,7 +107,7 @@ fn of_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
         DesignError::JointOfAxis { axis, cause, .. } => {
             let axis = of_axis(axis)?;
             if let DesignError::Joint(JointError::Optimal(cause)) = cause.as_ref() {
-                return Some(of_optimal(machine, axis, cause));
+                return Some(blame_optimal(machine, axis, cause));
             }
             let (mode, key) = match cause.as_ref() {
                 DesignError::Joint(JointError::Coincident { second, .. }) => (second.checked_sub(1), "axis.mode"),
@@ -146,8 +146,8 @@ fn of_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
     }
 }
 
-/// What keeps `optimal` from a shaper, and what would help.
-fn of_optimal(machine: &Machine, axis: usize, error: &OptimalError) -> DesignBlame {
+/// Returns why `optimal` finds no shaper, and a remedy.
+fn blame_optimal(machine: &Machine, axis: usize, error: &OptimalError) -> DesignBlame {
     let (mode, key, remedy) = match error {
         OptimalError::Band { band, .. } => (
             Some(*band),
@@ -231,7 +231,7 @@ fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
     let in_khz = (!is_computed && hz < UNLIKELY_HZ && hz * 1e3 < machine.clock.sample_hz / 2.0)
         .then(|| format!("if it was meant in kHz, write `frequency_hz = {}`", short(hz * 1e3)));
     let rate = rate_that_fits(machine, axis).map(|(text, _)| match in_khz {
-        // A crane or a telescope is as slow as that.
+        // A crane or a telescope may really be this slow.
         Some(_) => format!("write `{text}`, at which the shaper fits"),
         None => text,
     });
@@ -249,7 +249,7 @@ fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
     })
 }
 
-/// The changes with each of which alone an axis of too many taps fits a table.
+/// Returns the changes that reduce an axis with too many taps to the size of a table, each by itself.
 fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
     let section = &machine.axes[axis];
     let mut found: Vec<String> = rate_that_fits(machine, axis)
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mode_that_may_be_as_slow_as_it_is_gets_a_sample_rate_first() {
+    fn a_very_slow_mode_is_first_advised_a_sample_rate() {
         let blame = blamed("kind = \"zvd\"", &[(0.16, 0.01)]);
         let remedy = blame.remedy.unwrap();
         assert!(

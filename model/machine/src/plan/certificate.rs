@@ -17,7 +17,7 @@ const SLACK: f64 = 1.0 + 1e-6;
 pub struct AxisCertificate {
     /// The modes, in the order of the file.
     pub modes: Vec<ModeCertificate>,
-    /// For `optimal`, the proof that no shorter shaper meets the tolerances over the bands, or why that is not proven.
+    /// For `optimal`, the proof that no shorter shaper meets the tolerances over the bands, or the reason why there is none.
     pub shorter: Option<Result<CheckedBound, ShorterError>>,
 }
 

@@ -41,7 +41,7 @@ use posicast_shaper::impulse::Impulse;
 use posicast_shaper::mode::Mode;
 use posicast_shaper::unit::short;
 
-/// Factor by which a residual may exceed its tolerance, as in every insensitivity.
+/// A residual may exceed its tolerance by this factor, as in every insensitivity.
 const SLACK: f64 = 1.0 + 1e-6;
 /// Largest residual of a table beside its own value, as a multiple of that at its value, where this exceeds the
 /// tolerance.
@@ -52,7 +52,7 @@ const FREQUENCY_STEP: f64 = 2e-3;
 const LEAST_STEPS: f64 = 256.0;
 /// Number of bisections for the end of a range: to 1e-9 of a step.
 const BISECTIONS: usize = 30;
-/// Number of bisections for the value of the next table, each of which is a design: to 1/1024 of the range.
+/// Number of bisections for the value of the next table, to 1/1024 of the range. Each bisection is a design.
 const VALUE_BISECTIONS: usize = 10;
 /// Smallest and largest overlap of a table with the next one, as a fraction of the way from its value to its end.
 const OVERLAP: [f64; 2] = [0.15, 0.8];
@@ -101,8 +101,8 @@ impl TableFamily {
         chosen
     }
 
-    /// Largest rate of the variable, per second, at which a table is still within its tolerance when the last command
-    /// that it was given has passed through it. Infinite for a single table.
+    /// Largest rate of the variable, per second: the last command given to a table has passed through it before the variable
+    /// leaves the table's range. Infinite for a single table.
     pub fn fastest_per_s(&self, sample_hz: f64) -> f64 {
         let pairs = self.members.windows(2).map(|pair| {
             let longest = pair
@@ -325,7 +325,7 @@ impl Search<'_> {
         let (near, far) = if upward { (0, 1) } else { (1, 0) };
         let edge = from.covers[far];
         let overlaps = |candidate: &Candidate, way: f64| {
-            // At full speed, the command that went into a table must have left it before its range ends.
+            // At full speed, a command must have passed through a table before the variable leaves the table's range.
             let passed =
                 PARTS * self.fastest_per_s() * from.longest_s(self.sample_hz).max(candidate.longest_s(self.sample_hz));
             let overlap = passed.clamp(OVERLAP[0] * way, OVERLAP[1] * way);
@@ -364,8 +364,8 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// Largest rate of the variable by the machine file: the axis's velocity for a position; infinite for others, of
-    /// which nothing is known.
+    /// Largest rate of the variable by the machine file: the axis's velocity if the variable is its position, otherwise
+    /// infinite, since the rate is unknown.
     fn fastest_per_s(&self) -> f64 {
         let velocity = self.axis.limits.and_then(|limits| limits.velocity);
         velocity.filter(|_| self.family.is_position()).unwrap_or(0.0)

@@ -34,10 +34,9 @@ pub struct MachineDesign {
 pub struct AxisTables {
     /// The design: impulses in continuous time.
     pub design: AxisDesign,
-    /// Real taps, with which the float design computes. Where the file has `[stage]`, they are delayed like the other
-    /// axes'.
+    /// Real taps of the floating-point design. If the file has `[stage]`, they are delayed like the other axes'.
     pub digitised: Digitised,
-    /// Integer taps, rounded from the real ones, with which the hardware computes.
+    /// Integer taps for the hardware, rounded from the real ones.
     pub table: TapTable,
     /// The parts of the axis's delay.
     pub delay: AxisDelay,

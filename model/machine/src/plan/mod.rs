@@ -1,7 +1,7 @@
 //! The plan of a machine: the tap tables of all its axes with one common `F` and, with `[stage]`, one delay.
 //!
-//! [`design_machine`] makes it, [`certify_axis`] bounds the residual of its integer tables, and [`blame()`] says which key of the machine
-//! file to change where it cannot be made.
+//! [`design_machine`] makes it, [`certify_axis`] bounds the residual of its integer tables, and [`blame()`] names the key of the machine
+//! file to change if there is no plan.
 
 mod blame;
 mod certificate;

@@ -50,7 +50,7 @@ pub enum PlantError {
 }
 
 impl Plant {
-    /// Makes a plant of modes with their participations, of which only the ratios matter.
+    /// Makes a plant of modes with their participations; only the ratios of these matter.
     ///
     /// # Errors
     /// [`PlantError::Participation`] if the participations do not have a positive, finite sum.

@@ -7,25 +7,25 @@
 /// Number of letters.
 const LETTERS: usize = 26;
 
-/// What a line is.
+/// Meaning of a line.
 #[expect(
     clippy::large_enum_variant,
     reason = "there is one at a time, and a box would cost an allocation for each line"
 )]
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Line {
-    /// Nothing that moves an axis.
+    /// A line that does not move an axis.
     Nothing,
     /// Words.
     Words(Words),
-    /// A command by its name, as firmware macros are, with whether it has a parameter X or Y.
+    /// A command called by name, such as a firmware macro.
     Named {
         /// The name as written.
         name: String,
         /// Whether a parameter is X or Y.
         has_place: bool,
     },
-    /// What cannot be read, and would change where the axes go.
+    /// Text that cannot be read and may change the path of the axes.
     Unreadable(String),
 }
 
@@ -58,7 +58,7 @@ pub(super) struct Words {
     numbers: [Option<f64>; LETTERS],
     /// Whether each letter is there, with or without a number.
     present: [bool; LETTERS],
-    /// What is wrong with the first part that is not a word of a letter and a number.
+    /// Problem of the first part that is not a letter with a number.
     pub(super) bad: Option<String>,
     /// Whether the line begins with `/`: a switch of the controller decides whether it runs.
     pub(super) is_optional: bool,
@@ -110,7 +110,7 @@ fn is_name(byte: u8) -> bool {
     byte.is_ascii_alphabetic() || byte == b'_'
 }
 
-/// What follows a number of digits, after spaces; `None` if there are no digits.
+/// Skips spaces and digits, and returns the rest; `None` if there are no digits.
 fn digits(text: &[u8]) -> Option<&[u8]> {
     let text = text.trim_ascii_start();
     let count = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
@@ -166,7 +166,7 @@ fn named(text: &[u8]) -> Line {
     Line::Named { name, has_place }
 }
 
-/// The words of a text, up to the first part that is none.
+/// Reads the words of a text, up to the first part that is not a word.
 fn words(mut text: &[u8], is_optional: bool) -> Words {
     let mut words = Words {
         is_optional,
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_word_is_told() {
+    fn parts_without_a_number_are_errors() {
         for (line, bad) in [
             ("G1 X[1+2]", "X[1+2]"),
             ("G1 X#1", "X#1"),
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn other_lines_are_told_apart() {
+    fn lines_that_are_not_moves_are_classified() {
         let read = |line: &str| read(line.as_bytes(), &mut Vec::new());
         for nothing in [
             "",

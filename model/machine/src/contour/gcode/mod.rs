@@ -30,8 +30,8 @@ use super::stroke::{PlanePoint, Shape, Stroke, minus};
 use line::{Code, Line, Words};
 use std::io::BufRead;
 
-/// Largest distance of an arc's end from its circle, as the digits of programs leave it: as a fraction of the radius,
-/// and in units, millimetres or inches, of which programs have three or four digits.
+/// Largest distance of an arc's end from its circle, caused by the digits of programs: as a fraction of the radius, and
+/// in millimetres (three digits) or inches (four).
 const OFF_CIRCLE: f64 = 1e-3;
 const OFF_CIRCLE_UNITS: [f64; 2] = [5e-3, 5e-4];
 const MILLIMETRE: f64 = 1e-3;
@@ -64,7 +64,7 @@ pub fn strokes(program: &str) -> Result<Vec<Stroke>, ContourError> {
 pub fn extrudes(program: &mut dyn BufRead) -> Result<bool, ContourError> {
     let (mut lines, mut scratch) = (Lines::new(program), Vec::new());
     while lines.next()? {
-        // Most lines without E are told by this alone.
+        // This skips most lines without E quickly.
         if !lines.text.iter().any(|byte| byte.eq_ignore_ascii_case(&b'E')) {
             continue;
         }
@@ -95,7 +95,7 @@ pub struct Program<'a> {
     /// Place in m, in the coordinates that the program began with.
     at: PlanePoint,
     height: f64,
-    /// What is added to the program's coordinates, in m: by G92 and by G52.
+    /// Offset of the program's coordinates by G92 and G52, in m.
     origin: PlanePoint,
     saved_origin: PlanePoint,
     local_origin: PlanePoint,
@@ -118,7 +118,7 @@ pub struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// Reads this program; `extrudes` says whether it is one of a printer, which [`extrudes`] finds out.
+    /// Reads this program; `extrudes` is the result of [`extrudes`]: whether the program is for a printer.
     pub fn new(source: Box<dyn BufRead + 'a>, extrudes: bool) -> Self {
         Self {
             lines: Lines::new(source),
@@ -185,7 +185,7 @@ impl<'a> Program<'a> {
     fn words(&mut self, words: &Words) -> Result<Option<Stroke>, ContourError> {
         if let Some(first) = words.codes.first().filter(|code| code.letter == b'M') {
             self.miscellaneous(*first, words)?;
-            // In front of other words only codes of machine tools stand; the others have words or a text of their own.
+            // Only M codes of machine tools may share a line with other codes; all others take the rest of the line as parameters.
             let is_alone = !matches!(first.major, 2..=11 | 19 | 48..=53 | 60..=68) || words.bad.is_some();
             if is_alone || self.ended {
                 return Ok(None);

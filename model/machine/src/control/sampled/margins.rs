@@ -20,7 +20,7 @@ const GROWTH: f64 = 0.1;
 /// Largest change of the direction of `L` or `1 + L` between two points, in rad, and largest relative change of |L|.
 const TURN: f64 = 0.12;
 const CHANGE: f64 = 1.2;
-/// Fraction of the stability limit up to which a gain counts as within it.
+/// A gain counts as within the stability limit up to this fraction of it.
 const NEARLY: f64 = 0.98;
 /// Largest number of bisections of a step.
 const DEPTH: u32 = 40;
@@ -28,7 +28,7 @@ const DEPTH: u32 = 40;
 /// Stability margins of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
-    /// Whether the loop is stable. For an unstable loop the other figures say how far it is beyond the limit.
+    /// Whether the loop is stable. For an unstable loop the other figures show how far it is beyond the limit.
     pub stable: bool,
     /// Factor on the feedback at which the loop reaches the stability limit: above 1 for a stable loop, below 1 for
     /// one that lower gains make stable. Infinite where no gain is too high; `None` where the loop is unstable at any

@@ -69,9 +69,9 @@ impl LinearLaw {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct PlantPole {
     pole: Complex<f64>,
-    /// Factor `e^{pT}` by which its state changes in a tick.
+    /// Factor `e^{pT}` of its state per tick.
     per_tick: Complex<f64>,
-    /// Its state at the next tick after an input of 1: in this tick, in the one before, and in both.
+    /// Its state at the next tick after an input of 1 in this tick, and in the one before.
     gamma: [Complex<f64>; 2],
     /// Residue in the position of the loop.
     position: Complex<f64>,

@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_of_one_table_alone_has_a_home() {
+    fn a_key_that_only_one_table_has_is_traced_to_it() {
         assert_eq!(home_of("dead_time_s").as_deref(), Some("[axis.pwm]"));
         assert_eq!(home_of("damping").as_deref(), Some("[[axis.mode]]"));
         assert_eq!(home_of("frequency_hz"), None);

@@ -25,7 +25,7 @@ impl FirstOrder {
         Self {
             state: 0.0,
             left: (-cells).exp(),
-            // With so low a bandwidth nothing moves within a cell.
+            // With such a low bandwidth the output does not change within a cell.
             mean: if cells > 0.0 { -(-cells).exp_m1() / cells } else { 1.0 },
         }
     }
@@ -106,7 +106,7 @@ impl Driven {
         }
     }
 
-    /// Position of the load, and the amplitude with which it rings, where these are not computed from modes.
+    /// Position of the load and amplitude of its ringing, if these are not computed from modes.
     pub(super) fn load(&self) -> Option<(f64, f64)> {
         match &self.kind {
             Kind::Screw(two_mass) => Some(two_mass.load()),

@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_fast_comes_late() {
+    fn edges_of_a_motion_that_is_too_fast_come_late() {
         let mut encoder = Encoder::new(1.0, 10, None, 0.0);
         let found = edges(&mut encoder, &[25.0, 25.0, 25.0, 25.0]);
         assert_eq!(found.len(), 25);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_does_harm() {
+    fn infinite_and_nan_positions_do_not_panic() {
         let mut encoder = Encoder::new(1e12, 10, None, -1e9);
         for position in [1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0] {
             edges(&mut encoder, &[position]);

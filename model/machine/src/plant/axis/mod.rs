@@ -18,7 +18,7 @@
 //!
 //! **Time** counts in clocks and is divided into cells of [`AxisPlant::cell_clocks`]. At the end of a cell the drive
 //! gets the mean of the pins over the last period of the PWM, the cell is integrated exactly, and the encoder moves
-//! to the new position during the next cell. How a time is divided into calls changes nothing: 5,000 calls with a
+//! to the new position during the next cell. The division of a time into calls does not matter: 5,000 calls with a
 //! clock each and one call with 5,000 clocks give the same edges, bit for bit.
 //!
 //! ```
@@ -225,7 +225,7 @@ impl AxisPlant {
         let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
         let encoder =
             |counts_per_unit, index_at| Encoder::new(counts_per_unit, cell_clocks, index_at, options.position);
-        // The machine file says where the machine's wiring counts down, which the hardware inverts.
+        // If the machine file states that the wiring counts down, the hardware inverts it.
         let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
         let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
         let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);

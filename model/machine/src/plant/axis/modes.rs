@@ -51,7 +51,7 @@ struct Path {
 }
 
 impl LoadModes {
-    /// Makes modes at rest. `trails` says that they lag a ramp, as those of a velocity drive do.
+    /// Makes modes at rest. With `trails` they lag a ramp, as those of a velocity drive do.
     pub(super) fn new(plant: &Plant, cell_s: f64, trails: bool) -> Self {
         let modes = plant.modes().iter().map(|of| LoadMode {
             of: *of,

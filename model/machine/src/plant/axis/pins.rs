@@ -130,7 +130,7 @@ mod tests {
     use posicast_blocks::pwm::{ActiveLow, Inputs, Pwm, PwmConfig};
 
     /// Mean command of the PWM's own pins, cell by cell over 20 periods, after 20 periods to settle.
-    fn of_pwm(mode: PwmMode, register: u8, duty: i32, active_low: bool) -> f64 {
+    fn mean_command_of_pwm(mode: PwmMode, register: u8, duty: i32, active_low: bool) -> f64 {
         let all = ActiveLow {
             a_high: active_low,
             a_low: active_low,
@@ -184,7 +184,7 @@ mod tests {
                 // One side alone loses the dead time, and moves in one direction only.
                 let less =
                     |share: f64| share.signum() * (share.abs() - if share.abs() == 1.0 { 0.0 } else { 0.01 }).max(0.0);
-                let of = |mode, register| of_pwm(mode, register, duty, active_low);
+                let of = |mode, register| mean_command_of_pwm(mode, register, duty, active_low);
                 let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
                 assert!(near(of(PwmMode::LockedAntiphase, 3), share), "{duty}");
                 assert!(near(of(PwmMode::FullBridge, 2), less(share)), "{duty}");

@@ -154,7 +154,7 @@ fn a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
 }
 
 #[test]
-fn what_the_encoder_sees() {
+fn the_encoder_counts_motor_or_load_as_its_option_selects() {
     let counts = |drive, encoder_at| {
         let options = PlantOptions {
             encoder_at,
@@ -224,7 +224,7 @@ fn an_index_is_a_count_wide() {
 }
 
 #[test]
-fn what_is_no_plant_is_named() {
+fn invalid_plants_are_errors_that_name_the_cause() {
     let machine = machine(TORQUE, GX);
     let of = |change: &dyn Fn(&mut AxisSection), options: PlantOptions| {
         let mut axis = machine.axes[0].clone();

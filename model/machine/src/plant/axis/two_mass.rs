@@ -1,7 +1,7 @@
 //! Motor and table on a screw, with stick-slip friction, for a torque drive whose machine file asks for it.
 //!
 //! The machine is that of [`super::super::drive_train`], with Karnopp's contact at the table. Its driven coordinate
-//! is the motor's displacement, and its load is the table. Below the breakaway force nothing moves.
+//! is the motor's displacement, and its load is the table. Below the breakaway force both stand still.
 
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
