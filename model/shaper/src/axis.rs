@@ -11,7 +11,7 @@ pub const DEFAULT_EPSILON: f64 = 0.05;
 /// Default number of zero pairs of `chebyshev-ei`.
 pub const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
 
-/// What the design of an axis's shaper takes.
+/// Inputs of the design of an axis's shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShapedAxis<'a> {
     /// Name of the axis, for messages.
@@ -106,11 +106,11 @@ pub struct ShaperChoice {
     pub method: Option<String>,
     /// Tolerance of the frequency ratios of `antisymmetric`.
     pub ratio_tolerance: Option<f64>,
-    /// What the shaped command may do, of `optimal`.
+    /// Bounds of the shaped command, for `optimal`.
     pub command: Option<Command>,
-    /// Most taps, of `optimal`.
+    /// Largest number of taps, for `optimal`.
     pub taps: Option<u32>,
-    /// Which of the shortest shapers `optimal` takes.
+    /// Preference of `optimal` among the shortest shapers.
     pub prefer: Option<Prefer>,
     /// Impulses of `custom`, as `(time_s, amplitude)`.
     pub impulses: Vec<(f64, f64)>,
@@ -150,7 +150,7 @@ pub struct AxisMode {
     pub tolerance: Option<f64>,
     /// The mode's own order, instead of the axis's.
     pub order: Option<u32>,
-    /// By how much the frequency may be off, relative and to either side.
+    /// Largest relative error of the frequency, to either side.
     pub frequency_band: Option<f64>,
     /// Lowest and highest damping ratio that the mode may have.
     pub damping_band: Option<[f64; 2]>,

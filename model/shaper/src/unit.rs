@@ -1,9 +1,9 @@
-//! The way in which figures are written for people: in the largest unit that leaves a number before the point.
+//! Writes figures for people: in the largest unit that leaves a number before the point.
 
 /// Figures smaller than this fraction of the smallest unit are written as powers of ten.
 pub const LEAST: f64 = 1e-3;
 
-/// A unit in which figures are shown: its symbol, and how many of it make one SI unit.
+/// A unit for figures: its symbol, and its number per SI unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShownUnit {
     symbol: &'static str,
@@ -18,7 +18,7 @@ const TIMES: [ShownUnit; 4] = [
 ];
 
 impl ShownUnit {
-    /// A unit with this symbol, of which so many make one SI unit.
+    /// A unit with this symbol; `per_si` of it make one SI unit.
     pub const fn new(symbol: &'static str, per_si: f64) -> Self {
         Self { symbol, per_si }
     }

@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn none_above_the_tolerance_and_open_ends() {
+    fn no_interval_above_the_tolerance_and_open_ends_below_it() {
         assert_eq!(insensitivity(&impulses(&[(0.0, 1.0)]), &ONE_HZ, 0.05), None);
         // The tolerance is above every residual, so both sides are open.
         let zv = impulses(&[(0.0, 0.5), (0.5, 0.5)]);

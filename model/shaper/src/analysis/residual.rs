@@ -35,13 +35,13 @@ fn growth(decay: f64, time_s: f64) -> f64 {
 /// Residual vibration at a mode, as a fraction of the unshaped vibration: 0 for a perfect shaper, 1 for one without
 /// effect.
 ///
-/// `t_n` is the time of the last impulse that is not zero. Without impulses the result is 0, because nothing moves.
+/// `t_n` is the time of the last impulse that is not zero. Without impulses there is no motion, and the result is 0.
 pub fn residual_vibration(impulses: &[Impulse], mode: &Mode) -> f64 {
     residual_vibration_at(impulses, mode, last_time_s(impulses))
 }
 
-/// Residual vibration referred to `reference_s` instead of the last impulse. It serves to compare two tables of which
-/// one ends earlier because a coefficient was rounded to zero.
+/// Residual vibration referred to `reference_s` instead of the last impulse. It serves to compare two tables if one
+/// ends earlier because a coefficient was rounded to zero.
 pub fn residual_vibration_at(impulses: &[Impulse], mode: &Mode, reference_s: f64) -> f64 {
     pole_sum(impulses, mode, reference_s).norm()
 }

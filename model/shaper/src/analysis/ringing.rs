@@ -1,4 +1,4 @@
-//! What an axis rings with after a jump of the acceleration.
+//! Ringing of an axis after a jump of the acceleration.
 //!
 //! A jump of the acceleration by `a` moves the rest position of a mode with the share `p` of the tool's motion by `p·a/ω²`, which is the
 //! amplitude of its ringing. A shaper leaves `V` of that, so the axis keeps
@@ -7,7 +7,8 @@
 //! Σ p_i/ω_i² · V_i  /  Σ p_i/ω_i²        V_i: the worst while the mode's frequency is off by up to the band
 //! ```
 //!
-//! whatever `a` is. A low mode counts far more than its share says: with the same share, a mode at half the frequency rings four times as far.
+//! of its ringing, for any `a`. A low mode counts far more than its share suggests: with the same share, a mode at half the frequency
+//! rings four times as far.
 
 use super::worst_residual;
 use crate::impulse::Impulse;
@@ -29,8 +30,8 @@ impl WeightedMode {
     }
 }
 
-/// The part of the axis's ringing after a jump of the acceleration that a shaper leaves: 0 to 1 for positive impulses. Each mode's frequency may be off by
-/// `band` (0.05: ±5 %). Without modes, or where none takes part, nothing rings and the result is 0.
+/// Fraction of the axis's ringing after a jump of the acceleration that a shaper leaves: 0 to 1 for positive impulses. Each mode's
+/// frequency may be off by `band` (0.05: ±5 %). The result is 0 without modes, and if no mode participates.
 pub fn ringing_left(impulses: &[Impulse], modes: &[WeightedMode], band: f64) -> f64 {
     left(modes, |mode| worst_residual(impulses, mode, band))
 }
@@ -58,7 +59,7 @@ mod tests {
             },
             participation,
         };
-        // Half a period of 20 Hz: nothing is left of 20 Hz, everything of 40 Hz, which has 4 % of the ringing at the same share.
+        // Half a period of 20 Hz removes all of 20 Hz and leaves all of 40 Hz, which has a fifth of the ringing at equal shares.
         let half = |time_s| Impulse { time_s, amplitude: 0.5 };
         let zv = [half(0.0), half(0.025)];
         let left = ringing_left(&zv, &[weighted(20.0, 1.0), weighted(40.0, 1.0)], 0.0);

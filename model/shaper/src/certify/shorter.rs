@@ -11,11 +11,11 @@
 //! a_i h_i ≥ min h_i`. With partial sums `s_i` of which the last is 1, `Σ a_i h_i = h_N + Σ s_i (h_i − h_{i+1})`, and
 //! each term is least at a bound of `s_i`. With amplitudes within bounds and any `μ`, `Σ a_i h_i = μ + Σ a_i (h_i − μ)`,
 //! and each term is least at a bound of `a_i`; the best `μ` is one of the `h_i`. So the least left side over all allowed commands, divided by `Σ |y_p|
-//! tolerance_p`, is a lower bound of the largest ratio of residual to tolerance. Above 1 it says that every shaper of
-//! `N` samples breaks a tolerance, and with it every shorter one: it would be one of `N` samples whose last amplitudes
-//! are 0, and vibration only decays.
+//! tolerance_p`, is a lower bound of the largest ratio of residual to tolerance. A bound above 1 proves that every
+//! shaper of `N` samples breaks a tolerance. So does every shorter one, since it is a shaper of `N` samples whose last
+//! amplitudes are 0, and vibration only decays.
 //!
-//! This is Farkas' lemma. The weights come from the solver's dual solution; where they come from does not matter here.
+//! This is Farkas' lemma. The weights come from the solver's dual solution, but the proof holds for weights of any origin.
 
 use super::{UNIT, exponential_error};
 use crate::mode::Mode;
@@ -24,7 +24,7 @@ use posicast_optimal::{Command, LowerBound, Request, WeightedPoint};
 /// A bound that was checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CheckedBound {
-    /// Duration in samples of the shapers that it is about.
+    /// Duration, in samples, of the shapers that the bound holds for.
     pub samples: u32,
     /// Smallest ratio of residual to tolerance that each of them leaves somewhere in a band.
     pub ratio: f64,
@@ -233,7 +233,7 @@ mod tests {
             found.ratio <= exact && found.ratio > exact * (1.0 - 1e-13),
             "{found:?} {exact}"
         );
-        // With half a period, zv holds, and the same weights prove nothing.
+        // Half a period is enough for zv, so the same weights must not prove the opposite.
         let loose = check_shorter(&request(0.05), &proof(2, 1.0)).unwrap_err();
         assert!(matches!(loose, ShorterError::Loose { samples: 2, .. }), "{loose}");
         assert!(check_shorter(&request(0.71), &proof(1, 1.0)).is_err());

@@ -43,7 +43,7 @@ pub enum CheckedShorter {
         late_axis: usize,
         /// Index of the axis that is always earlier.
         early_axis: usize,
-        /// Samples by which it is.
+        /// Smallest difference of the two delays, in samples.
         gap_samples: f64,
     },
 }

@@ -37,7 +37,7 @@ use crate::mode::Mode;
 pub(super) const ANTISYMMETRIC: KindRow = KindRow::new(
     "antisymmetric",
     Promise::Unsaid,
-    Design::Axis(|axis, _| of_axis(axis)),
+    Design::Axis(|axis, _| design_axis(axis)),
     "one shaper for modes whose frequencies are odd multiples of one",
 )
 .source("Singh and Heppler 1993")
@@ -86,7 +86,7 @@ pub struct Antisymmetric {
 }
 
 /// Designs the shaper of an axis by the keys of the machine file.
-fn of_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
+fn design_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper;
     let method = given
         .and_then(|s| s.method.as_deref())

@@ -129,7 +129,7 @@ pub fn design(kind: ShaperKind, order: u32, mode: &Mode, tolerance: f64) -> Resu
     ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::no_sequence(kind, mode, cause))
 }
 
-/// What a kind consists of: `series` factors with the same equal ripple of `pairs` pairs of zeros.
+/// Structure of a kind: `series` factors, each with the same equal ripple of `pairs` pairs of zeros.
 #[derive(Debug, Clone, Copy)]
 struct Ripple {
     pairs: u32,

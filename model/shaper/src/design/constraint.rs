@@ -27,7 +27,7 @@ impl Amplitudes {
     }
 }
 
-/// What must be zero at a mode.
+/// Quantities that must be zero at a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Constraint {
     /// The residual is zero.

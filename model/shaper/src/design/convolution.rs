@@ -1,4 +1,4 @@
-//! What convolution does to the bounds of shapers that keep them alone.
+//! Effect of convolution on bounds that each shaper keeps by itself.
 //!
 //! Pole sums multiply: at mode `j` the axis leaves `V_j = Π_i g_ij`, with `g_ij` the residual of mode `i`'s shaper at
 //! mode `j`, its *cross gain*. Positive shapers have `g ≤ 1`, so a tolerance can only get better. Negative ones reach
@@ -6,7 +6,7 @@
 //! Partial sums multiply as well: two shapers within −1 … 1 make one within −3 … 5, which asks the drive for five
 //! times the step.
 //!
-//! Both cause a warning that says what to do. Neither is an error, because the machine may have the room.
+//! Both cause a warning with a remedy. Neither is an error, because the machine may have the reserve.
 
 use std::fmt;
 
@@ -42,7 +42,7 @@ pub struct CrossGain {
     pub kind: ShaperKind,
     /// Index, from 0 in the order of the file, of the mode at which the residual is taken.
     pub at: usize,
-    /// Residual vibration there, by which what the other shapers leave is multiplied.
+    /// Residual vibration there. It multiplies the residual of the other shapers.
     pub gain: f64,
 }
 

@@ -1,7 +1,7 @@
 //! `custom`: the impulses of the machine file, unchanged; `none`: the command, unchanged. Neither depends on a mode.
 //!
-//! Of `custom`, the first time is 0, times increase, and the amplitudes sum to 1 within 1e-9. No residual is promised at any mode;
-//! the reported residual says what the impulses do.
+//! The first time of `custom` is 0, times increase, and the amplitudes sum to 1 within 1e-9. It does not promise a residual at any mode;
+//! the report states the residual of the impulses.
 
 use super::DesignError;
 use super::kind::{Design, KindRow, Promise};

@@ -22,7 +22,7 @@ pub enum Findings {
     Antisymmetric(Antisymmetric),
     /// Whether the impulses of `simultaneous` are proven to be the shortest.
     Simultaneous(Simultaneous),
-    /// What `optimal` was designed for, and why nothing is shorter.
+    /// Conditions of `optimal`, and the proof that no shorter shaper exists.
     Optimal(Optimal),
 }
 
@@ -53,7 +53,7 @@ pub(super) fn design(
     })
 }
 
-/// Checks that a shaper leaves nothing at any mode of the axis.
+/// Checks that a shaper leaves no vibration of any mode of the axis.
 pub(super) fn check_zeros(
     kind: ShaperKind,
     impulses: &ImpulseSequence,

@@ -20,7 +20,7 @@ use crate::mode::Mode;
 pub struct KindRow {
     /// Name in the machine file.
     pub name: &'static str,
-    /// What the kind does, as a phrase of Markdown.
+    /// Effect of the kind, as a phrase of Markdown.
     pub about: &'static str,
     /// Author and year of the publication; empty for what needs none.
     pub source: &'static str,
@@ -54,7 +54,7 @@ impl Promise {
     }
 }
 
-/// For what a kind is designed, and by which function.
+/// Subject of a kind's design, and the function that designs it.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Design {
     /// Impulses for one mode; the axis gets the convolution of its modes' shapers.
@@ -81,7 +81,7 @@ impl KindRow {
         }
     }
 
-    /// Says where the kind is published.
+    /// Sets the publication of the kind.
     pub(super) const fn source(self, source: &'static str) -> Self {
         Self { source, ..self }
     }
@@ -188,7 +188,7 @@ impl ShaperKind {
         self.row().promise.at(tolerance)
     }
 
-    /// Whether the kind takes this key of `[axis.shaper]`, of those that some kinds only take.
+    /// Whether the kind accepts this key of `[axis.shaper]`, for keys that only some kinds accept.
     pub fn takes(self, key: &str) -> bool {
         self.row().keys.contains(&key)
     }

@@ -7,8 +7,8 @@
 //!
 //! One file per kind of design. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`], [`smooth`]; for all
 //! modes of an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`optimal`], [`custom`]. Every design is checked by its own
-//! residual before it is returned: what leaves this module does at the mode what its kind promises, or is an error that
-//! says where the kind ends.
+//! residual before it is returned: the result is a shaper that keeps its kind's promise at the mode, or an error with the limit of the
+//! kind.
 
 pub mod antisymmetric;
 pub mod bias_point;

@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn exist_over_the_whole_range() {
+    fn designs_exist_for_all_dampings_and_tolerances() {
         for kind in KINDS {
             for damping in [0.0, 1e-12, 0.1, 0.25, 0.4] {
                 for tolerance in [TOLERANCE_MIN, 1e-4, 0.05, 0.3, 0.4999999] {

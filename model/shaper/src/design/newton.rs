@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn solves_to_rounding_or_says_no() {
+    fn solves_to_rounding_or_reports_failure() {
         let circle_and_line = |x: &DVector<f64>| vector([x.norm_squared() - 2.0, x[0] - x[1]]);
         let found = solve(circle_and_line, vector([2.0, 0.5]), 1e-12).unwrap();
         assert!((found - vector([1.0, 1.0])).amax() < 1e-14);

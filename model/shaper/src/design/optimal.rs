@@ -1,4 +1,4 @@
-//! `optimal`: the shortest shaper that there is on the sample grid, for modes that are not known exactly.
+//! `optimal`: the shortest possible shaper on the sample grid, for modes that are not known exactly.
 //!
 //! The mathematics is in the crate `posicast_optimal`: a cone program per duration, bisection over the durations, the dual solution as the
 //! proof. Here the machine file's modes become its bands, its taps become impulses, and its rounding replaces that by largest remainder:
@@ -25,14 +25,14 @@ pub(super) const OPTIMAL: KindRow = KindRow::new(
 )
 .keys(&["command", "amplitude_bounds", "taps", "prefer"]);
 
-/// What the design of `optimal` found beside its impulses.
+/// Results of the design of `optimal` besides its impulses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimal {
-    /// What was asked for.
+    /// The request.
     pub request: Request,
-    /// Least duration in samples, whatever the number of taps and whatever the other axes.
+    /// Least duration in samples, for any number of taps and without the other axes.
     pub least_samples: u32,
-    /// Why one sample less does not do.
+    /// Proof that a shaper with one sample less breaks a tolerance.
     pub shorter: Option<LowerBound>,
     /// Whether the taps are those of a joint design, which may last longer.
     pub is_together: bool,
@@ -41,13 +41,13 @@ pub struct Optimal {
 /// The joint design of all axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TogetherDesign {
-    /// What was asked for: the axes, each with its shortest shaper alone.
+    /// The request: the axes, each with its own shortest shaper.
     pub partners: Vec<Partner>,
-    /// What was found, with its proofs.
+    /// The solution, with its proofs.
     pub found: Together,
 }
 
-/// What the machine file asks for.
+/// Returns the request of the machine file.
 pub fn request(axis: ShapedAxis<'_>, sample_hz: f64) -> Request {
     let given = axis.shaper;
     let bands = axis.modes.iter().map(|mode| {
@@ -81,7 +81,7 @@ pub fn design(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<(ImpulseSequence, 
     }
     let request = request(axis, sample_hz);
     let found = shortest(&request).map_err(JointError::from)?;
-    let impulses = of_taps(axis.name, &found.taps, sample_hz)?;
+    let impulses = impulses_of_taps(axis.name, &found.taps, sample_hz)?;
     let findings = Optimal {
         request,
         least_samples: found.least_samples,
@@ -91,7 +91,7 @@ pub fn design(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<(ImpulseSequence, 
     Ok((impulses, findings))
 }
 
-fn of_taps(axis: &str, taps: &[(u32, f64)], sample_hz: f64) -> Result<ImpulseSequence, DesignError> {
+fn impulses_of_taps(axis: &str, taps: &[(u32, f64)], sample_hz: f64) -> Result<ImpulseSequence, DesignError> {
     // A sequence begins at 0; a shaper that has to be late may begin with samples without an amplitude.
     let begin = taps.first().filter(|tap| tap.0 > 0).map(|_| (0, 0.0));
     let impulses = begin
@@ -133,7 +133,7 @@ pub fn arrive_together(
         cause: Box::new(JointError::from(error.cause).into()),
     })?;
     for (design, taps) in designs.iter_mut().zip(&found.taps) {
-        design.impulses = of_taps(&design.name, taps, sample_hz)?;
+        design.impulses = impulses_of_taps(&design.name, taps, sample_hz)?;
         if let Findings::Optimal(optimal) = &mut design.findings {
             optimal.is_together = true;
         }

@@ -24,7 +24,7 @@ const SETTLED: f64 = 1e-5;
 /// Largest number of rounds; Newton's method doubles the digits each time, so more would mean that it does not
 /// converge.
 const ROUNDS: usize = 12;
-/// Shortest step for which the end of a branch counts as found, to six digits.
+/// The end of a branch counts as found once the step is this short: six digits.
 pub(super) const PRECISE: f64 = 1e-6;
 
 /// A system of equations along a path.
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn says_where_a_branch_ends() {
+    fn reports_where_a_branch_ends() {
         let ended = follow(&Fold(0.4), DVector::from_element(1, 1.0), 1.0, PRECISE).unwrap_err();
         assert!((ended - 0.4).abs() < 1e-5, "{ended}");
     }

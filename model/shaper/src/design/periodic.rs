@@ -27,7 +27,7 @@ use crate::mode::Mode;
 pub(super) const PERIODIC: KindRow = KindRow::new(
     "periodic",
     Promise::Unsaid,
-    Design::Axis(|axis, _| of_axis(axis)),
+    Design::Axis(|axis, _| design_axis(axis)),
     "`base` with a common frequency of which each mode's is nearly an odd multiple",
 )
 .source("Zhang and Li 2010")
@@ -75,7 +75,7 @@ pub struct Periodic {
 }
 
 /// Designs the shaper of an axis by the keys of the machine file.
-fn of_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
+fn design_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper;
     let base = Base {
         kind: given.and_then(|s| s.base).unwrap_or(ShaperKind::MultiEi),
@@ -130,8 +130,8 @@ pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Perio
     })
 }
 
-/// All frequencies, from `lowest_hz` up, of which every mode's frequency is within `lambda` times the frequency of an
-/// odd multiple.
+/// Returns all frequencies `f` from `lowest_hz` up for which every mode's frequency is at most `lambda · f` away from an
+/// odd multiple of `f`.
 ///
 /// `lambda` lies in (0, 1). The list is complete and has the largest first; an interval that reaches below
 /// `lowest_hz` ends there. Time and memory grow with the sum of `frequency / lowest_hz`.

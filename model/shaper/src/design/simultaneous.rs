@@ -33,7 +33,7 @@ use crate::mode::Mode;
 pub(super) const SIMULTANEOUS: KindRow = KindRow::new(
     "simultaneous",
     Promise::Unsaid,
-    Design::Axis(|axis, _| of_axis(axis)),
+    Design::Axis(|axis, _| design_axis(axis)),
     "one shaper with bounded partial sums for at most 4 modes: short, and sensitive",
 )
 .keys(&["amplitude"]);
@@ -51,7 +51,7 @@ pub struct Simultaneous {
 }
 
 /// Designs the shaper of an axis by the keys of the machine file.
-fn of_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
+fn design_axis(axis: ShapedAxis<'_>) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper;
     let amplitudes = match given.and_then(|s| s.amplitude.as_deref()) {
         Some("um") => Amplitudes::UnitMagnitude,

@@ -233,7 +233,7 @@ fn highest_above(unknowns: &DVector<f64>, log_epsilon: f64) -> Option<Peak> {
     highest.filter(|(height, _)| *height > bound).map(|(_, peak)| peak)
 }
 
-/// What to do on the way to a bound where another peak rises above it.
+/// Action if another peak rises above the bound on the way to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Above {
     /// The peak takes the place of one of the equal peaks.

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_that_are_none_are_errors() {
+    fn invalid_modes_are_errors() {
         for (frequency_hz, damping) in [
             (0.0, 0.1),
             (-1.0, 0.1),

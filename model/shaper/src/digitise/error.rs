@@ -10,7 +10,8 @@ pub const DELAY_MAX_SAMPLES: u32 = (1 << 14) - 2;
 /// Largest number of taps of a table.
 pub const TAPS_MAX: usize = 256;
 
-/// Why a shaper cannot become a tap table. Every message says what was found, what is allowed, and what to do.
+/// Reason why a shaper cannot become a tap table. Every message has the value that was found, the allowed ones and a
+/// remedy.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DigitiseError {
     /// The shaper lasts longer than any ring buffer.

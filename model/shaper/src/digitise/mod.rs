@@ -140,7 +140,7 @@ impl Digitised {
 /// Puts an axis's shaper on the sample grid.
 ///
 /// For impulses that serve all modes together (`custom`, joint kinds), `modal` is exact only at the first mode of the
-/// file, and becomes `linear` where there is no mode: [`Digitised::method_used`] says so.
+/// file, and becomes `linear` where there is no mode, which [`Digitised::method_used`] reports.
 ///
 /// # Errors
 /// [`DigitiseError::Delay`] for a shaper longer than the largest ring buffer, before anything is allocated;

@@ -1,7 +1,7 @@
-//! The best of a firmware's own shapers for modes that it cannot be told.
+//! The best of a firmware's own shapers, for firmware that cannot take the modes themselves.
 //!
-//! Kinds, frequencies and damping ratios are searched for what leaves least of the ringing after a jump of the acceleration
-//! ([`ringing_left`]), with every mode's frequency off by up to ±5 %. Where several axes have one shaper, the axis that keeps most counts.
+//! The search over kinds, frequencies and damping ratios minimises the ringing after a jump of the acceleration ([`ringing_left`]), with
+//! every mode's frequency off by up to ±5 %. If several axes share a shaper, the axis with the most ringing counts.
 //!
 //! ```text
 //! frequencies from half the lowest to twice the highest mode, in steps of 1 %; damping ratios 0, 0.1 and those of the modes
@@ -17,14 +17,14 @@ pub const BAND: f64 = 0.05;
 const WRITTEN: [f64; 2] = [0.1, 0.001];
 /// Ratio of two frequencies of the first search.
 const STEP: f64 = 1.01;
-/// Frequencies at which a mode is looked at during the search.
+/// Number of frequencies at which a mode's residual is computed during the search.
 const LOOKS: u32 = 10;
 /// Halvings of the steps of the second search.
 const HALVINGS: u32 = 8;
 
 /// A kind of a firmware.
 pub struct OwnKind<'a> {
-    /// What the user writes, or reads.
+    /// Name that the user writes or reads.
     pub name: String,
     /// Damping ratios that the kind takes, smallest and largest.
     pub damping: [f64; 2],

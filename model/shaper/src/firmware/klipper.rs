@@ -16,9 +16,9 @@ use crate::impulse::ImpulseSequence;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-/// Damping ratio that Klipper takes where none is configured.
+/// Damping ratio that Klipper uses if none is configured.
 pub const DEFAULT_DAMPING: f64 = 0.1;
-/// Tolerance of the EI kinds, which only `ei` can be told.
+/// Tolerance of the EI kinds; only that of `ei` can be configured.
 pub const DEFAULT_TOLERANCE: f64 = 0.05;
 
 /// A kind of shaper.
@@ -53,7 +53,7 @@ impl Kind {
         Kind::ThreeHumpEi,
     ];
 
-    /// What is written after `shaper_type_x:`. Klipper's parameters have no exponents.
+    /// Text after `shaper_type_x:`. Klipper's parameters have no exponents.
     pub fn text(self) -> String {
         match self {
             Kind::Zv => "zv".into(),
@@ -78,7 +78,7 @@ impl Kind {
     }
 }
 
-/// How a version computes the EI kinds.
+/// Formulas of the EI kinds in a version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EiFormulas {
     /// Those without damping, times powers of `K`.
@@ -157,7 +157,11 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
 }
 
 /// A fit in two variables.
-fn of_two<const N: usize, const M: usize>(coefficients: &[[f64; N]; M], tolerance: f64, damping: f64) -> f64 {
+fn polynomial_of_two<const N: usize, const M: usize>(
+    coefficients: &[[f64; N]; M],
+    tolerance: f64,
+    damping: f64,
+) -> f64 {
     polynomial(&coefficients.map(|row| polynomial(&row, tolerance)), damping)
 }
 
@@ -192,8 +196,8 @@ pub fn impulses(kind: Kind, formulas: EiFormulas, frequency_hz: f64, damping: f6
         (Kind::ThreeHumpEi, ..) => fitted(&THREE_HUMP_TIMES, &THREE_HUMP_AMPLITUDES, 3, frequency_hz, damping),
         _ => {
             let v = tolerance(kind);
-            let [first, last] = [EI_FIRST, EI_LAST].map(|fit| of_two(&fit, v, damping));
-            let middle_s = of_two(&EI_TIME, v, damping) * damped_s;
+            let [first, last] = [EI_FIRST, EI_LAST].map(|fit| polynomial_of_two(&fit, v, damping));
+            let middle_s = polynomial_of_two(&EI_TIME, v, damping) * damped_s;
             normalised(&[0.0, middle_s, damped_s], &[first, 1.0 - first - last, last])
         }
     }

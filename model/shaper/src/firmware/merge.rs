@@ -77,7 +77,7 @@ mod tests {
             let change = residual_vibration(&taps, &mode) - residual_vibration(&few, &mode);
             assert!(change.abs() < 2e-4, "{change}");
         }
-        // What is far apart or of two signs stays, whatever their number.
+        // Impulses that are far apart or differ in sign are never merged.
         let signs = [(0.0, 1.0), (0.0001, -1.0), (0.01, 1.0)].map(|(time_s, amplitude)| Impulse { time_s, amplitude });
         assert_eq!(merged(&signs, 2, 0.001, 1e-3).len(), 3);
     }

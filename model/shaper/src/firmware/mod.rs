@@ -1,7 +1,8 @@
 //! Input shapers of printer firmware, as the firmware computes them from what its user writes.
 //!
-//! An export writes numbers; a printer moves by what its firmware makes of them. Here are these computations, so that an export can say what the
-//! printer will leave, and so that the best of a firmware's own shapers can be searched for where it cannot take a design:
+//! An export writes numbers, but a printer moves by the impulses that its firmware computes from them. These modules repeat the
+//! computation, so that an export can report the printer's residual, and can search for the best of a firmware's own shapers if the
+//! firmware cannot take a design:
 //!
 //! | module | firmware | takes |
 //! |---|---|---|

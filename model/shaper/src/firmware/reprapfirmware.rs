@@ -16,7 +16,7 @@ pub const STEP_CLOCK_HZ: f64 = 750_000.0;
 /// Frequencies that `F` takes, in Hz: a period of two times 65,535 step clocks, and the firmware's limit.
 pub const FREQUENCY_HZ: [f64; 2] = [STEP_CLOCK_HZ / (2.0 * 65_535.0), 1000.0];
 
-/// How a version reads `H` and `T`.
+/// Meaning of `H` and `T` in a version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Up to 3.5: sums and intervals.

@@ -30,7 +30,7 @@ impl Firmware {
         }
     }
 
-    /// How its versions are written.
+    /// Accepted notations of its versions, for messages.
     pub fn versions(self) -> &'static str {
         match self {
             Firmware::Klipper => {
@@ -69,16 +69,16 @@ pub enum VersionError {
     },
 }
 
-/// What a version of Klipper or Kalico takes.
+/// Abilities of a version of Klipper or Kalico.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KlipperVersion {
     /// The version in words, for the output.
     pub name: String,
-    /// Which firmware this is.
+    /// The firmware.
     pub firmware: Firmware,
     /// Axes that it shapes.
     pub axes: &'static [&'static str],
-    /// How it computes the EI kinds.
+    /// Formulas of its EI kinds.
     pub ei: EiFormulas,
     /// Largest damping ratios.
     pub damping: DampingLimits,
@@ -225,7 +225,7 @@ impl KlipperVersion {
     }
 }
 
-/// What a version of Marlin takes.
+/// Abilities of a version of Marlin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarlinVersion {
     /// The version in words, for the output.
@@ -292,7 +292,7 @@ impl MarlinVersion {
     }
 }
 
-/// How a version of RepRapFirmware reads `M593 P"custom"`, and its name in words; the newest without a text.
+/// Returns the meaning of `M593 P"custom"` in a version of RepRapFirmware, and the version's name; without a text those of the newest.
 ///
 /// # Errors
 /// [`VersionError`] for a text that is no version, or one before 3.4.
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_version_is_refused() {
+    fn text_that_is_not_a_version_is_refused() {
         for wrong in [
             "",
             "new",

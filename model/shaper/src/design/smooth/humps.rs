@@ -33,7 +33,7 @@ const ACCURACY: f64 = 1e-12;
 /// Second zero of `mzv`, relative to the mode: `√2 − 1 + (2 − √2) cos ¾πw` is 0 at 1 and at 5/3.
 const MZV_ZERO: f64 = 5.0 / 3.0;
 
-/// What makes a kind.
+/// Properties of a kind.
 pub(super) struct HumpConditions {
     /// `q` of its two coefficients.
     shape: fn(f64, f64) -> Shape,
