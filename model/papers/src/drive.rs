@@ -1,7 +1,7 @@
 //! The drive chain of the XY stage: stiffnesses from its data sheets, and the modes of its control loops.
 //!
 //! The thesis mixes N/m, N/µm and N·mm/rad under one heading. Here lengths are in mm, forces in N and stiffnesses in
-//! N/µm (= kN/mm) or N·mm/rad, as each item says.
+//! N/µm (= kN/mm) or N·mm/rad, which each item states.
 
 use super::sheet::{Rule, Sheet};
 use posicast_machine::mechanics::{

@@ -140,7 +140,7 @@ fn convolved_lists(sheet: &mut Sheet) -> Result<(), DesignError> {
             "printed as the sum of two times that are rounded to 10 µs each",
         );
     }
-    // These are the paper's own two rounded times; every other entry is such a sum.
+    // These are two times as the paper prints them; every other entry is the sum of two such times.
     let (second_of_nei, first_of_nzv) = (2.24, 0.93);
     sheet.erratum(
         "Table 4: NEI-NZV, t in ms that is the sum of the printed 2.24 and 0.93",

@@ -11,7 +11,7 @@ pub enum PaperVerdict {
     Erratum,
     /// The paper's number has no counterpart; `reason` explains why.
     NotComparable,
-    /// The row no longer has the verdict with which it was entered: a bug of posicast.
+    /// The row's verdict is no longer the one that was entered, which is a bug of posicast.
     NotReproduced,
 }
 

@@ -49,7 +49,7 @@ fn bracket(state: &State, damping: f64) -> f64 {
 pub enum Coefficients {
     /// As they are printed.
     Printed,
-    /// As they follow from the model, for a table with a damper to the ground.
+    /// As derived from the model, for a table with a damper to the ground.
     Corrected {
         /// Damping B of the table in N·s/m.
         damping: f64,

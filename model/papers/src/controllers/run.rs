@@ -17,7 +17,7 @@ pub(super) struct Seen {
     pub(super) reference: [f64; 3],
     pub(super) position: f64,
     pub(super) velocity: f64,
-    /// Of the motor, rad/s.
+    /// Speed of the motor, rad/s.
     pub(super) motor_speed: f64,
 }
 
