@@ -83,7 +83,7 @@ pub trait ClockedBlock {
     /// [`StepError`] where a simulator fails; a model never fails.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
 
-    /// The composition whose nets show what happens inside; `None` for a block that is none, and for simulators.
+    /// The composition, whose nets give access to the inside; `None` for simulators, and for blocks that are not compositions.
     fn composed(&self) -> Option<&composition::Composed> {
         None
     }

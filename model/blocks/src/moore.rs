@@ -1,7 +1,7 @@
-//! Blocks that can be composed, and how such a block says that it is idle.
+//! Blocks that can be composed, and report when they are idle.
 //!
 //! In most clocks a block only waits, or counts towards its next event. It is then *quiet*: its outputs stay the
-//! same, clock after clock. A block that says for how long lets a [composition](super::composition) skip those clocks
+//! same, clock after clock. If a block reports for how long, a [composition](super::composition) can skip those clocks
 //! without changing a result:
 //!
 //! ```text

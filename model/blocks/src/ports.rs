@@ -98,7 +98,7 @@ pub struct SizedPortRow {
 /// All ports of a block, inputs first, in the order of the Verilog's port list, without `clk`.
 pub type PortList = &'static [PortRow];
 
-/// What a port is for, as a comment beside it says it.
+/// Purpose of a port, as the text of a comment beside it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortNote {
     /// The port; of an array the first.
@@ -109,7 +109,7 @@ pub struct PortNote {
 
 /// A row of a list, with or without sizes.
 pub trait DescribedPort {
-    /// What it is for.
+    /// Returns the purpose of the port.
     fn note(&self) -> PortNote;
 }
 
@@ -139,7 +139,7 @@ fn note(name: &str, is_array: bool, meaning: &[&str], unit: &str) -> PortNote {
     }
 }
 
-/// What the ports of a list are for, in its order.
+/// Returns the purpose of each port of a list, in its order.
 pub fn port_notes(list: &[impl DescribedPort]) -> Vec<PortNote> {
     list.iter().map(DescribedPort::note).collect()
 }

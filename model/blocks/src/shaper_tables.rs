@@ -61,10 +61,10 @@ pub enum ShaperTablesError {
     Positive {
         /// The key.
         key: &'static str,
-        /// What was found.
+        /// The value that was found.
         found: f64,
     },
-    /// There is nothing to shape with.
+    /// An axis has no table.
     #[error("axis `{0}` has no table; it has at least one")]
     NoTable(String),
     /// A list of taps is not a table.
@@ -91,7 +91,7 @@ impl ShaperTables {
     /// Reads a file's text and checks it.
     ///
     /// # Errors
-    /// [`ShaperTablesError`] says what was found and what is allowed.
+    /// [`ShaperTablesError`] with the value that was found and the allowed ones.
     pub fn parse(text: &str) -> Result<Self, ShaperTablesError> {
         let document = DeTable::parse(text)?;
         let file = Keys(document.get_ref());
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named() {
+    fn invalid_tables_are_errors_that_name_the_cause() {
         let said = |change: &dyn Fn(&mut AxisShaperTables)| {
             let mut axis = axis();
             change(&mut axis);

@@ -94,7 +94,7 @@ impl Cause {
     }
 }
 
-/// Causes that always switch off, whatever `off_causes` says.
+/// Causes that switch the outputs off for any value of `off_causes`.
 pub const ALWAYS_OFF: u32 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::Range.bit();
 
 /// Causes that act in the clock in which they become active; all others act one clock later, when their bit is set.

@@ -1,5 +1,4 @@
-//! The supervisor of an axis decides when its outputs are on, what its command does, and what happens when something
-//! goes wrong.
+//! The supervisor of an axis switches its outputs, starts and stops its command, and reacts to faults.
 //!
 //! The datasheet is `docs/axis.md`; the hardware is compared with this reference model.
 //!
@@ -12,8 +11,8 @@
 //! | `registers` | lines, sticky causes, the state and brake, clock by clock |
 //! | [`Axis`] | the ports |
 //!
-//! [`Axis::step`] simulates one clock; [`Axis::hold`] simulates many with the same inputs, and skips those that
-//! change nothing.
+//! [`Axis::step`] simulates one clock; [`Axis::hold`] simulates many with the same inputs, and skips those that do not
+//! change the state.
 //!
 //! ```
 //! use posicast_blocks::axis::{Axis, Inputs, SupervisorState};

@@ -1,8 +1,8 @@
 //! The checks at ticks: limits, soft limits, errors against their limits, and time limits.
 //!
 //! Levels are taken as they are at the tick ([`Shown`]). Numbers follow byte by byte ([`Taken`]) and are compared in
-//! two rounds; a cause is what both rounds have found, so that a limit that is written meanwhile, half old and half
-//! new, causes nothing. The causes act on the state [`WATCH_CLOCKS`](super::WATCH_CLOCKS) after the tick.
+//! two rounds. A cause must be found in both rounds, so that a limit that is written meanwhile, half old and half new,
+//! does not trip the axis. The causes act on the state [`WATCH_CLOCKS`](super::WATCH_CLOCKS) after the tick.
 
 use super::cause::Cause;
 use super::ports::Inputs;
@@ -42,7 +42,7 @@ impl Shown {
     }
 }
 
-/// Numbers and limits of a round, of which a byte each is taken per clock; of those of 16 bits a nibble.
+/// Numbers and limits of a round. Each clock takes a byte of each; of those of 16 bits a nibble.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Taken {
     reference_position: u32,
@@ -112,8 +112,8 @@ pub(super) struct Monitors {
     were_passed: [bool; 4],
     /// Consecutive ticks with a command in one direction and without a motion of more than [`STILL_COUNTS`].
     still_ticks: u16,
-    /// Position at the last tick that was not one of them or, if later, at the last motion; and sign of the command
-    /// then.
+    /// Position and sign of the command at the last tick that `still_ticks` did not count or, if later, at the last
+    /// motion.
     still_since: (i32, bool),
     /// Ticks since the last kick.
     unkicked_ticks: u16,

@@ -40,7 +40,7 @@ impl Timer {
         self.over && self.loads.is_none()
     }
 
-    /// Simulates one clock: `counts` says that a tick counts, and `begins` is the event of this clock.
+    /// Simulates one clock. With `counts` a tick counts down the time; `begins` is the event of this clock.
     pub(super) fn clock(&mut self, inputs: &Inputs, counts: bool, begins: Option<Begins>) {
         self.over = self.left == 0 && self.loads.is_none();
         self.left = match self.loads {

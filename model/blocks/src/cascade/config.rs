@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_cascade_holds_is_named() {
+    fn settings_beyond_the_cascade_are_errors() {
         let error = |word, delays: Vec<u32>| CascadeConfig::new(word, delays).unwrap_err();
         assert_eq!(error(7, vec![1]), CascadeConfigError::WordBits(7));
         assert_eq!(error(33, vec![1]), CascadeConfigError::WordBits(33));

@@ -9,8 +9,8 @@ use crate::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 ///
 /// A block sleeps while it is [quiet](Moore::quiet_clocks). It is woken when that time is over, or by a change of an
 /// input that it does not ignore; then it catches up. So a clock costs only what happens in it, and
-/// [`hold`](Self::hold) skips clocks in which nothing happens. The outputs are the same as if every block were
-/// clocked in every clock.
+/// [`hold`](Self::hold) skips clocks without an event. The outputs are the same as if every block were clocked in
+/// every clock.
 ///
 /// Outputs of one block that another reads come from registers, and are known before any block is clocked, in any
 /// order. An output that depends on inputs of the same clock ([`OutputKind::Combinational`]) may be an output of the
@@ -88,7 +88,7 @@ impl Composed {
     /// Simulates clocks with the same inputs for as long as the outputs stay as they are, but at most `clocks`.
     /// Writes the outputs of these clocks to `outputs`, and returns the number of clocks: at least 1, unless `clocks`
     /// is 0. Outputs that are [counters](OutputKind::Counter) go up by one per clock instead. The result is that of
-    /// as many calls of [`step`](ClockedBlock::step), in the time of those in which something happens inside.
+    /// as many calls of [`step`](ClockedBlock::step), but only clocks with events inside take time.
     ///
     /// Call it again to continue; [`show_with`](Moore::show_with) gives the outputs of the next clock.
     ///

@@ -101,7 +101,7 @@ impl Member {
         }
     }
 
-    /// Updates its outputs in this clock, of which the combinational ones are new.
+    /// Updates the outputs, since the combinational ones depend on the inputs of this clock.
     pub(super) fn combine(&mut self, wires: &[Wire], now: u64) {
         self.read(wires, now);
         self.block.show_with(&self.inputs, &mut self.outputs);

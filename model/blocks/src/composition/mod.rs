@@ -1,6 +1,6 @@
 //! Compositions: blocks joined by nets, as checked plain data, and the model that steps them.
 //!
-//! A port is on the net of its own name, unless its part says otherwise; so blocks that use the same name for a
+//! A port is on the net of its own name, unless its part names another one; so blocks that use the same name for a
 //! signal are connected. A net has one driver: an output of a part, or an input of the whole.
 //! `posicast_hdl::emit::connect` writes the Verilog of the same composition.
 //!
@@ -93,7 +93,7 @@ impl Part {
     }
 }
 
-/// What a port of a part is connected to.
+/// Connection of a port of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Connection {
     /// The net with this index in [`Composition::nets`].

@@ -4,10 +4,10 @@
 //!
 //! - **Normal mode**: the outputs are the supervisor's, a clock later. A duty of the controller is saturated to 17
 //!   bits and taken with `controller_valid`; while the PWM is off it is 0.
-//! - **Direct mode**, for bring-up: it is possible in READY only, with `direct_enable`, from a `direct_kick` for as
-//!   many ticks as `direct_hold_ticks` said then. All outputs are on; each tick takes `direct_duty`, with a magnitude
-//!   of at most `direct_limit`. When the sign changes the duty is 0 for a tick; on a limit switch the duty in its
-//!   direction is 0 at once.
+//! - **Direct mode**, for bring-up: it is possible in READY only, with `direct_enable`. A `direct_kick` starts it for
+//!   the number of ticks that `direct_hold_ticks` has then. All outputs are on; each tick takes `direct_duty`, limited
+//!   to a magnitude of `direct_limit`. When the sign changes the duty is 0 for a tick; on a limit switch the duty in
+//!   its direction is 0 at once.
 //! - `drive_fault_n` is asynchronous: it passes one register without reset on its way to the synchroniser in the PWM.
 //! - A change between the two modes begins with a duty of 0.
 //! - **Self-test** of the PWM: direct mode with `self_test` masks the pins and leaves drive and brake off. Only the
@@ -170,7 +170,7 @@ impl DriveCommand {
         if inputs.valley { counted } else { results }
     }
 
-    /// The duty after this clock; `direct` says whether direct mode is on after it.
+    /// Returns the duty after this clock. `direct`: direct mode is on after it.
     fn next_duty(&self, inputs: &Inputs, direct: bool) -> i32 {
         let Outputs {
             duty, direct_active, ..

@@ -13,7 +13,7 @@ pub(super) struct Banks {
     most_step: i32,
     refused: bool,
     read_waits: bool,
-    /// What the memory shows in this clock, if it is for the host.
+    /// Word of the memory in this clock, if it is for the host.
     served: Option<i32>,
     found: i32,
 }

@@ -65,7 +65,7 @@ impl ErrorTableFormat {
     }
 }
 
-/// What is fixed when an error table is built.
+/// Parameters that are fixed when an error table is built.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ErrorTableConfig {
     format: ErrorTableFormat,
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn entries_that_do_not_fit_are_refused() {
         let fine = format(10, EntryUnit::Fine);
         let new = |format, entries: &[i32]| ErrorTableConfig::new(format, entries.to_vec());
         assert!(new(fine, &[0, 16384, 0]).is_ok());

@@ -107,7 +107,7 @@ impl ErrorTable {
         }
     }
 
-    /// What the outputs show now.
+    /// Returns the outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         Outputs {
             compensated: self.compensated,
@@ -165,7 +165,7 @@ impl ErrorTable {
         self.pass = (!ends).then_some(pass);
     }
 
-    /// Of the position, from the first entry on, in 256ths of a count.
+    /// Distance of the position from the first entry, in 256ths of a count.
     fn place(&self, inputs: &Inputs) -> i64 {
         let (counts, fraction) = if inputs.on_measured {
             (inputs.measured, 0)

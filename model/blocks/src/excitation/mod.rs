@@ -57,8 +57,8 @@ use super::{Moore, clocked_block, quiet_at_rest};
 /// Clocks from `valid` to `reference_valid`.
 pub const LATENCY_CLOCKS: u32 = 1;
 /// Clocks from a `valid` until the next value of the signal is ready: one to advance, fewer than two turns, the step
-/// that finds no more to turn, and the scaling. Samples that come closer change the shape of the signal, but never
-/// exceed its bound.
+/// that detects the end of the turn, and the scaling. Samples that come closer together change the shape of the signal,
+/// but never exceed its bound.
 pub const TICK_CLOCKS: u32 = 2 * TURN_STEPS + 2 + SCALE_CLOCKS as u32;
 
 /// Phase between two `valid`.
@@ -84,7 +84,7 @@ struct Signal {
 }
 
 impl Signal {
-    /// Simulates one clock of a running signal. Returns whether it ends by itself because it is too fast.
+    /// Simulates one clock of a running signal. Returns whether the signal ends early because it has become too fast.
     fn clock(&mut self, inputs: &Inputs) -> bool {
         match self.phase {
             Phase::Rest => false,

@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn no_counts_are_named() {
+    fn counts_of_zero_or_not_finite_are_errors() {
         for found in [0.0, f64::NAN, f64::INFINITY] {
             let error = ScaleRatio::for_monitor(1.0, found).unwrap_err().to_string();
             assert!(

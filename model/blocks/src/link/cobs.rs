@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_encoded_is_refused() {
+    fn invalid_encodings_are_refused() {
         for wrong in [&[][..], &[0], &[3, 1], &[2, 0], &[1, 3, 5], &[255]] {
             assert_eq!(decode(wrong), None, "{wrong:?}");
         }

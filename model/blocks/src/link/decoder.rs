@@ -1,20 +1,20 @@
-//! The bridge's decoder of frames: the line byte by byte, whatever comes.
+//! The bridge's decoder of frames. It takes the line byte by byte, valid or not.
 
 use super::cobs::UNUSED_CODE;
 use super::{Crc, DELIMITER, MOST_REQUEST_BYTES, RequestHeader};
 
-/// What a delimiter ended.
+/// State of the frame that a delimiter ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameEnd {
     /// A frame whose CRC holds.
     Whole,
     /// A damaged frame.
     Dropped,
-    /// Nothing: the delimiter follows another one.
+    /// No frame: the delimiter follows another one.
     Empty,
 }
 
-/// Takes the line byte by byte. What follows a delimiter is decoded in the same way whatever came before it.
+/// Takes the line byte by byte. The bytes before a delimiter do not affect the decoding after it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FrameDecoder {
     /// Bytes until the next code.
@@ -42,8 +42,8 @@ impl Default for FrameDecoder {
 }
 
 impl FrameDecoder {
-    /// Takes a byte. For a delimiter, says what it ended; the bytes of a whole frame are then [`Self::bytes`], until
-    /// the next byte.
+    /// Takes a byte. For a delimiter it returns the state of the frame; the bytes of a whole frame are available from
+    /// [`Self::bytes`] until the next byte.
     pub fn byte(&mut self, byte: u8) -> Option<FrameEnd> {
         if byte == DELIMITER {
             let whole = self.begun && !self.skips && self.left == 0 && self.crc.holds();

@@ -1,8 +1,8 @@
-//! Replies: what the bridge answers.
+//! Replies of the bridge.
 
 use super::{CRC_BYTES, Crc, DELIMITER, REPLY_HEADER_BYTES, cobs};
 
-/// What became of a request.
+/// Result of a request.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, thiserror::Error)]
 pub enum LinkStatus {
     /// 0: it was executed.
@@ -39,12 +39,12 @@ impl LinkStatus {
     }
 }
 
-/// What the bridge answers.
+/// A reply of the bridge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply {
     /// Sequence number of the request.
     pub sequence: u8,
-    /// What became of the request.
+    /// Result of the request.
     pub status: LinkStatus,
     /// Number of frames that the bridge has dropped since its reset, modulo 256.
     pub dropped: u8,

@@ -1,4 +1,4 @@
-//! Requests: what a host asks for.
+//! Requests of a host.
 
 use super::{CRC_BYTES, Crc, DELIMITER, LinkStatus, MOST_WORDS, REQUEST_HEADER_BYTES, VERSION, cobs};
 
@@ -7,14 +7,14 @@ pub(super) const WRITES: u8 = 1;
 /// Bit of a command: each word has its own address.
 pub(super) const LISTS: u8 = 2;
 
-/// What a host asks for. Addresses are those of words, as in the register tables.
+/// A request of a host. Addresses count words, as in the register tables.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Request {
     /// Reads words at consecutive addresses.
     Read {
         /// The first address.
         address: u16,
-        /// How many.
+        /// Number of words.
         count: u8,
     },
     /// Writes words at consecutive addresses.

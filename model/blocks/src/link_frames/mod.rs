@@ -10,7 +10,7 @@ use crate::link::{DELIMITER, FrameDecoder, FrameEnd};
 /// Width of the time-out's counter in bits.
 pub(super) const SILENCE_BITS: u32 = 20;
 
-/// What the receiver of a line says in a clock.
+/// Outputs of a line's receiver in a clock.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Heard {
     /// A byte has come.

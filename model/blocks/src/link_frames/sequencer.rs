@@ -8,7 +8,7 @@ const CRC_CLOCKS: u8 = 8;
 /// Bytes of the memory for the reply.
 const REPLY_MEMORY: usize = 256;
 
-/// What the sequencer does in a clock.
+/// Action of the sequencer in a clock.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Phase {
     #[default]
@@ -25,7 +25,7 @@ enum Phase {
     Next,
     /// Begins the reply.
     Head,
-    /// Puts the bytes of `data` into the reply.
+    /// Appends the bytes of `data` to the reply.
     Put,
     /// Waits for the CRC of the reply.
     Tail,
@@ -34,7 +34,7 @@ enum Phase {
     Send,
 }
 
-/// Which bytes `Put` puts into the reply.
+/// Bytes that `Put` appends to the reply.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Part {
     #[default]
@@ -97,7 +97,7 @@ impl Sequencer {
         self.phase != Phase::Rest
     }
 
-    /// Whether it accesses the bus, if the address is one.
+    /// Whether it accesses the bus, which needs a valid address.
     pub(super) fn accesses(&self, address_limit: u16) -> bool {
         self.phase == Phase::Access && !self.looks && self.address < address_limit
     }

@@ -4,7 +4,7 @@ use super::super::spi_bridge::{self, SpiBridge, SpiBridgeConfig};
 use super::super::uart_bridge::{self, UartBridge, UartBridgeConfig};
 use super::super::{Direction, Port};
 
-/// The constants of a bridge, which say what its line is.
+/// The constants of a bridge, by the kind of its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BridgeConfig {
     /// A serial line.
@@ -22,7 +22,7 @@ impl BridgeConfig {
         }
     }
 
-    /// What its line is called.
+    /// Name of its line.
     pub fn line(&self) -> &'static str {
         match self {
             Self::Uart(_) => "serial line",
@@ -86,7 +86,7 @@ impl BridgeConfig {
     }
 }
 
-/// What a bridge shows in a clock.
+/// Outputs of a bridge in a clock.
 pub(super) struct Shown {
     pub(super) line: bool,
     pub(super) address: u16,
@@ -95,7 +95,7 @@ pub(super) struct Shown {
     pub(super) writedata: u32,
 }
 
-/// A bridge with its inputs while nothing happens.
+/// A bridge, and its inputs while the line and the bus are idle.
 pub(super) enum Bridge {
     Uart(UartBridge, uart_bridge::Inputs),
     Spi(SpiBridge, spi_bridge::Inputs),

@@ -16,7 +16,7 @@ const RESUME_STEP: u8 = 27;
 
 /// Bits of the accumulator.
 const BITS: u32 = 19;
-/// Amount by which it counts in a clock: four per clock.
+/// Increment per clock.
 const COUNT: i32 = 4;
 
 /// Settings in use, and position of the carrier.
@@ -35,7 +35,7 @@ pub(super) struct Command {
     pub(super) step: u8,
     /// Whether the accumulator is computing, or counts what remains of its result.
     pub(super) works: bool,
-    /// Number of the computation, 1 to 15; 0 is none.
+    /// Number of the computation, 1 to 15; 0 between computations.
     slot: u8,
     /// Whether the half that is computed, and then counted, has the rising edge.
     pub(super) rises: bool,
@@ -51,7 +51,7 @@ pub(super) struct Command {
     pub(super) too_long: bool,
 }
 
-/// What happens to the sum of a step.
+/// Use of the sum of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fate {
     Kept,

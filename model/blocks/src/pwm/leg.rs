@@ -1,7 +1,8 @@
-//! The leg stands between the carrier and the gates, and is simulated clock by clock.
+//! The leg, between the carrier and the gates, simulated clock by clock.
 //!
-//! For any command, and from any state: both sides are never on together; between one side's off and the other's on
-//! there is the dead time; a side that is on stays on for the minimum pulse, unless everything is switched off.
+//! For any command, and from any state, both sides are never on together, the dead time separates the turn-off of one
+//! side from the turn-on of the other, and a side that is on stays on for the minimum pulse, unless everything is
+//! switched off.
 
 /// Command of the carrier to the leg: nothing, or one side on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -39,8 +40,7 @@ impl Leg {
         !self.awake || (self.lit && !self.high)
     }
 
-    /// Simulates one clock. `low_first`: after everything was off, the low side comes on first, whatever is commanded
-    /// by then.
+    /// Simulates one clock. With `low_first` the low side turns on first after everything was off, for any command.
     #[inline]
     pub(super) fn clock(&mut self, want: Want, low_first: bool, dead_time: u16, minimum_pulse: u16) {
         let wants_high = want == Want::High;

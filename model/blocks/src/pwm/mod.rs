@@ -93,12 +93,12 @@ struct State {
     leg: Leg,
     gates: Gates,
     running: bool,
-    /// Whether the times in use have been at the inputs ever since the command is computed.
+    /// Whether the inputs have kept the times in use since the computation of the command began.
     stable: bool,
     /// `sync` of the clock before.
     synced: bool,
-    /// Whether the carrier is out of phase, as far as is known: a `sync` came at another phase, or none has come
-    /// since the period changed.
+    /// Whether the carrier may be out of phase: a `sync` came at another phase, or none has come since the period
+    /// changed.
     astray: bool,
     /// Whether there is a time base: by build parameter, or because a `sync` came.
     timed: bool,

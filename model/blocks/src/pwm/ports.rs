@@ -50,8 +50,8 @@ pub struct Gates {
 }
 
 impl Gates {
-    /// The gates of the bridge in a mode. `leg` has the high and the low side of the leg that switches; `awake` says
-    /// that its first dead time is over.
+    /// The gates of the bridge in a mode. `leg` has the high and the low side of the leg that switches; `awake`: its first
+    /// dead time is over.
     #[inline]
     pub(super) fn of(mode: BridgeMode, negative: bool, awake: bool, leg: (bool, bool)) -> Self {
         let (high, low) = leg;

@@ -5,8 +5,8 @@ use super::{LEAD_CLOCKS, Pwm, State};
 use crate::{Moore, OutputKind};
 
 impl State {
-    /// Number of further clocks like the last one, in which `before` became the present state; `None` if more
-    /// happened in it than counting.
+    /// Number of further clocks like the last one, which led from `before` to the present state; `None` if it did more
+    /// than count.
     pub(super) fn more_of(&self, before: &Self, inputs: &Inputs) -> Option<u64> {
         let state = self;
         let mut counted = *before;

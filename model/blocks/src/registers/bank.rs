@@ -31,7 +31,7 @@ struct State {
     staged: Vec<u32>,
     /// The command whose strobe is high.
     strobe: Option<usize>,
-    /// For commands with several words, the one written last; one per register.
+    /// Per register, the index of the word that was written last; used by commands with several words.
     places: Vec<u32>,
     commit_waits: bool,
     read_data: u32,

@@ -1,6 +1,6 @@
 //! Errors of a description that prevent a register map.
 
-/// What was found, and what to do. Each is an error of a description in this project, never of its user.
+/// Error of a description, with a remedy. The description is part of this project, so its user never causes one.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum MapError {
     /// A name has the wrong form, or the bank uses it itself.
@@ -48,7 +48,7 @@ pub enum MapError {
         register: String,
         /// Name of the field.
         field: String,
-        /// Which number it is.
+        /// Kind of the number.
         what: &'static str,
         /// Its value.
         found: u32,

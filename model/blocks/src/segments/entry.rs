@@ -48,15 +48,15 @@ pub struct Point {
     pub acceleration: i32,
 }
 
-/// A polynomial of third order from wherever the command is, so that no such entry makes the position jump. The first tick takes velocity and
-/// acceleration, and moves by that velocity; each further one adds the jerk, as a segment does.
+/// A polynomial of third order that starts at the present position of the command, so that the position never jumps. The first tick
+/// takes velocity and acceleration, and moves by that velocity; each further one adds the jerk, as a segment does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CubicEntry {
     /// Q0.32 counts per tick³.
     pub jerk: i32,
-    /// Of the first tick, Q16.16 counts per tick.
+    /// Velocity of the first tick, Q16.16 counts per tick.
     pub velocity: i32,
-    /// Of the first tick, Q8.24 counts per tick².
+    /// Acceleration of the first tick, Q8.24 counts per tick².
     pub acceleration: i32,
 }
 
@@ -67,7 +67,7 @@ pub struct Entry {
     pub ticks: u32,
     /// Motion of the segment or point.
     pub motion: EntryMotion,
-    /// Whether the host is told when the entry has ended.
+    /// Whether the host is notified when the entry has ended.
     pub notify: bool,
 }
 
@@ -103,7 +103,7 @@ impl Entry {
         words
     }
 
-    /// What the words mean to the hardware, which looks at the lower 40 bits of a jerk.
+    /// Decodes the words as the hardware does, which uses the lower 40 bits of a jerk.
     pub(super) fn from_words(words: &[u32; ENTRY_WORDS]) -> Self {
         let [first, second, third, last] = *words;
         let motion = if last & POINT != 0 {

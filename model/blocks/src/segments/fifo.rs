@@ -64,7 +64,7 @@ impl Fifo {
         };
     }
 
-    /// The same, and nothing is left of a batch that has begun: the entries to come are new ones.
+    /// Empties the FIFO and forgets a batch that has begun: the next entries start a new one.
     pub(super) fn begin_anew(&mut self) {
         self.pointers = Pointers {
             head: self.pointers.head,

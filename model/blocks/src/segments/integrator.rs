@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_changes_nothing_further() {
+    fn an_overflow_leaves_the_state_unchanged() {
         let largest = (1 << (ACCELERATION_BITS - 1)) - 1;
         let mut at = Integrator {
             acceleration: largest,

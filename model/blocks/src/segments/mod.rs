@@ -114,7 +114,7 @@ pub struct Segments {
 }
 
 impl Segments {
-    /// A FIFO after reset. `seed` fills its memory, on whose initial contents nothing may depend.
+    /// A FIFO after reset. `seed` fills its memory; no output may depend on these initial contents.
     pub fn new(seed: u64) -> Self {
         Self {
             fifo: Fifo::new(seed),
@@ -133,7 +133,7 @@ impl Segments {
         }
     }
 
-    /// The exact command, of which the outputs are rounded.
+    /// The exact command; the outputs are rounded from it.
     pub fn command(&self) -> Integrator {
         self.registers.at
     }

@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_shaper_holds_is_named() {
+    fn settings_beyond_the_shaper_are_errors() {
         let delay = ShaperConfig::new(24, table(1, 16383)).unwrap_err();
         assert_eq!(
             delay,
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn room_only_grows() {
+    fn room_never_shrinks_the_memories() {
         let config = ShaperConfig::new(16, table(17, 100)).unwrap();
         let roomy = config.clone().with_room_for(500, 65).unwrap();
         assert_eq!((roomy.ring_address_bits(), roomy.tap_index_bits()), (9, 7));

@@ -84,7 +84,7 @@ fn finish(config: &ShaperConfig, channel: usize, tables: &Tables<'_>, sample: im
 /// Rounds and clamps a sum: half is added, `fraction` bits are dropped (an arithmetic shift), and the rest is clamped
 /// to `word_bits`.
 ///
-/// `sum` is `Σ c_i · x_i`, of magnitude 2^59 at most. The second result says whether it was clamped.
+/// `sum` is `Σ c_i · x_i`, of magnitude 2^59 at most. The second result is true if the sum was clamped.
 pub(crate) fn round_and_saturate(sum: i64, fraction: u32, word_bits: u32) -> (i64, bool) {
     let rounded = (sum + (1 << (fraction - 1))) >> fraction;
     let largest = (1i64 << (word_bits - 1)) - 1;

@@ -83,8 +83,8 @@ impl MotionShaper {
         outputs
     }
 
-    /// Makes another table active, as `how` says (one of [`swap_how`]; other values count as at once). A swap in
-    /// progress is dropped and a handover cut short, which the hardware would refuse; see [`Self::changes`].
+    /// Makes another table active in the way `how` (one of [`swap_how`]; other values mean at once). A swap in progress is
+    /// dropped and a handover cut short, whereas the hardware would refuse the swap; see [`Self::changes`].
     ///
     /// # Errors
     /// [`LoadError`] where the shaper cannot hold the table; the active table then stays.

@@ -1,4 +1,4 @@
-//! The table that shapes a sample; in a handover two tables, one of which each increment of the command passes.
+//! The table that shapes a sample. In a handover there are two tables, and each increment of the command passes one of them.
 //!
 //! A handover begins at a sample `n0`: the increments up to it belong to the old table (`A`), later ones to the new
 //! table (`B`). With `m = n − n0`, and all increments of the history written out and collected again by sample:

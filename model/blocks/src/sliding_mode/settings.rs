@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn words_come_back() {
+    fn gains_survive_encoding() {
         for mantissa in [-131_072, -1, 0, 1, 131_071] {
             for shift in [0, 1, 30, 31] {
                 let gain = Gain { mantissa, shift };

@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 /// Clocks of the bridge for a clock of the host, at least: the line to the host changes up to three clocks after a falling
 /// edge, and must be there half a period after it.
 pub const LEAST_CLOCKS_PER_BIT: u64 = 8;
-/// Shortest and longest time after which a frame without its next byte is dropped, in units of 64 clocks, which a byte of
-/// the fastest host takes.
+/// Shortest and longest time-out of a frame that waits for its next byte, in units of 64 clocks, the time of a byte of the
+/// fastest host.
 const SILENCE_UNITS: RangeInclusive<f64> = 40.0..=1_048_575.0;
 
 /// The constants of a bridge: the values of its inputs `silence_limit` and `address_limit`.

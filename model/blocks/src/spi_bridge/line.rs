@@ -29,7 +29,7 @@ pub(super) struct SpiLine {
     pub(super) received: bool,
     /// One clock: the selection ended within a byte.
     pub(super) bad: bool,
-    /// What is on its way to the host, the next bit highest, and whether it is of a reply that waits.
+    /// Byte that is being sent to the host, the next bit highest. `gives`: it belongs to a reply; otherwise it is a filling 00.
     given: u8,
     gives: bool,
     /// The byte that the host gets next, if there is one.

@@ -11,8 +11,7 @@
 //!                     spi_miso ◄──┴─── reply, 256 bytes ◄──────────────────────┘ COBS, CRC
 //! ```
 //!
-//! The host clocks every byte. Where it has nothing to say it sends 00, and where the bridge has nothing to say it sends 00:
-//! an empty frame, which both ignore.
+//! The host clocks every byte. A side without data to send sends 00, an empty frame, which the other side ignores.
 //!
 //! ```text
 //! spi_cs_n   ‾\______________________________________/‾

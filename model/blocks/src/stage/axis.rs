@@ -58,7 +58,7 @@ const TO_STAGE: [&str; 6] = [
 /// Timeout of the pulse counter, as in the stand-alone one: 5 million clocks.
 const VELOCITY_TIMEOUT: u64 = 76;
 
-/// Number of ticks without a command of the controller after which the PWM trips.
+/// The PWM trips after this many ticks without a command of the controller.
 const WATCHDOG_TICKS: u32 = 2;
 
 type Nets = &'static [(&'static str, &'static str)];

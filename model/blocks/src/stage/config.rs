@@ -56,7 +56,7 @@ pub struct StageAxis {
     pub scale: Option<StageScale>,
     /// Its error table.
     pub error_table: Option<StageErrorTable>,
-    /// What is there for bringing it up: trace memory, test signals, an encoder without a machine.
+    /// Aids for bring-up, if it has them: trace memory, test signals, an internal encoder.
     pub bring_up: Option<TraceConfig>,
 }
 
@@ -76,11 +76,11 @@ pub struct StageScale {
 pub struct StageErrorTable {
     /// The machine's table.
     pub table: ErrorTableConfig,
-    /// The error is looked up where the axis is; else where it is to be.
+    /// Whether the error is looked up at the measured position; otherwise at the reference.
     pub on_measured: bool,
 }
 
-/// Why there is no such stage.
+/// Reason why a stage cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StageError {
     /// The number of axes is 0 or too large.

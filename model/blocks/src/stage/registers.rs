@@ -118,14 +118,14 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         );
     for (window, axis) in (1..).zip(&config.axes) {
         let registers = axis_window(axis).into_iter();
-        let placed = registers.map(|register| of_axis(register, &axis.name, window * WINDOW_WORDS));
+        let placed = registers.map(|register| axis_register(register, &axis.name, window * WINDOW_WORDS));
         description.registers.extend(placed);
     }
     description
 }
 
 /// The register with the axis's name as prefix, in the axis's window.
-fn of_axis(mut register: Register, axis: &str, base: u32) -> Register {
+fn axis_register(mut register: Register, axis: &str, base: u32) -> Register {
     let named = |name: &mut String| *name = format!("{axis}_{name}");
     named(&mut register.name);
     register.offset += base;

@@ -33,7 +33,8 @@ pub struct StageSchedule {
 }
 
 impl StageSchedule {
-    /// Of axes with these shapers, and these clocks of an error table behind them; `on_scale`: the loop of one runs on its scale.
+    /// Computes the schedule of axes with these shapers and clocks of the error tables behind them. `on_scale`: the loop of an axis runs on
+    /// its scale.
     pub fn of(axes: &[(&ShaperConfig, u32)], on_scale: bool) -> Self {
         let passes = axes
             .iter()

@@ -8,8 +8,7 @@ pub const BAUD: RangeInclusive<u32> = 115_200..=3_000_000;
 /// Largest error of the baud rate, relative. The receiver takes a bit in its middle, known to an eighth, so that both ends
 /// together may be off by 3.9 % at the last of ten bits; this leaves the other half to the host.
 pub const MOST_BAUD_ERROR: f64 = 0.02;
-/// Shortest and longest time after which a frame without its next byte is dropped, in bits; the longest is 43 ms at 3,000,000
-/// baud.
+/// Shortest and longest time-out of a frame that waits for its next byte, in bits; the longest is 43 ms at 3,000,000 baud.
 pub const SILENCE_BIT_TIMES: RangeInclusive<f64> = 20.0..=131_071.0;
 
 /// The constants of a bridge: the values of its inputs `baud_step`, `silence_limit` and `address_limit`.

@@ -2,7 +2,7 @@
 
 /// Eighths of a bit in a bit.
 const EIGHTHS: u8 = 8;
-/// Eighth of a bit, from the first that shows a start bit, in which a bit is taken: its middle.
+/// A bit is sampled in this eighth of it, the middle; eighths count from the first one that shows the start bit.
 const MIDDLE: u8 = 3;
 /// Bits of a byte on the line: start, eight of data, stop.
 const LINE_BITS: u8 = 10;
