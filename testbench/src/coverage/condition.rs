@@ -9,7 +9,9 @@
 //! This is masking MC/DC. Conditions are those of `if` and of `? :`, and what a net of one bit is assigned. A term is what is left when
 //! `&`, `|`, `&&`, `||`, `!` and `~` are taken apart: a net, a bit, a comparison. Points are counted at the clock's edge.
 //!
-//! Limits: the labels of a `case` are lines, not conditions. In a module without a clock, a point may be counted between two edges.
+//! Limits: the labels of a `case` are lines, not conditions. In a module without a clock, a point may be counted between two edges. A block
+//! on one line (`always @(posedge clk) x <= ..;`), what follows it up to the end of the next block, and a net that is assigned where it is
+//! declared (`wire x = ..;`) have no points: register banks are written so.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -17,7 +19,7 @@ use std::fmt::Write as _;
 use posicast_hdl::emit::Module;
 
 /// Prefix of the nets that are added.
-pub(super) const PREFIX: &str = "condition_";
+const PREFIX: &str = "condition_";
 
 /// The construct that encloses a statement of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
