@@ -16,33 +16,27 @@
     clippy::print_stderr,
     clippy::unwrap_used,
     clippy::expect_used,
+    clippy::panic,
     reason = "this is a program of tests"
 )]
 
 #[path = "formal/results.rs"]
 mod results;
+mod support;
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 
 use libtest_mimic::{Arguments, Failed, Trial as Test};
-use posicast_testbench::blocks::{self, Block, BlockMutant, BlockTrials, Run, Sources, Trial, rusthdl};
+use posicast_testbench::blocks::{self, BlockTrials, Trial, rusthdl};
 use posicast_testbench::formal;
-use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
-use posicast_testbench::lockstep::{self, Device, LockstepOptions};
-use posicast_testbench::mutation::NamedMutant;
 
-const CLOCKS: u64 = 1_000_000;
-/// The slow simulators run this many clocks.
-const ICARUS_CLOCKS: u64 = 20_000;
+/// RustHDL's simulator is slow.
 const RUSTHDL_CLOCKS: u64 = 3_000;
-const ICARUS_SEED: u64 = 4;
 /// Time of a proof whose result is not recorded.
 const PROOF_LIMIT: Duration = Duration::from_secs(500);
-/// Cases of a shaper that a million clocks reach often.
-const OFTEN: [&str; 4] = ["swaps", "saturated", "handovers", "handovers over"];
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
@@ -105,36 +99,50 @@ fn is_proven(file: &str) -> Result<(), Failed> {
 }
 
 fn tests_of(block: BlockTrials) -> Vec<Test> {
-    let mut tests = Vec::new();
     let name = block.name;
+    let trials: Vec<Arc<Trial>> = block.trials.into_iter().map(Arc::new).collect();
+    let mut tests = Vec::new();
     for mutant in block.mutants {
-        let test = format!("mutate::{name}::{}", snake_case(mutant.name));
-        tests.push(Test::test(test, move || is_found(name, mutant)));
+        let trial = trials
+            .iter()
+            .find(|trial| mutant.size.is_empty() || trial.size == mutant.size);
+        let trial = trial.map(Arc::clone);
+        tests.push(Test::test(
+            format!("mutate::{name}::{}", snake_case(mutant.name)),
+            move || {
+                let trial = trial.ok_or_else(|| format!("`{name}` has no size `{}`", mutant.size))?;
+                support::caught(trial.block.as_ref(), mutant.from, mutant.to, mutant.clocks);
+                Ok(())
+            },
+        ));
     }
-    for (at, trial) in block.trials.into_iter().enumerate() {
+    for (at, trial) in trials.iter().enumerate() {
         let size = match trial.size {
             "" => String::new(),
             size => format!("::{}", snake_case(size)),
         };
-        let of = move |what: fn(&Trial) -> Result<(), Failed>| move || what(&trial_of(name, at)?);
-        tests.push(Test::test(
-            format!("ports::{name}{size}"),
-            of(verilog_has_the_ports_of_the_model),
-        ));
-        tests.push(Test::test(
-            format!("lockstep::{name}{size}"),
-            of(random_clocks_are_equal),
-        ));
+        let mut add = |test: String, check: fn(&Trial)| {
+            let trial = Arc::clone(trial);
+            tests.push(Test::test(test, move || {
+                check(&trial);
+                Ok(())
+            }));
+        };
+        add(format!("ports::{name}{size}"), verilog_has_the_ports_of_the_model);
+        add(format!("lockstep::{name}{size}"), |trial| {
+            random_clocks_are_equal(trial, &trial.seeds[..1]);
+        });
         if trial.seeds.len() > 1 {
-            tests.push(Test::test(
-                format!("lockstep::long_{name}{size}"),
-                of(other_seeds_are_equal),
-            ));
+            add(format!("lockstep::long_{name}{size}"), |trial| {
+                random_clocks_are_equal(trial, &trial.seeds[1..]);
+            });
         }
         if at == 0 {
-            tests.push(Test::test(format!("crosssim::{name}"), of(icarus_agrees)));
+            add(format!("crosssim::{name}"), |trial| {
+                support::icarus_agrees(trial.block.as_ref());
+            });
             if trial.block.in_rusthdl() {
-                tests.push(Test::test(format!("rusthdl::{name}"), of(rusthdl_agrees)));
+                add(format!("rusthdl::{name}"), rusthdl_agrees);
             }
         }
     }
@@ -150,136 +158,29 @@ fn snake_case(words: &str) -> String {
         .to_lowercase()
 }
 
-fn trial_of(name: &str, at: usize) -> Result<Trial, Failed> {
-    let all = blocks::trials()?;
-    let block = all.into_iter().find(|block| block.name == name);
-    let trial = block.and_then(|block| block.trials.into_iter().nth(at));
-    trial.ok_or_else(|| format!("`{name}` has no size {at}").into())
+fn verilog_has_the_ports_of_the_model(trial: &Trial) {
+    let modules = trial.block.modules().unwrap();
+    let top = modules.last().unwrap();
+    assert_eq!(top.name, trial.block.top());
+    assert_eq!(top.ports, trial.block.model(1).ports());
 }
 
-fn matches(report: &LockstepReport, what: &str) -> Result<(), Failed> {
-    if let Some(first) = report.blocks.iter().find_map(|block| block.first.as_ref()) {
-        return Err(format!("{what}: {} mismatches\n{first}", report.mismatches()).into());
-    }
-    match report.result {
-        LockstepVerdict::Match => Ok(()),
-        _ => Err(format!("{what}: no verdict").into()),
-    }
-}
-
-fn verilog_has_the_ports_of_the_model(trial: &Trial) -> Result<(), Failed> {
-    let modules = trial.block.modules()?;
-    let top = modules.last().ok_or("no module")?;
-    let model = trial.block.model(1);
-    if top.name == trial.block.top() && top.ports == model.ports() {
-        Ok(())
-    } else {
-        Err(format!(
-            "`{}` has the ports {:?}, and the model {:?}",
-            top.name,
-            top.ports,
-            model.ports()
-        )
-        .into())
+fn random_clocks_are_equal(trial: &Trial, seeds: &[u64]) {
+    for seed in seeds {
+        let run = support::million_random_clocks(trial.block.as_ref(), *seed, trial.least);
+        for (name, count) in run
+            .coverage
+            .iter()
+            .filter(|(name, _)| trial.often.contains(&name.as_str()))
+        {
+            assert!(*count > 20, "{name}: {:?}", run.coverage);
+        }
     }
 }
 
-fn random_clocks_are_equal(trial: &Trial) -> Result<(), Failed> {
+fn rusthdl_agrees(trial: &Trial) {
     let block = trial.block.as_ref();
-    let sources = Sources::write(block)?;
-    let warnings = sources.lint(block)?;
-    if !warnings.is_empty() {
-        return Err(warnings.join("\n").into());
-    }
-    run_is_equal(trial, &sources, trial.seeds[0])
-}
-
-fn other_seeds_are_equal(trial: &Trial) -> Result<(), Failed> {
-    let sources = Sources::write(trial.block.as_ref())?;
-    trial.seeds[1..]
-        .iter()
-        .try_for_each(|seed| run_is_equal(trial, &sources, *seed))
-}
-
-fn run_is_equal(trial: &Trial, sources: &Sources, seed: u64) -> Result<(), Failed> {
-    let block = trial.block.as_ref();
-    let mut device = sources.verilated(block, seed)?;
-    let run = blocks::compare(block, &mut device, CLOCKS, seed, &mut |_| {})?;
-    matches(&run.report, &format!("seed {seed}"))?;
-    reaches_every_case(&run, trial.least)
-}
-
-fn reaches_every_case(run: &Run, least: u64) -> Result<(), Failed> {
-    let mut rare = run.rare(least);
-    let is_rare = |(name, count): &&(String, u64)| OFTEN.contains(&name.as_str()) && *count <= 20;
-    rare.extend(run.coverage.iter().filter(is_rare).map(|(name, _)| name.as_str()));
-    if rare.is_empty() {
-        Ok(())
-    } else {
-        Err(format!("too rare: {rare:?} of {:?}", run.coverage).into())
-    }
-}
-
-fn agrees(block: &dyn Block, device: &mut dyn Device, clocks: u64, what: &str) -> Result<(), Failed> {
-    let report = blocks::check(block, device, clocks, ICARUS_SEED, &mut |_| {})?;
-    matches(&report, what)
-}
-
-fn icarus_agrees(trial: &Trial) -> Result<(), Failed> {
-    let block = trial.block.as_ref();
-    let mut device = Sources::write(block)?.icarus(block)?;
-    agrees(block, &mut device, ICARUS_CLOCKS, "Icarus")
-}
-
-fn rusthdl_agrees(trial: &Trial) -> Result<(), Failed> {
-    let block = trial.block.as_ref();
-    agrees(block, rusthdl(block)?.as_mut(), RUSTHDL_CLOCKS, "RustHDL")
-}
-
-fn is_found(name: &str, mutant: &BlockMutant) -> Result<(), Failed> {
-    let all = blocks::trials()?;
-    let trials = all
-        .into_iter()
-        .find(|block| block.name == name)
-        .map(|block| block.trials);
-    let trials = trials.into_iter().flatten();
-    let trial = trials
-        .into_iter()
-        .find(|trial| mutant.size.is_empty() || trial.size == mutant.size);
-    let trial = trial.ok_or_else(|| format!("`{name}` has no size `{}`", mutant.size))?;
-    let block = trial.block.as_ref();
-    let fault = NamedMutant {
-        name: mutant.name,
-        module: None,
-        from: mutant.from,
-        to: mutant.to,
-    };
-    let sources = Sources::of_modules(&fault.put_into(&block.modules()?)?)?;
-    let mut device = sources.verilated(block, 1)?;
-    let mut model = block.model(1);
-    let instances = block.instances(model.ports());
-    let report = lockstep::run_until(
-        model.as_mut(),
-        &mut device,
-        block.stimuli(mutant.clocks, 1).as_mut(),
-        &instances,
-        &LockstepOptions::cycles(mutant.clocks),
-        &mut |clock: &lockstep::Clock<'_>| {
-            if clock.expected == clock.actual {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        },
-        &mut |_| {},
-    )?;
-    let Some(first) = report.blocks.iter().find_map(|block| block.first.as_ref()) else {
-        return Err(format!("`{}` is not found in {} clocks", mutant.to, mutant.clocks).into());
-    };
-    let text = first.to_string();
-    if text.contains(&first.time.to_string()) && text.contains("(device)") {
-        Ok(())
-    } else {
-        Err(format!("the mismatch does not show its clock: {text}").into())
-    }
+    let mut device = rusthdl(block).unwrap();
+    let report = blocks::check(block, device.as_mut(), RUSTHDL_CLOCKS, 4, &mut |_| {}).unwrap();
+    support::assert_match(&report, "RustHDL");
 }

@@ -146,6 +146,8 @@ pub struct Trial {
     pub seeds: &'static [u64],
     /// Smallest count of each case that a run must reach.
     pub least: u64,
+    /// Cases that it must reach more than 20 times.
+    pub often: &'static [&'static str],
 }
 
 impl Trial {
@@ -156,11 +158,16 @@ impl Trial {
             size: "",
             seeds,
             least,
+            often: &[],
         }
     }
 
     pub(crate) fn size(self, size: &'static str) -> Self {
         Self { size, ..self }
+    }
+
+    pub(crate) fn often(self, often: &'static [&'static str]) -> Self {
+        Self { often, ..self }
     }
 }
 

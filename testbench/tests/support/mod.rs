@@ -4,6 +4,7 @@
 use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::lockstep::{self, LockstepOptions};
 use posicast_testbench::mutation::NamedMutant;
 
 /// Requires a match, and shows the first mismatch.
@@ -43,7 +44,22 @@ pub(crate) fn icarus_agrees(block: &dyn Block) {
 pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
     let mut device = sources.verilated(block, 1).unwrap();
-    let report = blocks::check(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
+    let mut model = block.model(1);
+    let instances = block.instances(model.ports());
+    let to_the_first = LockstepOptions {
+        mismatch_limit: 1,
+        ..LockstepOptions::cycles(cycles)
+    };
+    let report = lockstep::run(
+        model.as_mut(),
+        &mut device,
+        block.stimuli(cycles, 1).as_mut(),
+        &instances,
+        &to_the_first,
+        &mut |_| {},
+        &mut |_| {},
+    )
+    .unwrap();
     assert_eq!(report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
     let first = report.blocks[0].first.as_ref().unwrap();
     assert_eq!(first.expected.len(), first.actual.len());
