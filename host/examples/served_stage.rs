@@ -16,12 +16,12 @@ fn main() {
 #[cfg(unix)]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     use posicast_blocks::linked_stage::address_limit;
+    use posicast_closed_loop::linked_bench::LinkedBench;
+    use posicast_closed_loop::stage_bench::StageBench;
     use posicast_machine::hardware::Hardware;
     use posicast_machine::machine_file::{self, LinkLine};
     use posicast_machine::plan::design_machine;
     use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
-    use posicast_testbench::linked_bench::LinkedBench;
-    use posicast_testbench::stage_bench::StageBench;
     use serialport::{SerialPort, TTYPort};
     use std::sync::atomic::AtomicBool;
     use std::time::Duration;

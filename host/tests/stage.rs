@@ -8,6 +8,8 @@ use posicast_blocks::axis::SupervisorState;
 use posicast_blocks::link::Bus;
 use posicast_blocks::linked_stage::address_limit;
 use posicast_blocks::registers::Access;
+use posicast_closed_loop::linked_bench::LinkedBench;
+use posicast_closed_loop::stage_bench::StageBench;
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions, Shake, TraceRequest};
 use posicast_identify::log::{self, Log};
 use posicast_identify::position;
@@ -16,8 +18,6 @@ use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_taps::TapTable;
-use posicast_testbench::linked_bench::LinkedBench;
-use posicast_testbench::stage_bench::StageBench;
 
 const OPTIONS: LinkOptions = LinkOptions {
     timeout: Duration::from_millis(20),

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use crate::faults::{REGISTERS, Registers};
 use posicast_blocks::link::LinkBridge;
+use posicast_closed_loop::linked_bench::serve;
 use posicast_host::{Link, LinkError, LinkOptions};
-use posicast_testbench::linked_bench::serve;
 use serialport::{SerialPort, TTYPort};
 
 const OPTIONS: LinkOptions = LinkOptions {

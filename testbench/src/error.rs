@@ -110,7 +110,8 @@ impl From<SimulationError> for Error {
 }
 
 impl Error {
-    pub(crate) fn file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+    /// Adds path and attempted action to an error of the file system.
+    pub fn file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { path, doing, source }
     }

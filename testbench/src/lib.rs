@@ -13,19 +13,15 @@
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
 //! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
 //! - [`campaign`] is the order of stimuli for a machine; [`recording`] records a real move as waveforms.
-//! - [`fault_campaign`] injects every fault into a stage with its machine, at random clocks of a move.
 //! - [`register_tests`] checks over the bus that registers behave as described.
-//! - [`linked_bench`] puts a stage with its simulated machine behind a serial line.
-//! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
 //! - [`asynchronous`] tests effects that no clock samples.
 //! - [`crosssim`] compares the waveforms of two simulators.
-//! - [`coverage`] measures which lines and nets a lock step reaches, and requires a reason for the rest.
 //! - [`formal`] proves the properties of property files.
 //! - [`netlist`] simulates and proves what a synthesiser made of a block.
 //! - [`replay`] plays a recording into model and RTL.
-//! - [`ladder`] puts the results of all rungs into one table.
-//! - [`mutation`] puts faults into the blocks, and finds out which checks detect them.
+//! - [`named_mutant`] replaces a text of the Verilog by another: a deliberate fault.
 //! - [`wave`] writes waveforms; the crate `wavecmp` compares two of them.
+//! - [`yosys`] runs scripts of Yosys and ABC.
 //! - [`wording`] writes counts and times for people.
 
 pub mod asynchronous;
@@ -34,8 +30,6 @@ pub mod blocks;
 pub mod campaign;
 pub mod cascade;
 pub mod component;
-pub mod coverage;
-pub mod crossings;
 pub mod crosssim;
 pub mod divider;
 pub mod drive_command;
@@ -43,17 +37,13 @@ pub mod encoder_generator;
 mod error;
 pub mod error_table;
 pub mod excitation;
-pub mod fault_campaign;
 pub mod formal;
 pub mod icarus;
-pub mod ladder;
 pub mod linear_scale;
-pub mod linked_bench;
 pub mod linked_stage;
 pub mod lockstep;
-pub mod mutation;
+pub mod named_mutant;
 pub mod netlist;
-pub mod page;
 pub mod parts;
 mod patience;
 pub mod pulse_counter;
@@ -69,8 +59,6 @@ mod sides;
 pub mod sliding_mode;
 pub mod spi_bridge;
 pub mod stage;
-pub mod stage_bench;
-pub mod stage_run;
 pub mod stimuli;
 mod tool;
 pub mod trace;
@@ -78,6 +66,7 @@ pub mod uart_bridge;
 pub mod unset;
 pub mod verilator;
 pub mod wave;
+pub mod yosys;
 
 use blocks::registry::RegistryRow;
 

@@ -13,7 +13,7 @@ use posicast_testbench::blocks;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::linked_stage::{DenseLinkBlock, LinkedStageBlock};
 use posicast_testbench::lockstep::report::LockstepVerdict;
-use posicast_testbench::mutation::NamedMutant;
+use posicast_testbench::named_mutant::NamedMutant;
 
 /// Clocks of a bit at 3,000,000 baud and 50 MHz, times three.
 const THREE_BITS: u64 = 50;

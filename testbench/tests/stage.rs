@@ -1,29 +1,23 @@
-//! The stage of the example machine: its Verilog compared with its model, and what a host does with it.
+//! The stage of the example machine: its Verilog compared with its model, and its registers over the bus.
 
 use crate::support;
 
-use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::linear_scale::ScaleRatio;
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_blocks::segments::{self, Entry, NOTIFY};
 use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
 use posicast_blocks::sliding_mode::{Gain, SettingRow};
 use posicast_blocks::stage::{StageConfig, StageScale};
 use posicast_blocks::{ClockedBlock, Direction};
 use posicast_machine::hardware::{self, MachineStage};
 use posicast_machine::machine_file::{self, Machine};
-use posicast_machine::motion::{TickLimits, plan_move};
 use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_taps::{Tap, TapTable};
 use posicast_testbench::blocks;
 use posicast_testbench::blocks::{Block, Sources};
-use posicast_testbench::component::ComponentBlock;
-use posicast_testbench::lockstep::{Device, TwoValued};
+use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
 use posicast_testbench::stage::{ShortTicksBlock, StageBlock};
-use posicast_testbench::stage_bench::{StageBench, state};
 use support::{assert_match, caught, icarus_agrees, million_random_clocks};
 
 /// Number of clocks of a PWM period in the random runs.
@@ -38,64 +32,6 @@ fn stage(machine: &Machine) -> MachineStage {
     hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap()
-}
-
-fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
-    let stage = stage(machine);
-    let component = Component::stage(&stage.config).unwrap();
-    let device = with_rtl.then(|| {
-        let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");
-        let sources = Sources::write(&block).unwrap();
-        assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
-        Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
-    });
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    StageBench::new(&stage.config, &component, plants, device, 1).unwrap()
-}
-
-/// Switches on, moves both axes by this many counts, and returns how long that took.
-fn move_both(machine: &Machine, bench: &mut StageBench, counts: i64) -> u64 {
-    assert!(bench.switch_on(20_000_000).unwrap());
-    bench.record();
-    let start = bench.now();
-    for (axis, of_axis) in ["x", "y"].into_iter().zip(&machine.axes) {
-        let at = i64::from(bench.read(&format!("{axis}_command_position")).unwrap() as i32) << 24;
-        let limits = TickLimits::of_axis(of_axis, &machine.clock);
-        let end = ((at >> 24) + 256 * counts) as i32;
-        for entry in plan_move(at, end, &limits).unwrap() {
-            bench.segment(axis, &entry).unwrap();
-        }
-    }
-    bench.write("start", 3).unwrap();
-    bench.clocks(20_000).unwrap();
-    for axis in ["x", "y"] {
-        assert_eq!(bench.field(axis, "status", "state").unwrap(), state::RUN);
-    }
-    for axis in ["x", "y"] {
-        assert!(bench.wait(axis, state::HOLD, 20_000_000).unwrap());
-    }
-    bench.clocks(500_000).unwrap();
-    bench.now() - start
-}
-
-#[test]
-fn a_few_segments_and_one_bit_move_the_stage() {
-    let machine = machine();
-    let mut bench = bench(&machine, false);
-    move_both(&machine, &mut bench, 5000);
-    for axis in 0..2 {
-        let at = bench.plant(axis).count();
-        assert!((at - 5000).abs() <= 2, "{at}");
-    }
-}
-
-#[test]
-fn lockstep_a_move_from_reset_to_standstill() {
-    let machine = machine();
-    let mut bench = bench(&machine, true);
-    move_both(&machine, &mut bench, 200);
-    assert_eq!(bench.mismatches(), (0, None));
 }
 
 /// Returns this many axes with short ticks, small tables and short times, so that much happens in a million clocks.
@@ -392,98 +328,5 @@ fn lockstep_the_registers_keep_their_promises() {
             let mut host = Host::new(component.map(), device, RegisterHardware::Running).unwrap();
             assert_eq!(test(&mut host), Ok(()), "{name}");
         }
-    }
-}
-
-const DATASHEET: &str = include_str!("../../docs/stage.md");
-
-/// Returns the cells of the rows of the datasheet's table under this heading.
-fn rows(head: &str) -> Vec<Vec<String>> {
-    let table = DATASHEET.split_once(head).unwrap().1.lines().skip(2);
-    let rows = table.take_while(|line| line.starts_with('|'));
-    rows.map(|row| {
-        let cells = row.trim_matches('|').split('|');
-        cells.map(|cell| cell.trim().replace('`', "")).collect()
-    })
-    .collect()
-}
-
-fn number(text: &str) -> u32 {
-    let hexadecimal = text.strip_prefix("0x").map(|digits| u32::from_str_radix(digits, 16));
-    hexadecimal.unwrap_or_else(|| text.parse()).unwrap()
-}
-
-/// Reads a register, or a field of one, such as `X_STATUS.state`.
-fn look(bench: &mut StageBench, name: &str) -> u32 {
-    let lower = name.to_lowercase();
-    let Some((register, field)) = lower.split_once('.') else {
-        return bench.read(&lower).unwrap();
-    };
-    let (axis, register) = register.split_once('_').unwrap();
-    bench.field(axis, register, field).unwrap()
-}
-
-#[test]
-fn the_first_move_of_the_datasheet_is_what_it_says() {
-    let machine = machine();
-    let mut bench = bench(&machine, false);
-    let rows = rows("| do | register or field | word | what it does |");
-    assert!(rows.len() > 20, "{rows:?}");
-    for row in rows {
-        let [action, name, word, ..] = row.as_slice() else {
-            panic!("{row:?}");
-        };
-        match action.as_str() {
-            "wait" => bench.clocks(number(word).into()).unwrap(),
-            "write" => bench.write(&name.to_lowercase(), number(word)).unwrap(),
-            "read" => assert_eq!(look(&mut bench, name), number(word), "{row:?}"),
-            "near" => {
-                let apart = look(&mut bench, name).wrapping_sub(number(word)) as i32;
-                assert!(apart.abs() <= 2, "{row:?}: {apart} apart");
-            }
-            "until" => {
-                let mut steps = 0..2000;
-                let arrives = steps.any(|_| {
-                    bench.clocks(1000).unwrap();
-                    look(&mut bench, name) == number(word)
-                });
-                assert!(arrives, "{row:?}");
-            }
-            "entry" => {
-                let words: Vec<u32> = word.split(' ').map(number).collect();
-                let jerk = u64::from(words[0]) | u64::from(words[1]) << 32;
-                let entry = Entry {
-                    ticks: words[3] & 0xff_ffff,
-                    motion: segments::EntryMotion::Jerk(jerk as i64),
-                    notify: words[3] & NOTIFY != 0,
-                };
-                assert_eq!(entry.words().as_slice(), words);
-                bench.segment(&name[..1].to_lowercase(), &entry).unwrap();
-            }
-            other => panic!("`{other}` is no action"),
-        }
-    }
-}
-
-#[test]
-fn the_datasheet_has_the_pins() {
-    let component = Component::stage(&stage(&machine()).config).unwrap();
-    let rows = rows("## Pins\n\n").len();
-    assert_eq!(rows, 0, "the table has moved");
-    let table = self::rows("| port | | width | meaning |");
-    for port in component.composition().ports() {
-        let of_x = match port.name.strip_prefix("y_") {
-            Some(pin) => format!("x_{pin}"),
-            None => port.name.clone(),
-        };
-        let direction = match port.direction {
-            Direction::Input => "in",
-            Direction::Output => "out",
-        };
-        let row = [of_x.as_str(), direction, &port.width.to_string()];
-        assert!(
-            table.iter().any(|cells| cells.iter().take(3).eq(row)),
-            "docs/stage.md lacks {row:?}"
-        );
     }
 }

@@ -205,7 +205,7 @@ fn cli_campaign_names_a_broken_block_and_the_command_that_repeats_it() {
     assert!(said(&alone).contains("1 unit, 1 failed"), "{}", said(&alone));
 }
 
-/// The figures are those of the tables in `testbench/RESULTS.md`.
+/// The figures are those of the tables in `ladder/RESULTS.md`.
 #[test]
 fn long_cli_campaign_runs_the_other_rungs_of_the_ladder() {
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../waves/tests/fixtures/waves/icarus.vcd");

@@ -354,7 +354,7 @@ fn long_cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
 
 #[test]
 fn long_cli_run_of_ei_shapers_passes_and_reports_the_expected_residual() {
-    let text = include_str!("../../../testbench/tests/fixtures/machines/ei-gantry.toml");
+    let text = include_str!("../../../closed_loop/tests/fixtures/machines/ei-gantry.toml");
     let (status, document, said, _folder) = run(text, &["--simulator", "rusthdl", "--move", "0.005"]);
     assert_eq!((status, failed(&document).len()), (Some(0), 0), "{said} {document}");
     let checks = document["checks"].as_array().unwrap();

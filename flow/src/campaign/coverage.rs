@@ -3,9 +3,9 @@
 use super::{UnitOutcome, Units, figures, only_blocks, row_name};
 use crate::bench;
 use crate::failure::Failure;
+use posicast_ladder::coverage::explanation::{self, Explanation};
+use posicast_ladder::coverage::{self, CLOCKS, Share};
 use posicast_testbench::blocks::Block;
-use posicast_testbench::coverage::explanation::{self, Explanation};
-use posicast_testbench::coverage::{self, CLOCKS, Share};
 use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::verilator;
 use serde_json::{Map, Value};

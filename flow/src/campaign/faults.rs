@@ -2,7 +2,7 @@
 
 use super::{UnitOutcome, Units, figures};
 use crate::failure::Failure;
-use posicast_testbench::fault_campaign::{self, Bed};
+use posicast_closed_loop::fault_campaign::{self, Bed};
 use posicast_testbench::shard::MachineFileHash;
 use serde_json::{Map, Value};
 

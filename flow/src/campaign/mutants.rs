@@ -4,7 +4,7 @@ use super::{UnitOutcome, Units, figures, only_blocks};
 use crate::bench;
 use crate::failure::Failure;
 use crate::verilog::scratch_folder;
-use posicast_testbench::mutation::{self, MutationOptions, MutationRow, Subject};
+use posicast_ladder::mutation::{self, MutationOptions, MutationRow, Subject};
 use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::{formal, verilator};
 use serde_json::{Map, Value};

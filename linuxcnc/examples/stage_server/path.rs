@@ -1,9 +1,9 @@
 //! The distance between the load of the machine and the path of a program.
 
 use plotters::prelude::*;
+use posicast_closed_loop::stage_bench::AxisSample;
 use posicast_machine::contour::{Shape, Stroke, gcode};
 use posicast_machine::plant::axis::ErrorFigures;
-use posicast_testbench::stage_bench::AxisSample;
 use std::error::Error;
 use std::path::Path;
 

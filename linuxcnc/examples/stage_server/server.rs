@@ -3,13 +3,13 @@
 use crate::link::{Link, Request};
 use crate::path::{Recording, picture};
 use posicast_blocks::component::Component;
+use posicast_closed_loop::stage_bench::{StageBench, Wire, state};
 use posicast_machine::hardware::MachineStage;
 use posicast_machine::machine_file::Machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::lockstep::Device;
-use posicast_testbench::stage_bench::{StageBench, Wire, state};
 use std::error::Error;
 use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::os::unix::net::{UnixListener, UnixStream};

@@ -2,11 +2,11 @@
 
 use crate::driver::support::{Driver, beside, stage};
 use posicast_blocks::component::Component;
+use posicast_closed_loop::stage_bench::StageBench;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::lockstep::Device;
-use posicast_testbench::stage_bench::StageBench;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, LockstepOptions};
-use posicast_testbench::mutation::NamedMutant;
+use posicast_testbench::named_mutant::NamedMutant;
 
 /// Requires a match, and shows the first mismatch.
 #[track_caller]

@@ -10,13 +10,13 @@ use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::observer::Observer;
+use posicast_closed_loop::stage_run::{
+    Circle, Circled, Compared, Compensated, Contoured, Expected, Moved, Shaping, StageRun, StageRunError,
+};
 use posicast_machine::machine_file::Machine;
 use posicast_machine::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::lockstep::Device;
-use posicast_testbench::stage_run::{
-    Circle, Circled, Compared, Compensated, Contoured, Expected, Moved, Shaping, StageRun, StageRunError,
-};
 use std::path::Path;
 use std::sync::Mutex;
 use std::thread;

@@ -3,9 +3,9 @@
 use super::ClosedLoop;
 use crate::plot::{Corridor, Curve, Mark, Panel, label, time_axis};
 use crate::run::pictures::{slowest_period_s, with_settling};
+use posicast_closed_loop::stage_bench::AxisSample;
+use posicast_closed_loop::stage_run::{Circled, Moved};
 use posicast_shaper::unit::ShownUnit;
-use posicast_testbench::stage_bench::AxisSample;
-use posicast_testbench::stage_run::{Circled, Moved};
 
 impl ClosedLoop<'_> {
     /// Each plot with its name in the folder and its panels.

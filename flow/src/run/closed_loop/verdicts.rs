@@ -3,8 +3,8 @@
 use super::contours::Contours;
 use super::{ClosedLoop, MOVES};
 use crate::run::checks::{Check, Coverage};
+use posicast_closed_loop::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
 use posicast_machine::machine_file::AxisSection;
-use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
 use posicast_testbench::wording::counted;
 
 impl ClosedLoop<'_> {

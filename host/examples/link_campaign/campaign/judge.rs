@@ -1,9 +1,9 @@
 //! What is required of a case.
 
+use posicast_closed_loop::fault_campaign::{Bed, TICK_CLOCKS};
+use posicast_closed_loop::stage_bench::state;
 use posicast_host::HostMove;
 use posicast_machine::machine_file::Machine;
-use posicast_testbench::fault_campaign::{Bed, TICK_CLOCKS};
-use posicast_testbench::stage_bench::state;
 
 use super::kind::Outcome;
 use super::world::World;

@@ -31,11 +31,11 @@ use std::sync::{Mutex, PoisonError};
 
 use posicast_blocks::component::Component;
 use posicast_blocks::linked_stage::address_limit;
+use posicast_closed_loop::fault_campaign::{Bed, TICK_CLOCKS};
+use posicast_closed_loop::linked_bench::LinkedBench;
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::{LinkLine, LinkSection};
-use posicast_testbench::fault_campaign::{Bed, TICK_CLOCKS};
-use posicast_testbench::linked_bench::LinkedBench;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::rc::Rc;
 use std::time::Duration;
 
-use posicast_testbench::linked_bench::LinkedBench;
+use posicast_closed_loop::linked_bench::LinkedBench;
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 

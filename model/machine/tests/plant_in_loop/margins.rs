@@ -105,7 +105,7 @@ fn golden_the_gain_margin_is_where_the_simulated_loop_begins_to_swing() {
 #[test]
 fn default_gains_leave_their_margin_on_machines_that_are_a_fifth_off() {
     let of = |kind: &str, text: &str| machine(&text.replace("kind = \"pd\"", &format!("kind = \"{kind}\"")), true);
-    let wrist = include_str!("../../../../testbench/tests/fixtures/machines/wrist.toml");
+    let wrist = include_str!("../../../../closed_loop/tests/fixtures/machines/wrist.toml");
     for machine in [of("pd", SOFT), of("pid", SOFT), of("pid", wrist), of("pd", VELOCITY)] {
         let axis = &machine.axes[0];
         let lag_s = loop_lag_s(axis.drive.as_ref().unwrap(), 150e-6);

@@ -1,0 +1,225 @@
+//! Records the events of an axis from the fault on, each with its clock.
+
+use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::stage::Supervision;
+
+use super::expectation::Seen;
+use super::machine::{LOST_TICKS, SATURATION_TICKS};
+use crate::stage_bench::{Probe, StageBench};
+use posicast_testbench::Error;
+
+/// Nets that are read.
+struct Probes {
+    state: Probe,
+    causes: Probe,
+    error: Probe,
+    error_limit: Probe,
+    deviation: Probe,
+    shaped: Probe,
+    soft_plus: Probe,
+    soft_minus: Probe,
+    count: Probe,
+    command: Probe,
+    command_position: Probe,
+    limited_ticks: Probe,
+    underrun: Probe,
+    overflow: Probe,
+    cut_high: Probe,
+    cut_low: Probe,
+}
+
+/// An axis in the clock in which its state first differed from that at the fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Change {
+    /// Number of the clock.
+    pub(super) clock: u64,
+    /// The new state.
+    pub(super) state: u64,
+    /// Causes in that state.
+    pub(super) causes: u32,
+    /// Larger change of the command in the last two ticks, in 1/256 counts.
+    pub(super) travel: u32,
+}
+
+/// Observation of an axis from the fault on.
+pub(super) struct Observation {
+    axis: usize,
+    probes: Probes,
+    /// State at the fault.
+    from: SupervisorState,
+    lost_command: u32,
+    deviation_limit: u32,
+    still: Still,
+    /// Command at the last tick, and its change in each of the last two.
+    command: i32,
+    travel: [u32; 2],
+    /// The first other state.
+    pub(super) change: Option<Change>,
+    /// Clock in which the detection condition first held.
+    pub(super) seen: Option<u64>,
+    /// Last clock with a gate on.
+    pub(super) last_gate: u64,
+    /// First clock with the drive disabled.
+    pub(super) drive_off: Option<u64>,
+    /// First clock with the brake applied.
+    pub(super) brake: Option<u64>,
+    /// First clock after QUICK_STOP.
+    pub(super) stood: Option<u64>,
+}
+
+/// Consecutive ticks with a command in one direction and without a motion, and the position at their start.
+#[derive(Default)]
+struct Still {
+    count: i32,
+    backwards: bool,
+    ticks: u64,
+}
+
+impl Observation {
+    /// Starts the observation of an axis in this state.
+    pub(super) fn new(
+        bench: &StageBench,
+        axis: usize,
+        watched: &Supervision,
+        from: SupervisorState,
+    ) -> Result<Self, Error> {
+        let name = &bench.axes()[axis];
+        let probe = |net: &str| bench.probe(&format!("{name}_{net}"));
+        Ok(Self {
+            axis,
+            from,
+            probes: Probes {
+                state: probe("state")?,
+                causes: probe("causes")?,
+                error: probe("error")?,
+                error_limit: probe("following_error_limit")?,
+                deviation: probe("deviation")?,
+                shaped: probe("shaped_position")?,
+                soft_plus: probe("soft_limit_plus")?,
+                soft_minus: probe("soft_limit_minus")?,
+                count: probe("count")?,
+                command: probe("command")?,
+                command_position: probe("command_position")?,
+                limited_ticks: probe("limited_ticks")?,
+                underrun: probe("segments_underrun")?,
+                overflow: probe("segments_overflow")?,
+                cut_high: probe("controller_saturated_high")?,
+                cut_low: probe("controller_saturated_low")?,
+            },
+            lost_command: watched.lost_command,
+            deviation_limit: watched.deviation_limit,
+            still: Still::default(),
+            command: bench.at(probe("command_position")?) as u32 as i32,
+            travel: [0; 2],
+            change: None,
+            seen: None,
+            last_gate: 0,
+            drive_off: None,
+            brake: None,
+            stood: None,
+        })
+    }
+
+    /// The state in the next clock.
+    pub(super) fn state(&self, bench: &StageBench) -> u64 {
+        bench.at(self.probes.state)
+    }
+
+    /// The causes in the next clock.
+    pub(super) fn causes(&self, bench: &StageBench) -> u32 {
+        bench.at(self.probes.causes) as u32
+    }
+
+    /// Whether the shaped command has reached the command.
+    pub(super) fn settled(&self, bench: &StageBench) -> bool {
+        bench.at(self.probes.shaped) == bench.at(self.probes.command_position)
+    }
+
+    /// Records, before a clock, what registers show in it.
+    pub(super) fn before(&mut self, bench: &StageBench, tick: bool) {
+        let (now, state) = (bench.now(), self.state(bench));
+        if state != self.from as u64 && self.change.is_none() {
+            self.change = Some(Change {
+                clock: now,
+                state,
+                causes: self.causes(bench),
+                travel: self.travel[0].max(self.travel[1]),
+            });
+        }
+        if self.change.is_some() && state != SupervisorState::QuickStop as u64 && self.stood.is_none() {
+            self.stood = Some(now);
+        }
+        if tick {
+            self.follow_command(bench);
+        }
+    }
+
+    /// Records the command once per tick.
+    pub(super) fn follow_command(&mut self, bench: &StageBench) {
+        let command = bench.at(self.probes.command_position) as u32 as i32;
+        self.travel = [command.wrapping_sub(self.command).unsigned_abs(), self.travel[0]];
+        self.command = command;
+    }
+
+    /// Checks the detection condition, which for most monitors counts at ticks only.
+    pub(super) fn look_for(&mut self, bench: &StageBench, seen: Seen, tick: bool) {
+        let value = |probe| bench.at(probe);
+        let signed = |probe| bench.at(probe) as u32 as i32;
+        let size = |value: i32| (value ^ (value >> 31)) as u32;
+        let probes = &self.probes;
+        let deviates = |deviation| {
+            self.deviation_limit != 0 && u64::from(size(signed(deviation))) > u64::from(self.deviation_limit)
+        };
+        let is_stuck = value(probes.limited_ticks) >= SATURATION_TICKS || self.still.ticks >= LOST_TICKS;
+        let is = match seen {
+            Seen::Segments => (value(probes.underrun) | value(probes.overflow)) != 0,
+            Seen::Range => (value(probes.cut_high) | value(probes.cut_low)) & 1 != 0,
+            _ if !tick => false,
+            Seen::FollowingError => u64::from(size(signed(probes.error))) > value(probes.error_limit),
+            Seen::Deviation => deviates(probes.deviation),
+            Seen::Lost => deviates(probes.deviation) || is_stuck,
+            Seen::SoftLimit => {
+                let shaped = signed(probes.shaped);
+                shaped > signed(probes.soft_plus) || shaped < signed(probes.soft_minus)
+            }
+            Seen::Stuck => is_stuck,
+        };
+        if is {
+            self.seen.get_or_insert(bench.now());
+        }
+        if tick {
+            let (count, command) = (signed(probes.count), signed(probes.command));
+            let motion = count.wrapping_sub(self.still.count);
+            let one_way = (command < 0) == self.still.backwards;
+            let [backward, forward] = [motion < -4, motion >= 4];
+            // A motion against the command does not count as motion, but distances count from there on.
+            let its_way = if command < 0 { backward } else { forward };
+            if size(command) > self.lost_command && one_way && !its_way {
+                self.still.ticks += 1;
+                if backward || forward {
+                    self.still.count = count;
+                }
+            } else {
+                self.still = Still {
+                    count,
+                    backwards: command < 0,
+                    ticks: 0,
+                };
+            }
+        }
+    }
+
+    /// Records, after some clocks, the levels of the pins in the last of them.
+    pub(super) fn after(&mut self, bench: &StageBench) {
+        let (pins, last) = (bench.pins(self.axis), bench.now() - 1);
+        if pins.a_high || pins.a_low || pins.b_high || pins.b_low {
+            self.last_gate = last;
+        }
+        if !pins.drive_enable {
+            self.drive_off.get_or_insert(last);
+        }
+        if !pins.brake_release {
+            self.brake.get_or_insert(last);
+        }
+    }
+}

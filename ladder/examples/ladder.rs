@@ -1,0 +1,285 @@
+//! Runs all rungs of the verification ladder and prints one table at the end: `scripts/verify-all`.
+//!
+//! ```text
+//! --clocks N      of the lock step, per machine and seed, at least a million (10,000,000); the other rungs shrink with it
+//! --only RUNG     only this rung; may be given several times
+//! ```
+//!
+//! It runs the other examples and the command line, as they are built beside it, and `cargo test` for the property
+//! tests and the long ones; their output goes to standard error. Exit status: 0 if all rungs hold, 1 otherwise, 2 for wrong usage.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
+
+use std::error::Error;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use std::time::Instant;
+
+use posicast_ladder::table::{Columns, Rung, rows, table};
+
+const RUNGS: [&str; 11] = [
+    "lock step",
+    "second simulator",
+    "netlist",
+    "reset",
+    "formal",
+    "mutation",
+    "wires",
+    "coverage",
+    "fuzz",
+    "long tests",
+    "fault campaign",
+];
+const SEEDS: [u64; 3] = [1, 2, 3];
+
+struct Options {
+    clocks: u64,
+    only: Vec<String>,
+}
+
+impl Options {
+    fn read() -> Result<Self, String> {
+        let mut options = Self {
+            clocks: 10_000_000,
+            only: Vec::new(),
+        };
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let value = words.next().ok_or_else(|| format!("`{word}` needs a value"))?;
+            match word.as_str() {
+                "--clocks" => {
+                    let clocks = value.parse().ok().filter(|clocks| *clocks > 0);
+                    options.clocks = clocks.ok_or_else(|| format!("--clocks {value}: a whole number is needed"))?;
+                }
+                "--only" if RUNGS.contains(&value.as_str()) => options.only.push(value),
+                "--only" => return Err(format!("--only {value}: the rungs are {}", RUNGS.join(", "))),
+                _ => return Err(format!("`{word}`: the options are --clocks and --only")),
+            }
+        }
+        Ok(options)
+    }
+
+    /// Scales `whole`, the amount for ten million clocks, to the number of clocks; the result is at least `least`.
+    fn share(&self, whole: u64, least: u64) -> u64 {
+        (whole as u128 * u128::from(self.clocks) / 10_000_000).clamp(least.into(), whole.into()) as u64
+    }
+}
+
+fn main() -> ExitCode {
+    let options = match Options::read() {
+        Ok(options) => options,
+        Err(reason) => {
+            eprintln!("{reason}");
+            return ExitCode::from(2);
+        }
+    };
+    let wanted = |name: &&str| options.only.is_empty() || options.only.iter().any(|only| only == name);
+    let mut rungs = Vec::new();
+    for name in RUNGS.iter().copied().filter(wanted) {
+        eprintln!("== {name}");
+        rungs.push(climb(name, &options).unwrap_or_else(|error| {
+            eprintln!("{name}: {error}");
+            Rung::new(name, &[], &[], false, std::time::Duration::ZERO)
+        }));
+    }
+    print!("{}", table(&rungs));
+    if rungs.iter().all(|rung| rung.holds) {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
+    let number = |whole, least| options.share(whole, least).to_string();
+    match name {
+        "lock step" => lock_step(options.clocks),
+        "second simulator" => {
+            let arguments = ["--clocks".to_owned(), number(20_000, 2_000)];
+            example(name, "second_simulator", &arguments, &[("clocks", "clocks")])
+        }
+        "netlist" => {
+            let arguments = ["--clocks".to_owned(), number(100_000, 2_000)];
+            example(
+                name,
+                "netlist",
+                &arguments,
+                &[("LUT", "LUT"), ("flip-flops", "flip-flops")],
+            )
+        }
+        "reset" => example(name, "unset", &[], &[("memories and multipliers", "cut out")]),
+        "formal" => example(
+            name,
+            "formal",
+            &[],
+            &[("assertions", "properties"), ("covers reached", "covers")],
+        ),
+        // The mutation rung always uses the published sample: for other mutants, or in fewer clocks, some may stay
+        // unknown.
+        "mutation" => example(name, "mutate", &[], &[("mutants", "mutants"), ("unknown", "unknown")]),
+        // Likewise: all constants and wires of the stage.
+        "wires" => example(
+            name,
+            "mutate",
+            &["--wires".to_owned()],
+            &[("mutants", "mutants"), ("not found", "not found")],
+        ),
+        "coverage" => example(
+            name,
+            "coverage",
+            &[],
+            &[
+                ("conditions", "conditions"),
+                ("holes explained", "holes explained"),
+                ("bins", "bins"),
+            ],
+        ),
+        "fuzz" => {
+            let cases = options.share(5_000, 50);
+            tests(name, &["prop_"], Some(cases))
+        }
+        // `formal_` are the blocks that were broken on purpose.
+        "long tests" => tests(name, &["long_", "formal_", "formal::"], None),
+        _ => faults(options.share(10_000, 50)),
+    }
+}
+
+/// Returns the folder with the examples, and the command line beside it.
+fn programs() -> Result<(PathBuf, PathBuf), Box<dyn Error>> {
+    let own = std::env::current_exe()?;
+    let examples = own.parent().ok_or("this program is in no folder")?;
+    let posicast = examples
+        .parent()
+        .ok_or("the examples are in no folder")?
+        .join("posicast");
+    Ok((examples.to_owned(), posicast))
+}
+
+/// Runs a program and passes its standard error on as it comes. Returns what it printed and whether its exit status
+/// was 0.
+fn run(command: &mut Command) -> Result<(String, bool), Box<dyn Error>> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let started = command.stdout(Stdio::piped()).spawn();
+    let mut program =
+        started.map_err(|error| format!("cannot run {name}: {error}; build it first, as scripts/verify-all does"))?;
+    let printed = program.stdout.take().ok_or("a program without standard output")?;
+    let mut text = String::new();
+    for line in BufReader::new(printed).lines() {
+        let line = line?;
+        eprintln!("{line}");
+        text.push_str(&line);
+        text.push('\n');
+    }
+    Ok((text, program.wait()?.success()))
+}
+
+/// Runs a rung that is an example with a table.
+fn example(name: &str, program: &str, arguments: &[String], columns: Columns) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let (text, succeeded) = run(Command::new(programs()?.0.join(program)).args(arguments))?;
+    let units: Vec<&str> = columns.iter().map(|(_, unit)| *unit).collect();
+    Ok(Rung::new(
+        name,
+        &units,
+        &rows(&text, columns),
+        succeeded,
+        began.elapsed(),
+    ))
+}
+
+/// Number of clocks of a row of `posicast verify` without `--cycles`. With fewer, a row that exercised too little has no verdict.
+const ENOUGH: u64 = 1_000_000;
+
+/// Runs every example machine with every seed through `posicast verify`, at least as long as it takes for a verdict.
+fn lock_step(clocks: u64) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    let files = std::fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path()));
+    let mut machines = files.collect::<Result<Vec<_>, _>>()?;
+    machines.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    machines.sort();
+    let (mut found, mut succeeded) = (Vec::new(), !machines.is_empty());
+    for (machine, seed) in machines.iter().flat_map(|machine| SEEDS.map(|seed| (machine, seed))) {
+        eprintln!("{}, {} clocks, seed {seed}", machine.display(), clocks.max(ENOUGH));
+        let mut command = Command::new(programs()?.1);
+        command
+            .arg("verify")
+            .arg(machine)
+            .args(["--simulator", "verilator", "--json"]);
+        if clocks > ENOUGH {
+            command.args(["--cycles", &clocks.to_string()]);
+        }
+        let output = command.args(["--seed", &seed.to_string()]);
+        let output = output.stderr(Stdio::inherit()).output()?;
+        succeeded &= output.status.success();
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        for block in document["blocks"].as_array().ok_or("verify --json has no blocks")? {
+            let name = block["name"].as_str().unwrap_or("?").to_owned();
+            let count = |key: &str| {
+                block[key]
+                    .as_u64()
+                    .ok_or_else(|| format!("verify --json: {name} has no {key}"))
+            };
+            found.push((name.clone(), vec![count("cycles")?, count("mismatches")?]));
+        }
+    }
+    Ok(Rung::new(
+        "lock step",
+        &["clocks", "wrong"],
+        &found,
+        succeeded,
+        began.elapsed(),
+    ))
+}
+
+/// Runs the tests of the workspace whose name contains one of `filters`; property tests with this many cases each.
+fn tests(name: &str, filters: &[&str], cases: Option<u64>) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let mut command = Command::new("cargo");
+    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
+    command.args([
+        "test",
+        "--release",
+        "--workspace",
+        "--locked",
+        "--lib",
+        "--bins",
+        "--tests",
+    ]);
+    command.arg("--").args(filters);
+    // Nothing is taken from the recorded results of proofs.
+    command.env("POSICAST_PROVE_AGAIN", "1");
+    if let Some(cases) = cases {
+        command.env("PROPTEST_CASES", cases.to_string());
+    }
+    let (text, succeeded) = run(&mut command)?;
+    let ended = text.lines().filter_map(|line| line.strip_prefix("test result: ok. "));
+    let passed: u64 = ended
+        .filter_map(|rest| rest.split(' ').next()?.parse::<u64>().ok())
+        .sum();
+    let numbers = std::iter::once(passed).chain(cases).collect();
+    let is_some = succeeded && passed > 0;
+    Ok(Rung::new(
+        name,
+        &["tests", "cases each"],
+        &[("(all)".to_owned(), numbers)],
+        is_some,
+        began.elapsed(),
+    ))
+}
+
+/// Runs the fault campaign of a stage.
+fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let mut command = Command::new(programs()?.0.join("fault_campaign"));
+    let with_rtl = cases.min(36);
+    let (_, succeeded) = run(command.args(["--cases", &cases.to_string(), "--rtl", &with_rtl.to_string()]))?;
+    let rows = [("stage".to_owned(), vec![cases, with_rtl])];
+    Ok(Rung::new(
+        "fault campaign",
+        &["faults", "with RTL"],
+        &rows,
+        succeeded,
+        began.elapsed(),
+    ))
+}

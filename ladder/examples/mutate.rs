@@ -1,0 +1,240 @@
+//! Puts mutants into the blocks and finds out whether each is detected:
+//! `cargo run --release -p posicast-testbench --example mutate [-- OPTIONS]`.
+//!
+//! ```text
+//! --block NAME    only this block                    --mutants N   per block (60)
+//! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
+//! --write         renews the table in ladder/RESULTS.md, or the rows of the block
+//! --wires         each constant and wire of the stage's description instead; --mutants takes so many of them
+//! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
+//! ```
+//!
+//! Prints the table, and a line per block while it works. Exit status: 0 if ladder/RESULTS.md lists each
+//! mutant that stays unknown, 1 if one is not listed, 2 if it cannot run, 3 if a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
+
+use std::panic::resume_unwind;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+use posicast_blocks::stage::StageConfig;
+use posicast_ladder::mutation::{
+    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, WIRES_MARKS, all, hunt, inside_table, merged, named,
+    run, table, unlisted, wires, wires_table,
+};
+use posicast_machine::plan::design_machine;
+use posicast_machine::{hardware, machine_file};
+use posicast_testbench::Error;
+
+fn main() -> ExitCode {
+    match mutate() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(if error.is_missing_tool() { 3 } else { 2 })
+        }
+    }
+}
+
+struct Arguments {
+    block: Option<String>,
+    options: MutationOptions,
+    write: bool,
+    inside: bool,
+    /// The most mutants of the wires, if they are asked for.
+    wires: Option<usize>,
+}
+
+/// The machine whose stage gets the named mutants.
+const MACHINE: &str = include_str!("../../examples/xy-stage.toml");
+
+impl Arguments {
+    fn read() -> Result<Self, Error> {
+        let mut found = Self {
+            block: None,
+            options: MutationOptions::default(),
+            write: false,
+            inside: false,
+            wires: None,
+        };
+        let mut mutants = None;
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let mut value = || {
+                let missing = || Error::Option(format!("`{word}` needs a value"));
+                words.next().ok_or_else(missing)
+            };
+            match word.as_str() {
+                "--block" => found.block = Some(value()?),
+                "--mutants" => mutants = Some(number(&word, &value()?)?),
+                "--seed" => found.options.seed = number(&word, &value()?)?,
+                "--clocks" => found.options.clocks = number(&word, &value()?)?,
+                "--write" => found.write = true,
+                "--inside" => found.inside = true,
+                "--wires" => found.wires = Some(usize::MAX),
+                other => {
+                    return Err(Error::Option(format!(
+                        "`{other}`: the options are --block, --mutants, --seed, --clocks, --write, --wires and --inside"
+                    )));
+                }
+            }
+        }
+        match (&mut found.wires, mutants) {
+            (Some(wires), Some(most)) => *wires = most,
+            (None, Some(mutants)) => found.options.mutants = mutants,
+            (_, None) => {}
+        }
+        if found.write && found.options != MutationOptions::default() {
+            return Err(Error::Option(
+                "--write keeps the table that the defaults give: leave --mutants, --seed and --clocks away".to_owned(),
+            ));
+        }
+        Ok(found)
+    }
+}
+
+fn number<T: std::str::FromStr>(option: &str, text: &str) -> Result<T, Error> {
+    text.parse()
+        .map_err(|_| Error::Option(format!("{option} {text}: a whole number is needed")))
+}
+
+fn mutate() -> Result<bool, Error> {
+    let Arguments {
+        block,
+        options,
+        write,
+        inside,
+        wires: most_wires,
+    } = Arguments::read()?;
+    if let Some(most) = most_wires {
+        return mutate_wires(most, &options, write);
+    }
+    if inside {
+        return mutate_inside(&options, write);
+    }
+    let subjects = match &block {
+        Some(name) => named(name)?,
+        None => all()?,
+    };
+    // The table keeps the rows of all blocks, not only of those that were chosen.
+    let everything = all()?;
+    let temporary = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
+    let kept = std::env::var_os("POSICAST_MUTATE_KEEP").map(PathBuf::from);
+    let folder = kept.clone().unwrap_or_else(|| temporary.clone());
+    let count = subjects.len();
+    // A thread that is done with a block takes the next one.
+    let (next, written) = (AtomicUsize::new(0), Mutex::new(()));
+    let worker = || -> Result<Vec<(usize, MutationRow)>, Error> {
+        let mut rows = Vec::new();
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            if at >= count {
+                return Ok(rows);
+            }
+            let subject = &subjects[at];
+            let start = Instant::now();
+            let name = subject.block().name();
+            let fates = run(subject, &options, &folder.join(format!("{at}_{name}")))?;
+            let row = MutationRow::new(subject, &fates);
+            let _one_by_one = written.lock().unwrap_or_else(PoisonError::into_inner);
+            eprintln!(
+                "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
+                subject.size(),
+                row.mutants,
+                row.lockstep,
+                row.property,
+                row.equivalent,
+                row.unknown.len(),
+                start.elapsed().as_secs_f64()
+            );
+            if write {
+                // Each row is written as soon as it is there, so that finished results are not lost if a later one fails.
+                MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &everything))?;
+            }
+            rows.push((at, row));
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from).min(count);
+    let mut rows = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        let rows = workers
+            .into_iter()
+            .map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        rows.collect::<Result<Vec<_>, Error>>()
+    })?
+    .concat();
+    rows.sort_by_key(|(at, _)| *at);
+    let rows: Vec<MutationRow> = rows.into_iter().map(|(_, row)| row).collect();
+    if kept.is_none() {
+        // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
+        let _ = std::fs::remove_dir_all(&temporary);
+    }
+    print!("{}", table(&rows));
+    let unlisted = unlisted(&MARKS.read()?, &rows);
+    for mutant in &unlisted {
+        eprintln!(
+            "unknown, and not listed in ladder/RESULTS.md: {}",
+            mutant.trim_start_matches("- ")
+        );
+    }
+    Ok(unlisted.is_empty())
+}
+
+/// The stage of the example machine.
+fn example_stage() -> Result<StageConfig, Error> {
+    let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
+    let machine = machine_file::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
+    let design = design_machine(&machine).map_err(|error| refused(&error))?;
+    let stage = hardware::stage(&machine, &design).map_err(|error| refused(&error))?;
+    Ok(stage.ok_or_else(|| refused(&"it has no stage"))?.config)
+}
+
+/// Tries the constants and wires of the stage of the example machine; true if the page lists each that was not found.
+fn mutate_wires(most: usize, options: &MutationOptions, write: bool) -> Result<bool, Error> {
+    let folder = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
+    let found = wires(&example_stage()?, "xy_stage_stage", most, options, &folder);
+    // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
+    let _ = std::fs::remove_dir_all(&folder);
+    let (all, fates) = found?;
+    let table = wires_table(all, &fates, options.clocks);
+    if write {
+        WIRES_MARKS.renew(|_| table.clone())?;
+    }
+    print!("{table}");
+    let page = WIRES_MARKS.read()?;
+    let unseen = fates.iter().filter(|fate| fate.kill.is_none());
+    let unlisted: Vec<String> = unseen
+        .map(|fate| fate.mutant.describe())
+        .filter(|mutant| !page.contains(mutant))
+        .collect();
+    for mutant in &unlisted {
+        eprintln!("not found, and not listed in ladder/RESULTS.md: {mutant}");
+    }
+    Ok(unlisted.is_empty())
+}
+
+/// Tries the named mutants, each in the stage of the example machine.
+fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> {
+    let stage = example_stage()?;
+    let mut fates = Vec::new();
+    for mutant in INSIDE {
+        let start = Instant::now();
+        let found = hunt(&mutant, &stage, "xy_stage_stage", options.clocks, options.seed)?;
+        let by = found
+            .as_ref()
+            .map_or("NOT FOUND".to_owned(), |found| format!("{found:?}"));
+        eprintln!("{}: {by}, {:.1} s", mutant.name, start.elapsed().as_secs_f64());
+        fates.push((mutant, found));
+    }
+    let table = inside_table(&fates);
+    if write {
+        INSIDE_MARKS.renew(|_| table.clone())?;
+    }
+    print!("{table}");
+    Ok(fates.iter().all(|(_, found)| found.is_some()))
+}

@@ -1,0 +1,9 @@
+//! The tests of `posicast-ladder` in one program, because linking takes most of the time of a small test program.
+#![cfg(test)]
+
+mod coverage;
+mod crossings;
+mod mutation;
+mod stage_datasheet;
+mod stage_wires;
+mod verification_page;
