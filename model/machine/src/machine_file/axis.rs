@@ -12,81 +12,69 @@ use posicast_blocks::shaper::MOTION_WORD_BITS;
 
 /// The keys of `[[axis]]`.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("name", Values::Name, "Name of the axis, unique in the machine.").required(),
+    Key::new("name", Values::Name, "Unique name of the axis.").required(),
     Key::new(
         "counts_per_unit",
         Values::Counts(COUNTS_PER_UNIT),
-        "Encoder counts per unit of the axis.",
+        "Encoder counts per unit.",
     )
     .required(),
     Key::new(
         "unit",
         Values::Word(|| AxisUnit::ALL.map(|(_, name)| name).to_vec()),
-        "Unit of all figures of the axis, including its counts.",
+        "Unit of the axis's lengths or angles.",
     )
     .default(Default::Word("m")),
     Key::switch(
         "modulo",
-        "A rotary axis without end stops: the position wraps at the end of its word.",
+        "Rotary axis without end stops: the position wraps at the end of its word.",
     )
-    .rule("needs words of 18 to 32 bits, builds the shaper for motion, and any `travel` fits"),
+    .rule("needs words of 18 to 32 bits"),
     Key::new(
         "shaper",
         Values::Table(shaper::KEYS),
-        "Shaper of the whole axis; leave it out where every mode has `shaper`.",
+        "Shaper of the axis; optional if every mode has `shaper`.",
     ),
     Key::new(
         "mode",
         Values::Tables(mode::KEYS, mode::MAX_MODES),
-        "The modes of vibration; none is allowed with kind custom or none.",
+        "Modes of vibration; optional with kind `custom` or `none`.",
     ),
     Key::new(
         "mechanics",
         Values::Table(mechanics::KEYS),
-        "Data-sheet figures of a ball screw, from which the mode is computed, in place of `[[axis.mode]]`.",
+        "Data sheet of a ball screw, in place of `[[axis.mode]]`.",
     )
-    .rule("the unit of the axis must be a length"),
+    .rule("the `unit` must be a length"),
     Key::new(
         "family",
         Values::Table(moving::KEYS),
-        "Choice of the tap tables for an axis whose modes move.",
+        "Tap tables of an axis whose modes move.",
     )
     .rule("needs a mode with `points`"),
-    Key::new(
-        "encoder",
-        Values::Table(encoder::KEYS),
-        "Encoder from which the position is read.",
-    ),
+    Key::new("encoder", Values::Table(encoder::KEYS), "Position encoder."),
     Key::new("scale", Values::Table(scale::KEYS), "Linear scale at the load."),
-    Key::new(
-        "pwm",
-        Values::Table(pwm::KEYS),
-        "Pulse width modulator that drives the pins.",
-    ),
-    Key::new(
-        "drive",
-        Values::Table(drive::KEYS),
-        "Drive behind the PWM: what its duty commands.",
-    ),
+    Key::new("pwm", Values::Table(pwm::KEYS), "Pulse width modulator."),
+    Key::new("drive", Values::Table(drive::KEYS), "Drive behind the PWM."),
     Key::new(
         "controller",
         Values::Table(controller::KEYS),
-        "Controller that closes the position loop.",
+        "Controller of the position loop.",
     ),
     Key::new(
         "limits",
         Values::Table(limits::KEYS),
-        "Limits of moves, and what the supervisor of the axis monitors.",
+        "Limits of moves, and settings of the supervisor.",
     ),
     Key::new(
         "trace",
         Values::Table(trace::KEYS),
-        "Trace memory that records signals of the loop.",
+        "Memory that records signals of the loop.",
     ),
     Key::new(
         "error_table",
         Values::Table(error_table::KEYS),
-        "Compensates a measured error of the screw or the scale.",
+        "Compensation of a measured position error.",
     ),
 ];
 

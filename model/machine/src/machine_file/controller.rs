@@ -59,36 +59,32 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "k",
         Values::Number(NOT_NEGATIVE),
-        "Rate at which the distance from the line decays, in 1/s. `sliding-mode` needs it.",
+        "Decay rate of the distance from the line, in 1/s. `sliding-mode` needs it.",
     ),
     Key::new(
         "epsilon",
         Values::Quantity(NOT_NEGATIVE),
-        "Strength of the switching term, in the axis's unit/s². `sliding-mode` needs it.",
+        "Strength of the switching term, in unit/s². `sliding-mode` needs it.",
     ),
     Key::new(
         "boundary",
         Values::Quantity(POSITIVE),
-        "Half width of the boundary layer, in the axis's unit/s. `sliding-mode` needs it.",
+        "Half width of the boundary layer, in unit/s. `sliding-mode` needs it.",
     ),
     Key::new(
         "proportional",
         Values::Number(POSITIVE),
-        "Proportional gain of `pd` and `pid`: 1/s for a velocity drive, 1/s² for a torque drive. Absent: computed \
-        from the loop.",
+        "Proportional gain of `pd` and `pid`, in 1/s (velocity drive) or 1/s² (torque drive). Absent: computed.",
     ),
     Key::new(
         "derivative",
         Values::Number(POSITIVE),
-        "Command per rate of the error of `pd` and `pid`: a number of a velocity drive, 1/s of a torque drive. Else \
-        it follows \
-         from the loop.",
+        "Derivative gain of `pd` and `pid`, a number (velocity drive) or in 1/s (torque drive). Absent: computed.",
     ),
     Key::new(
         "integral",
         Values::Number(POSITIVE),
-        "Command per integrated error of `pid`: 1/s² of a velocity drive, 1/s³ of a torque drive. Else it follows \
-        from the loop.",
+        "Integral gain of `pid`, in 1/s² (velocity drive) or 1/s³ (torque drive). Absent: computed.",
     ),
 ];
 

@@ -52,7 +52,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "mode",
         Values::Word(|| MODES.to_vec()),
-        "Quantity that full duty commands: a current, and through it a torque, or a velocity.",
+        "What the duty commands: a torque, by a current, or a velocity.",
     )
     .required(),
     Key::new(
@@ -68,24 +68,24 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "current_limit_a",
         Values::Number(POSITIVE),
-        "Largest current that is commanded, in A; at most `full_scale_a`. `torque` needs it.",
+        "Largest commanded current, at most `full_scale_a`. `torque` needs it.",
     ),
     Key::new(
         "full_scale_a",
         Values::Number(POSITIVE),
-        "Current at full duty, in A. `torque` needs it.",
+        "Current at full duty. `torque` needs it.",
     )
     .rule("not with `velocity`"),
     Key::new(
         "full_scale_velocity",
         Values::Quantity(POSITIVE),
-        "Velocity at full duty, in the axis's unit/s. `velocity` needs it.",
+        "Velocity at full duty, in unit/s. `velocity` needs it.",
     )
     .rule("not with `torque`"),
     Key::new(
         "bandwidth_hz",
         Values::Number(POSITIVE),
-        "Bandwidth with which the drive follows its command, in Hz.",
+        "Bandwidth of the drive. Absent: infinite.",
     ),
     Key::or_zero("viscous", NOT_NEGATIVE, "Viscous friction in N·s/m."),
     Key::or_zero("coulomb", NOT_NEGATIVE, "Coulomb friction in N."),

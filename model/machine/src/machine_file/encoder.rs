@@ -21,10 +21,10 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "filter_clocks",
         Values::Integer(0, FILTER_CLOCKS_MAX),
-        "Pulses of up to this many clocks are ignored on every line. 0: no filter.",
+        "Longest ignored pulse on every line. 0: no filter.",
     )
     .default(Default::Integer(0)),
-    Key::switch("index", "The encoder has an index line."),
+    Key::switch("index", "The simulated encoder has an index line."),
     Key::switch(
         "invert",
         "The lines count down where a positive command moves the axis up.",

@@ -68,13 +68,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         FILE,
         Values::CsvName,
-        "CSV file beside the machine file, with a position and an error per row: the true less the counted position, in the axis's unit.",
+        "CSV file beside the machine file: rows of position and error (true less counted position) in the axis's unit.",
     )
     .required(),
     Key::new(
         "apply",
         Values::Word(|| ErrorUse::ALL.map(|(_, name)| name).to_vec()),
-        "reference: the error where the axis is to be. feedback: the error where it is, by its counter.",
+        "Takes the error at the desired (reference) or the counted (feedback) position.",
     )
     .default(Default::Word("reference")),
 ];

@@ -19,7 +19,7 @@ pub(super) struct Key {
     pub(super) chosen_by: Option<(&'static str, &'static str)>,
     /// Another key that is only valid beside this one.
     pub(super) needed_by: Option<&'static str>,
-    /// Meaning and unit, in a sentence.
+    /// Meaning in a sentence, and the unit where the name does not end in it.
     pub(super) about: &'static str,
     /// Further requirements of the reader beyond `values`, as text for the page; often empty.
     pub(super) rule: &'static str,

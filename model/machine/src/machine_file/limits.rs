@@ -143,33 +143,29 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "velocity",
         Values::Quantity(MOTION),
-        "Largest velocity of a move, in the axis's unit/s.",
+        "Largest velocity of a move, in unit/s.",
     ),
     Key::new(
         "acceleration",
         Values::Quantity(MOTION),
-        "Largest acceleration of a move, in the axis's unit/s².",
+        "Largest acceleration of a move, in unit/s².",
     ),
-    Key::new(
-        "jerk",
-        Values::Quantity(MOTION),
-        "Largest jerk of a move, in the axis's unit/s³.",
-    ),
+    Key::new("jerk", Values::Quantity(MOTION), "Largest jerk of a move, in unit/s³."),
     Key::new(
         "travel",
         Values::Pair(POSITION),
-        "Lowest and highest position in the axis's unit, [low, high]: the soft limits of an axis with a controller.",
+        "[low, high] position in the axis's unit; with a controller, the soft limits.",
     )
-    .rule("`low` below `high`, both within the position word"),
+    .rule("`low` below `high`; without `modulo`, both within the position word"),
     Key::switch(
         "soft_limits_after_homing",
-        "Whether the soft limits of `travel` act only once the host has homed the axis.",
+        "The soft limits act only once the host has homed the axis.",
     )
     .rule("needs `travel`"),
     Key::new(
         "stop_deceleration",
         Values::Quantity(MOTION),
-        "Deceleration of a quick stop, in the axis's unit/s². Absent: `acceleration`.",
+        "Deceleration of a quick stop, in unit/s². Absent: `acceleration`.",
     )
     .rule("at most 127.99 counts per tick²"),
     Key::new(
@@ -187,13 +183,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "saturation_s",
         SECONDS,
-        "How long the controller's command may be clamped, in s. 0: not checked.",
+        "How long the controller's command may be clamped. 0: not checked.",
     )
     .rule("1 to 65,535 ticks, or 0"),
     Key::or_zero(
         "encoder_lost_s",
         SECONDS,
-        "How long the encoder may stand still, or go the wrong way, under a command, in s. 0: not checked.",
+        "How long the encoder may stand still or go the wrong way under a command. 0: not checked.",
     )
     .rule("1 to 65,535 ticks, or 0"),
     Key::new(
@@ -206,35 +202,28 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "watchdog_s",
         SECONDS,
-        "How long the host may be silent, in s. 0: no watchdog.",
+        "How long the host may be silent. 0: no watchdog.",
     )
     .rule("1 to 65,535 ticks, or 0"),
     Key::or_zero(
         "brake_release_s",
         SECONDS,
-        "Time in s from releasing the brake until it is open.",
+        "Time from releasing the brake until it is open.",
     )
     .rule("at most 65,535 ticks"),
-    Key::or_zero(
-        "brake_apply_s",
-        SECONDS,
-        "Time in s from applying the brake until it holds.",
-    )
-    .rule("at most 65,535 ticks"),
+    Key::or_zero("brake_apply_s", SECONDS, "Time from applying the brake until it holds.").rule("at most 65,535 ticks"),
     Key::or_zero(
         "line_filter_s",
         SECONDS,
-        "Pulses of up to this length, in s, on the lines (emergency stop, limit switches, home, drive ready) are \
-        ignored.",
+        "Longest ignored pulse on emergency stop, limit switches, home, drive ready.",
     )
     .rule("at most 63 clocks"),
     Key::new(
         "off",
         Values::Words(|| CHOICES.map(Cause::name).to_vec()),
-        "Causes that switch the outputs off at once; the others lead to a quick stop. The list replaces the whole \
-        default.",
+        "Causes that switch the outputs off at once; the others make a quick stop. The list replaces the default.",
     )
-    .rule("a list of the [causes](#axislimits) below; may be empty"),
+    .rule("[causes](#axislimits) below; may be empty"),
     Key::new(
         "direct_duty",
         Values::Number(PART),
@@ -244,7 +233,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "direct_hold_s",
         Values::Number(LASTING),
-        "Bring-up: how long a manual duty stays applied without a new request, in s.",
+        "Bring-up: how long a manual duty lasts without a new request.",
     )
     .rule("1 to 65,535 ticks; absent: 0.2 s, or the longest that fits"),
     Key::new(

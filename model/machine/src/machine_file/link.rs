@@ -100,29 +100,27 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "line",
         Values::Word(|| vec![UART, SPI]),
-        "The line to the host: `uart`, a serial line, or `spi`, mode 0, whose controller is the host.",
+        "Line to the host: `uart` (serial), or `spi` (mode 0, the host is the controller).",
     )
     .default(Default::Word(UART)),
     Key::new(
         "baud",
         Values::Integer(*BAUD.start(), *BAUD.end()),
-        "Baud rate of a serial line, 8 data bits, no parity, 1 stop bit. The clock must make it within 2 %.",
+        "Baud rate, 8N1. The clock must make it within 2 %.",
     )
     .rule("any from a clock of 23.53 MHz on")
     .chosen_by("line", UART),
     Key::new(
         "sck_hz",
         Values::Integer(*SCK_HZ.start(), *SCK_HZ.end()),
-        "Clock of the host in Hz, where the line is SPI: at most an eighth of that of the machine.",
+        "SPI clock of the host, at most an eighth of the machine's.",
     )
-    .rule("6.25 MHz at 50 MHz")
     .instead_of("baud")
     .chosen_by("line", SPI),
     Key::new(
         "timeout_s",
         Values::Number(TIMEOUT_S),
-        "Time in s after which the hardware drops a frame whose next byte has not come: 20 to 131,071 bits of a serial line; with SPI two bytes, and \
-         2560 to 67,108,800 clocks of the machine.",
+        "Longest pause within a frame: serial 20 to 131,071 bits; SPI two bytes or more, 2560 to 67,108,800 clocks.",
     )
     .default(Default::Number(DEFAULT_TIMEOUT_S)),
 ];

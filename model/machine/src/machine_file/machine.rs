@@ -33,8 +33,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "name",
         Values::Name,
-        "Name of the top module; file and Verilog names derive from it. No keyword of Verilog, no name of a hardware \
-        block.",
+        "Name of the top module, from which file and Verilog names derive.",
     )
     .required(),
     Key::new("clock", Values::Table(CLOCK_KEYS), "Clock and sample tick.").required(),
@@ -48,22 +47,18 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "stage",
         Values::Table(stage::KEYS),
-        "Settings of all axes together. With this table, even an empty one, the delays of all axes are made equal.",
+        "Settings of all axes; even empty, it makes their delays equal.",
     ),
-    Key::new(
-        "link",
-        Values::Table(link::KEYS),
-        "A line, serial or SPI, through which a host reads and writes the registers of the stage.",
-    )
-    .rule("needs encoder, PWM, drive and controller on every axis"),
+    Key::new("link", Values::Table(link::KEYS), "Serial line or SPI to a host.")
+        .rule("needs encoder, PWM, drive and controller on every axis"),
 ];
 
 const CLOCK_KEYS: &[Key] = &[
-    Key::new("frequency_hz", Values::Number(CLOCK_HZ), "Fabric clock in Hz.").required(),
+    Key::new("frequency_hz", Values::Number(CLOCK_HZ), "Fabric clock.").required(),
     Key::new(
         "sample_hz",
         Values::Number(CLOCK_HZ),
-        "Sample tick in Hz, one shaped position per tick: it divides `frequency_hz`.",
+        "Rate of shaped positions; divides `frequency_hz`.",
     )
     .rule("1 to 1,000,000 clocks per sample")
     .required(),
@@ -76,38 +71,36 @@ const FIXED_POINT_KEYS: &[Key] = &[
     Key::new(
         "command_bits",
         Values::Integer(*WORD_BITS.start(), *WORD_BITS.end()),
-        "Width of a command word in bits: at least 18 for a motion shaper, 32 for a stage.",
+        "Width of a command word: at least 18 for a motion shaper, 32 for a stage.",
     )
     .default(Default::Integer(DEFAULT_COMMAND_BITS)),
     Key::new(
         "command_fraction",
         FRACTION,
-        "Fraction bits of position, in counts; below `command_bits`.",
+        "Fraction bits of position (counts), below `command_bits`.",
     )
     .default(Default::Integer(DEFAULT_POSITION_FRACTION)),
     Key::new(
         "velocity_fraction",
         FRACTION,
-        "Fraction bits of velocity, in counts per sample; below `command_bits`.",
+        "Fraction bits of velocity (counts/sample), below `command_bits`.",
     )
     .default(Default::Integer(DEFAULT_VELOCITY_FRACTION)),
     Key::new(
         "acceleration_fraction",
         FRACTION,
-        "Fraction bits of acceleration, in counts per sample²; below `command_bits`.",
+        "Fraction bits of acceleration (counts/sample²), below `command_bits`.",
     )
     .default(Default::Integer(DEFAULT_ACCELERATION_FRACTION)),
     Key::new(
         "coefficient_fraction",
         Values::Integer(1, COEFFICIENT_FRACTION_MAX),
-        "Fraction bits of the 18-bit coefficients. Absent: the most at which every coefficient fits.",
+        "Fraction bits of the 18-bit coefficients. Absent: the most that fit.",
     ),
     Key::new(
         "digitise",
         Values::Word(|| DIGITISE.to_vec()),
-        "How an impulse between two samples becomes taps: modal (two, exact at the mode's pole), linear (two, by \
-        distance), \
-         nearest (one).",
+        "Taps of an impulse: modal (two, exact at the mode's pole), linear (two, by distance), nearest (one).",
     )
     .default(Default::Word("modal")),
 ];
@@ -117,7 +110,7 @@ const TARGET_KEYS: &[Key] = &[
     Key::new(
         "board",
         Values::Word(|| BOARDS.to_vec()),
-        "Board, of this family. Absent: `posicast generate` writes a project for every board that it knows.",
+        "Board of this family. Absent: `generate` writes a project for every known board.",
     ),
 ];
 

@@ -42,26 +42,26 @@ const COUPLING_STIFFNESS: &str = "coupling_stiffness";
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("lead_m", Values::Number(SMALL_M), "Lead of the screw in m per turn.").required(),
+    Key::new("lead_m", Values::Number(SMALL_M), "Lead of the screw per turn.").required(),
     Key::new(
         "screw_diameter_m",
         Values::Number(SMALL_M),
-        "Diameter of the steel screw in m; the root diameter where it is known.",
+        "Diameter of the steel screw, at the root if known.",
     )
     .required(),
-    Key::new("screw_length_m", Values::Number(LENGTH_M), "Length of the screw in m.").required(),
+    Key::new("screw_length_m", Values::Number(LENGTH_M), "Length of the screw.").required(),
     Key::new(
         "loaded_length_m",
         Values::Number(LENGTH_M),
-        "Length of the screw under load, from bearing to nut, in m. Absent: `screw_length_m`.",
+        "Length under load, from bearing to nut. Absent: `screw_length_m`.",
     ),
     Key::new(
         COUPLING[0],
         Values::Number(SMALL_M),
-        "Diameter of a steel coupling in m. Absent: the coupling is rigid.",
+        "Diameter of a steel coupling. Absent: rigid.",
     )
     .rule("with `coupling_length_m`"),
-    Key::new(COUPLING[1], Values::Number(SMALL_M), "Length of that coupling in m."),
+    Key::new(COUPLING[1], Values::Number(SMALL_M), "Length of that coupling."),
     Key::new(
         COUPLING_STIFFNESS,
         Values::Number(TORSION),
@@ -70,7 +70,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "nut_stiffness",
         Values::Number(STIFFNESS),
-        "Axial stiffness of the preloaded nut in N/m: 0.8 of the catalogue's. Absent: rigid.",
+        "Axial stiffness of the preloaded nut in N/m, 0.8 of the catalogue's. Absent: rigid.",
     ),
     Key::new(
         "bearing_stiffness",
@@ -80,21 +80,20 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "motor_inertia",
         Values::Number(INERTIA),
-        "Inertia of the rotor and of all that is fixed to it, in kg·m²; the screw's own is computed.",
+        "Inertia of the rotor and what is fixed to it, in kg·m², without the screw.",
     )
     .required(),
     Key::new("table_mass", Values::Number(MASS), "Moved mass of the table in kg.").required(),
     Key::new(
         DAMPING,
         Values::Number(mode::DAMPING),
-        "Damping ratio ζ of the table on the screw with the motor held.",
+        "Damping ratio ζ with the motor held.",
     )
     .required(),
     Key::new(
         BREAKAWAY,
         Values::Number(FORCE),
-        "Breakaway friction of the table in N. The simulated machine is then a motor and a table with stick-slip \
-        friction.",
+        "Breakaway friction of the table in N, for a simulation with stick-slip.",
     )
     .rule("at least `coulomb`; needs a torque drive with `bandwidth_hz`"),
     Key::new(

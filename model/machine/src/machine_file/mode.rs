@@ -47,12 +47,12 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "frequency_hz",
         Values::Number(FREQUENCY_HZ),
-        "Undamped natural frequency in Hz, below half of `sample_hz`.",
+        "Undamped natural frequency, below half of `sample_hz`.",
     ),
     Key::new(
         "damped_frequency_hz",
         Values::Number(FREQUENCY_HZ),
-        "Damped frequency f·√(1−ζ²) in Hz, at which the mode rings; in place of `frequency_hz`.",
+        "Damped frequency f·√(1−ζ²), at which the mode rings.",
     )
     .instead_of("frequency_hz"),
     Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").needed_by("frequency_hz"),
@@ -61,50 +61,52 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "measured",
         Values::Word(|| MEASURED.to_vec()),
-        "State of the motor while the mode was measured: held, as by a position loop, or free. A free mode is \
-        converted.",
+        "Motor while the mode was measured: held, as by a position loop, or free (the mode is converted).",
     )
     .rule("`free` needs both masses, except with kind `custom` or `none`")
     .default(Default::Word(MOTOR_HELD)),
     Key::new(
         MASSES[0],
         Values::Number(MASS),
-        "Mass of the motor's side in kg, or inertia in kg·m², with which a mode that was measured free is converted.",
+        "Mass of the motor's side in kg, or inertia in kg·m², to convert a free mode.",
     ),
     Key::new(
         MASSES[1],
         Values::Number(MASS),
-        "Mass of the load in kg, or inertia in kg·m², referred to the motor's coordinate.",
+        "Mass of the load in kg, or inertia in kg·m², referred to the motor.",
     ),
     Key::new(
         "shaper",
         Values::Word(shaper::of_modes),
-        "Kind of shaper for this mode, instead of the axis's.",
+        "Kind of shaper of this mode. Absent: the axis's.",
     )
-    .rule("a [kind](#kinds) with one shaper per mode; under an axis's kind for all modes only `zv`, `zvd` under `simultaneous`"),
+    .rule("a [kind](#kinds) per mode; under an axis's kind for all modes only `zv`, `zvd` with `simultaneous`"),
     Key::new(
         "tolerance",
         Values::Number(shaper::TOLERANCE),
-        "Tolerance of this mode, instead of the axis's (see [axis.shaper]).",
+        "Tolerance of this mode. Absent: the axis's.",
     ),
-    shaper::ORDER,
+    Key {
+        about: "`order` of this mode's kind, as in [axis.shaper].",
+        ..shaper::ORDER
+    },
     Key::new(
         FREQUENCY_BAND,
         Values::Number(DAMPING),
-        "By how much the frequency may be off, relative and to either side: 0.1 is ±10 %. `optimal` is designed for all of it.",
+        "Relative uncertainty of the frequency, which `optimal` covers: 0.1 is ±10 %.",
     )
     .rule("the band must end below half of `sample_hz`")
     .default(Default::Number(0.0)),
     Key::new(
         DAMPING_BAND,
         Values::PlainPair(DAMPING),
-        "[low, high], the damping ratios that the mode may have; else just `damping`.",
+        "Range [low, high] of the damping ratio. Absent: just `damping`.",
     )
     .rule("`damping` between them"),
     Key::new(
         "participation",
         Values::Number(PARTICIPATION),
-        "Modal participation, the mode's share of the axis's response; only ratios count.",
+        "Modal participation: share of the axis's response; only ratios count.",
     )
     .rule("not 0 in every mode")
     .default(Default::Number(1.0)),

@@ -36,15 +36,14 @@ pub(super) const KEYS_OF_MODE: [Key; 2] = [
     Key::new(
         POINTS,
         Values::Rows(&[VALUE, mode::FREQUENCY_HZ, mode::DAMPING], MAX_POINTS),
-        "A mode that moves, as rows [value, frequency_hz, damping] with increasing values, in place of these two keys.",
+        "Mode that moves: rows [value, frequency_hz, damping] with increasing values.",
     )
     .rule("at least 2; one range for all moving modes of an axis")
     .instead_of("frequency_hz"),
     Key::new(
         MOVES_WITH,
         Values::Name,
-        "Variable of `points`: `position` is the axis's own, in its unit; a variable of any other name is measured by \
-        the host.",
+        "Variable of `points`: `position` is the axis's own, in its unit; the host measures any other.",
     )
     .rule("beside `points`, the same for all modes of an axis"),
 ];
@@ -54,14 +53,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         NOMINAL,
         Values::Number(VALUE),
-        "Value of the variable after reset, whose table is in the ROM. Absent: the first of `values`, else of the \
-        points.",
+        "Value after reset, whose table is in the ROM. Absent: the first of `values`, else of the points.",
     )
-    .rule("within the points, and one of `values` if they are given"),
+    .rule("within the points; one of `values` if given"),
     Key::new(
         VALUES,
         Values::Numbers(VALUE, MAX_TABLES),
-        "Values of the variable that get a table each. Absent: as few as cover all points.",
+        "Values that get a table each. Absent: as few as cover all points.",
     )
     .rule("increasing, within the points; neighbouring tables must overlap"),
 ];

@@ -176,7 +176,7 @@ fn words(list: &[&str]) -> String {
     }
 }
 
-/// A range without its unit, which the meaning has. An end that only keeps absurd numbers out is left out.
+/// A range without its unit, which the meaning or the name has. An end that only keeps absurd numbers out is left out.
 fn interval(range: NumberRange) -> String {
     let ((low, has_low), (high, has_high)) = (range.low(), range.high());
     match (low <= -UNLIMITED, has_low, high >= UNLIMITED, has_high) {

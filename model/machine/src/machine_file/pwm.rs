@@ -93,25 +93,22 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "frequency_hz",
         Values::Number(FREQUENCY_HZ),
-        "PWM frequency in Hz: it divides the clock, and is a multiple of `sample_hz`.",
+        "PWM frequency: a divisor of the clock, a multiple of `sample_hz`.",
     )
     .rule("2 to 65,536 clocks per period")
     .required(),
     Key::or_zero(
         "dead_time_s",
         SHORT_S,
-        "Time in s for which both switches of a leg are off. It is rounded up to clocks.",
+        "Time for which both switches of a leg are off, rounded up to clocks.",
     )
     .rule("with `minimum_pulse_s` below half the period"),
     Key::or_zero(
         "minimum_pulse_s",
         SHORT_S,
-        "Shortest pulse in s; shorter ones are left out. It is rounded up to clocks.",
+        "Shortest pulse, rounded up to clocks; shorter ones are left out.",
     ),
-    Key::switch(
-        "active_low",
-        "Whether the pins are active low; fixed when the hardware is built.",
-    ),
+    Key::switch("active_low", "The pins are active low."),
 ];
 
 /// Reads the table; `None` where a value is refused. Checks that need a valid clock are skipped without one.

@@ -36,14 +36,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "counts_per_unit",
         Values::Counts(COUNTS_PER_UNIT),
-        "Counts of the scale per unit of the axis; the encoder's are the axis's.",
+        "Counts of the scale per unit.",
     )
     .required(),
     Key::new(
         "use",
         Values::Word(|| ScaleUse::ALL.map(|(_, name)| name).to_vec()),
-        "monitor: it is compared with the motor's position. position: the loop runs on it, with the velocity from the \
-        motor.",
+        "monitor: compared with the motor's position. position: the loop runs on it, with the motor's velocity.",
     )
     .rule("`position` needs `[axis.controller]`")
     .default(Default::Word("monitor")),

@@ -47,11 +47,13 @@ const IMPULSES: &str = "impulses";
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
-    Key::new("kind", Values::Word(all), "Kind of shaper.").rule("a word of the [list](#kinds)").required(),
+    Key::new("kind", Values::Word(all), "Kind of shaper.")
+        .rule("one of the [kinds](#kinds)")
+        .required(),
     Key::new(
         "tolerance",
         Values::Number(TOLERANCE),
-        "Residual that an EI kind leaves at the mode, and the level at which every insensitivity is measured.",
+        "Residual of EI kinds at the mode; level at which insensitivity is measured.",
     )
     .default(Default::Number(DEFAULT_TOLERANCE)),
     ORDER,
@@ -65,70 +67,71 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "base",
         Values::Word(|| BASES.map(ShaperKind::name).to_vec()),
-        "Base shaper that `periodic` repeats.",
+        "Shaper that `periodic` repeats.",
     )
     .default(Default::Word("multi-ei")),
     Key::new(
         "lowest_frequency_hz",
         Values::Number(NumberRange::positive(LOWEST_HZ).open_above()),
-        "End of the search of `periodic`, in Hz. Absent: a tenth of the lowest mode's frequency.",
+        "Lower end of the search of `periodic`. Absent: a tenth of the lowest mode's frequency.",
     )
     .rule("below half of `sample_hz`"),
     Key::new(
         "amplitude",
         Values::Word(|| AMPLITUDES.to_vec()),
-        "Amplitudes of the impulses of `simultaneous`: ps is 1, −2, 2, …; um is 1, −1, 1, ….",
+        "Amplitudes of `simultaneous`: ps 1, −2, 2, …; um 1, −1, 1, ….",
     )
     .default(Default::Word("ps")),
     Key::new(
         "method",
         Values::Word(|| METHODS.to_vec()),
-        "Method by which `antisymmetric` is solved.",
+        "Solution method of `antisymmetric`.",
     )
     .default(Default::Word("exact")),
     Key::new(
         "ratio_tolerance",
         Values::Number(RATIO_TOLERANCE),
-        "Largest relative error at which `antisymmetric` takes a ratio of frequencies for odd.",
+        "Relative error up to which `antisymmetric` takes a frequency ratio for odd.",
     )
     .default(Default::Number(0.0)),
     Key::new(
         COMMAND,
         Values::WordOrPair(|| vec![POSITIVE], SUMS),
-        "What a step may do behind `optimal`: `positive`, only rise; or [low, high], stay between these multiples of itself.",
+        "Bounds of a step shaped by `optimal`: `positive` only rises; [low, high] are multiples of its height.",
     )
     .rule("`low` below `high`, `low` ≤ 1 ≤ `high`")
     .default(Default::Word(POSITIVE)),
     Key::new(
         AMPLITUDE_BOUNDS,
         Values::PlainPair(SUMS),
-        "Bounds of each amplitude of `optimal`, in steps, in place of `command`: [low, high] with low at most 0 and high above 0.",
-    ),
+        "Bounds [low, high] of each amplitude of `optimal`, in place of `command`.",
+    )
+    .rule("`low` ≤ 0 < `high`"),
     Key::new(
         TAPS,
         Values::Integer(2, TAPS_MAX as u32),
-        "Most taps of `optimal`: met by a longer duration where it must be.",
+        "Most taps of `optimal`, kept by a longer duration if necessary.",
     )
     .default(Default::Integer(TAPS_MAX as u32)),
     Key::new(
         PREFER,
         Values::Word(|| PREFERENCES.map(|(name, _)| name).to_vec()),
-        "Which of the shortest shapers `optimal` takes.",
+        "Choice of `optimal` among the shortest shapers.",
     )
     .default(Default::Word("fewest-taps")),
     Key::new(
         IMPULSES,
         Values::Pairs(IMPULSE, MAX_IMPULSES),
-        "Impulses of `custom`, [time_s, amplitude]: first time 0, times increasing, sum of the amplitudes 1.",
+        "Impulses of `custom`, [time_s, amplitude], with times increasing from 0.",
     )
-    .rule("sum within 1e-9"),
+    .rule("amplitudes with sum 1, within 1e-9"),
 ];
 
-/// The key `order`, which the shapers of an axis and of a mode share.
+/// The key `order`; a mode has it with a meaning of its own.
 pub(super) const ORDER: Key = Key::new(
     "order",
     Values::Integer(1, MAX_ORDER),
-    "Zero pairs of `chebyshev-ei` (default 3), or frequencies per mode of `vibrationless` (default 2).",
+    "Zero pairs of `chebyshev-ei`, also as `base` (default 3); frequencies per mode of `vibrationless` (default 2).",
 );
 
 /// Reads a kind of shaper by name.

@@ -31,19 +31,17 @@ pub(super) const KEYS: &[Key] = &[
     Key::or_zero(
         "extra_delay_s",
         SHORT_S,
-        "Delay in s that every axis gets in addition to that of the slowest, for devices that are slower than the \
-        axes.",
+        "Delay of every axis in addition to that of the slowest, for slower devices.",
     )
     .rule("as far as the ring buffers reach"),
     Key::new(
         "contour_speed",
         Values::Number(SPEED),
-        "Speed in m/s at which the remaining mismatch of the axes is reported. Absent: the smallest `velocity` of the \
-        axes.",
+        "Speed in m/s or rad/s at which the remaining mismatch is reported. Absent: the axes' smallest `velocity`.",
     ),
     Key::switch(
         ARRIVE_TOGETHER,
-        "Design the `optimal` shapers of all axes as one: the least common duration at which they have one delay, and the least delay there.",
+        "Give the `optimal` shapers of all axes one delay: the least, at the least common duration.",
     )
     .rule("every axis needs kind `optimal` and modes that do not move"),
 ];

@@ -15,9 +15,9 @@ pub struct TraceSection {
 pub(super) const KEYS: &[Key] = &[Key::new(
     "samples",
     Values::OneOf(&SAMPLES),
-    "Words that the memory holds; the recorded signals share them.",
+    "Words of the memory, shared by the recorded signals.",
 )
-.rule("1024 hold 1024 rows of one signal, 512 of two or 256 of four")
+.rule("1024 hold 1024 rows of one signal, 512 of two, 256 of four")
 .required()];
 
 /// Reads the table; `None` where a value is refused.
