@@ -185,13 +185,13 @@ pub(super) const KEYS: &[Key] = &[
         SECONDS,
         "How long the controller's command may be clamped. 0: not checked.",
     )
-    .rule("1 to 65,535 ticks, or 0"),
+    .rule("at most 65,535 ticks"),
     Key::or_zero(
         "encoder_lost_s",
         SECONDS,
         "How long the encoder may stand still or go the wrong way under a command. 0: not checked.",
     )
-    .rule("1 to 65,535 ticks, or 0"),
+    .rule("at most 65,535 ticks"),
     Key::new(
         "encoder_lost_command",
         Values::Number(PART_BELOW),
@@ -204,7 +204,7 @@ pub(super) const KEYS: &[Key] = &[
         SECONDS,
         "How long the host may be silent. 0: no watchdog.",
     )
-    .rule("1 to 65,535 ticks, or 0"),
+    .rule("at most 65,535 ticks"),
     Key::or_zero(
         "brake_release_s",
         SECONDS,

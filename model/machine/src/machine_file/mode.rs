@@ -80,7 +80,7 @@ pub(super) const KEYS: &[Key] = &[
         Values::Word(shaper::of_modes),
         "Kind of shaper of this mode. Absent: the axis's.",
     )
-    .rule("a [kind](#kinds) per mode; under an axis's kind for all modes only `zv`, `zvd` with `simultaneous`"),
+    .rule("a [kind](shaper-design.md#the-kinds) for one mode; under one for all modes: `zv`, `zvd` (`simultaneous`)"),
     Key::new(
         "tolerance",
         Values::Number(shaper::TOLERANCE),

@@ -1,15 +1,13 @@
-//! The tables of `docs/machine-file.md`: the keys of a table, and the kinds of shaper.
+//! The tables of `docs/machine-file.md`: the keys of each table of the file.
 //!
-//! A table of the page stands between two marks. The rows come from the keys that the reader allows and from the rows of
-//! the kinds; a test compares, and `scripts/regenerate` writes them again.
+//! A table of the page stands between two marks. The rows come from the keys that the reader allows; a test compares, and
+//! `scripts/regenerate` writes them again.
 //!
 //! ```text
 //! <!-- keys of [axis.limits]: generated -->
 //! | key | meaning | allowed | default |
 //! <!-- end -->
 //! ```
-
-use posicast_shaper::design::kind::ShaperKind;
 
 use super::axis::NEEDS;
 use super::key::{Default, Key, Values};
@@ -21,20 +19,18 @@ const WORDS_MAX: usize = 8;
 /// Ends of a range from here on only keep absurd numbers out.
 const UNLIMITED: f64 = 1e9;
 
-/// Returns the page with its tables renewed from the keys and kinds of this version.
+/// Returns the page with its tables renewed from the keys of this version.
 ///
 /// # Errors
 /// The mark that the page lacks.
 pub fn with_tables(page: &str) -> Result<String, String> {
     let mut tables = vec![("file".to_owned(), table(KEYS, ""))];
     collect(KEYS, "", &mut tables);
-    let named = tables
-        .into_iter()
-        .map(|(name, table)| (format!("<!-- keys of {name}: generated -->"), table));
-    let kinds = ("<!-- kinds of shaper: generated -->".to_owned(), kinds());
-    named
-        .chain([kinds])
-        .try_fold(page.to_owned(), |page, (mark, table)| between(&page, &mark, &table))
+    let mut page = page.to_owned();
+    for (name, table) in tables {
+        page = between(&page, &format!("<!-- keys of {name}: generated -->"), &table)?;
+    }
+    Ok(page)
 }
 
 /// Replaces what is between a mark and the next `<!-- end -->`.
@@ -186,19 +182,6 @@ fn interval(range: NumberRange) -> String {
         (_, true, false, true) => format!("{low} to {high}"),
         _ => range.unit("").to_string(),
     }
-}
-
-/// The kinds of shaper by what they serve.
-fn kinds() -> String {
-    let list = |is_joint: bool| {
-        let kinds = ShaperKind::ALL
-            .iter()
-            .filter(|kind| kind.treats_modes_together() == is_joint);
-        kinds.map(|kind| format!("`{kind}`")).collect::<Vec<_>>().join(", ")
-    };
-    let rows = [("a shaper per mode, convolved", false), ("one shaper per axis", true)];
-    let rows = rows.map(|(serves, is_joint)| row(&[serves.to_owned(), list(is_joint)]));
-    head(&["the axis has", "kinds"]) + &rows.concat()
 }
 
 /// Writes a whole number with its thousands apart, from five digits on.

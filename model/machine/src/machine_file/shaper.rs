@@ -48,7 +48,7 @@ const IMPULSES: &str = "impulses";
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
     Key::new("kind", Values::Word(all), "Kind of shaper.")
-        .rule("one of the [kinds](#kinds)")
+        .rule("one of the [kinds](shaper-design.md#the-kinds)")
         .required(),
     Key::new(
         "tolerance",

@@ -4,7 +4,7 @@ use posicast_machine::machine_file::with_tables;
 use std::path::Path;
 
 #[test]
-fn golden_the_tables_of_keys_and_kinds_are_what_the_reader_takes() {
+fn golden_the_tables_of_keys_are_what_the_reader_takes() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/machine-file.md");
     let committed = std::fs::read_to_string(&page).unwrap();
     let derived = with_tables(&committed).unwrap_or_else(|mark| panic!("docs/machine-file.md has no place for {mark}"));
@@ -13,7 +13,7 @@ fn golden_the_tables_of_keys_and_kinds_are_what_the_reader_takes() {
     } else {
         assert!(
             committed == derived,
-            "docs/machine-file.md: a table is not what the keys and kinds say; if the change is meant: scripts/regenerate"
+            "docs/machine-file.md: a table is not what the keys say; if the change is meant: scripts/regenerate"
         );
     }
 }
