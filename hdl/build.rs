@@ -1,4 +1,4 @@
-//! Collects the head of every kernel's file, so that the Verilog of a module begins with what its description says.
+//! Collects the module documentation of every kernel's file: it becomes the header comment of the module's Verilog.
 //!
 //! ```text
 //! src/**/*.rs with `comment!("@module NAME")` ─► (NAME, its `//!` lines) ─► $OUT_DIR/heads.rs
@@ -26,7 +26,7 @@ fn main() -> io::Result<()> {
     fs::write(PathBuf::from(folder).join("heads.rs"), heads)
 }
 
-/// All Rust files in a folder and below.
+/// Collects the Rust files of a folder and its subfolders.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -39,7 +39,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// What the kernel of a file calls its module; a kernel stands alone in its file. Examples in comments name none.
+/// Returns the module name from the `@module` tag of a file, which has at most one kernel; tags in comments do not
+/// count.
 fn module_of(source: &str) -> Option<&str> {
     let mut lines = source.lines().map(str::trim_start);
     let tag = lines.find_map(|line| line.strip_prefix("comment!(\"@module "))?;

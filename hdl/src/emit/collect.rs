@@ -1,5 +1,5 @@
-//! Converts RustHDL's object tree to ours: every block with its signals, sub-blocks and kernel, independent of
-//! RustHDL's walk.
+//! Converts RustHDL's object tree to a tree of nodes, each a block with its signals, sub-blocks and kernel, so that the
+//! following passes do not depend on RustHDL's walk.
 
 use super::error::{EmitCause, EmitError};
 use super::types::Type;
@@ -84,7 +84,7 @@ struct Collector {
     open: Vec<Node>,
     namespaces: Vec<String>,
     root: Option<Node>,
-    /// The first error, because RustHDL's walk cannot be stopped.
+    /// The first error. RustHDL's walk cannot be stopped, so more may follow.
     error: Option<EmitError>,
 }
 
@@ -192,7 +192,7 @@ fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, EmitCause> {
     })
 }
 
-/// The bit pattern of a constant; RustHDL prints it even for signed constants.
+/// The bit pattern of a constant; RustHDL prints signed constants as patterns too.
 fn constant(literal: &VerilogLiteral, ty: Type) -> Result<u64, EmitCause> {
     let (_, value) = literal_value(literal).ok_or(EmitCause::WidthUnknown("a constant"))?;
     EmitCause::pattern(Type::bits(ty.width), value)

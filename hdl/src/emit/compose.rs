@@ -103,7 +103,7 @@ fn port_type(port: &Port) -> Type {
     }
 }
 
-/// The input `name`, which must be equal in all instances that have it.
+/// The input `name`, which must have the same type in all instances that have it.
 fn shared_input(name: &str, instances: &[ModuleInstance<'_>]) -> Result<Port, EmitCause> {
     names::check_name(name)?;
     let mut shared: Option<&Port> = None;

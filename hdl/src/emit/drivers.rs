@@ -2,8 +2,7 @@
 //! `always @(*)` block.
 //!
 //! A net that is assigned once and unconditionally needs no `always`. That reads better, and the net has a value from
-//! the start: a block with only constants would have nothing that triggers it, and would stay X in an event
-//! simulator.
+//! the start: nothing would trigger an `always` block of constants, and the net would stay X in an event simulator.
 
 use super::error::{EmitCause, EmitError};
 use super::ir::{Expression, Statement, each};
@@ -103,14 +102,14 @@ impl Drivers {
     }
 }
 
-/// Length in characters of the longest expression that is written at its use: in the connection of a sub-block's
+/// Length in characters of the longest expression that is written where it is used: in the connection of a sub-block's
 /// port, and after `<=`.
 const SHORT: (usize, usize) = (40, 80);
 
 /// Whether the driver of this net is written where the net is used.
 fn is_direct(value: &Expression, net: &Net) -> bool {
     let is_short = match net.role {
-        // Yosys does not handle signed expressions in a connection: it loses their sign.
+        // Yosys loses the sign of a signed expression in a connection.
         Role::PinIn => !net.ty.signed && !value.text.contains('$') && value.text.len() <= SHORT.0,
         Role::Next => value.text.len() <= SHORT.1,
         _ => false,
@@ -121,7 +120,7 @@ fn is_direct(value: &Expression, net: &Net) -> bool {
 /// Bits of each net that nothing reads, as contiguous ranges `(low, width)`.
 ///
 /// # Errors
-/// [`EmitCause::NeverRead`] for a Local or a register of which no bit is read.
+/// [`EmitCause::NeverRead`] for a Local or a register without a bit that is read.
 pub(super) fn unread(
     bits_read: &BTreeMap<NetId, u64>,
     path: &str,

@@ -1,12 +1,12 @@
-//! Errors of the emitter: what it refuses, where, and what to write instead.
+//! Errors of the emitter: the construct that it refuses, the place, and the remedy.
 //!
-//! An [`EmitError`] says *where* (block and signal), its [`EmitCause`] says *what* was found and *what to do*. Every
-//! cause is a design error of a kernel or of a call, never of a machine file: a correct kernel can be emitted for
-//! every machine.
+//! An [`EmitError`] states *where* (block and signal), its [`EmitCause`] *what* was found and *what to do*. Every cause
+//! is a design error of a kernel or of a call, never of a machine file: a correct kernel can be emitted for every
+//! machine.
 
 use super::types::Type;
 
-/// Why no Verilog was written: `block`, `signal`, and the [`EmitCause`] with its remedy.
+/// The reason why no Verilog was written: `block`, `signal`, and the [`EmitCause`] with its remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("block `{block}`, signal `{signal}`: {cause}")]
 pub struct EmitError {
@@ -52,7 +52,7 @@ pub enum EmitCause {
     NameCollision {
         /// The name in the Verilog.
         name: String,
-        /// What uses the name already.
+        /// The thing that already has the name.
         other: String,
     },
 

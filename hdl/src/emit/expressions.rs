@@ -89,9 +89,9 @@ impl<'a> Writer<'a> {
         }
     }
 
-    // Numbers that have no width of their own.
+    // Numbers without a width of their own.
 
-    /// The value of arithmetic on integer literals and loop variables, which follows Rust's integer arithmetic.
+    /// The value of an integer expression of literals and loop variables, by Rust's arithmetic.
     fn number(&self, tree: &Tree) -> Option<i128> {
         match tree {
             Tree::Paren(inner) => self.number(inner),
@@ -162,8 +162,7 @@ impl<'a> Writer<'a> {
         self.values.resize(value, ty)
     }
 
-    /// Casts `signed_cast(bits)` with the same width, or `signed_bit_cast::<M, N>(signed)`, whose M the tree does not
-    /// contain.
+    /// Casts `signed_cast(bits)` with the same width, or `signed_bit_cast::<M, N>(signed)`; the tree has no M.
     fn signed(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let value = self.value(inner, None)?;
         let from = value.ty();
@@ -365,8 +364,8 @@ fn symbol(op: &VerilogOp) -> &'static str {
     }
 }
 
-/// `true` or `false`: RustHDL gives them one bit, and gives integers the width of a Rust integer, which means
-/// nothing.
+/// The literal `true` or `false`, which has one bit in RustHDL's tree; an integer literal has the width of a Rust
+/// integer there, which is meaningless.
 fn literal_bit(literal: &VerilogLiteral) -> Result<Value, EmitCause> {
     let (_, value) = literal_value(literal).ok_or(EmitCause::WidthUnknown("a literal"))?;
     let pattern = EmitCause::pattern(BIT, value)?;

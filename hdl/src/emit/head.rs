@@ -1,12 +1,12 @@
 //! The head of a module's file: the documentation of its kernel's file as plain text for a Verilog comment.
 //!
-//! Links and the fences of drawings are removed, and letters beyond ASCII, which some Verilog tools cannot read, are
+//! Links and the fences of drawings are removed. Characters outside ASCII, which some Verilog tools cannot read, are
 //! replaced.
 
 /// `(@module tag, lines behind //!)` of every kernel; see `build.rs`.
 const HEADS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/heads.rs"));
 
-/// Letters beyond ASCII in sentences, and what is written instead.
+/// Characters outside ASCII in sentences, and their replacements.
 const WORDS: [(char, &str); 11] = [
     ('−', "-"),
     ('·', "*"),
@@ -52,7 +52,7 @@ fn plain(text: &str) -> Vec<String> {
     lines
 }
 
-/// A line of text without links and marks.
+/// A line of text without links and characters outside ASCII.
 pub(super) fn plain_words(line: &str) -> String {
     let mut text = String::new();
     let mut rest = line;
@@ -61,7 +61,7 @@ pub(super) fn plain_words(line: &str) -> String {
             break;
         };
         text.push_str(before);
-        // A link has a target or is a name in backticks; other brackets belong to a word's bits.
+        // A link has a target or is a name in backticks; other brackets enclose the bits of a word.
         let target = after.strip_prefix('(').and_then(|target| target.split_once(')'));
         rest = match target {
             Some((_, after)) => {
@@ -89,7 +89,7 @@ pub(super) fn plain_words(line: &str) -> String {
     plain
 }
 
-/// Replaces a letter of a drawing one for one, so that columns stay aligned.
+/// Replaces a character of a drawing by one character, so that columns stay aligned.
 fn drawing(letter: char) -> char {
     match letter {
         '─' | '−' => '-',

@@ -36,7 +36,7 @@ pub(super) struct Leaf<'a> {
 pub(super) struct RegisterTag {
     /// Reset and power-up value.
     pub(super) initial: u64,
-    /// Whether the owning block clocks and resets it, and lets it keep its value, without a statement of the kernel.
+    /// Whether the owning block clocks it, resets it and keeps its value without a statement in the kernel.
     pub(super) is_kept: bool,
 }
 

@@ -4,14 +4,14 @@ use super::Module;
 use super::error::{EmitCause, EmitError};
 use super::names;
 
-/// Name of the module `base` that is the same for every machine, as [`emit`](super::emit()) writes it:
-/// `posicast_BASE`, or the base alone where the prefix is empty.
+/// Name that [`emit`](super::emit()) gives to the module `base` if it is the same for every machine: `posicast_BASE`,
+/// or the base alone where the prefix is empty.
 pub fn shared_name(prefix: &str, base: &str) -> String {
     names::module_name(prefix, false, base)
 }
 
-/// Name of the module `base` that contains something of a machine: `PREFIX_BASE`, or the base alone where the prefix
-/// is empty.
+/// Name of the module `base` whose contents depend on the machine: `PREFIX_BASE`, or the base alone where the prefix is
+/// empty.
 pub fn own_name(prefix: &str, base: &str) -> String {
     names::module_name(prefix, true, base)
 }

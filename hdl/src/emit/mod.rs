@@ -1,8 +1,8 @@
-//! Verilog from RustHDL: a typed emitter that writes exactly what the simulation does, or refuses.
+//! Verilog from RustHDL: a typed emitter whose Verilog behaves exactly like the simulation, or which refuses the block.
 //!
-//! RustHDL's own generator loses widths and signs, so that its Verilog can compute something else than its
-//! simulation. This one keeps the type of every expression up to the text. A construct without an exact, plain
-//! translation is refused with an [`EmitError`] that names the block, the signal and the remedy.
+//! RustHDL's own generator loses widths and signs, so its Verilog can compute different values from its simulation.
+//! This emitter keeps the type of every expression up to the text. A construct without an exact, plain translation is
+//! refused with an [`EmitError`] that names the block, the signal and the remedy.
 //!
 //! - Input: a RustHDL [`Block`], whose leaves have tags (below), and names: top, prefix, header.
 //! - Output: one [`Module`] per Verilog file, sub-modules before those that use them, the top last; byte for byte the
@@ -10,11 +10,11 @@
 //!   Icarus and Yosys.
 //! - Clock and reset: all registers of a module are clocked by its input `clk` and reset, synchronously, by its input
 //!   `rst`; the reset value is also the power-up value.
-//! - Sharing: equal sub-blocks are one module. Sub-blocks that differ have different names, by the sizes in their
-//!   `@module` tags; anything else is an error, so that a name always stands for the same contents.
+//! - Sharing: equal sub-blocks are one module. Sub-blocks that differ have different names, because their `@module`
+//!   tags contain their sizes. Different contents with one name are an error.
 //!
-//! A kernel names its module by a comment, and the Verilog begins with the `//!` lines of its file. A leaf states
-//! both in the first lines of its text:
+//! A kernel names its module in a comment, and its Verilog begins with the `//!` lines of its file. A leaf has name and
+//! description in the first lines of its text:
 //!
 //! ```text
 //! comment!("@module tap_sequencer");   base name of the module; without it, the field path
@@ -103,9 +103,8 @@ impl Module {
 pub struct EmitOptions {
     /// Base name of the top module, which includes the block's size if it has one.
     pub top: String,
-    /// Prefix of the names of modules that contain something of a machine, joined by `_`: the machine's and axis's
-    /// names. All other modules begin with [`LIBRARY`]. If it is empty, all names are without prefix, as a bench
-    /// needs them.
+    /// Prefix, joined by `_`, of the names of modules whose contents depend on the machine: the names of machine and
+    /// axis. All other names begin with [`LIBRARY`]. If it is empty, no name has a prefix, as a bench needs.
     pub prefix: String,
     /// Header of the top's file.
     pub header: Header,
@@ -118,7 +117,7 @@ pub struct Header {
     pub about: String,
     /// Its build parameters.
     pub parameters: Vec<Parameter>,
-    /// What its ports are for.
+    /// Purposes of its ports.
     pub ports: Vec<PortNote>,
 }
 
@@ -136,7 +135,7 @@ pub struct Parameter {
 /// Writes `block` as Verilog: sub-modules first, the top last.
 ///
 /// # Errors
-/// [`EmitError`] for the first thing that cannot be expressed exactly, or that breaks a rule of the kernels.
+/// [`EmitError`] for the first construct that cannot be expressed exactly, or that breaks a rule of the kernels.
 pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
     check_names(options)?;
     let top = collect::collect(block, &options.top)?;
@@ -146,8 +145,8 @@ pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<M
 /// Writes a kernel at the sizes `wanted` as Verilog, from the same kernel at a few other sizes.
 ///
 /// Each sample consists of the kernel's sizes and the kernel; all are built for one configuration. A width must be a
-/// constant plus the sum of some of the sizes. The samples determine which: two whose sizes differ by amounts of
-/// which no two subsets have the same sum, and at least one more, which all must agree with.
+/// constant plus the sum of some of the sizes. Two samples determine which ones, if no two subsets of the differences
+/// between their sizes have the same sum. At least one more sample must confirm the result.
 ///
 /// # Errors
 /// Those of [`emit()`], and an error for numbers that do not follow from the sizes.

@@ -22,7 +22,7 @@ pub(super) struct Modules<'a> {
     written: Vec<Module>,
     /// Contents of each module by its name.
     by_name: BTreeMap<String, Content>,
-    /// Names of modules without a tag, which are named after their first path.
+    /// Names of modules without a tag: the path of the first block with these contents.
     untagged: BTreeMap<Content, String>,
 }
 
@@ -33,7 +33,7 @@ type Content = (Vec<String>, String);
 struct Draft {
     /// Base name from the tag of the kernel or leaf.
     tagged: Option<String>,
-    /// Whether it contains something of a machine, or a part that does.
+    /// Whether its contents, or those of a sub-block, depend on the machine.
     of_machine: bool,
     about: Vec<String>,
     /// Text from the port list to `endmodule`.
@@ -124,8 +124,8 @@ impl Modules<'_> {
         })
     }
 
-    /// Writes the module of a sub-block, unless it exists, and returns its name and whether it contains something of
-    /// a machine.
+    /// Writes the module of a sub-block, unless it exists, and returns its name and whether its contents depend on the
+    /// machine.
     fn child(&mut self, node: &Node) -> Result<(String, bool), EmitError> {
         let draft = self.draft(node, &[])?;
         let from_path = || node.path.split('.').skip(1).collect::<Vec<_>>().join("_");
@@ -144,7 +144,7 @@ impl Modules<'_> {
         Ok((name, draft.of_machine))
     }
 
-    /// Takes the name for the module. Returns false if the same module has it already.
+    /// Reserves the name for the module. Returns false if an equal module already has it.
     ///
     /// # Errors
     /// [`EmitCause::OtherContent`] where another module has the name.
@@ -361,7 +361,7 @@ impl Composite<'_> {
                 }
             });
         });
-        // It follows `always @(*)`, which an event simulator must have started when these values arrive.
+        // The block follows `always @(*)`: an event simulator must have started that one when these values change.
         lines.section(|lines| lines.nest("initial begin", "end", |lines| initial(lines, "=")));
     }
 }

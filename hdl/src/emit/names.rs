@@ -48,8 +48,8 @@ pub(super) fn check_form(name: &str) -> Result<(), EmitCause> {
 /// Prefix of the modules that are the same for every machine.
 pub const LIBRARY: &str = "posicast";
 
-/// The full name of a module: `posicast_BASE` if it is the same for every machine, `PREFIX_BASE` if it contains
-/// something of this one, and the base alone without a prefix, as in a bench.
+/// The full name of a module: `posicast_BASE` if it is the same for every machine, `PREFIX_BASE` if its contents depend
+/// on the machine, and the base alone without a prefix, as in a bench.
 pub(super) fn module_name(prefix: &str, of_machine: bool, base: &str) -> String {
     match (prefix, of_machine) {
         ("", _) => base.to_owned(),
@@ -82,7 +82,7 @@ pub(super) fn constant_name(raw: &str) -> String {
 pub(super) struct Taken(BTreeMap<String, String>);
 
 impl Taken {
-    /// Takes `name` for `owner`.
+    /// Reserves `name` for `owner`.
     pub(super) fn take(&mut self, name: &str, owner: &str) -> Result<(), EmitCause> {
         match self.0.insert(name.to_owned(), owner.to_owned()) {
             None => Ok(()),
@@ -94,11 +94,11 @@ impl Taken {
     }
 }
 
-/// What a constant of 0 is called where its name says no more.
+/// First words in the name of a constant 0 that only repeats its value.
 const NOTHING: [&str; 6] = ["NO", "NONE", "NOTHING", "NOBODY", "NIL", "ZERO"];
 
-/// Whether the name of a constant says no more than its value: 0 that is `NO_CLOCKS`, 1 that is `ONE_TICK`, 2 that is `CHANNEL_2`.
-/// Such a constant is written as a literal.
+/// Whether the name of a constant only repeats its value: `NO_CLOCKS` for 0, `ONE_TICK` for 1, `CHANNEL_2` for 2. Such
+/// a constant is written as a literal.
 pub(super) fn says_its_value(name: &str, value: u64) -> bool {
     let first = name.split('_').next().unwrap_or_default();
     match value {

@@ -1,4 +1,4 @@
-//! Numbers in a text that depend on the block: `${..}` in the text of a leaf, and in the name of a module.
+//! Numbers that depend on the block: `${..}` in the text of a leaf, and in the name of a module.
 //!
 //! | in the text | replaced by |
 //! |---|---|
@@ -10,13 +10,13 @@
 //! | `${count ARRAY}` | the number of ports of the array |
 //! | `${value NAME}` | the value of a constant, or the reset value of a register |
 //! | `${log2 NAME}` | the exponent of a constant that is a power of two, of either sign |
-//! | `${if NAME TEXT}` | the text where that value is not 0, else nothing |
+//! | `${if NAME TEXT}` | the text if the value of NAME is not 0, else nothing |
 
 use super::collect::{Kind, Node, Signal};
 use super::error::EmitCause;
 use super::leaf;
 
-/// The text with its numbers filled in from `node`.
+/// Returns the text with its numbers replaced by those of `node`.
 pub(super) fn fill(text: &str, node: &Node) -> Result<String, EmitCause> {
     let mut filled = String::new();
     let mut rest = text;

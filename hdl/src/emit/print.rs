@@ -99,7 +99,7 @@ pub(crate) fn file(name: &str, header_text: &str, body: &str) -> String {
     format!("{header_text}module {name} {body}\n`default_nettype wire\n")
 }
 
-/// Header of a file that is part of other blocks; the table of parameters is in their tops.
+/// Header of a module inside a block, without parameters, which are in the header of the top.
 pub(super) fn part_header(name: &str, about: &[&str]) -> String {
     header(name, about, &[], RUSTHDL)
 }
@@ -117,12 +117,12 @@ pub(super) fn top_header(name: &str, about: &[&str], header_data: &Header) -> St
     header(name, &paragraphs, &header_data.parameters, RUSTHDL)
 }
 
-/// Header of a file that is not written from a kernel: a register bank, a composition.
+/// Header of a module that is not written from a kernel: a register bank or a composition.
 pub(crate) fn data_header(name: &str, header_data: &Header, made_from: &str) -> String {
     header(name, &[header_data.about.as_str()], &header_data.parameters, made_from)
 }
 
-/// The port list of a node, with `is_reg` telling which outputs are variables.
+/// The port list of a node; `is_reg` selects the outputs that are variables.
 pub(super) fn ports(node: &Node, is_reg: &dyn Fn(&Signal) -> bool, notes: &[PortNote]) -> String {
     let ports = node.ports().map(|port| {
         let keyword = match port.kind {
@@ -140,7 +140,7 @@ pub(crate) fn port_list(ports: &[(&str, Type, String)]) -> String {
     noted_port_list(ports, &[])
 }
 
-/// The same, with what the ports are for behind them.
+/// The same, with the purposes of the ports as comments behind them.
 pub(crate) fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
     if ports.is_empty() {
         return "();\n".to_owned();
@@ -168,7 +168,8 @@ pub(crate) fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]
 /// Longest line of a port with its note.
 const COLUMNS: usize = 100;
 
-/// `code` with a comment from `column` on. One that is too long is cut behind its first clause; if that is, it goes on below.
+/// `code` with a comment from `column` on. A comment that is too long is cut after its first clause; if the clause is
+/// too long, it continues on the next line.
 fn noted(code: &str, column: usize, text: &str) -> String {
     let room = COLUMNS.saturating_sub(column + "// ".len());
     let clause = text.split_once("; ").filter(|_| text.len() > room);
@@ -281,7 +282,7 @@ fn comment(lines: &mut Lines, text: &str, spaced: bool) {
     lines.line(&format!("// {text}"));
 }
 
-/// Reads bits that nothing else reads, with a name by which lint tools take it as intended.
+/// Reads the bits that nothing else reads into a wire whose name lint tools recognise, so that they do not report them.
 pub(super) fn unused(lines: &mut Lines, ranges: &[(NetId, u32, u32)], scope: &Scope) {
     if ranges.is_empty() {
         return;

@@ -4,15 +4,14 @@
 //! one kernel, built for one configuration at different sizes. Their differences are resolved here, once, so that the
 //! following passes see a node like any other:
 //!
-//! - A width is a constant plus the sum of some of the sizes: `W + 18`, `A + T`. All samples must agree on the form;
-//!   with one sample more than needed to determine it, a width of another form is detected and refused.
-//! - A value of a constant, or the reset value of a register, belongs to the configuration and is the same in all
-//!   samples, as far as their widths show it; it is cut to the wanted width, and loses only copies of its highest
-//!   bit. A constant may also be a number with the form of a width.
+//! - A width is a constant plus the sum of some of the sizes: `W + 18`, `A + T`. All samples must agree on the form.
+//!   One sample more than the form needs detects widths of any other form, which are refused.
+//! - A value of a constant, or the reset value of a register, comes from the configuration and is the same in all
+//!   samples, except that narrow samples have only its low bits. It is cut to the wanted width; the bits above must be
+//!   copies of one bit. A constant may also be a number with the form of a width.
 //! - Everything else must be equal: names, kinds, signs, statements, the text of leaves.
 //!
-//! The changes of the sizes between samples must distinguish the sums: no two subsets of the sizes may change by the
-//! same sum.
+//! The samples must distinguish the sums: no two subsets of the sizes may change by the same sum between samples.
 
 use super::collect::{Kind, Node};
 use super::error::{EmitCause, EmitError};
@@ -21,7 +20,7 @@ use super::types::{Type, mask};
 use rust_hdl_core::ast::{VerilogBlockOrConditional, VerilogExpression as Tree, VerilogStatement as Statement};
 use rust_hdl_core::prelude::Verilog;
 
-/// Makes the kernel at the sizes `wanted` from samples, each with its sizes, in the order of `wanted`, and its node.
+/// Makes the kernel at the sizes `wanted`. Each sample has its sizes, in the order of `wanted`, and its node.
 pub(super) fn resolve(samples: Vec<(Vec<u32>, Node)>, wanted: &[u32]) -> Result<Node, EmitError> {
     let (samples, mut nodes): (Vec<_>, Vec<_>) = samples.into_iter().unzip();
     if nodes.is_empty() || samples.iter().any(|sizes: &Vec<u32>| sizes.len() != wanted.len()) {
@@ -144,7 +143,7 @@ impl Sizes<'_> {
             let mut of_block = Vec::new();
             each_number(block, "", &mut |_, number| of_block.push(std::mem::take(number)));
             numbers.push(of_block);
-            // With their numbers removed, equal trees have the same text.
+            // The numbers have been removed, so equal trees have the same text.
             shapes.push(format!("{block:?}"));
         }
         if shapes.iter().any(|shape| *shape != shapes[0]) {
@@ -173,8 +172,8 @@ impl Sizes<'_> {
         })
     }
 
-    /// The number for the wanted sizes, if `found` are those of the samples: a constant plus the sum of some of the
-    /// sizes.
+    /// Returns the number at the wanted sizes, a constant plus the sum of some of the sizes; `found` has the numbers of
+    /// the samples.
     fn number(&self, found: &[i128]) -> Result<i128, EmitCause> {
         let sum = |set: u32, sizes: &[u32]| -> i128 {
             let members = sizes.iter().enumerate().filter(|(index, _)| set >> index & 1 == 1);
@@ -195,7 +194,7 @@ impl Sizes<'_> {
         }
     }
 
-    /// The pattern of a constant or reset value of type `wanted`; `found` are those of the samples.
+    /// Returns the pattern of a constant or reset value in the type `wanted`; `found` has the patterns of the samples.
     fn value(&self, found: &[u64], types: &[Type], wanted: Type) -> Result<u64, EmitCause> {
         let all = || found.iter().zip(types);
         let widest = all().max_by_key(|(_, ty)| ty.width);

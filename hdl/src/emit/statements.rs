@@ -150,7 +150,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A register's `clock` and `rst` must be this block's; the kernel may assign nothing else.
+    /// Checks that a register's `clock` or `rst` is assigned from the block's own, the only allowed source.
     fn wire_register(
         &self,
         raw: &str,

@@ -71,7 +71,7 @@ impl Type {
         let width = self.width;
         let sign_bit = 1u64 << (width - 1);
         match (self.signed, pattern & sign_bit != 0) {
-            // Larger numbers are masks rather than counts.
+            // Numbers of more than 32 bits are usually masks, not counts.
             (false, _) if pattern > 0xffff_ffff => format!("{width}'h{pattern:x}"),
             (false, _) => format!("{width}'d{pattern}"),
             (true, false) => format!("{width}'sd{pattern}"),

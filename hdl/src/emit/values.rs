@@ -15,7 +15,7 @@ pub(super) enum Value {
     Part { net: NetId, low: u32, ty: Type },
     /// A bit pattern.
     Literal { pattern: u64, ty: Type },
-    /// Text, with the operator that is outside all parentheses in it, if there is one.
+    /// Text, and its operator outside all parentheses, if it has one.
     Text {
         text: String,
         ty: Type,
@@ -198,7 +198,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Text of `value` beside the operator `of`: a chain of the same bitwise or logical operator needs no
+    /// Text of `value` as an operand of the operator `of`: a chain of the same bitwise or logical operator needs no
     /// parentheses.
     pub(super) fn link(&mut self, value: &Value, of: &str) -> String {
         match value {

@@ -3,14 +3,14 @@
 /// Longest line that is not wrapped, in columns.
 const COLUMNS: usize = 100;
 
-/// `line`, or where it is too long several lines; those after the first are indented by four more, in an item of a list by two; in a comment as its
-/// text is.
+/// Returns `line`, wrapped if it is too long. Further lines of code are indented by four more columns; those of a
+/// comment like its text, and in an item of a list by two more.
 pub(super) fn wrapped(line: &str) -> String {
     let mut rest = line.to_owned();
     let code = line.trim_start();
     let indent = &line[..line.len() - code.len()];
     let lead = match code.strip_prefix("//") {
-        // As the text of the comment is: that of a drawing is indented.
+        // The text of a comment can be indented, as in a drawing.
         Some(text) => {
             let spaces = text.len() - text.trim_start().len() + if text.starts_with(" - ") { 2 } else { 0 };
             format!("{indent}//{}", " ".repeat(spaces))
@@ -34,7 +34,7 @@ pub(super) fn wrapped(line: &str) -> String {
     lines.join("\n")
 }
 
-/// Start of the first word that does not fit; `None` in tables and drawings, whose spaces matter.
+/// Position of the space before the first word that does not fit; `None` in tables and drawings, whose spaces matter.
 fn between_words(line: &str, lead: usize) -> Option<usize> {
     if line[lead..].trim_start().contains("  ") {
         return None;
@@ -43,7 +43,7 @@ fn between_words(line: &str, lead: usize) -> Option<usize> {
     line[lead..=fits].rfind(' ').map(|at| lead + at)
 }
 
-/// The last possible break among those inside the fewest brackets: before an operator, after a comma.
+/// The last break among those inside the fewest brackets; a break is before an operator or after a comma.
 fn at_an_operator(line: &str, lead: usize) -> Option<usize> {
     let (mut depth, mut quoted) = (0_u32, false);
     let mut best: Option<(u32, usize)> = None;
