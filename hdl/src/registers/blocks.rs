@@ -8,7 +8,7 @@ use posicast_blocks::registers::{Access, Field, FlagSource, Register, RegisterMa
 /// A flip-flop of the bank, as type, name and reset value.
 pub(super) type Flop = (Type, String, u32);
 
-/// Declarations and the clocked block of one register.
+/// Writes the declarations and the clocked block of one register.
 pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Register) {
     let flops = flops(register);
     let title = |lines: &mut Lines| {
@@ -113,7 +113,7 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
     }
 }
 
-/// Writes each enabled byte of the bus. An enable per byte leaves a flip-flop without logic of its own.
+/// Writes each enabled byte of the bus. With one enable per byte a flip-flop needs no logic of its own.
 fn by_bytes(lines: &mut Lines, condition: &str, fields: &[Field], prefix: &str) {
     for byte in 0..4 {
         let in_byte = |field: &Field| {
@@ -182,7 +182,7 @@ fn source(field: &Field) -> &str {
     }
 }
 
-/// The flip-flops of a register, outputs and others, without those of shadows.
+/// The flip-flops of a register, outputs and others, without its shadow.
 pub(super) fn flops(register: &Register) -> Vec<Flop> {
     let fields = |prefix: &str| -> Vec<Flop> {
         let flop = |field: &Field| (type_of(field), format!("{prefix}{}", field.name), field.reset);
@@ -205,7 +205,7 @@ pub(super) fn flops(register: &Register) -> Vec<Flop> {
     }
 }
 
-/// Declares the flip-flops with this prefix, which are those that are not outputs.
+/// Declares the flip-flops whose names begin with `prefix`: those that are not outputs.
 pub(super) fn declare(lines: &mut Lines, flops: &[Flop], prefix: &str) {
     for (ty, name, _) in flops.iter().filter(|(_, name, _)| name.starts_with(prefix)) {
         let declaration = ty.declaration();
@@ -214,7 +214,8 @@ pub(super) fn declare(lines: &mut Lines, flops: &[Flop], prefix: &str) {
     }
 }
 
-/// Writes a clocked block that resets `flops`, and else does what `inner` writes, under the condition `otherwise`.
+/// Writes a clocked block that resets `flops`; `inner` writes the other branch, and `otherwise` is its `else` or
+/// `else if (..)`.
 pub(super) fn clocked(lines: &mut Lines, flops: &[Flop], otherwise: &str, inner: impl FnOnce(&mut Lines)) {
     lines.nest(
         "always @(posedge clk) if (rst) begin",

@@ -44,8 +44,8 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     })
 }
 
-/// Name of the bank's module: `PREFIX_MAP_registers`, or `registers` where `prefix` is empty. A bank has offsets, reset values and
-/// parameters of its build, so it belongs to one machine, or to one axis.
+/// Name of the bank's module: `PREFIX_MAP_registers`, or `registers` where `prefix` is empty. A bank contains offsets,
+/// reset values and build parameters, so it belongs to one machine or one axis.
 pub fn name(map: &RegisterMap, prefix: &str) -> String {
     match prefix {
         "" => "registers".to_owned(),
@@ -53,7 +53,7 @@ pub fn name(map: &RegisterMap, prefix: &str) -> String {
     }
 }
 
-/// The build's parameters for the header of a file.
+/// The build parameters, for the header of a file.
 pub(crate) fn parameters(map: &RegisterMap) -> Vec<Parameter> {
     let is_parameter = |register: &&Register| register.access == Access::Constant && register.offset > 1;
     let fields = map

@@ -44,7 +44,7 @@ pub(super) fn body(map: &RegisterMap) -> String {
     lines.text
 }
 
-/// What the ports are for: the meanings of the fields with their units, and what a strobe reports.
+/// Purposes of the ports: the meanings of the fields with their units, and the events that strobes report.
 fn notes(map: &RegisterMap) -> Vec<PortNote> {
     let note = |port: &str, text: String| PortNote {
         port: port.to_owned(),
@@ -116,7 +116,7 @@ fn writables(map: &RegisterMap) -> impl Iterator<Item = &Register> {
     map.registers().iter().filter(|register| is_writable(register))
 }
 
-/// Whether it uses the written word with the disabled bytes as 0.
+/// Whether the register uses the written word with the disabled bytes set to 0.
 fn is_masked(register: &Register) -> bool {
     matches!(
         register.access,
@@ -228,7 +228,7 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
     }
 }
 
-/// Number of words that are read in one group: with more, the decode is the longest path of a stage.
+/// Largest number of words in a read group: in a larger one the decode would be the longest path of a stage.
 const GROUP_WORDS: usize = 16;
 
 /// Registers that can be read, each with the pieces of its word.
@@ -308,7 +308,7 @@ fn power_up(lines: &mut Lines, map: &RegisterMap, data: &[Flop]) {
     });
 }
 
-/// Reads unused bits, so that lint tools take them as intended.
+/// Reads the bits that nothing else reads, so that lint tools do not report them.
 fn unused(lines: &mut Lines, map: &RegisterMap) {
     let fields_of = |holds: &dyn Fn(&Register) -> bool| {
         let registers = map.registers().iter().filter(|register| holds(register));
