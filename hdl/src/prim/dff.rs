@@ -77,7 +77,7 @@ impl<T: Synth> Logic for Dff<T> {
         }
     }
 
-    /// `#[hdl_gen]` reserves `clock` and `d` for `dff_setup!`, and does not know that ours wires `rst` too.
+    /// `#[hdl_gen]` leaves `clock` and `d` to `dff_setup!`, but does not know that `rst` is wired there too.
     fn connect(&mut self) {
         self.q.connect();
         self.rst.connect();

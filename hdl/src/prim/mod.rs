@@ -1,6 +1,6 @@
 //! The leaves: blocks with hand-written Verilog, each with the Rust that simulates it.
 //!
-//! The first line of a leaf's Verilog tells the emitter what it is: `// @dff INIT` for a flip-flop, which the emitter
+//! The first line of a leaf's Verilog is its tag for the emitter: `// @dff INIT` for a flip-flop, which the emitter
 //! writes into the module that owns it, or `// @leaf NAME reg: PORTS` for a module of its own.
 
 mod dff;
@@ -21,7 +21,7 @@ pub(crate) use synchroniser::Synchroniser;
 
 use rust_hdl_core::prelude::*;
 
-/// A literal `<width>'h<pattern>`; RustHDL prints enumerations and signed numbers without their width or with a sign.
+/// The literal `<width>'h<pattern>`; RustHDL prints enumerations and signed numbers without their width or with a sign.
 fn sized<T: Synth>(value: T) -> String {
     let text = format!("{:x}", value.verilog());
     let digits = text.split("'h").nth(1).unwrap_or_default();

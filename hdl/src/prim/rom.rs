@@ -1,6 +1,6 @@
 //! Block ROM; data are read one clock after the address.
-// @about A memory with contents and a registered read is what becomes block RAM; a `case` would become logic.
 //!
+//! It is written as a memory with contents and a registered read, which becomes block RAM; a `case` would become logic.
 //! Words above the last one given are undefined, and a block must not use them.
 
 use rust_hdl_core::prelude::*;
@@ -25,7 +25,7 @@ pub(crate) struct Rom<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Rom<D, N> {
-    /// `base_name` is the module's name after the machine's and axis's names: two ROMs of one block need two names.
+    /// `base_name` is the module's name without those of machine and axis; two ROMs of one block need different ones.
     pub(crate) fn new(base_name: &str, words: Vec<RomWord>) -> Self {
         Self {
             clk: Signal::default(),
