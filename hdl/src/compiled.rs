@@ -1,10 +1,10 @@
 //! Kernels with sizes: compiled at a few sizes, emitted at any, simulated at one that is large enough.
 //!
 //! A size of a kernel is a const generic, and each combination is a type that takes time to compile. So a kernel is
-//! compiled at three sizes: the largest that a machine can have; a second, from which and the first the emitter
-//! determines how each width depends on the sizes; and a third that verifies it. Constants of a kernel come from the
-//! configuration and never from the compiled sizes, so that a large kernel also does what a smaller one would: the
-//! first two therefore serve to simulate all sizes.
+//! compiled at three sizes. The first is the largest that a machine can have; from the first and the second the
+//! emitter determines how each width depends on the sizes; the third verifies the result. Constants of a kernel come
+//! from the configuration and never from the compiled sizes, so a large kernel behaves like a smaller one, and the
+//! first two can simulate all sizes.
 
 use crate::emit::{self, EmitError, EmitOptions, Module};
 use crate::simulation::Pins;
@@ -33,8 +33,8 @@ pub(crate) fn emit<C>(
     emit::emit_sized(&samples, sizes, options)
 }
 
-/// The kernel that holds a block of these `sizes`: one whose first size is equal if there is one, else, unless the
-/// first size must be `exact`, one that is larger.
+/// Returns a compiled kernel that is large enough for `sizes`, if possible one with the same first size. With `exact`
+/// the first size must be the same.
 pub(crate) fn holding<'a, C>(compiled: &'a [Compiled<C>], sizes: &[u32], exact: bool) -> Option<&'a Compiled<C>> {
     let holds = |kernel: &&Compiled<C>| kernel.sizes.iter().zip(sizes).all(|(there, wanted)| there >= wanted);
     let same_first = |kernel: &&Compiled<C>| kernel.sizes.first() == sizes.first();

@@ -11,9 +11,9 @@ use crate::{
 };
 use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
 
-/// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`. Modules whose
-/// contents depend on the machine begin with `prefix`: for a component the machine's and axis's names; for a stage
-/// the machine's, followed by those of its axes.
+/// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`. The names of modules
+/// whose contents depend on the machine begin with `prefix`: for a component the names of machine and axis; for a
+/// stage the name of the machine, to which the modules of an axis add the axis's name.
 ///
 /// # Errors
 /// [`EmitError`] where `name` or `prefix` is not a valid Verilog name.

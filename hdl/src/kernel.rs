@@ -1,4 +1,4 @@
-//! `kernel!` makes everything of a kernel except its logic from its ports, registers, wires, parts and constants.
+//! `kernel!` generates a kernel from its ports, registers, wires, parts and constants: everything except the logic.
 //!
 //! ```text
 //! kernel! {
@@ -51,7 +51,7 @@
 
 /// See the [module](self).
 macro_rules! kernel {
-    // With the ports of a list in the model, the list's macro calls back with them.
+    // The ports come from a list in the model, whose macro calls this one back with them.
     (
         $(#[$about:meta])*
         $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?

@@ -17,19 +17,19 @@
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
 //! | [`time_base`], [`sample_select`], [`setting_banks`] | additional blocks of stand-alone components |
+//! | [`divider_share`], [`group`], [`schedule`] | blocks that the axes of a stage share |
 //! | [`component`] | components: blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
-//! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
-//! | [`encoder_generator`] | quadrature at a set rate in the place of the encoder's pins |
+//! | [`encoder_generator`] | the internal encoder: quadrature at a set rate, in place of the pins |
 //! | [`error_table`] | a measured error of screw or scale over position, taken from the position reference |
 //! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
-//! | [`drive_command`] | the drive command: the duty for the PWM, from the controller or by hand in direct mode |
+//! | [`drive_command`] | the drive command: the duty for the PWM, from the controller or, in direct mode, manual |
 //! | [`linear_scale`] | the linear scale: compares motor and scale; deviation, position, velocity |
 //! | [`trace`] | the trace memory: records signals of an axis, tick by tick, around a trigger |
 //! | [`uart_bridge`] | the bridge from a serial line to the registers |
 //! | [`spi_bridge`] | the bridge from SPI to the registers |
-//! | [`linked_stage`] | the stage with that bridge |
+//! | [`linked_stage`] | the stage with one of these bridges |
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 

@@ -1,6 +1,7 @@
-//! The stage with its bridge in Verilog: a module that joins the two.
+//! The stage with its bridge in Verilog: a module that connects the two.
 //!
-//! The reference is `posicast_blocks::linked_stage`. It is text, not a composition: the widths of the two buses differ.
+//! The reference is `posicast_blocks::linked_stage`. The module is written as text, not as a composition, because the
+//! two buses have addresses of different widths.
 
 use crate::emit::print::{self, Lines};
 use crate::emit::{EmitError, Header, Module, Parameter, Type, add};
@@ -12,8 +13,8 @@ use posicast_blocks::{Direction, Port};
 /// Width of the bridge's addresses.
 const ADDRESS_BITS: u32 = 16;
 
-/// All Verilog modules, sub-modules first, the top last. The top is called `name`, the stage in it `stage_name`; modules whose contents
-/// depend on the machine begin with `prefix`.
+/// All Verilog modules, sub-modules first, the top last. The top is called `name`, the stage in it `stage_name`. The
+/// names of modules whose contents depend on the machine begin with `prefix`.
 ///
 /// # Errors
 /// [`EmitError`] where a name is not a valid Verilog name.
@@ -40,10 +41,10 @@ pub fn emit(
     Ok(modules)
 }
 
-/// Emits the bridge of the line alone, the top last.
+/// All Verilog modules of the bridge alone, the top last.
 ///
 /// # Errors
-/// [`EmitError`] where the prefix does not begin a valid Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit_bridge(config: &BridgeConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     match config {
         BridgeConfig::Uart(_) => uart_bridge::emit(prefix),

@@ -1,8 +1,8 @@
 //! A machine's top module: one shaper per axis, side by side.
 //!
-//! The top is named after the machine and has `clk`, `rst` and `strobe` (the sample tick) for all axes; every other port is
-//! `<axis>_<port>`. RustHDL's sizes are types, so a machine of any sizes cannot be one RustHDL block: the top is composed
-//! from the emitted modules' port lists ([`compose`]).
+//! The top is named after the machine and has `clk`, `rst` and `strobe` (the sample tick) for all axes; every other
+//! port is `<axis>_<port>`. Sizes are types in RustHDL, so a machine of arbitrary sizes cannot be one RustHDL block.
+//! The top is composed from the port lists of the emitted modules instead ([`compose`]).
 
 use crate::emit::{EmitError, Header, Module, ModuleInstance, Parameter, add, compose};
 use crate::shaper;
@@ -31,7 +31,7 @@ impl AxisShaper {
 /// All Verilog modules of a machine, sub-modules first, the top last.
 ///
 /// # Errors
-/// [`EmitError`] for what cannot be expressed exactly, and where names of machine and axes collide.
+/// [`EmitError`] for a construct that cannot be expressed exactly, and where names of machine and axes collide.
 pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, EmitError> {
     let mut modules = Vec::new();
     let mut tops = Vec::new();

@@ -1,7 +1,7 @@
 //! The imports of every kernel: RustHDL, with replacements for the parts that do not behave as documented, and our
 //! leaves.
 //!
-//! An explicit re-export shadows the one of the glob, so every kernel with `use crate::prelude::*` gets ours:
+//! An explicit re-export shadows the one of the glob, so a kernel with `use crate::prelude::*` gets our items:
 //!
 //! | ours | replaces |
 //! |---|---|
@@ -36,7 +36,7 @@ pub(crate) fn signed_bit_cast<const TO: usize, const FROM: usize>(value: Signed<
     }
 }
 
-/// The number that at most 64 bits represent.
+/// The value of a signed word of `N` ≤ 64 bits.
 pub(crate) fn to_i64<const N: usize>(value: Signed<N>) -> i64 {
     let pattern: u64 = unsigned_cast(value).into();
     let unused = 64 - N;

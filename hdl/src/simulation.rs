@@ -1,12 +1,12 @@
 //! RustHDL's simulator behind the interface that all blocks share.
 //!
-//! It does the work of RustHDL's `simulate` for any block behind one type; RustHDL's threaded `Simulation` is a
-//! hundred times slower.
+//! It works like RustHDL's `simulate`, for any block behind one type. RustHDL's threaded `Simulation` is a hundred
+//! times slower.
 
 use crate::prelude::*;
 use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
 
-/// Number of updates of a design within one edge above which it counts as an oscillation.
+/// Largest number of updates of a design within one clock edge; more count as an oscillation.
 const MOST_UPDATES: usize = 100;
 
 /// Why a block cannot be simulated.
