@@ -81,7 +81,7 @@ fn block(channels: usize) -> Box<dyn Pins> {
     }
 }
 
-/// The share for this many channels, 1 to [`MOST_CHANNELS`], in RustHDL's own simulator.
+/// The divider share for this many channels, 1 to [`MOST_CHANNELS`], in RustHDL's own simulator.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds an error in the block.
@@ -102,7 +102,7 @@ fn base_name(channels: usize) -> String {
     format!("divider_share_{channels}")
 }
 
-/// Verilog of the share for this many channels; [`name`] gives its name.
+/// Verilog of the divider share for this many channels; [`name`] gives its name.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.

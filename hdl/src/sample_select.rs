@@ -58,7 +58,8 @@ const OF_TWO: [Compiled<()>; 3] = [sample_select!(32, 2), sample_select!(24, 2),
 const OF_THREE: [Compiled<()>; 3] = [sample_select!(32, 3), sample_select!(24, 3), sample_select!(17, 3)];
 const OF_FIVE: [Compiled<()>; 3] = [sample_select!(32, 5), sample_select!(24, 5), sample_select!(17, 5)];
 
-/// The block at the compiled sizes, from which the emitter writes all words: one channel for a duty, one to three for a shaper, five for a controller.
+/// The block at the compiled widths of a word, from which the emitter derives all others. A duty has one channel, a
+/// shaper one to three, a controller five.
 fn block(channels: usize) -> &'static [Compiled<()>] {
     match channels {
         1 => &OF_ONE,
@@ -70,10 +71,10 @@ fn block(channels: usize) -> &'static [Compiled<()>] {
 
 /// The selection in RustHDL's own simulator, for words of this many bits (up to 32) and this many channels.
 ///
-/// It runs at a compiled size that holds these words and has the same outputs.
+/// It runs at a compiled size with words that are wide enough; the outputs are the same.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds an error in the block, or where the words are wider.
+/// [`SimulationError`] where RustHDL finds an error in the block, or where the words have more than 32 bits.
 pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = compiled::holding(block(channels), &[word_bits], false).ok_or(SimulationError::Size {
         block: "sample_select",

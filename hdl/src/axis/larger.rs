@@ -4,16 +4,16 @@
 use crate::prelude::*;
 
 kernel! {
-    /// Valid after the last byte as long as nothing `compares`, and forgotten one clock later.
+    /// The result is valid in the clock after the last byte, in which `compares` is low; it is cleared one clock later.
     pub(super) struct Larger;
 
     inputs {
         rst: Bit,
         /// A byte is present.
         compares: Bit,
-        /// It is the highest byte of signed numbers.
+        /// The byte is the highest one of signed numbers.
         signs: Bit,
-        /// The number is the complement of its bytes.
+        /// The complement of `number` is compared.
         inverts: Bit,
         number: Bits<8>,
         other: Bits<8>,

@@ -4,8 +4,7 @@ use super::nibbles::Nibbles;
 use crate::prelude::*;
 
 kernel! {
-    /// Whether it has lasted for as many ticks as the limit; a limit of 0 never matches. Valid as long as nothing
-    /// `compares`.
+    /// The number of ticks has reached the limit; a limit of 0 is never reached. The timing is that of `Larger`.
     pub(super) struct Lasts;
 
     inputs {

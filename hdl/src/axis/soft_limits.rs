@@ -16,7 +16,7 @@ kernel! {
         reference_position: Signed<32>,
         soft_limit_plus: Signed<32>,
         soft_limit_minus: Signed<32>,
-        /// The limits do not act yet.
+        /// High: neither limit is in force yet.
         waits: Bit,
     }
     outputs { past_plus: Bit, past_minus: Bit }

@@ -4,7 +4,7 @@ use super::lasts::Lasts;
 use crate::prelude::*;
 
 kernel! {
-    /// A count of ticks that rotates while it is compared, and adds the tick in the first round.
+    /// The count rotates by a nibble per clock while it is compared; the first round adds the tick.
     pub(super) struct TickCount;
 
     inputs {
@@ -12,7 +12,7 @@ kernel! {
         tick: Bit,
         turn: Bits<2>,
         compares: Bit,
-        /// Clears the count; not while it rotates.
+        /// Clears the count; must be low while the count rotates.
         clears: Bit,
         limit: Bits<16>,
     }

@@ -9,7 +9,7 @@ kernel! {
     inputs {
         rst: Bit,
         counts: Bit,
-        /// The timer is loaded in the next clock, and not needed in this one.
+        /// Clears the timer in the clock before it is loaded.
         clears: Bit,
         load_release: Bit,
         load_settle: Bit,

@@ -19,7 +19,7 @@ use posicast_blocks::cascade::CascadeConfig;
 kernel! {
     /// Sizes: W word bits, S sum bits (W + one per stage), A ring address bits, I stage index bits, ADDRESS = A + I.
     ///
-    /// A cascade for `config`, whose sizes must not be above these.
+    /// A cascade for `config`, whose sizes must not exceed these.
     pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
         (config: &CascadeConfig)
         where S > W && ADDRESS == A + I;

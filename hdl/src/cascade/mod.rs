@@ -37,8 +37,8 @@ fn sizes(config: &CascadeConfig) -> [u32; 4] {
 
 /// The cascade in RustHDL's own simulator.
 ///
-/// It runs at a compiled size that holds this cascade and has the same outputs: its words are wider and its ring
-/// buffers larger.
+/// It runs at a compiled size that is large enough: words may be wider and ring buffers larger, but the outputs are the
+/// same.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds an error in the block.
@@ -54,7 +54,7 @@ pub fn simulate(config: &CascadeConfig) -> Result<Box<dyn ClockedBlock>, Simulat
     )?))
 }
 
-/// The sizes at which [`simulate`] runs the cascade, in words, if they differ from its own.
+/// The sizes at which [`simulate`] runs the cascade, as text, if they differ from its own.
 pub fn simulated_as(config: &CascadeConfig) -> Option<String> {
     match simulated(config)?.sizes {
         same if same == sizes(config) => None,

@@ -1,5 +1,5 @@
-//! The drive command in hardware: it selects what the PWM gets: the controller's duty, in direct mode a manual one,
-//! or 0.
+//! The drive command in hardware: it selects the duty for the PWM, which is the controller's, in direct mode a manual
+//! one, or 0.
 //!
 //! The datasheet is `docs/drive_command.md`, the reference `posicast_blocks::drive_command`.
 

@@ -52,7 +52,7 @@ kernel! {
     }
 }
 
-/// Bits of a place below the index: those of the spacing, and 8 of a count.
+/// Bits of a position below the table's index: those of the spacing, and the 8 fraction bits of a count.
 fn fraction_bits(config: &ErrorTableConfig) -> u64 {
     u64::from(config.format().spacing_bits) + 8
 }

@@ -16,21 +16,23 @@ use posicast_blocks::{ClockedBlock, port_notes};
 /// The error table in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(config: &ErrorTableConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(ErrorTable::new(config));
     Ok(Box::new(Simulated::new("error_table", block, ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last: `PREFIX_error_table`, since it holds the machine's table.
+/// Name of the last module that [`emit()`] writes; it contains a machine's table.
 pub fn name(prefix: &str) -> String {
     emit::own_name(prefix, "error_table")
 }
 
-/// The error table's Verilog, one module per file, the top last; it is called [`name`], and all names are bare where `prefix` is empty.
+/// The error table's Verilog, one module per file, the top last.
+///
+/// [`name`] gives the top's name; names have no prefix where `prefix` is empty.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &ErrorTableConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let parameter = |name: &str, value: String, meaning: &str| Parameter {
         name: name.to_owned(),

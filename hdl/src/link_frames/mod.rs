@@ -1,13 +1,14 @@
-//! What the bridges of all lines share: from bytes to the bus and back, in hardware.
+//! The common part of the bridges of all lines in hardware: it turns bytes into bus accesses and back.
 //!
-//! A bridge joins a line, which gives and takes bytes, with these four. The reference is `posicast_blocks::link_frames`.
+//! A bridge connects a line, which receives and sends bytes, to these four kernels. The reference is
+//! `posicast_blocks::link_frames`.
 //!
 //! | kernel | what it does |
 //! |---|---|
-//! | `decoder` | COBS of the request, which it stores |
-//! | `crc` | the checksum of both |
-//! | `sequencer` | checks, executes, replies |
-//! | `reply` | COBS of the reply, which it stores |
+//! | `decoder` | decodes the COBS of a request, and stores it |
+//! | `crc` | computes the CRC of request and reply |
+//! | `sequencer` | checks and executes the request, and writes and sends the reply |
+//! | `reply` | encodes the reply in COBS, and stores it |
 
 mod crc;
 mod decoder;

@@ -12,8 +12,8 @@
 use crate::prelude::*;
 
 kernel! {
-    /// After reset it has the shortest period, so that the first one set soon comes into use. `on_time_base`: it
-    /// waits for its first `sync`.
+    /// After reset the carrier has the shortest period, so that the first period that is set takes effect soon. With
+    /// `on_time_base` it waits for its first `sync`.
     pub(super) struct Carrier(on_time_base: bool);
 
     inputs {

@@ -19,7 +19,7 @@ kernel! {
     /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T accumulator bits, A ring address bits, T index bits,
     /// COUNT = T + 1, SUM = 18 + T and WORD = 18 + A bits; U as in [`super::product`].
     ///
-    /// A shaper for `config`, whose sizes must not be above these.
+    /// A shaper for `config`, whose sizes must not exceed these.
     pub(super) struct Shaper<const W: usize, const P: usize, const ACC: usize, const A: usize, const T: usize,
         const COUNT: usize, const SUM: usize, const WORD: usize, const U: usize>
         (config: &ShaperConfig)

@@ -3,9 +3,9 @@
 //! The datasheet is `docs/shaper.md`, the reference `posicast_blocks::shaper`.
 //!
 //! One kernel serves all sizes of the plain shaper, and a second one all motion shapers, with channels, handover and
-//! modulo axes. Each is compiled at three sizes, from which the emitter writes any: see `compiled`. Options that
-//! change the form of a kernel (one or two multipliers, one to three channels) have three sizes each. Sizes are equal
-//! between the forms wherever possible, so that the parts are compiled once.
+//! modulo axes. Each form of a kernel (one or two multipliers, one to three channels) is compiled at three sizes, from
+//! which the emitter writes any: see `compiled`. The forms have the same sizes wherever possible, so that the parts are
+//! compiled once.
 
 mod channel_sums;
 mod handover;
@@ -24,7 +24,8 @@ use motion::MotionShaper;
 use posicast_blocks::shaper::{ShaperConfig, moving, plain, ports};
 use posicast_blocks::{ClockedBlock, port_notes};
 
-/// The plain shaper with words of W bits, a ring buffer of 2^A samples, tables of 2^T taps, and U of the [`Shaper`].
+/// The plain shaper with words of W bits, a ring buffer of 2^A samples, tables of 2^T taps, and one (U = 0) or two
+/// (U = 1) multipliers.
 macro_rules! shaper {
     ($w:literal, $a:literal, $t:literal, $u:literal) => {
         Compiled {
@@ -46,7 +47,7 @@ macro_rules! shaper {
     };
 }
 
-/// The motion shaper with C channels, else the same.
+/// The motion shaper with C channels; W, A and T as in the plain shaper.
 macro_rules! motion_shaper {
     ($w:literal, $a:literal, $t:literal, $c:literal) => {
         Compiled {
@@ -92,7 +93,7 @@ const THREE_CHANNELS: Sizes = [
     motion_shaper!(29, 11, 5, 3),
 ];
 
-/// The kernel with the form that a shaper needs.
+/// The compiled sizes of the form of kernel that `config` needs.
 fn kernel(config: &ShaperConfig) -> &'static Sizes {
     match config.motion().map(|motion| motion.channels) {
         None if config.word_bits() <= ONE_MULTIPLIER_BITS => &ONE_MULTIPLIER,
@@ -110,8 +111,8 @@ fn sizes(config: &ShaperConfig) -> [u32; 3] {
 
 /// The shaper in RustHDL's own simulator.
 ///
-/// It runs at a compiled size that holds this shaper and has the same outputs: ring buffer and tables are larger, and
-/// words may be wider.
+/// It runs at a compiled size that is large enough: ring buffer and tables may be larger and words wider, but the
+/// outputs are the same.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds an error in the block, or where a position wraps at a width that is not
@@ -128,7 +129,7 @@ pub fn simulate(config: &ShaperConfig) -> Result<Box<dyn ClockedBlock>, Simulati
     )?))
 }
 
-/// The sizes at which [`simulate`] runs the shaper, in words, if they differ from its own.
+/// The sizes at which [`simulate`] runs the shaper, as text, if they differ from its own.
 pub fn simulated_as(config: &ShaperConfig) -> Option<String> {
     match simulated(config)?.sizes {
         same if same == sizes(config) => None,
@@ -251,7 +252,7 @@ mod tests {
         TapTable::new(9, [(0, -300), (1, 400), (60, 412)].map(tap).to_vec()).unwrap()
     }
 
-    /// Each form of the kernel has one size here that is not among the compiled ones.
+    /// Tests one size of each form of kernel that is not among the compiled ones.
     #[test]
     fn each_form_comes_out_as_if_its_size_were_compiled() {
         let direct: [Compiled<ShaperConfig>; 5] = [

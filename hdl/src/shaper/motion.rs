@@ -29,7 +29,7 @@ kernel! {
     /// Sizes: W word bits, P = W + 18 product bits, ACC = P + T + 1 accumulator bits, A ring address bits, T index
     /// bits, COUNT = T + 1, SUM = 18 + T and WORD = 18 + A bits, C channels, H = C − 1.
     ///
-    /// A shaper for `config`, whose sizes must not be above these, and whose word must be W bits if its position wraps.
+    /// A shaper for `config`, whose sizes must not exceed these; if its position wraps, its word must have W bits.
     pub(super) struct MotionShaper<const W: usize, const P: usize, const ACC: usize, const A: usize, const T: usize,
         const COUNT: usize, const SUM: usize, const WORD: usize, const C: usize, const H: usize>
         (config: &ShaperConfig)

@@ -10,8 +10,8 @@
 //! | `operands` | the operand of a step |
 //! | `scaled_product` | the one multiplier, and the shift after it |
 //! | `accumulator` | sums of products, saturated to words |
-//! | `integral` | the integral ∫e, and when it is frozen |
-//! | `limiter` | the word kept during a computation; the command, and for how long it is clamped |
+//! | `integral` | the integral ∫e, which can be frozen |
+//! | `limiter` | keeps a word during a computation; clamps the command, and counts consecutive clamped ticks |
 //! | `sticky` | the flags of one side |
 //! | `kernel` | the use of each sum |
 

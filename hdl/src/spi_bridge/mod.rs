@@ -4,9 +4,9 @@
 //!
 //! | kernel | what it does |
 //! |---|---|
-//! | `kernel` | counts the time-out's units, and joins the others |
-//! | `line` | the SPI lines: bytes from the host, and bytes for it |
-//! | those of `link_frames` | from bytes to the bus and back, shared with [`uart_bridge`](crate::uart_bridge) |
+//! | `kernel` | counts the units of the time-out, and connects the others |
+//! | `line` | receives and sends bytes on the SPI lines |
+//! | those of `link_frames` | turn bytes into bus accesses and back; shared with [`uart_bridge`](crate::uart_bridge) |
 
 mod kernel;
 mod line;

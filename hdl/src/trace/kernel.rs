@@ -17,7 +17,7 @@ use posicast_blocks::trace::{TraceConfig, TraceState};
 kernel! {
     /// Sizes: A address bits, R = A + 1 bits of a number of rows.
     ///
-    /// A trace memory for `config`, whose size must not be above this.
+    /// A trace memory for `config`, whose size must not exceed this one.
     pub(super) struct Trace<const A: usize, const R: usize>(config: &TraceConfig) where R == A + 1;
     ports posicast_blocks::trace_ports;
 

@@ -35,7 +35,7 @@ const SIZES: [Compiled<TraceConfig>; 3] = [trace!(11), trace!(8), trace!(10)];
 
 /// The trace memory in RustHDL's own simulator.
 ///
-/// It runs at a compiled size that holds this memory and has the same outputs: its ring buffer may be larger.
+/// It runs at a compiled size that is large enough: the ring buffer may be larger, but the outputs are the same.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds an error in the block.
@@ -47,7 +47,7 @@ pub fn simulate(config: &TraceConfig) -> Result<Box<dyn ClockedBlock>, Simulatio
     Ok(Box::new(Simulated::new("trace", (holding.build)(config), ports())?))
 }
 
-/// The size at which [`simulate`] runs the trace memory, in words, if it differs from its own.
+/// The size at which [`simulate`] runs the trace memory, as text, if it differs from its own.
 pub fn simulated_as(config: &TraceConfig) -> Option<String> {
     match simulated(config)?.sizes {
         &[address_bits] if address_bits != config.address_bits() => {

@@ -4,9 +4,9 @@
 //!
 //! | kernel | what it does |
 //! |---|---|
-//! | `kernel` | divides the clock, and joins the others |
-//! | `receiver`, `transmitter` | the line |
-//! | those of `link_frames` | from bytes to the bus and back, shared with [`spi_bridge`](crate::spi_bridge) |
+//! | `kernel` | divides the clock, and connects the others |
+//! | `receiver`, `transmitter` | receive and send the bytes of the line |
+//! | those of `link_frames` | turn bytes into bus accesses and back; shared with [`spi_bridge`](crate::spi_bridge) |
 
 mod kernel;
 mod receiver;
