@@ -8,7 +8,8 @@ use posicast_blocks::cascade::{
 use posicast_hdl::cascade::{emit, simulate};
 use random::Random;
 
-/// Returns every size of ring and index, narrow and wide words, with delays at both ends of what the ring holds.
+/// Returns every size of ring and index, for narrow and wide words; the delays include the shortest and the longest
+/// that the ring allows.
 fn sizes() -> impl Iterator<Item = CascadeConfig> {
     let size = |word, ring: u32, index: u32| {
         let delays = (0..1 << index).map(|stage| if stage == 1 { (1 << ring) - 2 } else { 1 + stage });
@@ -19,8 +20,8 @@ fn sizes() -> impl Iterator<Item = CascadeConfig> {
     })
 }
 
-/// Plays random inputs and compares every output in every clock; strobes come at the pace of a pass, around it, and
-/// at random.
+/// Plays random inputs and compares every output in every clock. Most strobes follow after exactly one pass, the others
+/// after a random time of up to two passes.
 fn lockstep(config: &CascadeConfig, seed: u64, clocks: u32) {
     let mut model = Cascade::new(config, seed);
     let mut rusthdl = simulate(config).unwrap();

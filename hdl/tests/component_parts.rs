@@ -17,7 +17,7 @@ use posicast_hdl::emit::{EmitCause, Header, connect};
 use posicast_hdl::{divider, divider_share, group, sample_select, schedule, setting_banks, time_base};
 use random::Random;
 
-/// Gives the same random inputs to both, with a reset now and then.
+/// Compares all outputs in every clock, with the same random inputs and an occasional reset.
 fn lockstep(model: &mut dyn ClockedBlock, rusthdl: &mut dyn ClockedBlock, clocks: u32) {
     let widths = |direction| -> Vec<u32> {
         let ports = model.ports().iter().filter(|port| port.direction == direction);

@@ -1,7 +1,7 @@
 //! The rules of the kernels, checked in their source: constructs that RustHDL accepts and simulates differently from
 //! its Verilog.
 //!
-//! The emitter refuses most of them too, but only in what is emitted, and later.
+//! The emitter refuses most of them too, but later, and only in kernels that are emitted.
 
 use posicast_hdl::emit::{Header, compose};
 use std::fs;
@@ -126,7 +126,7 @@ fn listed(list: &str) -> Vec<(String, String)> {
     let texts = sources(&model)
         .into_iter()
         .filter_map(|file| fs::read_to_string(file).ok());
-    // The name stands alone, or is followed by its sizes.
+    // The name of a list is followed by `;`, or by its sizes in parentheses.
     let lists = texts.into_iter().find_map(|text| {
         [";", "("]
             .iter()
@@ -170,7 +170,7 @@ fn fields(code: &str) -> Vec<(String, String)> {
     fields
 }
 
-/// Returns how many branches deep the first assignment of `name` is.
+/// Returns the number of branches around the first assignment of `name`.
 fn first_assignment(flat: &str, name: &str) -> Option<usize> {
     let place = flat.find(&format!("self.{name}.next="))?;
     let opened = flat[..place].matches('{').count();

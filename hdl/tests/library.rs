@@ -20,10 +20,10 @@ use posicast_hdl::{
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
 
-/// Number of configurations that are tried.
+/// Number of random configurations.
 const MACHINES: u64 = 12;
 
-/// A number for each `salt`, the same in every run (SplitMix64).
+/// A reproducible source of random numbers (SplitMix64).
 struct Chance(u64);
 
 impl Chance {
@@ -167,7 +167,7 @@ fn a_name_stands_for_one_content_in_all_machines() {
             assert_eq!(library[&module.name], module.text, "{}", module.name);
         }
     }
-    // Each block with sizes occurred at several of them, so that the comparison above is meaningful.
+    // The comparison above is meaningful only if each block with sizes occurred at several of them.
     for sized in [
         "history_",
         "weighted_sum_",

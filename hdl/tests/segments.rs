@@ -4,7 +4,7 @@ use posicast_blocks::ClockedBlock;
 use posicast_blocks::segments::{CUBIC, INPUT_PORTS, OUTPUT_PORTS, Segments};
 use posicast_hdl::segments::simulate;
 
-/// A cubic of two ticks with nothing after it: three more ticks at its velocity, then the stop.
+/// A cubic of two ticks without a successor: the command keeps its velocity for three more ticks, then stops.
 #[test]
 fn lockstep_an_entry_that_is_missing() {
     let mut model = Segments::new(5);
@@ -24,6 +24,6 @@ fn lockstep_an_entry_that_is_missing() {
         rusthdl.step(&inputs, &mut actual).unwrap();
         assert_eq!(actual, expected, "clock {clock}");
     }
-    // It has stopped because of an underrun.
+    // The command has stopped because of an underrun.
     assert_eq!([expected[18], expected[4], expected[10]], [3, 3, 1]);
 }

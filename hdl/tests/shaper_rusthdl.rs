@@ -1,4 +1,4 @@
-//! Lockstep test of the shaper in RustHDL's simulator with its model: every output, every clock.
+//! The shaper in RustHDL's simulator compared with its model: every output, every clock.
 
 use crate::stimulus;
 
@@ -9,7 +9,7 @@ use posicast_blocks::{ClockedBlock, Direction};
 use posicast_taps::{Tap, TapTable};
 use stimulus::{Anything, Random, load, table};
 
-/// The two shapers side by side.
+/// The model and the simulated shaper, stepped together.
 struct LockStep {
     config: ShaperConfig,
     model: Shaper,
@@ -152,7 +152,7 @@ fn lockstep_motion_hands_over_sample_by_sample() {
         inputs.swap_how = swap_how::HANDOVER;
         both.step(&inputs);
     }
-    // 3 channels of 2 + 3 taps and the correction, for samples 1 to 12 of the new table; then 3 channels of 3.
+    // The handover lasts 12 samples, with 3 channels of 2 + 3 taps and one correction; then 3 channels have 3 taps.
     for sample in 0..16 {
         let products = if sample < 12 { 3 * (2 + 3) + 1 } else { 3 * 3 };
         both.step(&Inputs {
@@ -201,7 +201,7 @@ fn lockstep_a_result_stands_pass_clocks_after_its_strobe() {
         let mut both = LockStep::new(&config);
         for sample in 0..50 {
             both.strobe(sample * 1000);
-            // The strobe's own clock is clock 0; the next strobe comes at the first clock that is not an overrun.
+            // The strobe is in clock 0; the next one is in the first clock in which it does not cause an overrun.
             let last = both.idle(pass - 1);
             assert!(!last.valid && last.busy);
         }
@@ -212,7 +212,7 @@ fn lockstep_a_result_stands_pass_clocks_after_its_strobe() {
 
 #[test]
 fn lockstep_full_scale_saturates_at_both_ends() {
-    // Σ|c|/2^F = 3, with the worst history for it: −, +, − against +, −, +.
+    // Σ|c|/2^F = 3. Full-scale inputs of alternating sign are the worst case for the signs +, −, + of the coefficients.
     let config = config(32, 16, &[(0, 65536), (1, -65536), (2, 65536)]);
     let (low, high) = (config.word_min(), config.word_max());
     let mut both = LockStep::new(&config);

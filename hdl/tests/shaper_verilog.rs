@@ -1,4 +1,4 @@
-//! The shaper's Verilog as text: its names, its ports, its order. Its function is tested in lockstep.
+//! The shaper's Verilog as text: its names, ports and table. Its function is tested in lockstep.
 
 use posicast_blocks::shaper::{RING_ADDRESS_BITS, ShaperConfig, TAP_INDEX_BITS, ports};
 use posicast_hdl::shaper::emit;

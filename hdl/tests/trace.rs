@@ -6,7 +6,7 @@ use posicast_blocks::trace::{Inputs, SAMPLES, Trace, TraceConfig, ports};
 use posicast_hdl::trace::{emit, simulate};
 use random::Random;
 
-/// Plays random inputs, slow enough that traces become complete; returns the number of clocks in each state.
+/// Plays random inputs, with events rare enough for traces to complete. Returns the number of clocks in each state.
 fn lockstep(samples: u32, seed: u64, clocks: u32) -> [u64; 4] {
     let config = TraceConfig::new(u64::from(samples)).unwrap();
     let mut model = Trace::new(&config);

@@ -1,6 +1,6 @@
-//! The pitfalls of RustHDL's own generator, one kernel each: the emitter's output means the same in RustHDL's
-//! simulation, Icarus, Verilator and after Yosys, or the emitter refuses the kernel and the form that it suggests
-//! passes.
+//! The pitfalls of RustHDL's own generator, one kernel each. Either the emitter's output behaves the same in RustHDL's
+//! simulation, Icarus, Verilator and after Yosys, or the emitter refuses the kernel and accepts the form that it
+//! suggests.
 //!
 //! P1 … P11 are the classes of docs/emitter.md.
 
@@ -230,7 +230,7 @@ fn simulated() -> Vec<Row> {
         row::<K>(name, pairs(a, b))
     }
     let mut random = 1u64;
-    // A reset comes now and then, but not at first: the power-up value is tested.
+    // Resets are random, but the first clock has none, so that the power-up value is tested.
     let mut clocked = move |mask: u64| -> Vec<Vec<u64>> {
         let mut next = || {
             random = random

@@ -102,7 +102,7 @@ kernel!(Ambiguous { a: Bits<8> => y: Bits<8> } { one: Sized<1> = Sized::default(
     self.y.next = self.two.y.val();
 });
 
-/// A block with a number in its name that it does not have.
+/// A block whose name uses a constant that it does not have.
 #[derive(LogicBlock, Default)]
 struct WithoutNumber {
     a: Signal<In, Bits<8>>,
@@ -123,7 +123,7 @@ kernel!(Unnumbered { a: Bits<8> => y: Bits<8> } { inner: WithoutNumber = Without
     self.y.next = self.inner.y.val();
 });
 
-/// A block with every kind of number in its name.
+/// A block whose name uses every kind of number.
 #[derive(LogicBlock)]
 struct Numbered {
     clk: Signal<In, Clock>,
@@ -330,7 +330,7 @@ module posicast_pair ("
     );
 }
 
-/// A comment stands above the statement that follows it, whichever construct drives that, and nowhere else.
+/// A comment stands above the statement that follows it, whichever construct that becomes, and nowhere else.
 #[test]
 fn a_comment_stands_once_above_its_statement() {
     let text = emit_as::<Commented>("of").unwrap().pop().unwrap().text;
@@ -352,7 +352,7 @@ fn a_comment_stands_once_above_its_statement() {
     }
 }
 
-/// RustHDL wraps the text of long comments, which its own generator then breaks on.
+/// RustHDL wraps the text of long comments, on which its own generator then fails.
 #[test]
 fn long_comments_are_wrapped_between_words() {
     let text = text_of::<LongComment>();
@@ -379,8 +379,8 @@ fn ports_are_told_without_the_clock() {
     assert!(top.clocked);
 }
 
-/// A register that is never read is an error; an unread input or bit is named, so that lint knows that it is
-/// intended.
+/// A register that is never read is an error; an unread input or bit is listed in `unused`, so that lint tools do not
+/// report it.
 #[test]
 fn unread_bits_are_named() {
     let text = text_of::<Pair>();
@@ -462,7 +462,7 @@ fn compose_refuses_what_does_not_fit() {
         refused("top", &[], &[("x", &wide), ("x", &wide)]),
         EmitCause::NameCollision { .. }
     ));
-    // `x_y` with the port `b` and `x` with the port `y_b` both want `x_y_b`.
+    // `x_y` with the port `b` and `x` with the port `y_b` would both become `x_y_b`.
     assert!(matches!(
         refused("top", &[], &[("x_y", &wide), ("x", &narrow)]),
         EmitCause::NameCollision { .. }

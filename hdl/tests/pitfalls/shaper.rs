@@ -1,5 +1,5 @@
-//! Tests the shaper's Verilog: lint, Yosys, and its model's answers to random stimuli in Icarus, Verilator and after
-//! Yosys.
+//! The shaper's Verilog passes lint and Yosys, and gives the outputs of its model for random stimuli in Icarus,
+//! Verilator and after Yosys.
 
 use crate::pitfalls::support::Row;
 use crate::pitfalls::tools;
@@ -11,7 +11,7 @@ fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
     ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()
 }
 
-/// Returns a configuration with sizes that no machine file gives.
+/// Returns a configuration with sizes that no machine file leads to.
 fn of_sizes(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {
     ShaperConfig::of_sizes(word_bits, ring, index, table(&mut Random(5), 9, 3, 9, 2)).unwrap()
 }
@@ -30,7 +30,7 @@ fn long_crosssim_shaper_of_every_size_equals_its_model() {
     equals_its_model(&[]);
 }
 
-/// Checks the sizes with these names, or all.
+/// Compares the shapers with these names with their models; all shapers if there are no names.
 fn equals_its_model(names: &[&str]) {
     let rows = [
         ("narrow", config(8, 3, 20)),

@@ -12,7 +12,8 @@ fn options() -> EmitOptions {
     }
 }
 
-/// `sum` is `a` times four plus `b`; its L low bits are in `low`, and there is a constant.
+/// A register takes `4·a + b`, masked, unless `b` is 0, and `sum` shows it; `low` has the L bits of `4·a + b` from bit
+/// 1 on.
 ///
 /// SUM = A + B; any other width is an error that a test inserts.
 #[derive(LogicBlock)]
@@ -29,7 +30,7 @@ struct Widths<const A: usize, const B: usize, const SUM: usize, const L: usize> 
     shift: Constant<Bits<8>>,
 }
 
-/// Values of the constants and of the reset: taken from the configuration or, as an error, from the size.
+/// Values of the constants and of the reset: from the configuration or, as an error that a test inserts, from the size.
 struct Values {
     mask: u64,
     shift: u64,
@@ -120,7 +121,7 @@ fn a_width_that_is_no_sum_of_sizes_is_refused_at_its_signal() {
     // The width is twice a size.
     let result = widths!(&[9, 9]; [12, 9, 24, 7] [11, 12, 22, 10] [10, 4, 20, 2]);
     refused(result, "sum", EmitCause::SizeNumber("24, 22, 20".to_owned()));
-    // Two samples whose sizes change equally do not show which size it is.
+    // Both sizes change by the same amount, so the samples do not determine which one it is.
     let result = widths!(&[9, 9]; [12, 9, 21, 7] [11, 8, 19, 6]);
     refused(result, "a", EmitCause::SizeNumber("12, 11".to_owned()));
     // The width exceeds that of any signal.
@@ -171,7 +172,7 @@ fn a_value_that_the_wanted_width_does_not_hold_is_refused() {
     refused(at(&[6, 7]), "mask", EmitCause::Literal { value: 1 << 13, place });
 }
 
-/// A kernel with C inputs, which has another form for each C.
+/// A kernel with C inputs, whose form depends on C.
 #[derive(LogicBlock)]
 struct Inputs<const A: usize, const C: usize> {
     x: [Signal<In, Bits<A>>; C],

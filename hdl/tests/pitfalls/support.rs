@@ -95,7 +95,7 @@ pub(crate) fn local<T: Synth>() -> Signal<Local, T> {
     Signal::default()
 }
 
-/// A kernel in use: its Verilog, and the outputs of the simulation for each stimulus.
+/// A kernel under test: its Verilog, and the outputs of the simulation for each stimulus.
 pub(crate) struct Row {
     pub(crate) name: String,
     pub(crate) modules: Result<Vec<Module>, EmitError>,

@@ -76,8 +76,8 @@ pub(crate) fn yosys(folder: &Path, top: &str, script: &str) -> String {
     said
 }
 
-/// Plays every row's vectors in one testbench, in Icarus, in Verilator, and in Icarus on the netlist that Yosys made
-/// of the design. Lists the differences.
+/// Plays every row's vectors in one testbench, in Icarus, in Verilator, and in Icarus on the netlist from Yosys.
+/// Returns the differences.
 pub(crate) fn replay(rows: &[Row]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let rtl = folder.path().join("rtl");
@@ -202,7 +202,7 @@ fn bench(rows: &[Row], instances: &[ModuleInstance<'_>], top: &Module) -> String
         writeln!(text, "{}", task(row, instance)).unwrap();
     }
     text.push_str("initial begin\n");
-    // All instances share the clock; one that is not being tested stays in reset, which is the state after power-up.
+    // All instances share the clock; an instance that is not being tested stays in reset, its state after power-up.
     for port in top.ports.iter().filter(|port| port.direction == Direction::Input) {
         writeln!(text, "{} = {};", port.name, u32::from(port.name.ends_with("_rst"))).unwrap();
     }

@@ -34,7 +34,7 @@ pub(crate) fn table(random: &mut Random, fraction: u32, taps: usize, longest: u3
     }
     match TapTable::new(fraction, list) {
         Ok(table) => table,
-        // The last coefficient was zero or did not fit: draw again.
+        // The last coefficient was zero or did not fit: draw again, with one tap fewer.
         Err(_) => table_of_fewer(random, fraction, taps, longest, gain),
     }
 }
@@ -71,7 +71,7 @@ pub(crate) fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
     table.taps().iter().enumerate().map(write).chain([swap]).collect()
 }
 
-/// Endless inputs, clock by clock: everything at any time, often enough in a valid order.
+/// Endless random inputs, clock by clock: any input at any time, and valid sequences often enough.
 pub(crate) struct Anything {
     config: ShaperConfig,
     random: Random,
@@ -100,7 +100,8 @@ impl Anything {
         }
     }
 
-    /// Plans what the host does next: a load (correct, or with one clock of it wrong), or something random.
+    /// Plans the host's next clocks: the load of a table, in one of three cases with an error in one clock; then
+    /// possibly a random swap; then a pause.
     fn plan(&mut self) {
         let random = &mut self.random;
         let taps = 1 + random.below(u64::from(self.config.most_taps().min(24))) as usize;
@@ -143,14 +144,14 @@ impl Iterator for Anything {
         let mut inputs = self.host.pop_front()?;
         inputs.x = self.sample();
         inputs.rst = self.random.once_in(3000);
-        // A handover lasts as many samples as a table is long: it should end by itself more often than by a start.
+        // A handover lasts as many samples as a table is long. Starts are rare then, so that most handovers complete.
         inputs.start = self
             .random
             .once_in(if self.config.motion().is_some() { 4000 } else { 400 });
         inputs.x_rates = [self.sample(), self.sample()];
         inputs.swap_how = self.random.word() as u8;
         inputs.clear_flags = self.random.once_in(60);
-        // A host reads back, from a generator of its own, so that the other random values stay the same.
+        // Reading back has a generator of its own, so that the other random values stay the same.
         inputs.tap_read = self.read_back.once_in(20);
         if !inputs.tap_write {
             inputs.tap_bank = self.read_back.below(4) as u8;
