@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use posicast_blocks::axis::SupervisorState;
-use posicast_blocks::drive_command::{DUTY_BITS, INPUT_PORTS, OUTPUT_PORTS};
+use posicast_blocks::drive_command::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -37,15 +37,15 @@ fn is_long_valley(clock: u64) -> bool {
 /// Settings that hold for a while.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mood {
-    state: u64,
+    state: u8,
     /// Enables of the PWM, the drive and the brake from the supervisor.
     outputs: [bool; 3],
     tick_pace: u32,
     kick_pace: u32,
     /// A line is low in one of this many clocks.
     line_pace: u32,
-    hold_ticks: u64,
-    limit: i64,
+    hold_ticks: u16,
+    limit: u16,
     self_test: bool,
     valley_pace: u32,
 }
@@ -56,7 +56,7 @@ pub struct DriveCommandRandom {
     rng: Xoshiro256PlusPlus,
     clock: u64,
     mood: Mood,
-    direct_duty: i64,
+    direct_duty: i32,
 }
 
 impl DriveCommandRandom {
@@ -79,17 +79,17 @@ impl DriveCommandRandom {
             SupervisorState::Hold,
             SupervisorState::Run,
         ]
-        .map(|state| state as u64);
+        .map(|state| state as u8);
         let any_state = rng.random_range(0..8);
         let state = *pick(rng, &[states[0], states[1], states[2], states[3], states[4], any_state]);
         let on = matches!(
-            SupervisorState::from_value(state),
+            SupervisorState::from_value(state.into()),
             Some(SupervisorState::Hold | SupervisorState::Run | SupervisorState::QuickStop)
         );
         // Now and then the outputs take values that no supervisor produces.
         let outputs = [(); 3].map(|()| on != (rng.random_range(0..12) == 0));
         let size = rng.random_range(0..=16);
-        let any_limit: i64 = rng.random_range(0..=65_535);
+        let any_limit: u16 = rng.random_range(0..=65_535);
         let one_bit = rng.random_range(3..16);
         self.mood = Mood {
             state,
@@ -107,8 +107,8 @@ impl DriveCommandRandom {
     /// Draws a manual duty of any size, also at the limits and one LSB beyond.
     fn new_direct_duty(&mut self) {
         let rng = &mut self.rng;
-        let any: i64 = rng.random_range(-65_536..=65_535);
-        let about = self.mood.limit + rng.random_range(-1..=2);
+        let any: i32 = rng.random_range(-65_536..=65_535);
+        let about = i32::from(self.mood.limit) + rng.random_range(-1..=2);
         let small = any >> rng.random_range(0..17);
         self.direct_duty = *pick(rng, &[any, small, small, about, -about, 0, -65_536, 65_535]);
     }
@@ -116,7 +116,7 @@ impl DriveCommandRandom {
 
 impl Stimuli for DriveCommandRandom {
     fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
-        let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
+        let Ok(raw) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
             return;
         };
         if self.clock.is_multiple_of(MOOD_CLOCKS) {
@@ -127,49 +127,67 @@ impl Stimuli for DriveCommandRandom {
         }
         let mood = self.mood;
         let rng = &mut self.rng;
-        let any: i64 = rng.random_range(-131_072..=131_071);
+        let any: i32 = rng.random_range(-131_072..=131_071);
         let about_the_end = rng.random_range(65_534..=65_537);
         let small = any >> rng.random_range(0..18);
         let controller_duty = *pick(rng, &[any, small, about_the_end, -about_the_end]);
         let mut once_in = |pace: u32| rng.random_range(0..pace) == 0;
-        let state = if once_in(200) { self.clock % 8 } else { mood.state };
+        let state = if once_in(200) {
+            (self.clock % 8) as u8
+        } else {
+            mood.state
+        };
         let [pwm, drive, brake] = mood.outputs.map(|output| output != once_in(500));
-        let lines = [(); 4].map(|()| u64::from(!once_in(mood.line_pace)));
+        let lines = [(); 4].map(|()| !once_in(mood.line_pace));
         let self_test = mood.self_test != once_in(150);
-        *inputs = [
-            u64::from(self.clock < 2 || once_in(1000)),
-            u64::from(once_in(mood.tick_pace)),
-            controller_duty as u64,
-            u64::from(once_in(6)),
-            state,
-            u64::from(pwm),
-            u64::from(drive),
-            u64::from(brake),
-            lines[0],
-            lines[1],
-            lines[2],
-            lines[3],
-            u64::from(!once_in(300)),
-            u64::from(once_in(mood.kick_pace)),
-            mood.hold_ticks,
-            self.direct_duty as u64,
-            mood.limit as u64,
-            u64::from(self_test),
-            0,
-            u64::from(once_in(mood.valley_pace)),
-        ];
-        inputs[18] = rng.random_range(0..16);
+        let mut inputs = Inputs {
+            rst: self.clock < 2 || once_in(1000),
+            tick: once_in(mood.tick_pace),
+            controller_duty,
+            controller_valid: once_in(6),
+            axis_state: state,
+            axis_pwm_enable: pwm,
+            axis_drive_enable: drive,
+            axis_brake_release: brake,
+            axis_pwm_trip_n: lines[0],
+            drive_fault_n: lines[1],
+            limit_plus_ok: lines[2],
+            limit_minus_ok: lines[3],
+            direct_enable: !once_in(300),
+            direct_kick: once_in(mood.kick_pace),
+            direct_hold_ticks: mood.hold_ticks,
+            direct_duty: self.direct_duty,
+            direct_limit: mood.limit,
+            self_test,
+            gates: 0,
+            valley: once_in(mood.valley_pace),
+        };
+        inputs.gates = rng.random_range(0..16);
+        let in_direct_mode = Inputs {
+            rst: false,
+            axis_state: SupervisorState::Ready as u8,
+            direct_enable: true,
+            direct_hold_ticks: 65_535,
+            ..inputs
+        };
         if LONG_TEST.contains(&self.clock) {
-            let valley = u64::from(is_long_valley(self.clock));
-            (inputs[0], inputs[4], inputs[12]) = (0, SupervisorState::Ready as u64, 1);
-            (inputs[13], inputs[14]) = (1, 65_535);
-            (inputs[17], inputs[18], inputs[19]) = (1, 3, valley);
+            inputs = Inputs {
+                direct_kick: true,
+                self_test: true,
+                gates: 0b11,
+                valley: is_long_valley(self.clock),
+                ..in_direct_mode
+            };
         }
         if LONG_HOLD.contains(&self.clock) {
-            let kick = u64::from(self.clock == LONG_HOLD.start);
-            (inputs[0], inputs[1], inputs[4], inputs[12]) = (0, 1, SupervisorState::Ready as u64, 1);
-            (inputs[13], inputs[14], inputs[17]) = (kick, 65_535, 0);
+            inputs = Inputs {
+                tick: true,
+                direct_kick: self.clock == LONG_HOLD.start,
+                self_test: false,
+                ..in_direct_mode
+            };
         }
+        *raw = inputs.to_raw();
         self.clock += 1;
     }
 }
@@ -207,15 +225,19 @@ const NAMES: [&str; 24] = [
 pub struct DriveCommandCoverage {
     counts: [u64; NAMES.len()],
     /// Inputs and outputs of the previous clock.
-    before: Option<([u64; INPUT_PORTS], [u64; OUTPUT_PORTS])>,
+    before: Option<(Inputs, Outputs)>,
 }
 
 impl DriveCommandCoverage {
     /// Adds a clock.
     pub fn observe(&mut self, clock: &Clock<'_>) {
-        let (Ok(inputs), Ok(shown)) = (clock.inputs.try_into(), clock.expected.try_into()) else {
+        let (Ok(inputs), Ok(shown)) = (
+            <&[u64; INPUT_PORTS]>::try_from(clock.inputs),
+            <&[u64; OUTPUT_PORTS]>::try_from(clock.expected),
+        ) else {
             return;
         };
+        let (inputs, shown) = (Inputs::from_raw(inputs), Outputs::from_raw(shown));
         if let Some((inputs, before)) = self.before.replace((inputs, shown)) {
             let seen = Self::seen(&inputs, &before, &shown);
             for (count, seen) in self.counts.iter_mut().zip(seen) {
@@ -224,24 +246,16 @@ impl DriveCommandCoverage {
         }
     }
 
-    fn seen(
-        inputs: &[u64; INPUT_PORTS],
-        before: &[u64; OUTPUT_PORTS],
-        shown: &[u64; OUTPUT_PORTS],
-    ) -> [bool; NAMES.len()] {
-        let &[rst, tick, .., plus_ok, minus_ok, enable, _, _, _, limit, _, _, _] = inputs;
-        let [controller_valid, state] = [inputs[3], inputs[4]].map(|value| value & 7);
-        let signed = |duty: u64| (duty << (64 - DUTY_BITS)) as i64 >> (64 - DUTY_BITS);
-        let (duty, duty_before) = (signed(shown[0]), signed(before[0]));
-        let [on, active, was_active] = [shown[2], shown[6], before[6]].map(|value| value == 1);
-        let running = rst == 0;
-        let controlled = running && on && !active && !was_active && controller_valid == 1;
-        let manual = running && active && was_active && tick == 1;
-        let held = running && active && was_active && tick == 0;
-        let limit = limit as i64;
-        let [masked, was_masked] = [shown[8], before[8]].map(|value| value == 1);
-        let [self_test, valley] = [inputs[17], inputs[19]].map(|value| value == 1);
-        let flagged = state == SupervisorState::Ready as u64 && enable == 1;
+    fn seen(inputs: &Inputs, before: &Outputs, shown: &Outputs) -> [bool; NAMES.len()] {
+        let (duty, limit) = (shown.duty, i32::from(inputs.direct_limit));
+        let (active, was_active) = (shown.direct_active, before.direct_active);
+        let (masked, was_masked) = (shown.mask_pins, before.mask_pins);
+        let (on, running) = (shown.pwm_enable, !inputs.rst);
+        let controlled = running && on && !active && !was_active && inputs.controller_valid;
+        let manual = running && active && was_active && inputs.tick;
+        let held = running && active && was_active && !inputs.tick;
+        let ready = inputs.axis_state == SupervisorState::Ready as u8;
+        let flagged = ready && inputs.direct_enable;
         let ended = running && was_active && !active;
         [
             !running,
@@ -253,21 +267,21 @@ impl DriveCommandCoverage {
             manual && duty == limit && limit > 0,
             manual && duty == -limit && limit > 0,
             manual && duty != 0 && duty.abs() < limit,
-            manual && duty_before != 0 && duty == 0 && plus_ok == 1 && minus_ok == 1 && limit > 0,
-            held && duty_before > 0 && duty == 0 && plus_ok == 0,
-            held && duty_before < 0 && duty == 0 && minus_ok == 0,
-            shown[7] == 1,
-            ended && state != SupervisorState::Ready as u64,
-            ended && state == SupervisorState::Ready as u64 && enable == 0,
+            manual && before.duty != 0 && duty == 0 && inputs.limit_plus_ok && inputs.limit_minus_ok && limit > 0,
+            held && before.duty > 0 && duty == 0 && !inputs.limit_plus_ok,
+            held && before.duty < 0 && duty == 0 && !inputs.limit_minus_ok,
+            shown.direct_expired,
+            ended && !ready,
+            ended && ready && !inputs.direct_enable,
             ended && on,
             running && active && masked && !was_masked,
-            ended && was_masked && !self_test && flagged,
-            ended && !was_masked && self_test && flagged,
-            ended && was_masked && inputs[5] == 1,
+            ended && was_masked && !inputs.self_test && flagged,
+            ended && !was_masked && inputs.self_test && flagged,
+            ended && was_masked && inputs.axis_pwm_enable,
             running && active && masked && !was_active && was_masked,
-            was_masked && valley && shown[9] > 1,
-            was_masked && valley && shown[10] > 1,
-            shown[9] == 65_535,
+            was_masked && inputs.valley && shown.self_test_high > 1,
+            was_masked && inputs.valley && shown.self_test_low > 1,
+            shown.self_test_high == 65_535,
         ]
     }
 

@@ -2,7 +2,7 @@
 //! or not; counts that wrap and ratios that saturate; ticks, velocities and aligns at every pace, also during a pass.
 //! The tied inputs change in reset.
 
-use posicast_blocks::linear_scale::{INPUT_PORTS, OUTPUT_PORTS, PASS_CLOCKS};
+use posicast_blocks::linear_scale::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PASS_CLOCKS};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -88,7 +88,7 @@ impl LinearScaleRandom {
 
 impl Stimuli for LinearScaleRandom {
     fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
-        let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
+        let Ok(raw) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
             return;
         };
         let rst = self.clock < 2 || self.rng.random_range(0..LIFE_CLOCKS) == 0;
@@ -97,22 +97,23 @@ impl Stimuli for LinearScaleRandom {
         }
         self.moves();
         let life = self.life;
-        let mut once_in = |pace: u32| u64::from(self.rng.random_range(0..pace) == 0);
+        let mut once_in = |pace: u32| self.rng.random_range(0..pace) == 0;
         // Each event comes at its own pace, and now and then in between.
-        let mut paced = |pace: u32| u64::from(self.clock.is_multiple_of(pace.into())) | once_in(50 * pace);
+        let mut paced = |pace: u32| self.clock.is_multiple_of(pace.into()) | once_in(50 * pace);
         let (tick, velocity_valid) = (paced(life.tick_pace), paced(life.velocity_pace));
-        *inputs = [
-            u64::from(rst),
+        let inputs = Inputs {
+            rst,
             tick,
-            self.motor as u64,
-            self.scale as u64,
-            (self.rng.next_u64() as i64 >> (64 - life.velocity_bits)) as u64,
+            motor_position: self.motor as i32,
+            scale_position: self.scale as i32,
+            motor_velocity: (self.rng.next_u64() as i64 >> (64 - life.velocity_bits)) as i32,
             velocity_valid,
-            u64::from(self.rng.random_range(0..life.align_pace) == 0),
-            life.mantissa as u64,
-            life.shift,
-            u64::from(life.use_scale),
-        ];
+            align: self.rng.random_range(0..life.align_pace) == 0,
+            ratio_mantissa: life.mantissa as i32,
+            ratio_shift: life.shift as u8,
+            use_scale: life.use_scale,
+        };
+        *raw = inputs.to_raw();
         self.clock += 1;
     }
 }
@@ -147,14 +148,25 @@ impl LinearScaleCoverage {
     /// Adds a clock.
     pub fn observe(&mut self, clock: &Clock<'_>) {
         let (Ok(inputs), Ok(shown)) = (
-            <[u64; INPUT_PORTS]>::try_from(clock.inputs),
-            <[u64; OUTPUT_PORTS]>::try_from(clock.expected),
+            <&[u64; INPUT_PORTS]>::try_from(clock.inputs),
+            <&[u64; OUTPUT_PORTS]>::try_from(clock.expected),
         ) else {
             return;
         };
-        let [rst, tick, _, _, _, velocity_valid, align, _, _, use_scale] = inputs.map(|value| value != 0);
-        let [deviation, valid, _, _] = shown;
-        let (deviation, valid) = (deviation as u32 as i32, valid == 1 && !rst);
+        let Inputs {
+            rst,
+            tick,
+            velocity_valid,
+            align,
+            use_scale,
+            ..
+        } = Inputs::from_raw(inputs);
+        let Outputs {
+            deviation,
+            deviation_valid,
+            ..
+        } = Outputs::from_raw(shown);
+        let valid = deviation_valid && !rst;
         self.computes &= !valid && !rst;
         let taken = !rst && tick && !self.computes;
         let seen = [

@@ -3,7 +3,7 @@
 //! hosts that clear them; a controller that feeds the watchdog, or forgets to; a mask that comes and goes in any
 //! clock. [`GateSafety`] checks what every run must fulfil.
 
-use posicast_blocks::pwm::{ActiveLow, Inputs, ports};
+use posicast_blocks::pwm::{ActiveLow, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, ports};
 use posicast_blocks::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -290,7 +290,7 @@ impl GateSafety {
 #[derive(Debug, Clone)]
 pub struct PwmCoverage {
     outputs: Vec<String>,
-    before: Vec<u64>,
+    before: [u64; OUTPUT_PORTS],
     /// Number of times that each output changed.
     changed: Vec<u64>,
     resets: u64,
@@ -302,8 +302,8 @@ pub struct PwmCoverage {
     /// Number of periods with the high side always on, and never on.
     full: u64,
     none: u64,
-    constant: Option<u64>,
-    mode: u64,
+    constant: Option<bool>,
+    mode: u8,
     peak_updates: u64,
     off_by_enable: u64,
     /// Per pin, the number of clocks in which the gate is on and the mask keeps the pin off.
@@ -316,7 +316,7 @@ impl Default for PwmCoverage {
         let is_output = |port: &Port| port.direction == Direction::Output;
         let outputs: Vec<String> = ports().into_iter().filter(is_output).map(|port| port.name).collect();
         Self {
-            before: vec![0; outputs.len()],
+            before: [0; OUTPUT_PORTS],
             changed: vec![0; outputs.len()],
             outputs,
             resets: 0,
@@ -337,34 +337,42 @@ impl Default for PwmCoverage {
 
 impl PwmCoverage {
     /// Adds a clock, given its inputs and the model's outputs, of a PWM whose pins are all active high.
-    pub fn observe(&mut self, inputs: &[u64], shown: &[u64]) {
-        let rises = |at: usize| shown[at] != 0 && self.before[at] == 0;
-        let mode = (self.mode & 3) as usize;
-        self.resets += inputs[0];
-        self.pulses[mode] += u64::from(rises(0) || rises(2));
-        self.starts[mode] += u64::from(rises(4));
+    pub fn observe(&mut self, inputs: &[u64], expected: &[u64]) {
+        let (Ok(inputs), Ok(expected)) = (
+            <&[u64; INPUT_PORTS]>::try_from(inputs),
+            <&[u64; OUTPUT_PORTS]>::try_from(expected),
+        ) else {
+            return;
+        };
+        let (inputs, shown) = (Inputs::from_raw(inputs), Outputs::from_raw(expected));
+        let before = Outputs::from_raw(&self.before);
+        let mode = usize::from(self.mode);
+        let pulse = (shown.a_high && !before.a_high) || (shown.b_high && !before.b_high);
+        self.resets += u64::from(inputs.rst);
+        self.pulses[mode] += u64::from(pulse);
+        self.starts[mode] += u64::from(shown.running && !before.running);
         for (at, trips) in self.trips.iter_mut().enumerate() {
-            *trips += (shown[6] & !self.before[6]) >> at & 1;
+            *trips += u64::from((shown.trip_causes & !before.trip_causes) >> at & 1);
         }
-        let running = shown[4] != 0;
-        self.off_by_enable += u64::from(!running && self.before[4] != 0 && shown[5] == 0);
-        self.peak_updates += u64::from(running && shown[9] != 0 && inputs[6] != 0);
-        let gates = shown[17];
-        for (gate, masked) in self.masked.iter_mut().enumerate() {
-            *masked += u64::from(self.was_masked) & gates >> gate;
+        self.off_by_enable += u64::from(!shown.running && before.running && !shown.tripped);
+        self.peak_updates += u64::from(shown.running && shown.peak && inputs.update_at_peak);
+        let gates = shown.gates;
+        let in_order = [gates.a_high, gates.a_low, gates.b_high, gates.b_low];
+        for (masked, gate) in self.masked.iter_mut().zip(in_order) {
+            *masked += u64::from(self.was_masked && gate);
         }
-        self.was_masked = inputs[20] != 0;
+        self.was_masked = inputs.mask_pins;
         // The gates are taken before the mask: a period whose pins were masked had its pulse.
-        let high = u64::from(gates & 0b0101 != 0);
-        if shown[8] != 0 {
-            self.full += u64::from(self.constant == Some(1));
-            self.none += u64::from(self.constant == Some(0));
-            self.constant = running.then_some(high);
-        } else if self.constant != Some(high) || !running {
+        let high = gates.a_high || gates.b_high;
+        if shown.valley {
+            self.full += u64::from(self.constant == Some(true));
+            self.none += u64::from(self.constant == Some(false));
+            self.constant = shown.running.then_some(high);
+        } else if self.constant != Some(high) || !shown.running {
             self.constant = None;
         }
-        self.mode = inputs[2];
-        for (at, (value, before)) in shown.iter().zip(&mut self.before).enumerate() {
+        self.mode = inputs.mode;
+        for (at, (value, before)) in expected.iter().zip(&mut self.before).enumerate() {
             self.changed[at] += u64::from(value != before);
             *before = *value;
         }

@@ -2,8 +2,8 @@
 //! rest and others; ticks at every pace; requests, resets, and stops of every size.
 
 use posicast_blocks::segments::{
-    CUBIC, CubicEntry, ENTRIES_MAX, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState,
-    TICK_CLOCKS,
+    CUBIC, CubicEntry, ENTRIES_MAX, Entry, EntryMotion, INPUT_PORTS, Inputs, LATENCY_CLOCKS, MORE, POINT, Point,
+    SegmentsState, TICK_CLOCKS,
 };
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -324,7 +324,7 @@ impl Stimuli for SegmentsRandom {
                 self.starve();
             }
         }
-        let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
+        let Ok(raw) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
             return;
         };
         let mood = self.mood;
@@ -346,30 +346,31 @@ impl Stimuli for SegmentsRandom {
             0 => false,
             pace => self.feed_hold != (self.rng.random_range(0..pace) == 0),
         };
-        let mut request = || u64::from(self.rng.random_range(0..mood.request_pace) == 0);
+        let mut request = || self.rng.random_range(0..mood.request_pace) == 0;
         let [flush, quick_stop, preset] = [request(), request(), request()];
-        let preset = preset | u64::from(std::mem::take(&mut self.presets));
+        let preset = preset | std::mem::take(&mut self.presets);
         // Without a restart most runs would end at the first stop.
-        let restart = u64::from(self.rng.random_range(0..200) == 0);
-        *inputs = [
-            u64::from(self.clock < 2 || (!mood.starves && self.rng.random_range(0..20_000) == 0)),
-            u64::from(tick),
-            u64::from(mood.enable != (!mood.starves && self.rng.random_range(0..2_000) == 0)),
-            u64::from(write),
-            word,
-            data,
+        let restart = self.rng.random_range(0..200) == 0;
+        let inputs = Inputs {
+            rst: self.clock < 2 || (!mood.starves && self.rng.random_range(0..20_000) == 0),
+            tick,
+            enable: mood.enable != (!mood.starves && self.rng.random_range(0..2_000) == 0),
+            write,
+            word: word as u8,
+            data: data as u32,
             flush,
             quick_stop,
             restart,
             preset,
-            self.rng.next_u64(),
-            mood.stop_deceleration,
-            mood.low_water,
-            u64::from(self.rng.random_range(0..100) == 0),
-            mood.modulo,
-            u64::from(self.feed_hold),
-            mood.extrapolation,
-        ];
+            preset_position: self.rng.next_u64() as i32,
+            stop_deceleration: mood.stop_deceleration as u32,
+            low_water: mood.low_water as u8,
+            clear_flags: self.rng.random_range(0..100) == 0,
+            modulo: mood.modulo != 0,
+            feed_hold: self.feed_hold,
+            extrapolation: mood.extrapolation as u8,
+        };
+        *raw = inputs.to_raw();
         self.clock += 1;
     }
 }
