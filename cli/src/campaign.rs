@@ -22,7 +22,7 @@ Examples:
   posicast campaign sweep examples/xy-stage.toml --set axis.x.shaper.kind=zv,zvd,ei --set clock.sample_hz=2000,10000
   posicast campaign merge part
 
-Exit status: 0 every unit holds, 1 one does not, or a shard is missing, 2 bad input, 3 a tool is missing.")]
+Exit status: 0 every unit passed, 1 a unit failed or a shard is missing, 2 bad input, 3 a tool is missing.")]
 pub(crate) struct Args {
     #[command(subcommand)]
     kind: Kind,
@@ -48,13 +48,13 @@ struct PartArgs {
     /// Part of the campaign: 3/40 is the third of forty
     #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Only this unit, from 0, as `merge` names it
+    /// Run only the unit with this number, from 0, as `merge` prints it
     #[arg(long, value_name = "NUMBER", conflicts_with_all = ["shard", "json"])]
     unit: Option<u64>,
-    /// Seed of the campaign, from which that of each unit follows
+    /// Seed of the campaign; the seed of each unit follows from it
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
-    /// File for the results of this part; a part that has its file is not run again
+    /// File for the results of this part; if it already holds them, the part is not run again
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -67,13 +67,13 @@ struct LockStepArgs {
     /// Only the blocks of this name, such as pulse_counter; may be given several times
     #[arg(long = "block", value_name = "NAME")]
     blocks: Vec<String>,
-    /// Clocks to compare in every row, in whole units
+    /// Clocks to compare in every row, rounded up to whole units
     #[arg(long, default_value_t = 100_000_000, value_parser = clocks)]
     clocks: u64,
-    /// Clocks of a unit; more where it takes more to see every tap, bank and flag
+    /// Clocks of a unit; more if exercising every tap, bank and flag takes more
     #[arg(long, default_value_t = 10_000_000, value_parser = clocks)]
     unit_clocks: u64,
-    /// Let the simulation alone judge Verilog of the folder that was edited
+    /// Accept edited Verilog in the folder, judged by the simulation alone
     #[arg(long)]
     edited: bool,
     /// Build the simulations and do nothing else, so that the shards find them built
@@ -86,20 +86,20 @@ struct LockStepArgs {
 /// Inject faults into the stage of the example machine, and check how it reacts
 #[derive(clap::Args)]
 struct FaultsArgs {
-    /// Number of faults, in whole units
+    /// Number of faults, rounded up to whole units
     #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     cases: u64,
     #[command(flatten)]
     part: PartArgs,
 }
 
-/// Put mutants into the blocks, and see whether lock step or proofs notice each
+/// Put mutants into the blocks, and check that lock step or proofs detect each
 #[derive(clap::Args)]
 struct MutantsArgs {
     /// Only the blocks of this name; may be given several times
     #[arg(long = "block", value_name = "NAME")]
     blocks: Vec<String>,
-    /// Number of mutants of each block, in whole units; a block with fewer places for them has fewer
+    /// Number of mutants of each block, rounded up to whole units; fewer if the block has fewer places for them
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     mutants: u64,
     #[command(flatten)]
@@ -139,23 +139,23 @@ struct CoverageArgs {
     part: PartArgs,
 }
 
-/// Identify logs of random machines, and compare the modes with those of the machines
+/// Identify modes in logs of random machines, and compare them with the machines' own modes
 #[derive(clap::Args)]
 struct IdentifyArgs {
-    /// Number of logs, in whole units
+    /// Number of logs, rounded up to whole units
     #[arg(long, default_value_t = 1_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     logs: u64,
     #[command(flatten)]
     part: PartArgs,
 }
 
-/// Damage recordings at random, and check that comparing them survives it
+/// Damage recordings at random, and check that the comparison copes with them
 #[derive(clap::Args)]
 struct WaveformsArgs {
     /// Small recordings, VCD or FST; each case damages one of them
     #[arg(required = true, value_name = "FILE")]
     recordings: Vec<PathBuf>,
-    /// Number of damaged recordings, in whole units
+    /// Number of damaged recordings, rounded up to whole units
     #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     cases: u64,
     #[command(flatten)]
@@ -168,7 +168,7 @@ struct WaveformsArgs {
 A place is a path in the machine file. An axis is written with its name, a mode with its number:
   --set axis.x.shaper.kind=zv,zvd,ei --set axis.x.mode.1.damping=0.05,0.1 --set clock.sample_hz=2000,10000
 
-A combination that is refused is a row with the reason, and no failure.")]
+A combination that posicast refuses becomes a row with the reason; it is not a failure.")]
 struct SweepArgs {
     /// Machine file with all other values
     machine: PathBuf,
@@ -185,12 +185,12 @@ struct SweepArgs {
     part: PartArgs,
 }
 
-/// Join the shards of a campaign: one table, and what failed
+/// Merge the shards of a campaign into one table, and list the failures
 #[derive(clap::Args)]
 struct MergeArgs {
-    /// Folder with the shards' files, and no other files `*.json`
+    /// Folder with the shards' files, and no other `*.json` files
     folder: PathBuf,
-    /// Print one JSON document on standard output, which does not depend on the number of shards
+    /// Print one JSON document on standard output; it does not depend on the number of shards
     #[arg(long)]
     json: bool,
 }

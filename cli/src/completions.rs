@@ -4,7 +4,7 @@ use crate::output;
 use clap_complete::Shell;
 use posicast_flow::Failure;
 
-/// A script that lets a shell complete posicast's commands and options, on standard output
+/// Print a script that lets a shell complete posicast's commands and options
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -6,12 +6,12 @@ use std::path::PathBuf;
 /// How bends of the path are passed.
 #[derive(clap::Args, Default, Clone, Copy)]
 pub(crate) struct CornerArgs {
-    /// Bends of the path: how far it could cut a corner to pass it within the acceleration, in the unit of the first
-    /// axis, which gives its speed (junction deviation); 0: stop at every bend [default: 0.01 mm, as grbl]
+    /// Junction deviation in the unit of the first axis: how far the path could cut a bend within the acceleration, which
+    /// gives the speed there; 0: stop at every bend [default: 0.01 mm, as grbl]
     #[arg(long, value_name = "LENGTH", requires = "contour", allow_negative_numbers = true)]
     corner_tolerance: Option<f64>,
-    /// Angle in degrees above which a bend of the path is a stop; 180: the tolerance alone decides, as in the firmware
-    /// of printers [default: 45]
+    /// Stop at bends of more than this angle in degrees; 180: the corner tolerance alone decides, as in the firmware of
+    /// printers [default: 45]
     #[arg(long, value_name = "DEGREES", requires = "contour", allow_negative_numbers = true)]
     stop_angle: Option<f64>,
 }
@@ -29,7 +29,7 @@ impl CornerArgs {
 #[derive(clap::Args)]
 pub(crate) struct ContourArgs {
     /// Path of the first two axes: circle, square, a CSV file of points x,y in the axes' units, or a G-code file
-    /// (.gcode, .nc, .ngc, …). Shows how far each kind of shaper makes the axes leave it, instead of writing a
+    /// (.gcode, .nc, .ngc, …). Prints how far the load leaves it with each kind of shaper, instead of writing a
     /// waveform
     #[arg(long, value_name = "SHAPE|FILE", conflicts_with = "command")]
     contour: Option<String>,

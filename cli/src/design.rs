@@ -8,7 +8,7 @@ use posicast_flow::design::{Options, design};
 use posicast_flow::moves::PerAxis;
 use std::path::PathBuf;
 
-/// Impulses, residuals, insensitivity and tap table of every axis
+/// Print impulses, residuals, insensitivity and tap table of every axis
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  posicast design examples/xy-stage.toml --plot sensitivity.svg\n  \
@@ -26,13 +26,14 @@ pub(crate) struct Args {
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
     #[arg(long, requires = "plot")]
     force: bool,
-    /// Certify what the integer taps of every axis leave at most, over the whole bands of its modes
+    /// Certify an upper bound of every axis's residual with integer taps, over the whole bands of its modes
     #[arg(long, conflicts_with = "compare")]
     certify: bool,
-    /// Show what more duration buys an optimal shaper: fewer taps, less residual, at what delay
+    /// Show what an optimal shaper gains from more duration: fewer taps or less residual, and at what delay
     #[arg(long, conflicts_with = "compare")]
     front: bool,
-    /// Compare a move of this distance, in the axis's unit (40, or x=40,y=-20), with one whose jerk time is a period of a mode
+    /// Compare the fastest move of this distance and its shaper with an unshaped move whose jerk time is a mode's period;
+    /// the distance is in the axis's unit: 40, or x=40,y=-20
     #[arg(
         long = "move",
         value_name = "DISTANCE",

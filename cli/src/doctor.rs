@@ -17,12 +17,12 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// Longest version that the table shows, in characters.
 const VERSION_LENGTH: usize = 32;
 
-/// Which of the programs that posicast calls are installed, what for, and how to get the others
+/// List the external programs that posicast calls: installed or not, what they are for, how to get them
 #[derive(clap::Args)]
 #[command(after_help = "\
-A variable such as VERILATOR or POSICAST_YOSYS names another executable; the table shows which one is set.
+A variable such as VERILATOR or POSICAST_YOSYS selects another executable; the table shows the variables that are set.
 
-Exit status: 0 what `posicast run` needs is here, 1 something of that is missing or does not start.")]
+Exit status: 0 everything that `posicast run` needs is installed, 1 a program is missing or does not start.")]
 pub(crate) struct Args {
     /// Print one JSON document on standard output
     #[arg(long)]

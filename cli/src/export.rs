@@ -6,7 +6,7 @@ use posicast_flow::Failure;
 use posicast_flow::export::{ExportFormat, Options, export};
 use std::path::PathBuf;
 
-/// The designed impulses for the firmware of a printer, for C, CSV, NumPy or MATLAB
+/// Write the designed impulses for a printer's firmware, C, CSV, NumPy or MATLAB
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -15,26 +15,27 @@ Examples:
   posicast export printer.toml --to klipper --closest
   posicast export examples/gantry.toml --to c -o gantry.h
 
-The file is one of its own, and the command says which line includes it. Never append to a printer.cfg: behind its SAVE_CONFIG
-block, Klipper drops that block.
+The export is a file of its own; the command prints the line that includes it. Never append it to a printer.cfg: Klipper drops
+the SAVE_CONFIG block if something follows it.
 
-Exit status 2: the format cannot express the design; the message says why, and which of the firmware's own shapers leaves least.")]
+Exit status 2: the format cannot express the design; the message gives the reason, and the firmware's own shaper that leaves
+least.")]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
     /// Form of the output
     #[arg(long, value_name = "FORMAT", value_parser = choice::parser::<ExportFormat>())]
     to: ExportFormat,
-    /// Version of the firmware, such as 3.5, v0.13.0-633 or 2026-03-31 [default: the newest, which the output names]
+    /// Version of the firmware, such as 3.5, v0.13.0-633 or 2026-03-31 [default: the newest; the output names it]
     #[arg(long, value_name = "VERSION")]
     firmware_version: Option<String>,
     /// Only this axis; may be given several times
     #[arg(long, value_name = "NAME")]
     axis: Vec<String>,
-    /// Where the firmware cannot take the design, write the one of its own shapers that leaves least
+    /// If the firmware cannot take the design, write the firmware's own shaper that leaves least
     #[arg(long)]
     closest: bool,
-    /// File to write, of its own; one that posicast did not write is never replaced [default: standard output]
+    /// File to write; a file that posicast did not write is never replaced [default: standard output]
     #[arg(short, long, visible_alias = "include", value_name = "FILE")]
     output: Option<PathBuf>,
 }

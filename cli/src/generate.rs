@@ -13,7 +13,7 @@ use std::path::PathBuf;
 Example:
   posicast generate examples/xy-stage.toml -o xy_stage
 
-It says how many files went where, which modules are the top ones, and what to do next.")]
+It prints the number of files and their folder, the top modules, and what to do next.")]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,

@@ -27,9 +27,10 @@ Examples:
   posicast host spi:///dev/spidev0.0 status --machine xy_stage/machine.toml
   posicast host udp://192.0.2.10:4210 status --machine xy_stage/machine.toml
 
-The machine file is the one from which the FPGA was built; for a serial line or SPI it has a table [link]. At a UDP address, posicast_serve of the
-C driver's linux/ runs. Exit status: 1 the stage did not do it, 2 bad input
-or another machine, 3 no port or no reply.")]
+Give the machine file from which the FPGA was built; for a serial line or SPI it has a table [link]. At a UDP address,
+posicast_serve must run, from linux/ of the C driver.
+
+Exit status: 1 the stage did not carry out the request, 2 bad input or another machine, 3 no port or no reply.")]
 pub(crate) struct Args {
     /// Serial port, such as /dev/ttyUSB0 or COM3; an SPI device, such as spi:///dev/spidev0.0 or spi:///dev/spidev0.0?hz=1000000; or
     /// udp://HOST:PORT
@@ -66,7 +67,7 @@ enum Action {
     },
     /// Record signals of an axis, tick by tick; needs [axis.trace]
     Trace(TraceArgs),
-    /// Load the shaper that another machine file has for an axis; it is used until the next reset
+    /// Load an axis's shaper from another machine file; it is used until the next reset
     Load {
         /// Name of the axis
         axis: String,
@@ -88,14 +89,14 @@ struct TraceArgs {
     /// --shake those that posicast identify needs]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     signals: Vec<String>,
-    /// Ticks from row to row [default: 1; with --shake and a scale 2]
+    /// Record a row every TICKS ticks [default: 1; with --shake and a scale 2]
     #[arg(long, value_name = "TICKS")]
     every: Option<u32>,
-    /// Switch the axis on and shake it meanwhile: amplitude of a pseudo-random sequence in counts, at most that of the machine file's
-    /// limits.excitation
+    /// Switch the axis on and shake it while recording, with a pseudo-random sequence of this amplitude in counts: at most limits.excitation
+    /// of the machine file
     #[arg(long, value_name = "COUNTS")]
     shake: Option<f64>,
-    /// Duration of a bit of that sequence in seconds
+    /// Duration of a bit of the pseudo-random sequence in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 1.5e-3, requires = "shake")]
     bit: f64,
     #[command(flatten)]
@@ -123,7 +124,7 @@ struct Line {
     /// Baud rate of a serial line [default: that of the machine file]
     #[arg(long, value_parser = clap::value_parser!(u32).range(i64::from(*BAUD.start())..=i64::from(*BAUD.end())))]
     baud: Option<u32>,
-    /// Time in milliseconds for which a reply is awaited, 1 to 10000; every request is sent up to five times
+    /// Time in milliseconds to wait for a reply, 1 to 10000; every request is sent up to five times
     #[arg(long, value_name = "MS", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     timeout: u64,
 }

@@ -8,7 +8,7 @@ use posicast_flow::identify::{LogExcitation, LogOptions, Options, identify, posi
 use posicast_identify::sweep::Sweep;
 use std::path::PathBuf;
 
-/// Modes from a measured log, with their uncertainty, shapers for them, and a machine file
+/// Find modes and their uncertainty in a measured log, suggest shapers, and write a machine file
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -17,7 +17,7 @@ Examples:
   posicast identify raw_data_y.csv --machine printer.toml --axis y -o both.toml
   posicast identify step.csv --json                   columns time,command,response
   posicast identify stop.csv --columns time_ms,accel_x_g,-,-
-                                                      what rings after a stop, in a file whose header does not say it
+                                                      the ringing after a stop, in a file without a usable header
 
 The columns of a log, and what each method needs: docs/identify.md")]
 pub(crate) struct Args {
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     /// Take this machine file and put the modes into the axis that --axis names, instead of starting from a template
     #[arg(long, value_name = "MACHINE", requires = "output", conflicts_with_all = ["printer", "gantry", "joint", "crane"])]
     machine: Option<PathBuf>,
-    /// Name of the axis in the machine file; else that of the sensor's direction, or the first
+    /// Name of the axis in the machine file [default: the sensor's direction, or the first axis]
     #[arg(long, value_name = "NAME", requires = "output")]
     axis: Option<String>,
     #[command(flatten)]
@@ -44,10 +44,10 @@ pub(crate) struct Args {
     excitation: ExcitationFlags,
     #[command(flatten)]
     log_flags: LogFlags,
-    /// Jump of the acceleration by which shapers are judged, in m/s² or rad/s²
+    /// Judge the shapers after a jump of the acceleration by this much, in m/s² or rad/s²
     #[arg(long, value_name = "M/S2", default_value = "5", value_parser = positive)]
     acceleration: f64,
-    /// Change of the frequencies in percent that a shaper must stand beside what the log leaves open
+    /// Change of the frequencies in percent that a shaper must tolerate in addition to the modes' uncertainty
     #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = band, allow_negative_numbers = true)]
     margin: f64,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
@@ -58,14 +58,14 @@ pub(crate) struct Args {
 /// What describes the excitation of an accelerometer's log.
 #[derive(clap::Args)]
 struct ExcitationFlags {
-    /// Sweep of the resonance test: first and last frequency in Hz, Hz per second, mm/s² per Hz; and, where the log does not tell it, the
-    /// square wave beside it, in mm/s² and s (a period of 0: none). Without this, the log tells the sweep
+    /// Sweep of the resonance test: first and last frequency in Hz, Hz per second, mm/s² per Hz; and, if it cannot be estimated from the
+    /// log, the square wave beside it, in mm/s² and s (a period of 0: none) [default: a sweep estimated from the log]
     #[arg(long, value_name = "START:END:RATE:ACCEL[:SWEEPING_ACCEL:SWEEPING_PERIOD]", value_parser = sweep)]
     sweep: Option<Sweep>,
-    /// The excitation is not known: look for modes in the spectrum alone, as if it were even
+    /// The excitation is unknown: look for modes in the spectrum alone, as if the excitation were even
     #[arg(long, conflicts_with = "sweep")]
     output_only: bool,
-    /// The log of an accelerometer is of a stop: look for modes in what rings after it
+    /// The accelerometer's log shows a stop: look for modes in the ringing after it
     #[arg(long, conflicts_with_all = ["sweep", "output_only"])]
     ring_down: bool,
 }
@@ -73,13 +73,13 @@ struct ExcitationFlags {
 /// What the log's file leaves open.
 #[derive(clap::Args)]
 struct LogFlags {
-    /// Names of the columns in their order, in the place of the header's, such as time_ms,accel_x_g,-; `-` for one that is not used
+    /// Names of the columns in order, replacing those of the header, such as time_ms,accel_x_g,-; `-` for an unused column
     #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',', allow_hyphen_values = true)]
     columns: Option<Vec<String>>,
-    /// Samples per second, for a log without times or with times that waver
+    /// Samples per second, for a log without times or with jittering times
     #[arg(long, value_name = "HZ", value_parser = positive)]
     rate: Option<f64>,
-    /// Direction of the accelerometer to be used, x, y or z or the name of its column; else the strongest
+    /// Direction of the accelerometer to use: x, y, z or the name of its column [default: the strongest]
     #[arg(long, value_name = "NAME")]
     direction: Option<String>,
 }

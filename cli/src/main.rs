@@ -36,7 +36,7 @@ use std::process::ExitCode;
 const EXAMPLES: &str = "\
 Examples:
   posicast new stage.toml                             a machine file to start from
-  posicast run examples/xy-stage.toml -o xy_stage     the whole way, with a verdict
+  posicast run examples/xy-stage.toml -o xy_stage     everything, with a verdict
   posicast design examples/xy-stage.toml --plot x.svg impulses, residuals and the tap table
   posicast verify examples/xy-stage.toml --cycles 10000000
   posicast diff xy_stage/wave/model.vcd xy_stage/wave/rtl.vcd
@@ -88,7 +88,7 @@ fn main() -> ExitCode {
     };
     style::set(color);
     if let Err(error) = interrupt::listen() {
-        output::say(&format!("warning: a signal will not remove temporary files: {error}"));
+        output::say(&format!("warning: temporary files will remain if a signal ends posicast: {error}"));
     }
     let result = match command {
         Command::New(args) => new::run(&args),

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 Example:
   posicast man ~/.local/share/man/man1      then `man posicast-run`")]
 pub(crate) struct Args {
-    /// Folder, made where it is missing
+    /// Folder; created if it is missing
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Replace files that posicast did not write, or that were changed since
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
     let pages: Vec<clap::Command> = std::iter::once(&command).chain(shown).cloned().collect();
     std::fs::create_dir_all(&args.folder).map_err(|error| {
         Failure::from(miette::miette!(
-            help = "name a folder that can be made",
+            help = "name a folder that can be created",
             "DIR {}: {error}",
             args.folder.display()
         ))
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
 const EXIT_STATUS: &str = "Exit status";
 /// The exit status of a command whose help does not describe it.
 const STATUS: &str =
-    "0 what was asked for was done, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.";
+    "0 success, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.";
 /// The exit status after a signal, which applies to every command.
 const SIGNALS: &str = "130 or 143 after SIGINT or SIGTERM, with nothing left behind.";
 

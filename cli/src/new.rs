@@ -30,11 +30,11 @@ Examples:
 
 Without a terminal and without a kind it writes a gantry.")]
 pub(crate) struct Args {
-    /// Machine file to write; its name, without the ending, is the machine's where that is possible
+    /// Machine file to write; if possible, its name without the ending becomes the name of the machine
     file: PathBuf,
     #[command(flatten)]
     kind: KindFlags,
-    /// Take modes and shaper from a measured log, as `posicast identify` finds them; the axis that it is of alone
+    /// Take modes and shaper from a measured log, as `posicast identify` finds them; only for the axis that was measured
     #[arg(long, value_name = "LOG")]
     from_log: Option<PathBuf>,
     /// Replace FILE if posicast wrote it and nobody has changed it since
@@ -105,7 +105,7 @@ fn claim(path: &Path, force: bool) -> Result<OutputFiles, Failure> {
     let there = |found: &str, help: &str| {
         Failure::from(miette::miette!(
             help = help,
-            "FILE {}: {found}, and is not replaced",
+            "FILE {}: {found}; it is not replaced",
             path.display()
         ))
     };

@@ -17,17 +17,17 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// The source papers' tables beside ours, with a verdict per row
+/// Compare the source papers' tables with ours, with a verdict per row
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  posicast reproduce vibrationless\n  posicast reproduce --plot figures\n  posicast reproduce --beyond\n\n\
-                  Exit status 1: a row that is agreed on as reproduced, or as an erratum, is not that any more."
+    after_help = "Examples:\n  posicast reproduce vibrationless\n  posicast reproduce --plot figures\n  posicast reproduce \
+                  --beyond\n\nExit status 1: a row that is recorded as reproduced, or as an erratum, no longer is."
 )]
 pub(crate) struct Args {
-    /// Paper; without it all of them
+    /// Paper [default: all of them]
     #[arg(value_parser = PossibleValuesParser::new(Paper::ALL.map(Paper::name)))]
     paper: Option<String>,
-    /// Compare the papers' examples with the shortest closed form and the shortest shaper there is, instead
+    /// Compare the papers' examples with the shortest closed form and the shortest possible shaper instead
     #[arg(long, conflicts_with_all = ["paper", "plot"])]
     beyond: bool,
     /// Print one JSON document on standard output

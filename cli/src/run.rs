@@ -9,7 +9,7 @@ use posicast_flow::verify::DEFAULT_SEED;
 use posicast_flow::{Failure, Simulator, clocks};
 use std::path::PathBuf;
 
-/// The whole way: design, Verilog, simulation, comparison, estimate, verdict
+/// Do everything: design, Verilog, simulation, comparison, estimate, verdict
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -17,7 +17,7 @@ Examples:
   posicast run examples/xy-stage.toml --move x=0.04,y=-0.02 --speed 0.1
   posicast run examples/xy-stage.toml --contour part.gcode
 
-Exit status: 0 all checks hold, 1 a check failed (the folder holds the evidence), 2 bad input, 3 a named tool is missing.")]
+Exit status: 0 all checks hold, 1 a check failed (the folder holds the evidence), 2 bad input, 3 a tool that was asked for is missing.")]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
@@ -26,11 +26,11 @@ pub(crate) struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     motion: MotionArgs,
-    /// Radius of the circle of the closed loop, in the unit of the first axis [default: what the limits of the axes suit]
+    /// Radius of the circle of the closed loop, in the unit of the first axis [default: one that suits the limits of the axes]
     #[arg(long, allow_negative_numbers = true)]
     radius: Option<f64>,
-    /// Path of the closed loop in place of the circle: circle, square, a CSV file of points x,y, or a G-code file,
-    /// from where the axes stand at reset; --radius and --speed apply to it
+    /// Path of the closed loop instead of the circle: circle, square, a CSV file of points x,y, or a G-code file. It
+    /// begins where the axes stand at reset; --radius and --speed apply to it
     #[arg(long, value_name = "SHAPE|FILE", conflicts_with = "command")]
     contour: Option<String>,
     #[command(flatten)]

@@ -7,7 +7,7 @@ use posicast_machine::machine_file;
 use posicast_system::output::OutputFiles;
 use std::path::{Path, PathBuf};
 
-/// The JSON Schema of the machine file, for editors that complete and check TOML; with --report, that of report.json
+/// Print the JSON Schema of the machine file, for editors that complete and check TOML; with --report, that of report.json
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -15,8 +15,8 @@ Examples:
   posicast schema --report -o posicast-report.schema.json
 
 Machine files that `posicast new` writes name a file posicast-machine.schema.json beside them. Editors with Taplo (Even Better
-TOML) then complete keys, show what they mean and mark what is out of range. Of what keys must agree on the schema knows
-little: `posicast design` checks everything.")]
+TOML) then complete keys, show what they mean and mark what is out of range. The schema has few rules about several keys
+together: `posicast design` checks everything.")]
 pub(crate) struct Args {
     /// Write the schema of `report.json` and of `run --json` instead
     #[arg(long)]

@@ -7,7 +7,7 @@ use posicast_flow::synth::{Options, synth};
 use posicast_synth::yosys::Family;
 use std::path::PathBuf;
 
-/// Logic cells, registers, memory and multipliers of the machine's Verilog
+/// Estimate logic cells, registers, memory and multipliers of the machine's Verilog
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  posicast synth examples/xy-stage.toml --family cyclone5")]
 pub(crate) struct Args {
@@ -16,8 +16,8 @@ pub(crate) struct Args {
     /// Device family: cyclone2, cyclone4e, cyclone10lp, cyclone5, max10 [default: the machine file's, else cyclone5]
     #[arg(long)]
     family: Option<Family>,
-    /// Clock estimate of this top module, by place and route on an open family as a proxy: minutes for a stage; may be given
-    /// several times
+    /// Estimate the clock of this top module, by place and route on an open family as a proxy: takes minutes for a stage; may
+    /// be given several times
     #[arg(long, value_name = "TOP")]
     clock: Vec<String>,
     /// Print one JSON document on standard output

@@ -16,7 +16,7 @@ Examples:
   posicast verify xy_stage                    the Verilog in that folder, as it is
   posicast verify xy_stage --stimulus recorded.vcd --map tb.dut=xy_stage
 
-Exit status: 0 everything was exercised and equal, 1 it was not, 2 bad input, 3 the simulator is missing.")]
+Exit status: 0 everything was exercised and equal, 1 something was not, 2 bad input, 3 the simulator is missing.")]
 pub(crate) struct Args {
     /// Machine file, or a folder that `generate` or `run` wrote
     source: PathBuf,
@@ -27,13 +27,13 @@ pub(crate) struct Args {
     #[arg(long = "block", value_name = "NAME")]
     blocks: Vec<String>,
     /// Clocks to compare in every row, with --stimulus at most [default: 1000000 with verilator, 20000 with icarus and
-    /// rusthdl, and more where it takes more to see every tap, bank and flag]
+    /// rusthdl, and more if exercising every tap, bank and flag takes more]
     #[arg(long, value_parser = clocks)]
     cycles: Option<u64>,
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
-    /// Let both simulators judge Verilog of the folder that was edited; without this it is no match
+    /// Let both simulators judge edited Verilog in the folder; without this option, edited Verilog is no match
     #[arg(long)]
     edited: bool,
     /// Also print what the clocks of each row reached (samples, moves, taps, registers) and how much of it a match needs
@@ -53,7 +53,7 @@ struct RecordingArgs {
     /// Replay the inputs in this VCD or FST into RTL and model, and compare with the outputs in it
     #[arg(long, value_name = "FILE")]
     stimulus: Option<PathBuf>,
-    /// Scope or signal A of the recording is B of the block, whose scope is its top module; with * in both, a pattern (repeatable)
+    /// Match scope or signal A of the recording with B of the block, whose scope is its top module; with * in both, a pattern (repeatable)
     #[arg(long, value_name = "A=B", requires = "stimulus")]
     map: Vec<String>,
     /// Look only below this scope of the recording

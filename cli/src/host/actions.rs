@@ -37,7 +37,7 @@ pub(super) fn move_axes<'m>(
     if let Some(nothing) = nothing {
         return Err(Failure::from(miette::miette!(
             help = "give a distance other than 0, or leave the axis out",
-            "move: {} for axis {} is no distance",
+            "move: {} for axis {} is not a distance",
             nothing.distance,
             machine.axes[nothing.axis].name
         )));
@@ -145,14 +145,14 @@ fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Pat
             path,
             axis,
             "axis.limits.excitation",
-            format_args!("--shake {counts}: above 0, at most {most:.2} counts by this key (without it 4)"),
+            format_args!("--shake {counts}: allowed: above 0, at most {most:.2} counts by this key (4 without it)"),
         ));
     }
     let ticks = bit_s * machine.clock.sample_hz;
     if !(0.5..=65_535.0).contains(&ticks) {
         return Err(Failure::from(miette::miette!(
-            help = "about a fifth of the period of the mode is a good choice",
-            "--bit {bit_s}: {} s to {} s are possible",
+            help = "a fifth of the mode's period is a good choice",
+            "--bit {bit_s}: allowed: {} s to {} s",
             1.0 / machine.clock.sample_hz,
             65_535.0 / machine.clock.sample_hz
         )));
@@ -207,7 +207,7 @@ pub(super) fn load<'m>(
             0,
             "clock.sample_hz",
             format_args!(
-                "{} Hz, and {} Hz in the stage: a table is for one sample rate",
+                "{} Hz here, but {} Hz in the stage: a table fits one sample rate only",
                 other.clock.sample_hz, machine.clock.sample_hz
             ),
         ));

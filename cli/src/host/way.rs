@@ -30,14 +30,14 @@ impl<'a> Way<'a> {
     pub(super) fn of((port, baud): (&'a str, Option<u32>), machine: &Machine, path: &Path) -> Result<Self, Failure> {
         let (spi, udp) = (port.strip_prefix(SPI), port.strip_prefix(UDP));
         if baud.is_some() && (spi.is_some() || udp.is_some()) {
-            return Err(refused("leave it out", format!("--baud: {port} is no serial line")));
+            return Err(refused("leave it out", format!("--baud: {port} is not a serial line")));
         }
         if let Some(address) = udp {
             let (host, number) = address.rsplit_once(':').unwrap_or_default();
             if host.is_empty() || number.parse::<u16>().is_err() {
                 return Err(refused(
                     "write udp://HOST:PORT",
-                    format!("{port}: no address of a server"),
+                    format!("{port}: this is not the address of a server"),
                 ));
             }
             return Ok(Self::Network(address));
@@ -45,7 +45,7 @@ impl<'a> Way<'a> {
         if port.is_empty() || (spi.is_none() && port.contains("://")) {
             return Err(refused(
                 "write spi:///dev/spidev0.0, udp://HOST:PORT, or a serial port such as /dev/ttyUSB0",
-                format!("`{port}`: no way to a stage begins like this"),
+                format!("`{port}`: this is neither a serial port, an SPI device nor a UDP address"),
             ));
         }
         let file = path.display();
@@ -60,11 +60,11 @@ impl<'a> Way<'a> {
             (Some(device), LinkLine::Spi { sck_hz }) => Self::spi((port, device), (&link, sck_hz), machine),
             (Some(_), LinkLine::Uart { .. }) => Err(refused(
                 "give the serial port, such as /dev/ttyUSB0",
-                format!("{port}: the stage of {file} has a serial line, no SPI"),
+                format!("{port}: the stage of {file} has a serial line, not SPI"),
             )),
             (None, LinkLine::Spi { .. }) => Err(refused(
                 "give the SPI device, such as spi:///dev/spidev0.0",
-                format!("{port}: the stage of {file} has SPI, no serial line"),
+                format!("{port}: the stage of {file} has SPI, not a serial line"),
             )),
         }
     }
@@ -82,7 +82,7 @@ impl<'a> Way<'a> {
         if !device.starts_with('/') || device.contains('?') {
             return Err(refused(
                 "write spi:///dev/spidev0.0 (three slashes), or spi:///dev/spidev0.0?hz=1000000",
-                format!("{port}: no name of an SPI device"),
+                format!("{port}: this is not the name of an SPI device"),
             ));
         }
         let Some(clock) = clock else {
@@ -94,7 +94,7 @@ impl<'a> Way<'a> {
             _ => Err(refused(
                 "give a clock in this range, or leave it out for that of the machine file",
                 format!(
-                    "{port}: hz is a whole number, {} to {}: two bytes within link.timeout_s, and an eighth of the machine's clock",
+                    "{port}: hz must be a whole number from {} (two bytes within link.timeout_s) to {} (an eighth of the machine's clock)",
                     range.start(),
                     range.end()
                 ),
@@ -106,13 +106,13 @@ impl<'a> Way<'a> {
     pub(super) fn remedy(&self) -> String {
         match self {
             Self::Serial(..) => {
-                "the baud rate must be that of the machine file from which the FPGA was built; the adapter's transmitter belongs to uart_rx, \
+                "use the baud rate of the machine file from which the FPGA was built; connect the adapter's transmitter to uart_rx, and \
                  its receiver to uart_tx"
                     .to_owned()
             }
             Self::Spi(device, sck_hz) => format!(
-                "spi_cs_n belongs to the chip select of {device}, spi_mosi to MOSI and spi_miso to MISO, not crossed; try a slower clock, such as \
-                 {SPI}{device}{SPI_CLOCK}{}",
+                "connect spi_cs_n to the chip select of {device}, spi_mosi to MOSI and spi_miso to MISO, not crossed; try a slower \
+                 clock, such as {SPI}{device}{SPI_CLOCK}{}",
                 sck_hz / 10
             ),
             Self::Network(address) => format!("posicast_serve must run at {address}, and the stage behind it must have a clock"),
@@ -129,7 +129,7 @@ impl<'a> Way<'a> {
             Self::Spi(device, _) => {
                 return Err(LinkError::Spi {
                     device: (*device).to_owned(),
-                    reason: "posicast knows the SPI devices of Linux only".to_owned(),
+                    reason: "posicast supports SPI devices on Linux only".to_owned(),
                     remedy: "operate the stage from a computer with Linux",
                 });
             }

@@ -119,7 +119,7 @@ fn cli_host_operates_a_stage_over_the_network() {
         "{said}"
     );
     let (code, said) = served.host(&file, &["--baud", "115200"]);
-    assert!(code == Some(2) && said.contains("is no serial line"), "{said}");
+    assert!(code == Some(2) && said.contains("is not a serial line"), "{said}");
 
     let mut nobody = posicast();
     nobody
