@@ -69,9 +69,9 @@ fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) ->
             let _ = writeln!(text, "  no {}: {}", missing.kind, missing.reason);
         }
     }
-    text + "\n* no other kind is as good in duration, worst residual and taps, and better in one of them\n\
+    text + "\n* no other kind is better in one of duration, worst residual and taps, and at least as good in the others\n\
             optimal: designed for this band and these tolerances, without negative amplitudes and with a step within −1 … 1\n\
-            least there: what the best shaper without negative amplitudes leaves in the duration of a smooth kind\n"
+            least there: residual of the best shaper without negative amplitudes in the duration of a smooth kind\n"
 }
 
 /// The tolerances of an axis's modes, by which its kinds are judged.

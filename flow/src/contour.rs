@@ -384,7 +384,7 @@ pub(crate) fn simulate(
     drop(bar);
     let rows = rows.map_err(|error| path.failure(&error))?;
     if let Some(reason) = rows[0].followed.as_ref().err().filter(|_| rows[1].followed.is_err()) {
-        return Err(refused("--contour", reason, "`posicast design` tells more about it"));
+        return Err(refused("--contour", reason, "run `posicast design` for the details"));
     }
     let report = Report {
         machine,

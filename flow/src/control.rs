@@ -23,11 +23,11 @@ pub(crate) struct AxisControl {
 /// Half width and half height of the Nyquist plot, chosen so that circles are round in a panel.
 const NYQUIST_REACH: [f64; 2] = [2.8, 1.0];
 
-const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
-                         for mode in [axis.pwm], unless the axis is pushed back by something else";
+const ONE_SIDED: &str = "a half bridge outputs 0 for a negative command: choose direction, full-bridge or locked-antiphase for mode in \
+                         [axis.pwm], unless something else pushes the axis back";
 
-const ONE_CHANNEL: &str = "the shaper component has the position's channel alone: three take command words of 18 to 32 \
-                           bits and delays of at most 4094 samples; the host must give velocity and acceleration shaped";
+const ONE_CHANNEL: &str = "the shaper component has only the channel of the position, because three channels need command words of 18 to \
+                           32 bits and delays of at most 4094 samples; the host must write shaped velocities and accelerations";
 
 /// The controllers of a machine; `None` for an axis without one.
 pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Option<AxisControl>> {

@@ -35,7 +35,7 @@ const GUARDS: [Guard; 4] = [
     Guard {
         key: "travel",
         is_set: |axis, limits| axis.modulo || limits.travel.is_some(),
-        without: "a wrong command drives the axis into its end stops, and nothing says whether the position word holds its travel",
+        without: "a wrong command drives the axis into its end stops, and posicast cannot check that the position word holds the travel",
     },
 ];
 
@@ -66,8 +66,8 @@ fn tight(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     let counts = limit * axis.loop_counts_per_unit();
     (counts < LEAST_COUNTS).then(|| {
         format!(
-            "axis `{}` has a following_error of {}, which is {} of its encoder's counts, whose steps alone switch the axis off; the figure is in the \
-             axis's unit, {}",
+            "axis `{}` has a following_error of {}, which is only {} of its encoder's counts: the encoder's own steps switch the axis \
+             off; the figure is in the axis's unit, {}",
             axis.name,
             axis.unit.as_in_file(limit, ""),
             trimmed(counts, 2),
@@ -82,20 +82,18 @@ fn sign(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
         _ if limits.following_error.is_some() => return None,
         LostSign::Watched => return None,
         LostSign::TooShort { least_s } => format!(
-            "`encoder_lost_s` = {}, in which an axis at `velocity` does not stop; set following_error, or encoder_lost_s to {:.3} or \
-             more",
+            "within `encoder_lost_s` = {} an axis at `velocity` cannot stop; set following_error, or encoder_lost_s to {:.3} or more",
             limits.encoder_lost_s,
             (1e3 * least_s).ceil() / 1e3
         ),
         LostSign::Unknown => {
-            "there is no following_error; set it, or encoder_lost_s, with a torque drive velocity and an encoder_lost_command \
-             above 0 too"
+            "set following_error, or encoder_lost_s (with a torque drive also velocity, and an encoder_lost_command above 0)"
                 .to_owned()
         }
     };
     Some(format!(
-        "axis `{}` does not notice a wrong feedback sign (`invert` of [axis.encoder]), with which it runs away at full command until \
-         it is 32,768 counts off, {}: {remedy}",
+        "axis `{}` does not detect a wrong feedback sign (`invert` of [axis.encoder]); it would run away at full command until it is \
+         32,768 counts off, {}: {remedy}",
         axis.name,
         axis.unit.show(32_768.0 / axis.loop_counts_per_unit(), 3)
     ))

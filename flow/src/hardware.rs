@@ -70,7 +70,7 @@ impl<'a> Built<'a> {
             ComponentBlock::new(one.component, &top, axis).with_prefix(&format!("{}_{axis}", machine.name))
         });
         if let Some(reason) = hardware.without_stage() {
-            let text = format!("no stage is built, its blocks are components of their own: {reason}");
+            let text = format!("no stage is built; its blocks become separate components: {reason}");
             Warning::new(reason.axis, reason.key.as_str(), text).tell(path, observer);
         }
         let stage = hardware.stage().map_err(refused)?.map(|stage| {
@@ -86,7 +86,7 @@ impl<'a> Built<'a> {
             (Some(link), Some(stage)) => Some(linked(machine, link, stage, path)?),
             (Some(link), None) => {
                 let reason =
-                    "a line needs the stage, and none is built; remove [link], or change what the warning names";
+                    "a line needs the stage, but no stage is built; remove [link], or change what the warning names";
                 return Err(at_key(path, 0, link_key(link), reason));
             }
         };

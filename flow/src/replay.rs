@@ -159,7 +159,7 @@ pub(crate) fn run(
     if compared == 0 {
         return Err(Failure::from(miette::miette!(
             help = "--clock NAME names another clock, --reset none compares from the first edge",
-            "`{}` has {} and none after the release of its reset: there is nothing to compare ({})",
+            "`{}` has {}, but no edge after the release of its reset: there is nothing to compare ({})",
             file.display(),
             counted(clocks, "clock edge"),
             replay.notes().join(", ")
@@ -227,8 +227,8 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
     let some = inputs.take(6).collect::<Vec<_>>().join(", ");
     Err(Failure::from(miette::miette!(
         help = format!(
-            "say with --map SCOPE=TOP or --map SIGNAL=TOP.PORT which signals of the file are the block's, or choose another \
-             block with --block; its top is `{}`",
+            "match the signals of the file with those of the block, by --map SCOPE=TOP or --map SIGNAL=TOP.PORT, or choose another block \
+             with --block; its top is `{}`",
             block.top()
         ),
         "`{}` has {what} of {} {}: its replay would compare nothing. Not found: {some}, …",
@@ -281,7 +281,7 @@ fn choose<'a>(
         (Some(chosen), _) => Ok(chosen),
         (None, Some(error)) => Err(bench::failure(error)),
         (None, None) => Err(Failure::from(miette::miette!(
-            help = "say with --map A=B which scope or signal of the file is which of the block, or choose the block with --block",
+            help = "match a scope or signal A of the file with B of the block by --map A=B, or choose the block with --block",
             "`{}` has no signal in common with the ports of any block",
             file.display()
         ))),

@@ -32,8 +32,8 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
             let above = |mode: &&ModeCertificate| mode.residual.bound > mode.tolerance * (1.0 + BETWEEN_SAMPLES);
             beyond.extend(certificate.modes.iter().filter(above).map(|mode| {
                 let text = format!(
-                    "axis {}, mode of {:.3} … {:.3} Hz: the integer taps leave up to {:.4} % of the vibration in the band, {:.4} % is the \
-                     tolerance; leave coefficient_fraction out, or allow a longer shaper with fewer taps",
+                    "axis {}, mode of {:.3} … {:.3} Hz: the integer taps leave up to {:.4} % of the vibration in the band, and the \
+                     tolerance is {:.4} %; leave coefficient_fraction out, or allow a longer shaper with fewer taps",
                     axis.name,
                     mode.band.frequency_hz[0],
                     mode.band.frequency_hz[1],
@@ -50,12 +50,12 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
                 continue;
             }
             let remedy = if mode.residual > asked {
-                "the impulses leave as much: choose another kind, or raise the tolerance of the mode"
+                "the impulses exceed it too: choose another kind, or raise the tolerance of the mode"
             } else {
-                "the impulses themselves do not: leave coefficient_fraction out, or raise sample_hz"
+                "the impulses themselves keep it: leave coefficient_fraction out, or raise sample_hz"
             };
             let text = format!(
-                "axis {}, mode of {:.3} Hz: the integer taps leave {:.2} % of the vibration, {:.2} % is the tolerance; {remedy}",
+                "axis {}, mode of {:.3} Hz: the integer taps leave {:.2} % of the vibration, and the tolerance is {:.2} %; {remedy}",
                 axis.name,
                 mode.mode.frequency_hz,
                 100.0 * found,
@@ -92,7 +92,8 @@ pub(crate) fn just_above_tolerance(machine: &Machine, design: &MachineDesign) ->
         .filter(|(_, found, asked)| found > asked)
         .max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
     Some(format!(
-        "axis {name} leaves {:.4} % of {:.4} %: up to {} % more than the tolerance counts as kept, because an impulse between two samples becomes two taps",
+        "axis {name} leaves {:.4} %, and the tolerance is {:.4} %: an excess of up to {} % is accepted, because an impulse between two \
+         samples becomes two taps",
         100.0 * found,
         100.0 * asked,
         100.0 * BETWEEN_SAMPLES

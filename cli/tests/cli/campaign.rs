@@ -198,7 +198,7 @@ fn cli_campaign_names_a_broken_block_and_the_command_that_repeats_it() {
     );
     let repeat = text
         .lines()
-        .find_map(|line| line.strip_prefix("the first one alone: posicast campaign "));
+        .find_map(|line| line.strip_prefix("to repeat the first failure alone: posicast campaign "));
     let words = shlex::split(repeat.unwrap()).unwrap();
     let alone = campaign(&words.iter().map(String::as_str).collect::<Vec<_>>());
     assert_eq!(alone.status.code(), Some(1), "{}", said(&alone));

@@ -286,7 +286,7 @@ fn cli_design_compares_smooth_kinds_with_the_best_at_their_duration() {
         assert!(least < worst, "{kind}");
     }
     let text = posicast().arg("design").arg(&file).arg("--compare").assert().success();
-    text.stdout(predicates::str::contains("least there: what the best shaper"));
+    text.stdout(predicates::str::contains("least there: residual of the best shaper"));
 }
 
 #[test]

@@ -198,7 +198,7 @@ fn cli_an_axis_with_a_loop_takes_words_of_any_width() {
 #[test]
 fn cli_a_warning_names_a_torque_drive_whose_wrong_sign_is_not_detected() {
     let text = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
-    let unseen = "does not notice a wrong feedback sign";
+    let unseen = "does not detect a wrong feedback sign";
     let said = |text: &str| {
         let (_folder, file) = scratch(text);
         let run = posicast().arg("design").arg(&file).output().unwrap();
@@ -290,7 +290,7 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
     assert_eq!((status, &document["result"]), (Some(1), &"fail".into()), "{said}");
     assert!(said.contains("the closed loop runs in the bit-exact model"), "{said}");
     assert!(
-        said.contains("axis `x` has a following_error of 0.000001 m, which is 1 of its encoder's counts"),
+        said.contains("axis `x` has a following_error of 0.000001 m, which is only 1 of its encoder's counts"),
         "{said}"
     );
     assert!(document["stage"]["side_by_side"].is_null());
@@ -341,7 +341,7 @@ fn long_cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
     let failed = failed(&document);
     let has = |name: &str, detail: &str| failed.iter().any(|(n, d)| n.starts_with(name) && d.contains(detail));
     assert!(
-        has("the integer taps keep the tolerance", "is the tolerance"),
+        has("the integer taps keep the tolerance", "and the tolerance is"),
         "{failed:?}"
     );
     assert!(has("the command moves every axis", "not exercised"), "{failed:?}");
@@ -363,7 +363,7 @@ fn long_cli_run_of_ei_shapers_passes_and_reports_the_expected_residual() {
         .find(|check| check["name"].as_str().unwrap().starts_with("the shapers suppress"));
     let detail = shapers.unwrap()["detail"].as_str().unwrap();
     assert!(
-        detail.contains("axis x: 47.") && detail.contains("expected of its design"),
+        detail.contains("axis x: 47.") && detail.contains("expected from its design"),
         "{detail}"
     );
     assert!(

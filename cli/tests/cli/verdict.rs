@@ -275,7 +275,7 @@ fn cli_a_run_of_too_few_clocks_has_no_verdict_and_blames_nobody() {
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     assert_eq!(run.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("NO VERDICT: nothing differed") && said.contains("leave `--cycles` away"),
+        said.contains("NO VERDICT: nothing differed") && said.contains("leave out `--cycles`"),
         "{said}"
     );
     assert!(!said.contains("changed by hand") && !said.contains("FAIL:"), "{said}");

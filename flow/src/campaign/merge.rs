@@ -50,7 +50,7 @@ fn costs<'a>(documents: impl Iterator<Item = &'a ShardDocument>) -> String {
         overhead = overhead.max(document.overhead_seconds);
     }
     format!(
-        "{} of {sum:.1} s in all, the longest {longest:.1} s; beside their work at most {overhead:.2} s each",
+        "{} of {sum:.1} s in all, the longest {longest:.1} s; overhead of at most {overhead:.2} s each",
         counted(count, "shard")
     )
 }
@@ -61,7 +61,7 @@ fn text(merged: &Merged, costs: &str, repeat: &str) -> String {
         text += &of_failure(result);
     }
     if let Some(first) = merged.failures.first() {
-        text += &format!("the first one alone: {repeat} --unit {}\n", first.unit);
+        text += &format!("to repeat the first failure alone: {repeat} --unit {}\n", first.unit);
     }
     let head = &merged.head;
     let machine = head.machine.as_ref().map_or_else(String::new, |machine| {

@@ -94,7 +94,7 @@ impl Units for Mutants {
         Ok(UnitOutcome {
             figures: figures(counts.map(|(name, count)| (name, count as u64))),
             failure: (!row.unknown.is_empty())
-                .then(|| format!("neither noticed nor equivalent: {}", row.unknown.join("; "))),
+                .then(|| format!("neither detected nor equivalent: {}", row.unknown.join("; "))),
         })
     }
 }

@@ -77,7 +77,7 @@ impl<'a> CertificateReport<'a> {
             let more = self.samples - optimal.least_samples;
             let _ = writeln!(
                 text,
-                "  {} more, {:.4} ms, are what {} cost",
+                "  the limit of {2} costs {0} more, {1:.4} ms",
                 counted(u64::from(more), "sample"),
                 f64::from(more) / self.sample_hz * 1e3,
                 counted(optimal.request.most_taps as u64, "tap"),

@@ -75,12 +75,12 @@ impl MoveReport<'_> {
         if self.found.tolerated.is_finite() {
             let _ = writeln!(
                 text,
-                "  residual: the largest amplitude of a mode at the end, of those looked at in its band; {} is tolerated",
+                "  residual: the largest amplitude of a mode at the end of the move, at any frequency examined in its band; the tolerance is {}",
                 unit.show(self.found.tolerated, 3)
             );
         }
         if better.is_none() {
-            text += "  neither leaves so little: choose another kind or a larger tolerance\n";
+            text += "  neither keeps the tolerance: choose another kind or a larger tolerance\n";
         }
         text
     }

@@ -115,7 +115,7 @@ fn owned(what: &str, format: ExportFormat) -> Failure {
     };
     Failure::from(miette::miette!(
         help = remedy,
-        "{what}, and an export replaces no such file"
+        "{what}; an export never replaces such a file"
     ))
 }
 

@@ -148,7 +148,7 @@ fn identify_ring_down(log: &AccelerationLog) -> Result<Findings, Failure> {
 fn findings_in_decay(log: &AccelerationLog, found: FoundInRingDown) -> Findings {
     let mut remarks: Vec<String> = found.decay.remarks.iter().map(ToString::to_string).collect();
     if found.modes.is_empty() {
-        remarks.push("what follows the last push does not decay as a mode would: log a sudden stop, until the machine is at rest".into());
+        remarks.push("the motion after the last push does not decay as a mode would: log a sudden stop, until the machine is at rest".into());
     }
     let method = format!(
         "modes that decay freely after a stop, fitted from {} s after the first sample on; they explain {:.2} % of it",
@@ -269,15 +269,15 @@ fn identify_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findin
 fn identify_output(log: &AccelerationLog) -> Result<Findings, Failure> {
     let found = output_only::identify(log).map_err(position_failure)?;
     let mut remarks: Vec<String> = vec![
-        "the excitation was taken as even over the frequencies: what it has of its own, such as a fan, looks like a mode here, and \
-         shares are rough"
+        "the excitation was assumed to be even over the frequencies: a peak of the excitation itself, such as that of a fan, looks like \
+         a mode here, and shares are rough"
             .into(),
     ];
     if found.modes.is_empty() {
         remarks.push("no vibration in the log decays as a mode would".into());
     }
-    let method = "decay of the correlation of the response with itself, the excitation not known".into();
-    let evidence = Evidence::response("correlation of the acceleration with itself", &found.decay);
+    let method = "decay of the autocorrelation of the response, with unknown excitation".into();
+    let evidence = Evidence::response("autocorrelation of the acceleration", &found.decay);
     Ok(in_direction(
         log,
         &found.direction,
@@ -368,14 +368,14 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
     let mut remarks = Vec::new();
     if found.reduced_square > LEFT_OVER {
         remarks.push(format!(
-            "the modes leave {:.1} times as much of the transfer function as its noise would: it has something that no linear \
-             mode explains, such as play or stick; the intervals are widened for it",
+            "the residual of the fitted modes is {:.1} times the noise of the transfer function: the response contains something that no \
+             linear mode explains, such as backlash or stiction; the intervals are widened accordingly",
             found.reduced_square.sqrt()
         ));
     }
     if found.clock_error.abs() > TOLD_CLOCK {
         remarks.push(format!(
-            "the clock of the log runs {} % {} than that of the sweep; frequencies are by the sweep's",
+            "the clock of the log runs {} % {} than that of the sweep; frequencies are given by the clock of the sweep",
             trimmed(100.0 * found.clock_error.abs(), 3),
             if found.clock_error > 0.0 { "faster" } else { "slower" }
         ));
@@ -395,7 +395,7 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
     }
     for frequency_hz in &found.doubtful_hz {
         remarks.push(format!(
-            "at {} Hz, at an end of the sweep, there may be a mode, or it is an error of the end: sweep further to tell",
+            "the peak at {} Hz, at an end of the sweep, may be a mode or an error of that end: sweep further to find out",
             trimmed(*frequency_hz, 2)
         ));
     }
@@ -403,18 +403,20 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
     let (low, high) = (trimmed(low_hz, 4), trimmed(high_hz, 4));
     if found.order.first_harmonic() > 1.0 {
         remarks.push(
-            "the log fits this sweep if the axis moved in one direction, shaken at twice the sweep's frequencies; if it did not, it was another sweep: --sweep".to_owned(),
+            "the log fits this sweep only if all pushes moved the axis in one direction, which shakes it at twice the sweep's \
+             frequencies; if they did not, describe the sweep: --sweep START:END:RATE:ACCEL"
+                .to_owned(),
         );
     }
     if low_hz > swept.start_hz * PART || high_hz * PART < swept.end_hz {
         remarks.push(format!(
-            "the log has a part of this sweep only, from {low} to {high} Hz, and modes near a missing end are doubtful; if it was another sweep, describe it: \
-             --sweep START:END:RATE:ACCEL"
+            "the log contains only a part of this sweep, from {low} to {high} Hz, and modes near a missing end are doubtful; if it was \
+             another sweep, describe it: --sweep START:END:RATE:ACCEL"
         ));
     }
     remarks.push(if found.modes.is_empty() {
         format!(
-            "between {low} and {high} Hz the sensor follows the sweep without a resonance that could be told from noise"
+            "between {low} and {high} Hz the sensor follows the sweep without a resonance above the noise"
         )
     } else {
         // A slow mode rings much for its share of the response, and is shaken less.
@@ -422,14 +424,15 @@ fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {
         let visible = found.visible.map_or(low_hz, |visible| visible.from_hz);
         let slower = match found.visible.filter(|visible| visible.from_hz > PART * low_hz) {
             Some(visible) => format!(
-                "; of slower ones those that ring more, at {} Hz with {} times as much as all of these, and none below {low} Hz or above {high} Hz",
+                "; a slower mode shows only if it rings more, at {} Hz {} times as much as all modes found, and no mode shows below \
+                 {low} Hz or above {high} Hz",
                 trimmed(visible.least_at_hz, 2),
                 trimmed(visible.least_ringing, 2)
             ),
-            None => format!("; none below that or above {high} Hz"),
+            None => format!("; no mode shows below that or above {high} Hz"),
         };
         format!(
-            "from {} Hz on the log shows every mode that rings with {part} % of all{slower}",
+            "from {} Hz on, the log shows every mode with at least {part} % of the ringing{slower}",
             trimmed(visible.max(low_hz), 3)
         )
     });

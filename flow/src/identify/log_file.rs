@@ -52,7 +52,7 @@ fn only(reading: &mut Reading, direction: &str) -> Result<(), Failure> {
     let Log::Acceleration(log) = &mut reading.log else {
         return Err(Failure::from(miette::miette!(
             help = "leave --direction out, or name the columns with --columns",
-            "--direction is for the log of an accelerometer, and this is none"
+            "--direction is for the log of an accelerometer, and this log is not one"
         )));
     };
     let names: Vec<String> = log.directions.iter().map(|(name, _)| name.clone()).collect();

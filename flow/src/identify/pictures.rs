@@ -112,7 +112,7 @@ fn response(name: &str, row_s: f64, measured: &[f64], fitted: &[f64]) -> Panel {
     };
     let mut left = measured.iter().zip(fitted).map(|(measured, fitted)| measured - fitted);
     Panel {
-        title: format!("{name}: measured, and what the modes make of it"),
+        title: format!("{name}: measured, and reconstructed from the modes"),
         x_label: label("time", time),
         y_label: "unit of the log".into(),
         curves: vec![

@@ -35,7 +35,7 @@ pub(super) fn text(log: &Path, findings: &Findings, written: Option<(&Path, &Wri
         text += &shapers(findings);
     }
     if !findings.remarks.is_empty() {
-        text += "\nto be known\n";
+        text += "\nremarks\n";
         for remark in &findings.remarks {
             let _ = writeln!(text, "  - {remark}");
         }

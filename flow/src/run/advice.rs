@@ -13,7 +13,7 @@ const ADVICE: [(&str, Advice); 15] = [
     (
         "the command moves every axis",
         Advice {
-            cause: "counts_per_unit that is meant for another unit, or a command that stands still",
+            cause: "counts_per_unit is meant for another unit, or the command stands still",
             remedies: [
                 "write counts_per_unit for the axis's unit: 1 µm per count is 1_000_000 per m",
                 "give a `--command` that moves the axis by many counts",
@@ -73,7 +73,7 @@ const ADVICE: [(&str, Advice); 15] = [
     (
         "the integer taps keep the tolerance",
         Advice {
-            cause: "coefficients with too few fraction bits, or a shaper that is not made for the mode",
+            cause: "the coefficients have too few fraction bits, or the shaper is not made for the mode",
             remedies: [
                 "leave coefficient_fraction out, or raise sample_hz",
                 "choose another kind, or raise the mode's tolerance",
@@ -83,7 +83,7 @@ const ADVICE: [(&str, Advice); 15] = [
     (
         "Verilog is clean",
         Advice {
-            cause: "a version of Verilator with other warnings than the one that posicast is tested with",
+            cause: "this version of Verilator has other warnings than the one with which posicast is tested",
             remedies: [
                 "run `posicast doctor`, and install the version that it names",
                 "report the warning with the machine file",
@@ -113,7 +113,7 @@ const ADVICE: [(&str, Advice); 15] = [
     (
         "the stage carries out its commands",
         Advice {
-            cause: "a limit that is tighter than the loop follows, or a loop that swings: see the cause that is named",
+            cause: "a limit is tighter than the loop can follow, or the loop oscillates: see the cause that the check names",
             remedies: [
                 "leave the gains out of [axis.controller], and look at the margins that `design` prints",
                 "lower acceleration and jerk, or raise the limit that tripped",
@@ -123,7 +123,7 @@ const ADVICE: [(&str, Advice); 15] = [
     (
         "the axes follow",
         Advice {
-            cause: "friction or dead time of the bridge is more than the gains overcome, the drive is at its limit, or the encoder is \
+            cause: "the gains do not overcome friction or the dead time of the bridge, the drive is at its limit, or the encoder is too \
                     coarse for the move",
             remedies: [
                 "raise the gains as far as the margins of `design` allow, or shorten dead_time_s and minimum_pulse_s",
@@ -167,7 +167,7 @@ const ADVICE: [(&str, Advice); 15] = [
 const TOO_SHORT: Advice = Advice {
     cause: "too few clocks to exercise everything; nothing differed",
     remedies: [
-        "leave `--cycles` away",
+        "leave out `--cycles`",
         "run `posicast verify`, which says how many clocks are enough",
     ],
 };

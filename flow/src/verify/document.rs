@@ -79,9 +79,9 @@ impl Document {
     fn remedy(&self) -> String {
         match (self.least_clocks, self.cycles_given) {
             (least, true) if least > self.fewest_clocks() => {
-                format!("compare more: --cycles {least}, or leave --cycles away")
+                format!("compare more: --cycles {least}, or leave out --cycles")
             }
-            (_, true) => "leave --cycles away".to_owned(),
+            (_, true) => "leave out --cycles".to_owned(),
             (_, false) => "the rows say why".to_owned(),
         }
     }

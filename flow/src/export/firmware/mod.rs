@@ -121,7 +121,7 @@ fn axis_of(selected: &Selected<'_>, version: &str, axes: &[&str]) -> Result<Stri
             format!("{version} shapes the axes {}", joined(axes)),
             match name.as_str() {
                 "z" => "take a newer --firmware-version, or select the other axes with --axis",
-                _ => "name the axis so in the machine file, or select the axes that are with --axis",
+                _ => "give the axis one of these names in the machine file, or select only such axes with --axis",
             },
         )
         .without_own())

@@ -115,7 +115,7 @@ fn shared<'a, 'b>(selection: &'a Selection<'b>, form: Form) -> Result<Vec<Impuls
                     "RepRapFirmware has one shaper for all axes, and this one differs from that of `{}`",
                     first.axis.name
                 ),
-                "select the axis whose shaper all are to have with --axis",
+                "choose with --axis the axis whose shaper all axes should have",
             ),
         ));
     }

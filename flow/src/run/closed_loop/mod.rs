@@ -330,7 +330,7 @@ pub(crate) fn announce(simulator: Simulator, has_command: bool, observer: &dyn O
     }
     if has_command {
         observer.say(
-            "note: --command is for the shapers; the closed loop makes the move of each axis that --move tells, else its default.",
+            "note: --command drives the shapers only; in the closed loop each axis makes the move of --move, or its default move.",
         );
     }
 }

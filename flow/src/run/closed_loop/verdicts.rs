@@ -42,7 +42,7 @@ impl ClosedLoop<'_> {
         let circles = match &self.circles {
             Ok(circles) if circles.matched.is_ok() => String::new(),
             Err(_) if self.contours.is_some() => String::new(),
-            Ok(_) => "; no circle with equal delays, which the tables do not hold".to_owned(),
+            Ok(_) => "; no circle with equal delays, because they do not fit the tables".to_owned(),
             Err(reason) => format!("; no circle: {reason}"),
         };
         let trouble = of_runs.find_map(|trouble| trouble);
@@ -74,7 +74,7 @@ impl ClosedLoop<'_> {
         let mut short = axes.filter(|(_, expected)| !expected.moves());
         short.next().map(|(axis, expected)| {
             format!(
-                "axis {}: its move of {} is {:.1} counts, and below 100 it is the encoder's steps that move",
+                "axis {}: its move of {} is only {:.1} counts; below 100 counts the encoder's steps dominate the figures",
                 axis.name,
                 axis.unit.show(expected.distance, 3),
                 expected.counts
@@ -93,7 +93,7 @@ impl ClosedLoop<'_> {
                 worst.get_or_insert_with(|| {
                     let figures = [peak, allowed, expected.figures.tracking.peak];
                     let [found, allowed, float] = axis.unit.show_compared(figures);
-                    format!("{name}: {found} of error, {float} expected of its loop, {allowed} allowed")
+                    format!("{name}: an error of {found}, {float} expected from its loop, {allowed} allowed")
                 });
             }
         }
@@ -165,7 +165,7 @@ impl ClosedLoop<'_> {
                 String::new()
             };
             let text = format!(
-                "axis {}: {of_shaper} with its shaper, {of_design} expected of its design, {most} allowed{handed}, {bare_found} without",
+                "axis {}: {of_shaper} with its shaper, {of_design} expected from its design, {most} allowed{handed}, {bare_found} without",
                 axis.name
             );
             if found.is_nan() || found > allowed || without.is_nan() || without > bare.ringing_allowed() {
@@ -191,7 +191,7 @@ impl ClosedLoop<'_> {
             checks.push(Check::not_exercised(
                 "every shaper is exercised by the move",
                 self.motionless().is_none(),
-                &format!("{}: too little to tell from counts and friction", open.join("; ")),
+                &format!("{}: too small to distinguish from counts and friction", open.join("; ")),
             ));
         }
         checks

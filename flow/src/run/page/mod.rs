@@ -93,7 +93,7 @@ impl RunReport<'_> {
                         @for part in self.parts(extra)? { (shown(&part)) }
                     }
                     footer {
-                        p { "Figures in sentences and tables are those of " code { "report.json" } ". Commands are called in the folder that holds this page, with the files that they name beside it." }
+                        p { "Figures in sentences and tables are those of " code { "report.json" } ". Run the commands in the folder that holds this page, with the files that they name beside it." }
                     }
                     script { (PreEscaped(SCRIPT)) }
                 }

@@ -42,7 +42,8 @@ impl RunReport<'_> {
             title: "Kinds of shaper",
             about: format!(
                 "What other kinds would do for the same modes: their duration, and the largest residual if a mode's frequency is off by \
-                 up to ±{} %. A star marks a kind than which no other is as good in duration, residual and taps, and better in one.",
+                 up to ±{} %. A star marks a kind if no other kind is better in one of duration, residual and taps, and at least as good \
+                 in the others.",
                 100.0 * DEFAULT_BAND
             ),
             command: "posicast design machine.toml --compare".to_owned(),
