@@ -37,7 +37,7 @@ pub enum LinkError {
     Line(#[from] std::io::Error),
     /// No reply, or only damaged ones.
     #[error(
-        "no reply in {attempts} attempts of {} ms, {damaged} damaged: is the stage powered, are the wires and the speed of the line right?{}",
+        "no reply in {attempts} attempts of {} ms, {damaged} damaged frames: is the stage powered, are the wires and the speed of the line right?{}",
         .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
     )]
     NoReply {
@@ -54,7 +54,7 @@ pub enum LinkError {
     #[error("the bridge refuses the request: {0}")]
     Refused(LinkStatus),
     /// The reply has another number of words than requested.
-    #[error("{found} words came, {asked} were asked for: is the other end a bridge of this version?")]
+    #[error("received {found} words instead of {asked}: is the other end a bridge of this version?")]
     Words {
         /// Number of words requested.
         asked: usize,

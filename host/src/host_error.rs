@@ -10,7 +10,7 @@ pub enum HostError {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// There are registers, but they are not those of a stage.
-    #[error("word 0 reads {found:#010x}, and that of a stage {:#010x} (STGE): something else is at this port", u32::from_le_bytes(*b"STGE"))]
+    #[error("word 0 reads {found:#010x}, but a stage has {:#010x} (STGE): something else is at this port", u32::from_le_bytes(*b"STGE"))]
     NoStage {
         /// Word 0.
         found: u32,
@@ -39,8 +39,8 @@ pub enum HostError {
     },
     /// A constant of the build differs.
     #[error(
-        "{register} of the stage is {found}, and {expected} by the machine file: use the posicast that generated the stage, or generate \
-         the stage anew"
+        "{register} of the stage is {found}, but the machine file gives {expected}: use the posicast that generated the stage, or \
+         generate the stage anew"
     )]
     Constant {
         /// Name of the register.
@@ -64,7 +64,7 @@ pub enum HostError {
         causes: String,
     },
     /// An axis moves.
-    #[error("axis {0} moves: wait until it stands")]
+    #[error("axis {0} is moving: wait until it stands still")]
     Busy(String),
     /// A change did not happen in time.
     #[error("axis {axis} is in {state} and did not {wanted} in time")]
@@ -77,7 +77,7 @@ pub enum HostError {
         state: &'static str,
     },
     /// Time stands still in the stage.
-    #[error("the registers answer, but their time stands still: has the stage a clock, or is it in reset?")]
+    #[error("the registers answer, but their time stands still: does the stage have a clock, or is it in reset?")]
     Standstill,
     /// A move does not fit the machine.
     #[error("axis {axis}: {source}")]

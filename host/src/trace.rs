@@ -145,7 +145,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
         let chosen = self.chosen(request)?;
         if !(1..=1 << 16).contains(&request.every_ticks) {
             return Err(HostError::Trace(format!(
-                "a row every {} ticks: 1 to 65536 are possible",
+                "a row every {} ticks; allowed: 1 to 65536",
                 request.every_ticks
             )));
         }
@@ -216,13 +216,13 @@ impl<L: Read + Write> HostedStage<'_, L> {
         if !(1.0..=f64::from(amplitude.ones())).contains(&word) {
             let found = shake.amplitude_counts;
             return Err(HostError::Trace(format!(
-                "an amplitude of {found} counts: at least 1/256, at most 255.99"
+                "an amplitude of {found} counts; allowed: at least 1/256, at most 255.99"
             )));
         }
         let period = field("excitation_time", "excitation_period")?;
         if !(1..=period.ones()).contains(&shake.bit_ticks) {
             return Err(HostError::Trace(format!(
-                "bits of {} ticks: 1 to {} are possible",
+                "bits of {} ticks; allowed: 1 to {}",
                 shake.bit_ticks,
                 period.ones()
             )));
@@ -261,7 +261,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
             }
             if !self.pass(&mut left)? {
                 return Err(HostError::Trace(
-                    "the trace does not end: has the stage a tick?".to_owned(),
+                    "the trace does not end: does the stage get its tick?".to_owned(),
                 ));
             }
         }

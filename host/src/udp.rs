@@ -179,7 +179,7 @@ impl Read for UdpLine {
                 Some((NO_TOKEN, number, _)) if number == self.number => {
                     return Err(io::Error::new(
                         ErrorKind::ConnectionAborted,
-                        "the server has another host now, or was started anew",
+                        "the server has another host now, or was restarted",
                     ));
                 }
                 _ => return Err(ErrorKind::TimedOut.into()),

@@ -241,7 +241,7 @@ fn another_stage_is_refused_with_what_was_found_and_expected() {
         (
             0,
             0,
-            "word 0 reads 0x00000000, and that of a stage 0x45475453 (STGE)".to_owned(),
+            "word 0 reads 0x00000000, but a stage has 0x45475453 (STGE)".to_owned(),
         ),
         (
             1,
@@ -249,7 +249,7 @@ fn another_stage_is_refused_with_what_was_found_and_expected() {
             "the stage has version 1.5 of the registers, and this posicast needs 2.2".to_owned(),
         ),
         (1, 0x2_0001, "the stage has version 2.1 of the registers".to_owned()),
-        (2, 3, "AXES of the stage is 3, and 2 by the machine file".to_owned()),
+        (2, 3, "AXES of the stage is 3, but the machine file gives 2".to_owned()),
         (
             6,
             0xabcd,

@@ -145,14 +145,14 @@ fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Pat
             path,
             axis,
             "axis.limits.excitation",
-            format_args!("--shake {counts}: allowed: above 0, at most {most:.2} counts by this key (4 without it)"),
+            format_args!("--shake: found {counts}; allowed: above 0, at most {most:.2} counts by this key (4 without it)"),
         ));
     }
     let ticks = bit_s * machine.clock.sample_hz;
     if !(0.5..=65_535.0).contains(&ticks) {
         return Err(Failure::from(miette::miette!(
             help = "a fifth of the mode's period is a good choice",
-            "--bit {bit_s}: allowed: {} s to {} s",
+            "--bit: found {bit_s} s; allowed: {} s to {} s",
             1.0 / machine.clock.sample_hz,
             65_535.0 / machine.clock.sample_hz
         )));
