@@ -37,7 +37,7 @@ pub struct FoundInRingDown {
 pub enum RingDownError {
     /// Two directions ring alike.
     #[error(
-        "the directions `{0}` and `{1}` ring about as strongly: say which moves with the axis, `--direction {0}` or `--direction {1}`"
+        "the directions `{0}` and `{1}` ring about equally strongly: choose the one that moves with the axis, `--direction {0}` or `--direction {1}`"
     )]
     Directions(String, String),
     /// The log cannot be analysed.

@@ -101,7 +101,7 @@ fn compare(truths: &[KnownMode], found: &[FoundMode], seed: u64, report: &mut Tr
             format!("[{}] Hz", words.join(", "))
         };
         report.wrong.push(format!(
-            "log {seed}: modes at {} were found, the machine has {}",
+            "log {seed}: found modes at {}, but the machine has {}",
             list(&mut found.iter().map(|found| found.mode.frequency_hz)),
             list(&mut truths.iter().map(|truth| truth.mode.frequency_hz))
         ));
@@ -172,7 +172,7 @@ mod tests {
         let report = report_of(&right[..1]);
         assert_eq!(
             report.wrong,
-            ["log 7: modes at [30.00] Hz were found, the machine has [30.00, 60.00] Hz"]
+            ["log 7: found modes at [30.00] Hz, but the machine has [30.00, 60.00] Hz"]
         );
     }
 }

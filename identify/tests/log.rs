@@ -184,7 +184,7 @@ fn errors_name_line_and_column() {
             rows("time,response,position", good),
             "`response` and `position` mean the same",
         ),
-        (with(30, "0.28,0"), "line 30 has 2 fields, the header 3"),
+        (with(30, "0.28,0"), "line 30 has 2 fields, but the header has 3"),
         (with(30, "0.28,0,nan"), "line 30, column `response`: `nan`"),
         // Lines are counted as an editor does, whatever ends them, and empty ones too.
         (
@@ -206,7 +206,7 @@ fn errors_name_line_and_column() {
             rows("time,response", |n| format!("{n},3")),
             "column `response` has the value 3 in every row",
         ),
-        ("time,response\n0,1\n1,2\n".into(), "2 rows: 32 are needed"),
+        ("time,response\n0,1\n1,2\n".into(), "2 rows: at least 32 are needed"),
     ] {
         assert!(error(&text).contains(expected), "{expected}: {}", error(&text));
     }

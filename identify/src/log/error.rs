@@ -9,7 +9,7 @@ pub enum LogError {
     #[error("the log is empty: it needs a header with the names of its columns, and rows of numbers")]
     Empty,
     /// It has bytes that no text has.
-    #[error("this is no text: a log is a file of comma-separated values, with a header and rows of numbers")]
+    #[error("this is not text: a log is a file of comma-separated values, with a header and rows of numbers")]
     Binary,
     /// It is packed.
     #[error("the file is {0}")]
@@ -24,7 +24,8 @@ pub enum LogError {
     },
     /// A column that is needed is not there.
     #[error(
-        "there is no column `{missing}`: the columns are {}; name them in the header as posicast knows them, or with `--columns NAME,NAME,…` (`-` for one that is not used): `time` with `command` and `response`, `drive_command` and `position`, or `accel_x_g`",
+        "there is no column `{missing}`: the columns are {}; name them in the header as posicast knows them, or with `--columns \
+         NAME,NAME,…` (`-` for an unused column): `time` with `command` and `response`, `drive_command` and `position`, or `accel_x_g`",
         .found.join(", ")
     )]
     Missing {
@@ -35,12 +36,13 @@ pub enum LogError {
     },
     /// Two columns have the same meaning.
     #[error(
-        "the columns `{0}` and `{1}` mean the same: name those to be used with `--columns NAME,NAME,…`, and write `-` for the others"
+        "the columns `{0}` and `{1}` mean the same: name the columns to use with `--columns NAME,NAME,…`, and write `-` for the others"
     )]
     Twice(String, String),
     /// The names do not say what the columns are.
     #[error(
-        "{} may be accelerations or positions: say which. `--columns {accelerations}` if they are accelerations in g (or `_mg`, `_m_s2`, `_mm_s2`), `--columns {position}` for one position",
+        "{} may be accelerations or positions: give `--columns {accelerations}` if they are accelerations in g (or `_mg`, `_m_s2`, \
+         `_mm_s2`), `--columns {position}` for one position",
         listed(.columns)
     )]
     Ambiguous {
@@ -53,11 +55,13 @@ pub enum LogError {
     },
     /// A name of `--columns` is not known.
     #[error(
-        "`--columns`: `{0}` is none of the names that posicast knows: `time`, `sample`, `accel_x`, `accel_y`, `accel_z`, `command`, `response`, `drive_command`, each with a unit behind it (`time_ms`, `accel_x_g`, `response_um`), or `-` for a column that is not used"
+        "`--columns`: posicast does not know the name `{0}`; allowed: `time`, `sample`, `accel_x`, `accel_y`, `accel_z`, `command`, \
+         `response`, `drive_command`, each with a unit behind it (`time_ms`, `accel_x_g`, `response_um`), or `-` for a column that is \
+         not used"
     )]
     GivenName(String),
     /// `--columns` has more names than the file has columns.
-    #[error("`--columns` has {given} names, a row of the log {fields} fields")]
+    #[error("`--columns` has {given} names, but a row of the log has {fields} fields")]
     GivenCount {
         /// Number of names.
         given: usize,
@@ -71,7 +75,8 @@ pub enum LogError {
     NoRate,
     /// The times of an accelerometer are too far apart to be seconds.
     #[error(
-        "column `{column}` rises by {step} from row to row: in seconds, no accelerometer is as slow. Give its unit with `--columns {column}_ms,…` (or `_us`, `_ns`), or `--rate HZ`"
+        "column `{column}` rises by {step} from row to row: if these are seconds, this is too slow for an accelerometer. Give its unit \
+         with `--columns {column}_ms,…` (or `_us`, `_ns`), or `--rate HZ`"
     )]
     TimeUnit {
         /// Name of the column.
@@ -87,7 +92,7 @@ pub enum LogError {
     Spectrum(Vec<String>),
     /// The recorder reports a failure.
     #[error(
-        "line {line}: `{text}`, the firmware wrote in the place of samples: the recording is not whole; record it again"
+        "line {line}: the firmware wrote `{text}` in place of samples: the recording is incomplete; record it again"
     )]
     Recorder {
         /// Number of the line.
@@ -96,7 +101,7 @@ pub enum LogError {
         text: String,
     },
     /// A row has a different number of fields than the header.
-    #[error("line {line} has {found} fields, the header {expected}")]
+    #[error("line {line} has {found} fields, but the header has {expected}")]
     Fields {
         /// Number of the line.
         line: u64,
@@ -107,7 +112,7 @@ pub enum LogError {
     },
     /// A field is not a finite number.
     #[error(
-        "line {line}, column `{column}`: `{text}` is not a finite number; cut the rows that the sensor did not deliver"
+        "line {line}, column `{column}`: `{text}` is not a finite number; remove the rows that the sensor did not deliver"
     )]
     Number {
         /// Number of the line.
@@ -119,7 +124,8 @@ pub enum LogError {
     },
     /// The time does not increase.
     #[error(
-        "line {line}: the time {time_s} s is not after {before_s} s of the line before; sort the rows by time, cut the log where it starts anew, or, if the rows are equally spaced, give `--rate HZ`"
+        "line {line}: the time {time_s} s is not after {before_s} s of the line before; sort the rows by time, cut the log where its \
+         time restarts, or, if the rows are equally spaced, give `--rate HZ`"
     )]
     Unsorted {
         /// Number of the line.
@@ -131,7 +137,9 @@ pub enum LogError {
     },
     /// The times are so irregular that the course of the command between the rows is not known.
     #[error(
-        "the steps from row to row differ by {:.0} % of a step (root mean square), most at line {line}: what the command was between two rows cannot be told, and the log would show modes that the machine does not have; log at a constant rate, in every tick of the controller, or, if the rows are equally spaced and only their time stamps waver, give `--rate HZ`",
+        "the steps from row to row differ by {:.0} % of a step (root mean square), most at line {line}: the command between two rows is \
+         unknown, and the log would show modes that the machine does not have; log at a constant rate, in every tick of the controller, \
+         or, if the rows are equally spaced and only their time stamps jitter, give `--rate HZ`",
         100.0 * .deviation
     )]
     Irregular {
@@ -141,7 +149,7 @@ pub enum LogError {
         line: u64,
     },
     /// There are too few rows.
-    #[error("the log has {rows} rows: {least} are needed at least")]
+    #[error("the log has {rows} rows: at least {least} are needed")]
     Rows {
         /// Number of rows.
         rows: usize,
@@ -163,7 +171,8 @@ pub enum LogError {
 pub enum Remark {
     /// Rows are missing; the others were used where they are.
     #[error(
-        "{missing} of {samples} samples are missing ({:.2} %), in {places} {}, the first after line {line}, most ({longest_s:.4} s) after line {longest_line}: the others were used at their times, and say less by as much",
+        "{missing} of {samples} samples are missing ({:.2} %), in {places} {}, the first after line {line}, most ({longest_s:.4} s) \
+         after line {longest_line}: the others were used at their own times, and the result is less certain",
         100.0 * *.missing as f64 / *.samples as f64, if *.places == 1 { "place" } else { "places" }
     )]
     Gaps {
@@ -234,11 +243,12 @@ pub enum Remark {
     #[error("column `{0}` was not used: posicast does not know its name")]
     Unknown(String),
     /// There is a second column of times.
-    #[error("column `{0}` was not used: the times are those of `{1}`, whose unit is stated")]
+    #[error("column `{0}` was not used: the times were taken from `{1}`, whose unit is stated")]
     OtherTime(String, String),
     /// Gravity decided the unit of the accelerations.
     #[error(
-        "the accelerations were taken to be in {unit}: their means together are {measured:.4}, the acceleration of gravity in that unit; if they are not, `--columns` says what they are"
+        "the accelerations were taken to be in {unit}: the magnitude of their means is {measured:.4}, the acceleration of gravity in \
+         that unit; if that is wrong, give their unit with `--columns`"
     )]
     Gravity {
         /// The unit.
@@ -248,11 +258,14 @@ pub enum Remark {
     },
     /// The sensor's memory has overflowed.
     #[error(
-        "the sensor's memory has overflowed {0} times: samples are lost at places that the log does not say, and frequencies and dampings may be wrong; record again at a lower rate or with fewer axes"
+        "the sensor's memory has overflowed {0} times: samples are lost at places that the log does not show, and frequencies and \
+         dampings may be wrong; record again at a lower rate or with fewer axes"
     )]
     Overflows(u64),
     /// A column of another kind of log.
-    #[error("column `{column}` was not used: the log was taken as {taken}; `--columns` names those to be used instead")]
+    #[error(
+        "column `{column}` was not used: the log was taken as {taken}; to use other columns, name them with `--columns`"
+    )]
     Beside {
         /// The column.
         column: String,

@@ -31,7 +31,7 @@ pub struct ArxModel {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum ArxError {
     /// There are too few samples for the order.
-    #[error("{samples} samples do not fix a model of order {order}")]
+    #[error("{samples} samples are too few for a model of order {order}")]
     Short {
         /// Number of samples.
         samples: usize,
@@ -39,7 +39,7 @@ pub enum ArxError {
         order: usize,
     },
     /// The command does not excite enough coefficients.
-    #[error("the command does not fix a model of order {order}: it does not move enough")]
+    #[error("the command does not move enough to determine a model of order {order}")]
     Excitation {
         /// Order of the model.
         order: usize,

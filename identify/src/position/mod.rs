@@ -47,7 +47,7 @@ pub struct FoundInPosition {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PositionError {
     /// There are too few samples.
-    #[error("the log has {0} samples: modes need {LEAST_SAMPLES} at least")]
+    #[error("the log has {0} samples: modes need at least {LEAST_SAMPLES}")]
     Short(usize),
     /// Command and response have different lengths, or contain values that are not finite.
     #[error(
@@ -84,7 +84,8 @@ pub enum PositionRemark {
     NoExcitation,
     /// The command moves, and the response follows without ringing.
     #[error(
-        "the response follows the command without a mode that could be told from noise of {noise:.3e} (root mean square, in the unit of the response): a smooth move excites little, so log a step, a pseudo-random command or a sudden stop"
+        "the response follows the command without a mode that stands out from noise of {noise:.3e} (root mean square, in the unit of the \
+         response): a smooth move excites little, so log a step, a pseudo-random command or a sudden stop"
     )]
     NoRinging {
         /// Root mean square of the residuals.
@@ -92,7 +93,7 @@ pub enum PositionRemark {
     },
     /// The command moves, and the response follows rigidly, some samples late.
     #[error(
-        "the response is the command, {samples} samples late: the axis is rigid, or the response is not measured at the part that rings"
+        "the response equals the command, {samples} samples late: the axis is rigid, or the response is not measured at the part that rings"
     )]
     Late {
         /// Delay in samples.
@@ -113,7 +114,8 @@ pub enum PositionRemark {
     },
     /// The ringing does not decay.
     #[error(
-        "the response has a tone of {frequency_hz:.4} Hz that does not decay in the log: something drives it, and a mode that rings as long cannot be told from it"
+        "the response has a tone of {frequency_hz:.4} Hz that does not decay in the log: something drives it, or it is a mode that rings \
+         longer than the log"
     )]
     Tone {
         /// Frequency of the tone in Hz.
@@ -126,7 +128,7 @@ pub enum PositionRemark {
         samples: usize,
     },
     /// The log contains few periods of a mode.
-    #[error("the log shows {periods:.1} periods of the mode at {frequency_hz:.4} Hz: log three at least")]
+    #[error("the log shows {periods:.1} periods of the mode at {frequency_hz:.4} Hz: log at least three")]
     FewPeriods {
         /// Frequency of the mode in Hz.
         frequency_hz: f64,
@@ -145,7 +147,8 @@ pub enum PositionRemark {
     },
     /// The response decays without forcing, so the shares are those of the decay.
     #[error(
-        "the command does not move in this log: the participations follow from the amplitudes at its first sample, as if a jump of the acceleration had made them"
+        "the command does not move in this log: the participations are computed from the amplitudes at its first sample, as if a jump of \
+         the acceleration had made them"
     )]
     Free,
     /// A drive whose command does not move.
@@ -155,17 +158,20 @@ pub enum PositionRemark {
     NoDrive,
     /// A motor under a force that nothing swings at.
     #[error(
-        "the motor moves as a rigid mass: no load swings at it strongly enough to be told from noise; shake it harder or log longer, or measure at the load"
+        "the motor moves as a rigid mass: no load on it swings strongly enough to stand out from noise; shake it harder or log longer, \
+         or measure at the load"
     )]
     RigidMotor,
     /// A motor under dry friction.
     #[error(
-        "the motor turns round in the log: where dry friction is more than a small part of the drive's force, it looks like damping; let the axis move one way while you shake it"
+        "the motor reverses in the log: dry friction then looks like damping, unless it is a small part of the drive's force; let the \
+         axis move one way while you shake it"
     )]
     TurnsRound,
     /// A motor that follows its velocity.
     #[error(
-        "the motor follows the velocity that its drive was told, whatever its load does: such a drive hides what rings; log the torque or current in the place of the velocity, or measure at the load"
+        "the motor follows the velocity command of its drive, whatever the load does: such a drive hides the vibration; log the torque \
+         or current instead of the velocity, or measure at the load"
     )]
     StiffDrive,
     /// What rings while nothing holds the motor.
@@ -180,7 +186,8 @@ pub enum PositionRemark {
     },
     /// Another method found something else.
     #[error(
-        "least squares with instruments (ARX) finds {frequency_hz:.4} Hz and a damping ratio of {damping:.3} instead: the log does not fix this mode"
+        "a second method, least squares with instruments (ARX), finds {frequency_hz:.4} Hz and a damping ratio of {damping:.3} instead: \
+         the log does not determine this mode"
     )]
     Differs {
         /// Frequency that it found, in Hz.
@@ -190,7 +197,8 @@ pub enum PositionRemark {
     },
     /// The mode changed during the log.
     #[error(
-        "the frequency moves from {from_hz:.4} to {to_hz:.4} Hz during the log: one mode for all of it is an average; log where the machine works, or a part at a time"
+        "the frequency moves from {from_hz:.4} to {to_hz:.4} Hz during the log: one mode for the whole log is an average; log where the \
+         machine works, or a part at a time"
     )]
     Moves {
         /// Frequency in the first half in Hz.

@@ -85,7 +85,7 @@ impl FoundInSweep {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
     /// There are too few samples.
-    #[error("the log has {samples} samples, {seconds:.2} s: a sweep needs 2 s at least")]
+    #[error("the log has {samples} samples, {seconds:.2} s: a sweep needs at least 2 s")]
     Short {
         /// Number of samples.
         samples: usize,
@@ -96,19 +96,20 @@ pub enum SweepError {
     #[error("a sweep from {} to {} Hz at {} Hz/s with {} m/s² per Hz is not possible: all must be finite and above 0, the second frequency above the first and below half the rate of the samples", .0.start_hz, .0.end_hz, .0.rate_hz_per_s, .0.acceleration_per_hz)]
     Description(Sweep),
     /// No direction follows the sweep; the value is the fraction that the sweep explains.
-    #[error("no direction of the sensor follows the sweep: it explains {:.1} % of the log at most", 100.0 * .0)]
+    #[error("no direction of the sensor follows the sweep: it explains at most {:.1} % of the log", 100.0 * .0)]
     Unrelated(f64),
     /// The log has neither end of the sweep.
     #[error(
-        "the log follows this sweep only as a piece of it, from {:.1} to {:.1} Hz, without its beginning and its end: it was another sweep, or the log was cut",
+        "the log contains only a piece of this sweep, from {:.1} to {:.1} Hz, without its beginning and its end: it was another sweep, \
+         or the log was cut",
         .0.low_hz, .0.high_hz
     )]
     Piece(Band),
     /// The log follows the sweep in a way that modes do not explain.
-    #[error("modes tell {:.0} % of how the sensor follows this sweep: it was another one, or the machine is far from linear", 100.0 * .0)]
+    #[error("the fitted modes explain only {:.0} % of the response to this sweep: it was another sweep, or the machine is far from linear", 100.0 * .0)]
     Unlike(f64),
     /// The transfer function does not determine a mode.
-    #[error("the log fixes no transfer function in the band of the sweep")]
+    #[error("the log does not determine a transfer function in the band of the sweep")]
     Empty,
 }
 
