@@ -11,7 +11,7 @@ use wavecmp::diff::{DiffVerdict, JSON_SCHEMA};
 
 use self::own_files::OwnFiles;
 
-/// Compare two waveforms (VCD or FST), sampled at the clock: which signals differ, since when, how often
+/// Compare two waveforms (VCD or FST), sampled at the clock, and list which signals differ, from when on, and how often
 #[derive(Parser)]
 #[command(name = "wavecmp", version, after_help = EXAMPLES)]
 struct Cli {
@@ -73,7 +73,7 @@ fn man() -> io::Result<Vec<u8>> {
 
 fn completions(shell: &str) -> io::Result<Vec<u8>> {
     let shell = clap_complete::Shell::from_str(shell, true)
-        .map_err(|_| io::Error::other(format!("--completions {shell}: bash, elvish, fish, powershell or zsh")))?;
+        .map_err(|_| io::Error::other(format!("--completions {shell}: use bash, elvish, fish, powershell or zsh")))?;
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "wavecmp", &mut script);
     Ok(script)

@@ -302,17 +302,14 @@ fn long_hundreds_of_thousands_of_names_are_compared() {
 fn damaged_and_unsupported_blocks_give_different_errors() {
     let with = |hierarchy: &[u8]| File::one_bit(hierarchy).refused();
     for (message, what) in [
-        (
-            with(b"\xc8"),
-            "an entry of kind 200 in the hierarchy, which is not known",
-        ),
+        (with(b"\xc8"), "found an entry of unknown kind 200 in the hierarchy"),
         (
             with(b"\xfe\0unended"),
             "the hierarchy ends in the middle of an entry: the file is damaged",
         ),
         (
             with(&variable(16, "b", 1, 5)),
-            "the values of one that comes later, or never: the file is damaged",
+            "an alias of a signal that is declared later or never: the file is damaged",
         ),
         (
             with(&variable(16, "b", 1, 0)),
@@ -338,7 +335,7 @@ fn damaged_and_unsupported_blocks_give_different_errors() {
         std::fs::write(&path, content).unwrap();
         raw(&path, &path).unwrap_err().to_string()
     };
-    assert!(changed(330, &[77]).contains("a kind of block that is not known, 77"));
+    assert!(changed(330, &[77]).contains("found a block of unknown kind 77"));
     // A writer that was stopped, or wrote no time, leaves a block like this.
     let unfinished = changed(330, &[[255].as_slice(), &[0; 8]].concat());
     assert!(

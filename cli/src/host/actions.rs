@@ -145,7 +145,7 @@ fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Pat
             path,
             axis,
             "axis.limits.excitation",
-            format_args!("--shake: found {counts}; allowed: above 0, at most {most:.2} counts by this key (4 without it)"),
+            format_args!("--shake: found {counts}; allowed: above 0, at most {most:.2} counts (4 without this key)"),
         ));
     }
     let ticks = bit_s * machine.clock.sample_hz;

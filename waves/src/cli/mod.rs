@@ -54,10 +54,10 @@ struct Output {
     /// Write the result as JUnit XML
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Where they differ, write one HTML page with the waves around each difference
+    /// If the files differ, write one HTML page with the waves around each difference
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Where they differ, write NAME.vcd with both sides, NAME.gtkw and NAME.sucl that open it there, and NAME.svg
+    /// If the files differ, write NAME.vcd with both sides, NAME.gtkw and NAME.sucl that open it there, and NAME.svg
     #[arg(long, value_name = "NAME")]
     show: Option<PathBuf>,
     /// Write one VCD with all signals of both files, and the difference of those that differ
@@ -66,7 +66,7 @@ struct Output {
     /// Annotate the run of GitHub Actions, and write its step summary
     #[arg(long)]
     github: bool,
-    /// Say which signals were matched and how, and why the others were not
+    /// List which signals were matched and how, and why the others were not
     #[arg(long)]
     explain: bool,
     /// Replace a file that this program did not write, or that was changed since; never one that this command reads
@@ -189,7 +189,7 @@ fn claim(args: &Args, host: &mut dyn CommandHost) -> Result<(), CliError> {
         .filter(|path| path.extension().is_none_or(|end| end != "vcd"))
     {
         return Err(CliError::Usage(format!(
-            "--merged {}: what is written is a VCD: give a name that ends in .vcd",
+            "--merged {}: the merged file is a VCD: give a name that ends in .vcd",
             path.display()
         )));
     }
@@ -223,5 +223,5 @@ pub fn verdict(comparison: &Comparison) -> Option<String> {
 }
 
 /// Remedy if nothing could be compared.
-pub const INCOMPARABLE: &str = "name the clock with --clock, say with --map A=B which scope or signal is which, and see \
-                                with --explain what was found";
+pub const INCOMPARABLE: &str = "name the clock with --clock, match scopes or signals with --map A=B, and list what was found \
+                                with --explain";

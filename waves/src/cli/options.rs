@@ -12,7 +12,7 @@ pub(super) struct When {
     /// Sample at the edges of this 1-bit signal [default: the only clock found, else every change]
     #[arg(long, value_name = "NAME")]
     clock: Option<String>,
-    /// Which edge samples
+    /// Edge of the clock at which to sample
     #[arg(long, value_enum, default_value_t = EdgeName::Rising)]
     edge: EdgeName,
     /// Compare from where this 1-bit signal is released on each side; `none`: from the start [default: the only reset
@@ -22,10 +22,10 @@ pub(super) struct When {
     /// Compare at every change, whether there is a clock or not
     #[arg(long, conflicts_with = "clock")]
     raw: bool,
-    /// First time that is compared, such as 10us, by the first file
+    /// First time to compare, such as 10us, as the first file counts it
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     start: Option<u128>,
-    /// Last time that is compared
+    /// Last time to compare
     #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
     end: Option<u128>,
     /// With --raw: ignore differences that last no longer than this
@@ -37,7 +37,7 @@ pub(super) struct When {
     /// Stop at the first difference, and show the state of all signals there
     #[arg(long)]
     first: bool,
-    /// Samples by which a signal is later in the second file, or with --raw the time; negative: earlier (repeatable)
+    /// Delay of a signal in the second file, in samples or with --raw as a time; negative: earlier (repeatable)
     #[arg(long, value_name = "SIGNAL=SAMPLES|TIME", allow_hyphen_values = true)]
     latency: Vec<String>,
 }
@@ -45,7 +45,7 @@ pub(super) struct When {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Which signals")]
 pub(super) struct Which {
-    /// Scope or signal A of the first file is B of the second; with * in both, a pattern (repeatable)
+    /// Match scope or signal A of the first file with B of the second; with * in both, a pattern (repeatable)
     #[arg(long, value_name = "A=B")]
     map: Vec<String>,
     /// Read such maps from a file, one per line
@@ -63,7 +63,7 @@ pub(super) struct Which {
     /// Leave out these signals or scopes (repeatable)
     #[arg(long, value_name = "SIGNAL")]
     ignore: Vec<String>,
-    /// A signal that only one file has is a difference; without it such signals are only listed
+    /// Count a signal that only one file has as a difference; without this option, such signals are only listed
     #[arg(long)]
     require_all: bool,
 }

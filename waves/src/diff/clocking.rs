@@ -102,8 +102,8 @@ impl Clocking {
         };
         self.reset = Some((slots, active));
         self.notes.push(format!(
-            "compared from the release of `{name}` on, which is on while {}",
-            u8::from(active)
+            "compared from the release of `{name}` on, which is active {}",
+            if active { "high" } else { "low" }
         ));
         Ok(())
     }

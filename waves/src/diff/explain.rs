@@ -107,7 +107,7 @@ fn alone(signal: &str, file: &'static str, others: &Others) -> UnmatchedSignal {
             counted(all.len() as u64, "signal")
         ),
         (Some(_), several) => format!(
-            "the {other} file has {} of that name without a partner, such as `{}`: say with --map which it is",
+            "the {other} file has {} of that name without a partner, such as `{}`: choose one with --map",
             counted(several.len() as u64, "signal"),
             several[0]
         ),
@@ -127,7 +127,7 @@ impl fmt::Display for MatchReport {
                 MatchedBy::Map => "by --map",
                 MatchedBy::Name => "by the full name",
                 MatchedBy::Scopes => "by the name below the scopes that all signals share",
-                MatchedBy::Writing => "by the name in another writing",
+                MatchedBy::Writing => "by the name in another spelling",
             };
             write!(f, "\n  {} = {}, {by}", signal.a, signal.b)?;
         }

@@ -36,8 +36,8 @@ impl Engine<'_> {
         }
         if let [first, ..] = comparison.collapsed.as_slice() {
             comparison.notes.push(format!(
-                "equal only as 0, 1, x and z, for which further states are taken (VHDL's L as 0, H as 1, U, W and - as x; an EVCD's \
-                 drivers and strengths): {}, such as {first}",
+                "equal only after reducing other states to 0, 1, x and z (VHDL's L to 0, H to 1, U, W and - to x; an EVCD's drivers and \
+                 strengths): {}, such as {first}",
                 counted(comparison.collapsed.len() as u64, "signal")
             ));
             comparison.exact = false;

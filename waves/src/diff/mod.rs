@@ -177,8 +177,8 @@ fn compare_once(
     if let [first, ..] = plan.matched.assumed.as_slice() {
         comparison.exact = false;
         comparison.notes.push(format!(
-            "a vector in parts in one file, without a range in the other: the lowest index is taken for the last digit, in {}, \
-             such as {first}",
+            "a vector is split into parts in one file and has no range in the other: the lowest index is taken for the last digit, in \
+             {}, such as {first}",
             counted(plan.matched.assumed.len() as u64, "vector")
         ));
     }
@@ -211,9 +211,9 @@ fn compare_once(
             return Ok((comparison, Default::default()));
         }
         comparison.incomparable(if is_filtered && plan.names.iter().any(|names| names.left_out > 0) {
-            "of the signals that --only and --ignore leave, none but the clock is in both files"
+            "of the signals that --only and --ignore leave, only the clock is in both files"
         } else {
-            "the files have no signal in common; say with --map A=B which belong together"
+            "the files have no signal in common; match scopes or signals with --map A=B"
         });
         return Ok((comparison, Default::default()));
     }

@@ -108,8 +108,8 @@ impl DiffOptions {
         let (of_a, of_b) = (Pattern::new(a)?.wildcards(), Pattern::new(b)?.wildcards());
         if of_a != of_b {
             return Err(WaveError::Option(format!(
-                "--map {text}: {} on the left and {of_b} on the right; each on the right takes what its \
-                 fellow on the left stands for",
+                "--map {text}: {} on the left and {of_b} on the right; both sides need the same number, because each on the right takes \
+                 the text of its partner on the left",
                 counted(of_a as u64, "wildcard")
             )));
         }
@@ -221,7 +221,7 @@ impl DiffOptions {
             },
             _ => {
                 return Err(WaveError::Option(format!(
-                    "--reset {text}: write NAME, NAME=0 if it is on while 0, or none"
+                    "--reset {text}: write NAME, NAME=0 if it is active low, or none"
                 )));
             }
         };

@@ -72,7 +72,7 @@ fn read(path: &Path, mut file: Bytes, selection: Selection) -> Result<(Declarati
         .is_some_and(|block| block.kind == HEADER && block.length >= HEADER_BYTES)
     {
         return Err(Stop::Unknown(
-            "the file does not begin with a whole header: it was cut off, or is no FST; write it again".to_owned(),
+            "the file does not begin with a whole header: it was cut off, or is not an FST; write it again".to_owned(),
         ));
     }
     let inside = blocks.iter().find(|block| hierarchy::is_hierarchy(block));
@@ -103,7 +103,7 @@ fn read(path: &Path, mut file: Bytes, selection: Selection) -> Result<(Declarati
             _ if hierarchy::is_hierarchy(&block) => {}
             kind => {
                 return Err(at(Stop::Unknown(format!(
-                    "a kind of block that is not known, {kind}: the file is damaged, or of a newer writer"
+                    "found a block of unknown kind {kind}: the file is damaged, or from a newer writer"
                 ))));
             }
         }

@@ -48,8 +48,8 @@ impl Bytes {
             let length = number(&head, HEAD as usize);
             if length > PACKED_BYTES {
                 return Ok(Err(Stop::Unknown(format!(
-                    "the file is packed as a whole, {length} bytes, and at most {PACKED_BYTES} are unpacked in memory: let its \
-                     writer not pack it, or dump fewer scopes"
+                    "the file is packed as a whole and holds {length} bytes; at most {PACKED_BYTES} are unpacked in memory: let its \
+                     writer leave it unpacked, or dump fewer scopes"
                 ))));
             }
             let mut unpacked = Vec::new();

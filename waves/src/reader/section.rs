@@ -421,7 +421,7 @@ impl Section {
                 byte => {
                     let Some(digit) = digit(byte) else {
                         let what = format!(
-                            "unexpected character `{}`, with which no change begins: this is not a VCD, or it is damaged",
+                            "unexpected character `{}`, which cannot begin a change: this is not a VCD, or it is damaged",
                             shown(&[byte])
                         );
                         return Err(Fault { at, what });

@@ -109,14 +109,14 @@ pub(in crate::reader) fn each(bytes: &[u8], mut each: impl FnMut(Entry<'_>) -> R
                 let name = rest.text().ok_or_else(short)?;
                 let bits = rest.number().ok_or_else(short)?;
                 let alias = rest.number().ok_or_else(short)?;
-                let bits = u32::try_from(bits).map_err(|_| damaged("a signal has more bits than a number can tell"))?;
+                let bits = u32::try_from(bits).map_err(|_| damaged("the width of a signal is too large"))?;
                 let handle = match usize::try_from(alias).unwrap_or(usize::MAX).checked_sub(1) {
                     None => {
                         signals += 1;
                         signals - 1
                     }
                     Some(other) if other < signals => other,
-                    Some(_) => return Err(damaged("a signal has the values of one that comes later, or never")),
+                    Some(_) => return Err(damaged("a signal is an alias of a signal that is declared later or never")),
                 };
                 each(Entry::Signal(Signal {
                     kind,
@@ -128,7 +128,7 @@ pub(in crate::reader) fn each(bytes: &[u8], mut each: impl FnMut(Entry<'_>) -> R
             }
             kind => {
                 return Err(Stop::Unknown(format!(
-                    "an entry of kind {kind} in the hierarchy, which is not known: the file is damaged, or of a newer writer"
+                    "found an entry of unknown kind {kind} in the hierarchy: the file is damaged, or from a newer writer"
                 )));
             }
         }

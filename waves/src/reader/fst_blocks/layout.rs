@@ -119,7 +119,7 @@ impl Layout {
             CHANGES_ALIAS_2 => table_2(&bytes, handles, chains),
             _ => table_1(&bytes, handles, chains),
         };
-        let table = table.ok_or_else(|| damaged("where the changes begin is not told"))?;
+        let table = table.ok_or_else(|| damaged("the table of the changes is damaged"))?;
         Ok((table, chains as u64))
     }
 }

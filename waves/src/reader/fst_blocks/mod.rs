@@ -168,9 +168,7 @@ impl Blocks {
         found.file.read_exact(&mut euler)?;
         found.little_endian = f64::from_le_bytes(euler) == EULER;
         if !found.little_endian && f64::from_be_bytes(euler) != EULER && found.forms.contains(&Form::Real) {
-            return Err(Stop::Unknown(
-                "its real numbers are written in a way that is not known".to_owned(),
-            ));
+            return Err(Stop::Unknown("its real numbers have an unknown format".to_owned()));
         }
         Ok(found)
     }

@@ -59,12 +59,12 @@ pub(super) fn unpacked(bytes: &[u8], length: u64, may_be_plain: bool) -> Result<
     let room = usize::try_from(length)
         .ok()
         .filter(|_| length <= most_unpacked(bytes.len() as u64));
-    let room = room.ok_or_else(|| damaged("something is longer than its packing can be"))?;
+    let room = room.ok_or_else(|| damaged("packed data is longer than its packing can be"))?;
     let mut out = Vec::with_capacity(room);
     let unpacked = Decompress::new(true).decompress_vec(bytes, &mut out, FlushDecompress::Finish);
     match unpacked {
         Ok(_) if out.len() == room => Ok(out),
-        _ => Err(damaged("something cannot be unpacked")),
+        _ => Err(damaged("packed data cannot be unpacked")),
     }
 }
 
