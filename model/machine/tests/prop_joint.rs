@@ -308,9 +308,9 @@ fn each_refusal_names_the_axis_the_kind_and_the_way_out() {
         assert!(message.contains("modes 1 and 3 coincide at 10 Hz"), "{message}");
     }
     let five: Vec<_> = (0..5).map(|k| (10.0 + 7.0 * f64::from(k), 0.0, "")).collect();
-    assert!(refused("kind = \"simultaneous\"", &five).contains("5 modes: 1 to 4 are solved together"));
+    assert!(refused("kind = \"simultaneous\"", &five).contains("5 modes: this kind takes 1 to 4 modes"));
     let message = refused("kind = \"vibrationless\"\norder = 5\nepsilon = 0.5", &[(10.0, 0.0, "")]);
-    assert!(message.contains("for epsilon from 1e-6 to 0.06"), "{message}");
+    assert!(message.contains("needs an epsilon from 1e-6 to 0.06"), "{message}");
     // Damping raises a mode above the tolerance of the undamped amplitudes: it is named, not hidden.
     let message = refused(
         "kind = \"periodic\"",

@@ -43,7 +43,7 @@ pub enum ShorterError {
     },
     /// The bound excludes no shaper.
     #[error(
-        "the proof bounds the residual of every shaper of {samples} samples to at least {ratio:.9} of a tolerance only, which excludes none"
+        "the proof bounds the residual of every shaper of {samples} samples only to at least {ratio:.9} of a tolerance, which rules out no shaper"
     )]
     Loose {
         /// Duration.

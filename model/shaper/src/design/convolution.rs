@@ -132,8 +132,8 @@ impl fmt::Display for ConvolutionWarning {
         match self {
             Self::PartialSums { axis, kind, sums } => write!(
                 f,
-                "axis {axis}: {kind} convolved take a step to between {:.4} and {:.4} of its height, beyond -1 … 1: the drive \
-                 must have that room; else use kind \"simultaneous\", or positive kinds for all modes but one",
+                "axis {axis}: after the convolved {kind} a step reaches {:.4} to {:.4} of its height, beyond -1 … 1: the drive must have \
+                 that room; otherwise use kind \"simultaneous\", or positive kinds for all modes but one",
                 sums.min, sums.max
             ),
             Self::Tolerance {
@@ -145,8 +145,8 @@ impl fmt::Display for ConvolutionWarning {
                 gain,
             } => write!(
                 f,
-                "axis {axis}, mode {} Hz: the other modes' shapers multiply what {kind} leaves by {gain:.4}, to {:.4} %, above \
-                 its tolerance of {:.4} %: design it with tolerance = {:.6} to leave that much, or use kind \"simultaneous\"",
+                "axis {axis}, mode {} Hz: the other modes' shapers multiply the residual of {kind} by {gain:.4}, to {:.4} %, above its \
+                 tolerance of {:.4} %: set tolerance = {:.6} for this mode to make up for that, or use kind \"simultaneous\"",
                 mode.frequency_hz,
                 100.0 * residual,
                 100.0 * tolerance,

@@ -53,9 +53,8 @@ pub enum DesignError {
         mode: Mode,
     },
     /// The tolerance is outside the range that the EI kind is solved for.
-    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} is outside the range that is solved: take one \
-        above {least:e} and below {most}, \
-         or \"zv\" or \"zvd\", which need none",
+    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} is outside the supported range: take a tolerance above {least:e} \
+             and below {most}, or \"zv\" or \"zvd\", which need no tolerance",
         hz = short(mode.frequency_hz))]
     Tolerance {
         /// The kind.

@@ -20,7 +20,7 @@ pub enum JointError {
         mode: Mode,
     },
     /// The kind cannot be the base of `periodic`.
-    #[error("no base \"{0}\": choose zv-ei, multi-ei or chebyshev-ei")]
+    #[error("\"{0}\" cannot be the base: choose zv-ei, multi-ei or chebyshev-ei")]
     Base(ShaperKind),
     /// The search limit is invalid.
     #[error(
@@ -38,9 +38,9 @@ pub enum JointError {
     },
     /// No frequency has odd multiples close enough to every mode.
     #[error(
-        "no periodic solution above lowest_frequency_hz {lowest}: no frequency has odd multiples within {lambda:.4} of it \
-         of every mode; use a wider base (\"chebyshev-ei\" with order 5), a larger tolerance, a smaller \
-         lowest_frequency_hz, or a kind for each mode such as \"zv\"",
+        "no periodic solution above lowest_frequency_hz {lowest}: no frequency has an odd multiple near every mode, within {lambda:.4} \
+         of the frequency; use a wider base (\"chebyshev-ei\" with order 5), a larger tolerance, a smaller lowest_frequency_hz, or a \
+         kind for each mode such as \"zv\"",
         lowest = short(*lowest_hz)
     )]
     NoPeriodicSolution {
@@ -65,9 +65,8 @@ pub enum JointError {
     },
     /// The frequencies have no usable common divisor.
     #[error(
-        "the damped frequencies {frequencies_hz} Hz have no common divisor whose multiples stay below {most}, so no \
-         antiperiod that a shaper could wait for; set ratio_tolerance to the accuracy of the frequencies, or use a kind \
-         for each mode such as \"zv\""
+        "the damped frequencies {frequencies_hz} Hz have no common divisor whose multiples stay below {most}, so there is no antiperiod \
+         for a shaper; set ratio_tolerance to the accuracy of the frequencies, or use a kind for each mode such as \"zv\""
     )]
     NoCommonDivisor {
         /// The damped frequencies in Hz, as text.
@@ -77,9 +76,9 @@ pub enum JointError {
     },
     /// No two modes share an antiperiod.
     #[error(
-        "no antisymmetry: the damped frequencies {frequencies_hz} Hz are {multiples} times {divisor} Hz, and no two of \
-         these multiples hold the same power of two; use a kind for each mode such as \"zv\", or set ratio_tolerance so \
-         that nearby odd multiples count",
+        "no antisymmetry: the damped frequencies {frequencies_hz} Hz are {multiples} times {divisor} Hz, and no two of these multiples \
+         contain the same power of two; use a kind for each mode such as \"zv\", or set ratio_tolerance so that nearby odd multiples \
+         count",
         divisor = short(*divisor_hz)
     )]
     NoAntisymmetry {
@@ -115,7 +114,7 @@ pub enum JointError {
     #[error("a mode with shaper \"{0}\": under \"simultaneous\" a mode takes zv or zvd")]
     Constraint(ShaperKind),
     /// There are more modes than can be solved together.
-    #[error("{found} modes: 1 to {most} are solved together; use a kind for each mode such as \"ps-zv\"")]
+    #[error("{found} modes: this kind takes 1 to {most} modes; use a kind for each mode such as \"ps-zv\"")]
     TooManyModes {
         /// Number of modes of the axis.
         found: usize,
@@ -135,8 +134,8 @@ pub enum JointError {
     },
     /// The bound or the order of `vibrationless` is not solved.
     #[error(
-        "shaper \"vibrationless\" with order {order} and epsilon {epsilon}: the orders 1 to {most} are solved, this one for \
-         epsilon from {least:e} to {largest}; take an epsilon there, a lower order, or \"zvdd\""
+        "shaper \"vibrationless\" with order {order} and epsilon {epsilon}: the supported orders are 1 to {most}, and this order needs \
+         an epsilon from {least:e} to {largest}; take such an epsilon, a lower order, or \"zvdd\""
     )]
     Vibrationless {
         /// Order that was asked for.

@@ -28,7 +28,7 @@ pub(super) const PERIODIC: KindRow = KindRow::new(
     "periodic",
     Promise::Unsaid,
     Design::Axis(|axis, _| design_axis(axis)),
-    "`base` with a common frequency of which each mode's is nearly an odd multiple",
+    "`base` at a common frequency; each mode's frequency is nearly an odd multiple of it",
 )
 .source("Zhang and Li 2010")
 .keys(&["base", "lowest_frequency_hz"]);

@@ -32,9 +32,9 @@ pub enum DigitiseError {
     },
     /// Delayed to match the slowest axis, the shaper is longer than any ring buffer.
     #[error(
-        "axis {axis}: to be as late as axis {slowest} and [stage] extra_delay_s, it needs {} more samples of delay, \
-         which reach {found:.0} samples back at {sample_hz} Hz; the ring buffer holds at most {DELAY_MAX_SAMPLES}: lower \
-         stage.extra_delay_s, give axis {slowest} a shorter kind, lower sample_hz, or leave the table [stage] out",
+        "axis {axis}: to match the delay of axis {slowest} plus [stage] extra_delay_s, it needs {} more samples of delay, which reach \
+         {found:.0} samples back at {sample_hz} Hz; the ring buffer holds at most {DELAY_MAX_SAMPLES}: lower stage.extra_delay_s, give \
+         axis {slowest} a shorter kind, lower sample_hz, or leave the table [stage] out",
         short(*added_samples)
     )]
     MatchedDelay {

@@ -50,7 +50,7 @@ impl Firmware {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum VersionError {
     /// The text is no version of this firmware.
-    #[error("`{given}` is no version of {}", .firmware.name())]
+    #[error("`{given}` is not a version of {}", .firmware.name())]
     Unknown {
         /// The firmware.
         firmware: Firmware,
@@ -58,7 +58,7 @@ pub enum VersionError {
         given: String,
     },
     /// The version has no input shaper that posicast can write.
-    #[error("{} {given} has no input shaper that takes these numbers: that begins with {begins}", .firmware.name())]
+    #[error("{} {given} has no input shaper that takes these numbers; the first version that has one is {begins}", .firmware.name())]
     Early {
         /// The firmware.
         firmware: Firmware,
