@@ -38,8 +38,7 @@ pub enum CascadeConfigError {
     Stages(usize),
     /// A delay is zero, or longer than the largest ring buffer.
     #[error(
-        "stage {stage} is delayed by {found} samples, a half sum by 1 to 4094: \
-         choose another sample rate or a higher order"
+        "stage {stage} has a delay of {found} samples, but a half sum has 1 to 4094: choose another sample rate or a higher order"
     )]
     Delay {
         /// Number of the stage, from 1.

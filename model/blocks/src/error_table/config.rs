@@ -95,8 +95,8 @@ pub enum ErrorTableConfigError {
     },
     /// Neighbours that differ by too much.
     #[error(
-        "entries {index} and {} differ by {found}, at most {most} is allowed: a sixteenth of their distance; an error as steep as \
-         that is none of a screw or a scale",
+        "entries {index} and {} differ by {found}, at most {most} is allowed: a sixteenth of their distance; no screw or scale has an \
+         error as steep as that",
         .index + 1
     )]
     Steep {

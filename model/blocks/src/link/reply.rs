@@ -13,7 +13,7 @@ pub enum LinkStatus {
     #[error("the bridge does not know the command: host and bridge have different versions of the protocol")]
     UnknownCommand,
     /// 2: no words, more than [`MOST_WORDS`](super::MOST_WORDS), or a frame whose length does not fit to their number.
-    #[error("the number of words does not fit to the frame's length")]
+    #[error("the number of words does not match the frame's length")]
     WrongLength,
     /// 3: an address beyond the registers. Nothing was read or written.
     #[error("an address beyond the registers")]
@@ -56,13 +56,13 @@ pub struct Reply {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// Not encoded as a frame: bytes are missing or too many.
-    #[error("bytes of the reply are missing or too many")]
+    #[error("the reply has too few or too many bytes")]
     Frame,
     /// The CRC does not hold.
-    #[error("the reply's checksum does not hold")]
+    #[error("the reply's checksum is wrong")]
     Crc,
     /// The contents are not those of a reply, although the CRC holds.
-    #[error("what came is no reply of this protocol: is something else on the line?")]
+    #[error("the received bytes are not a reply of this protocol: is something else on the line?")]
     Contents,
 }
 

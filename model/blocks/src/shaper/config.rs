@@ -73,8 +73,7 @@ pub enum ShaperConfigError {
     },
     /// A delay is longer than the largest ring buffer.
     #[error(
-        "the longest delay is {found} samples, the largest ring reaches back {allowed}: \
-         choose a lower sample rate or a shorter shaper"
+        "the longest delay is {found} samples, but the largest ring reaches back {allowed}: choose a lower sample rate or a shorter shaper"
     )]
     Delay {
         /// Longest delay of the table, in samples.
@@ -83,7 +82,9 @@ pub enum ShaperConfigError {
         allowed: u32,
     },
     /// There are more taps than the largest table holds.
-    #[error("{found} taps, the largest table holds {allowed}: choose a kind with fewer impulses or digitise `nearest`")]
+    #[error(
+        "{found} taps, but the largest table holds {allowed}: choose a kind with fewer impulses or digitise `nearest`"
+    )]
     Taps {
         /// Number of taps of the table.
         found: usize,
@@ -98,8 +99,8 @@ pub enum ShaperConfigError {
     MotionWordBits(u32),
     /// The ring buffer is too large for more than one channel.
     #[error(
-        "a delay of {found} samples with {channels} channels: more than one reach back {allowed}; \
-         choose one channel, a lower sample rate or a shorter shaper"
+        "a delay of {found} samples with {channels} channels: more than one channel reach back at most {allowed} samples; choose one \
+         channel, a lower sample rate or a shorter shaper"
     )]
     SharedDelay {
         /// Longest delay for which the ring buffer was sized, in samples.
@@ -114,8 +115,7 @@ pub enum ShaperConfigError {
 /// A pass over the table takes longer than a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a pass over {taps} taps takes {needed} clocks, a sample lasts {available}: \
-     choose a lower sample rate, a faster clock or fewer taps"
+    "a pass over {taps} taps takes {needed} clocks, but a sample lasts {available}: choose a lower sample rate, a faster clock or fewer taps"
 )]
 pub struct PassError {
     /// Taps of the table times channels; in a handover, taps of both tables.

@@ -8,7 +8,7 @@ use posicast_taps::TapTable;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// The table has another number of fraction bits.
-    #[error("the table has {found} fraction bits, the shaper is built for {allowed}: digitise it with that many")]
+    #[error("the table has {found} fraction bits, but the shaper is built for {allowed}: digitise it with that many")]
     Fraction {
         /// Fraction bits F of the table.
         found: u32,

@@ -108,7 +108,7 @@ pub struct Gain {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GainError {
     /// The gain exceeds the largest mantissa without shift.
-    #[error("the gain {row:?} is {found:.3e}, and its largest in the hardware is {largest:.3e}")]
+    #[error("the gain {row:?} is {found:.3e}, but the largest in the hardware is {largest:.3e}")]
     Large {
         /// The gain.
         found: f64,
