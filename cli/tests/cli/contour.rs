@@ -88,7 +88,7 @@ fn cli_paths_that_cannot_be_driven_are_refused() {
         ),
         (
             vec!["--contour", "circle", "--speed", "1"],
-            "the slower axis has 250 mm/s",
+            "the velocity limit of the slower axis is 250 mm/s",
         ),
         (
             vec!["--contour", "square", "--radius", "0.01"],
@@ -115,7 +115,7 @@ fn cli_paths_that_cannot_be_driven_are_refused() {
         .assert()
         .code(2);
     let text = String::from_utf8_lossy(&one_axis.get_output().stderr).into_owned();
-    assert!(text.contains("a contour takes two axes"), "{text}");
+    assert!(text.contains("a contour needs two linear axes"), "{text}");
 }
 
 /// The mill of the cases: 38 and 29 Hz, 150 mm/s, 1500 mm/s², 50 m/s³.

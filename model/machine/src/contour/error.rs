@@ -20,7 +20,7 @@ pub enum ContourError {
     #[error("no path: {0}")]
     Empty(String),
     /// The machine has no plane of two axes.
-    #[error("a contour takes two axes that move along lengths, and {0}")]
+    #[error("a contour needs two linear axes, but {0}")]
     Axes(String),
     /// The path leaves the travel of an axis.
     #[error("axis {axis} would go to {found}; its travel is {low} to {high}")]
@@ -35,7 +35,7 @@ pub enum ContourError {
         high: String,
     },
     /// The speed exceeds the limit of an axis.
-    #[error("a speed of {found}: the slower axis has {most}")]
+    #[error("a speed of {found}: the velocity limit of the slower axis is {most}")]
     Speed {
         /// The speed that was asked for.
         found: String,
@@ -43,7 +43,7 @@ pub enum ContourError {
         most: String,
     },
     /// The file of the path cannot be read.
-    #[error("cannot read on after line {line}: {found}")]
+    #[error("cannot continue to read after line {line}: {found}")]
     Read {
         /// Number of lines that were read.
         line: u64,

@@ -63,7 +63,7 @@ pub enum ControlWarning {
     /// The loop is stable, but close to instability.
     #[error(
         "the loop's margins on the machine of this file are thin: gain margin {gain_margin_db:.1} dB, phase margin \
-         {phase_margin_deg:.0}°, modulus margin {modulus_margin:.2}, and a sound loop has 6 dB, 30° and 0.5: lower {gains}, or \
+         {phase_margin_deg:.0}°, modulus margin {modulus_margin:.2}; a sound loop has at least 6 dB, 30° and 0.5: lower {gains}, or \
          leave them out: the defaults have these margins"
     )]
     ThinMargin {

@@ -56,8 +56,8 @@ pub enum ControlError {
     },
     /// The sliding-mode law needs the bandwidth of a velocity drive.
     #[error(
-        "axis {axis}: the sliding-mode law gives an acceleration, and a velocity drive follows it by its bandwidth: \
-         give bandwidth_hz in [axis.drive], or choose kind = \"pd\" or \"pid\""
+        "axis {axis}: the sliding-mode law outputs an acceleration, which a velocity drive follows only with a known bandwidth: give \
+         bandwidth_hz in [axis.drive], or choose kind = \"pd\" or \"pid\""
     )]
     Bandwidth {
         /// Name of the axis.
@@ -97,8 +97,7 @@ pub enum ControlError {
     },
     /// A gain that is not 0 would be 0 in the hardware.
     #[error(
-        "axis {axis}: the gain {row:?} is {found:.3e}, and its smallest in the hardware is {smallest:.3e}: it would be 0; \
-         {culprit}"
+        "axis {axis}: the gain {row:?} is {found:.3e}, but the smallest in the hardware is {smallest:.3e}: it would be 0; {culprit}"
     )]
     Lost {
         /// Name of the axis.

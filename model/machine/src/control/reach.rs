@@ -50,8 +50,8 @@ impl TableBounds {
 /// An axis whose file does not state its travel, with the end of the position word that it may reach.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "no travel in [axis.limits]: the position word reaches {} to either side of where the axis stands at reset; a \
-     command further on stops before its end (cause segments), a count beyond it switches off (cause range): give travel",
+    "no travel in [axis.limits]: the position word reaches {} to either side of where the axis stands at reset; a command beyond that \
+     stops before its end (cause segments), and a count beyond it switches the axis off (cause range): give travel",
     .unit.as_in_file(*.reach, "")
 )]
 pub struct NoTravel {

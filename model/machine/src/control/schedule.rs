@@ -25,7 +25,7 @@ pub struct ControlSchedule {
 
 /// The schedule takes longer than a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a tick takes {schedule}, a sample lasts {available} and must last longer than that")]
+#[error("a tick takes {schedule}, but a sample lasts only {available}; it must last longer than a tick")]
 pub struct ScheduleError {
     /// The schedule.
     pub schedule: ControlSchedule,
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(schedule.clocks(), 4 + 102 + 38 + 517);
         assert_eq!(schedule.fits(662), Ok(()));
         let error = schedule.fits(661).unwrap_err().to_string();
-        let sum = "capture 4 + divide 102 + shape 38 + control 517 = 661 clocks, a sample lasts 661";
+        let sum = "capture 4 + divide 102 + shape 38 + control 517 = 661 clocks, but a sample lasts only 661";
         assert!(error.contains(sum), "{error}");
         assert_eq!(ControlSchedule::measuring().clocks(), 106);
         assert!(!ControlSchedule::measuring().to_string().contains("control"));

@@ -313,7 +313,7 @@ impl Words<'_> {
             unit: "of full scale".to_owned(),
             scale,
         };
-        let reason = "what the controller commands at most";
+        let reason = "the largest command of the controller";
         self.fitting(
             value,
             down(self.limits.encoder_lost_command * scale),

@@ -10,7 +10,7 @@ const OTHERWISE: [(&str, &str, &str); 9] = [
     ("axis.limits.watchdog_s", "", "; 0 disables the watchdog"),
     (
         "axis.limits.encoder_lost_command",
-        ": a larger command never comes, and the check with it",
+        ": the command never exceeds that, so the check would never act",
         "",
     ),
     ("axis.limits.following_error", COARSER, FINER),
@@ -60,8 +60,8 @@ pub enum SupervisionError {
     },
     /// The position word does not hold the travel wherever the axis stands at reset.
     #[error(
-        "axis {axis}: found a travel from {} to {} {unit}, of which the shaped command covers {}{}; allowed: at \
-         most {} together at {} counts per {unit}, since the count is 0 where the axis stands at reset, at either end perhaps",
+        "axis {axis}: found a travel from {} to {} {unit}, in which the shaped command covers {}{}; allowed: at most {} together at {} \
+         counts per {unit}, because the count is 0 where the axis stands at reset, and that may be either end",
         short(.unit.in_file(*.low)), short(.unit.in_file(*.high)), .unit.as_in_file(*.shaped, ""),
         stop_text(*.unit, *.stop, .deceleration), .unit.as_in_file(*.reach, ""), short(*.counts_per_unit)
     )]
@@ -172,7 +172,7 @@ impl SupervisionError {
                 )
             }
             Self::Travel { .. } => {
-                "widen `travel`, or raise counts_per_unit: the axis has finer counts then".to_owned()
+                "widen `travel`, or raise counts_per_unit for finer counts".to_owned()
             }
         }
     }

@@ -113,7 +113,7 @@ pub(super) fn read(table: &Table<'_, '_>, axis: OfAxis<'_>) -> Option<ErrorTable
     if axis.modulo {
         let (found, allowed) = (
             "an error table with modulo = true",
-            "an axis whose position does not come round",
+            "an axis whose position does not wrap",
         );
         table.contradiction(FILE, found, allowed, "remove [axis.error_table], or modulo");
         return None;

@@ -179,9 +179,8 @@ fn read_axes(
                 Some((_, line)) => table.duplicate("name", *line, "every axis must have a different name"),
                 None if lines.iter().any(|(other, _)| clash(other, name)) => table.refuse(
                     "name",
-                    "not `u` where another axis is `x` or `y`: their shapers are the instances `u_x` and `u_y` in the \
-                    Verilog, which \
-                     the command and the output of an axis `u` would be too",
+                    "not `u` where another axis is `x` or `y`: their shapers are the instances `u_x` and `u_y` in the Verilog, and the \
+                     command and the output of an axis `u` would have the same names",
                     "rename one of the two",
                 ),
                 None => lines.push((name.clone(), table.line_of("name"))),

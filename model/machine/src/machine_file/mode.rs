@@ -131,7 +131,7 @@ pub(super) fn read_all<'r, 't>(
     let modes: Vec<(Table, AxisMode)> = modes.into_iter().collect::<Option<_>>()?;
     if !modes.is_empty() && modes.iter().all(|(_, mode)| mode.participation == 0.0) {
         let found = "participation 0 in every mode";
-        let remedy = "give the mode that is seen most a participation of 1";
+        let remedy = "give the most visible mode a participation of 1";
         axis.contradiction("mode", found, "at least one mode with a participation above 0", remedy);
     }
     Some(modes)

@@ -42,7 +42,7 @@ pub enum PlanError {
     },
     /// A jerk, velocity or acceleration does not fit its word.
     #[error(
-        "a jerk of {jerk:e} counts per tick³ does not fit: ±128 is the end; lower the jerk limit or raise sample_hz"
+        "a jerk of {jerk:e} counts per tick³ does not fit: the limit is ±128; lower the jerk limit or raise sample_hz"
     )]
     Jerk {
         /// Jerk in counts per tick³.

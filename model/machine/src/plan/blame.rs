@@ -122,7 +122,7 @@ fn blame_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
         }
         DesignError::FamilyGap { axis, .. } => Some(DesignBlame {
             key: "axis.family.values".to_owned(),
-            remedy: Some("leave `values` out, and as many tables are made as are needed".to_owned()),
+            remedy: Some("leave `values` out: posicast then makes as many tables as needed".to_owned()),
             ..shaper(of_axis(axis)?)
         }),
         DesignError::FamilySize { axis, .. } | DesignError::FamilyUncovered { axis, .. } => Some(DesignBlame {

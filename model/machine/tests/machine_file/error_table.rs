@@ -150,7 +150,7 @@ fn axes_that_cannot_have_one_say_so() {
         "counts_per_unit = 1_000_000\nmodulo = true",
         1,
     ));
-    assert!(said.contains("does not come round"), "{said}");
+    assert!(said.contains("does not wrap"), "{said}");
     let scale = "[axis.scale]\ncounts_per_unit = 1_000_000\nuse = \"position\"\n\n[axis.error_table]";
     let said = of(&text.replacen("[axis.error_table]", scale, 1));
     assert!(said.contains("whose loop runs on its scale"), "{said}");

@@ -174,7 +174,7 @@ impl<'a> Program<'a> {
                 "give a program without loops, calls and jogs",
             )),
             Line::Named { name, has_place } if has_place => Err(self.refused(
-                format!("`{name}` has X or Y, and what it does with them is not known"),
+                format!("`{name}` has X or Y, but posicast does not know what it does with them"),
                 "remove it, or replace it by what it does",
             )),
             Line::Named { .. } => Ok(None),
@@ -240,7 +240,7 @@ impl<'a> Program<'a> {
             return Err(self.refused("two of G0, G1, G2 and G3".to_owned(), "write two lines"));
         }
         if words.is_optional {
-            let found = "`/`: whether the line runs is up to a switch of the controller";
+            let found = "`/`: a switch of the controller decides whether this line runs";
             return Err(self.refused(found.to_owned(), "remove the line, or its `/`"));
         }
         if self.lines.is_cut {
@@ -392,7 +392,7 @@ impl<'a> Program<'a> {
         let Some(motion) = self.motion else {
             return Err(self.refused(
                 "a place before the first of G0, G1, G2, G3".to_owned(),
-                "say how it is gone to: G1 with F, for example",
+                "say how to move there: G1 with F, for example",
             ));
         };
         if motion.major > 3 {
@@ -514,7 +514,7 @@ impl<'a> Program<'a> {
                 let [radius, chord] = [radius.abs(), x.hypot(y)].map(in_mm);
                 Err(self.refused(
                     format!("an arc of radius {radius} to a place {chord} away"),
-                    "give a radius of at least half of that way; a whole turn takes I and J",
+                    "give a radius of at least half of that distance; a full circle needs I and J",
                 ))
             }
         }
