@@ -73,7 +73,7 @@ fn man() -> io::Result<Vec<u8>> {
 
 fn completions(shell: &str) -> io::Result<Vec<u8>> {
     let shell = clap_complete::Shell::from_str(shell, true)
-        .map_err(|_| io::Error::other(format!("--completions {shell}: use bash, elvish, fish, powershell or zsh")))?;
+        .map_err(|_| io::Error::other(format!("--completions {shell}: bash, elvish, fish, powershell or zsh")))?;
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "wavecmp", &mut script);
     Ok(script)

@@ -309,7 +309,7 @@ fn damaged_and_unsupported_blocks_give_different_errors() {
         ),
         (
             with(&variable(16, "b", 1, 5)),
-            "an alias of a signal that is declared later or never: the file is damaged",
+            "aliases one that is declared later or never: the file is damaged",
         ),
         (
             with(&variable(16, "b", 1, 0)),

@@ -116,7 +116,7 @@ pub(in crate::reader) fn each(bytes: &[u8], mut each: impl FnMut(Entry<'_>) -> R
                         signals - 1
                     }
                     Some(other) if other < signals => other,
-                    Some(_) => return Err(damaged("a signal is an alias of a signal that is declared later or never")),
+                    Some(_) => return Err(damaged("a signal aliases one that is declared later or never")),
                 };
                 each(Entry::Signal(Signal {
                     kind,
