@@ -69,8 +69,8 @@ fn cli_an_impossible_move_is_refused_with_its_option_and_a_remedy() {
 fn cli_a_radius_that_no_circle_has_is_refused_before_any_work() {
     let cases = [
         ("0.06", "has room for a radius of 45 mm, less than 60 mm"),
-        ("-1", "its radius is -1 m, and 100 µm is the least"),
-        ("nan", "is the least"),
+        ("-1", "its radius is -1 m, but the smallest"),
+        ("nan", "but the smallest"),
     ];
     for (radius, expected) in cases {
         let folder = tempfile::tempdir().unwrap();

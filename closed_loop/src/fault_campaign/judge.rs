@@ -309,9 +309,11 @@ impl Judge<'_> {
         let expects = &self.seen.case.row.expects;
         let there = expects.causes == 0 || causes & (expects.causes | group) != 0;
         let strange = causes & !(expects.causes | expects.also | group);
-        self.demand(there, || format!("causes {causes:#x}, none of {:#x}", expects.causes));
+        self.demand(there, || {
+            format!("causes {causes:#x}, but none of the expected {:#x}", expects.causes)
+        });
         self.demand(strange == 0, || {
-            format!("causes {causes:#x}, of which {strange:#x} should not be")
+            format!("causes {causes:#x}, of these {strange:#x} are unexpected")
         });
     }
 

@@ -64,14 +64,14 @@ pub struct Circled {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoCircle {
     /// There are fewer than two axes.
-    #[error("it takes two axes, and the machine has one")]
+    #[error("a circle needs two axes, but the machine has only one")]
     OneAxis,
     /// An axis is modulo, and turns without an end.
-    #[error("axis {0} is modulo: it turns round and round")]
+    #[error("axis {0} is modulo: it turns without end")]
     Modulo(String),
     /// No radius that the encoders resolve fits the travel.
     #[error(
-        "the travel of axes {x} and {y} has room for a radius of {room}, and {least} is the least that their encoders tell"
+        "the travel of axes {x} and {y} has room for a radius of {room}, but the smallest that their encoders resolve is {least}"
     )]
     NoRoom {
         /// Name of the first axis.
@@ -96,7 +96,7 @@ pub enum NoCircle {
         room: String,
     },
     /// The encoders do not resolve the radius, whether it was requested or follows from the limits of the axes.
-    #[error("its radius is {radius}, and {least} is the least that the encoders of axes {x} and {y} tell")]
+    #[error("its radius is {radius}, but the smallest that the encoders of axes {x} and {y} resolve is {least}")]
     TooSmall {
         /// Name of the first axis.
         x: String,
