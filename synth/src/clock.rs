@@ -192,7 +192,7 @@ impl PlaceAndRoute {
             .into_iter()
             .flat_map(|clocks| clocks.values());
         let slowest = clocks.filter_map(|clock| clock["achieved"].as_f64()).reduce(f64::min);
-        slowest.ok_or_else(|| no_clock(top, "nextpnr reports none: it has no path between registers".to_owned()))
+        slowest.ok_or_else(|| no_clock(top, "nextpnr found no path between registers".to_owned()))
     }
 
     fn run(&self, folder: &Path, top: &str, arguments: &[&OsStr]) -> Result<String, ClockError> {

@@ -98,8 +98,8 @@ fn cli_hal_without_a_stage_writes_the_tables_alone() {
 fn cli_hal_refuses_a_rate_that_does_not_suit_the_stage() {
     let folder = tempfile::tempdir().unwrap();
     for (rate, said) in [
-        ("3000", "multiple of 2 to 256"),
-        ("10000", "multiple of 2 to 256"),
+        ("3000", "whole multiple of it, 2 to 256 times"),
+        ("10000", "whole multiple of it, 2 to 256 times"),
         ("0", "allowed: above 0"),
         ("nan", "allowed: above 0"),
     ] {

@@ -14,7 +14,8 @@ use posicast_taps::TapTable;
 pub enum ServoError {
     /// The stage's tick is not an integral fraction of a servo period.
     #[error(
-        "a servo rate of {servo_hz} Hz: the stage's tick of {sample_hz} Hz is a multiple of 2 to 256 of it; give one that is"
+        "a servo rate of {servo_hz} Hz: the stage's tick rate of {sample_hz} Hz must be a whole multiple of it, 2 to 256 times; give \
+         such a servo rate"
     )]
     Rate {
         /// Servo rate.

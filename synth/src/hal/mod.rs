@@ -69,7 +69,7 @@ pub struct HalAxis<'a> {
 
 /// Why a machine cannot be driven by LinuxCNC. `axis` counts from 0.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("axis {axis}: LinuxCNC has no letter for another rotary axis than A, B and C: make a machine of fewer")]
+#[error("axis {axis}: LinuxCNC has only the letters A, B and C for rotary axes: make a machine with at most three")]
 pub struct HalError {
     /// The axis.
     pub axis: usize,

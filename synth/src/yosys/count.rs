@@ -125,7 +125,7 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
             // Inverters are absorbed by the LUT or flip-flop that they feed; the other types cost nothing.
             "$not" | "MISTRAL_NOT" | "GND" | "VCC" | "$scopeinfo" => {}
             kind if netlist.design_module(kind).is_some() => {}
-            kind => return Err(format!("cell {name} of type {kind} is left, which no estimate counts")),
+            kind => return Err(format!("cell {name} has type {kind}, unknown to the estimate")),
         }
     }
     match family.device().cell {
