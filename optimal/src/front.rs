@@ -51,7 +51,7 @@ pub fn front(request: &Request, durations: &[u32]) -> Result<Vec<FrontPoint>, Op
         };
         let taps = taps.ok_or_else(|| OptimalError::Solver {
             samples,
-            status: "no shaper of this duration holds".into(),
+            status: "no shaper of this duration keeps the tolerances".into(),
         })?;
         // Rounding errors end some programs early; the ratio of the few taps is then used instead.
         let ratio = match least_ratio(&request, &all, &mut points) {
