@@ -88,7 +88,9 @@ fn main() -> ExitCode {
     };
     style::set(color);
     if let Err(error) = interrupt::listen() {
-        output::say(&format!("warning: temporary files will remain if a signal ends posicast: {error}"));
+        output::say(&format!(
+            "warning: temporary files will remain if a signal ends posicast: {error}"
+        ));
     }
     let result = match command {
         Command::New(args) => new::run(&args),
