@@ -60,8 +60,7 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
 /// Beginning of the paragraph of a command's help that describes its exit status.
 const EXIT_STATUS: &str = "Exit status";
 /// The exit status of a command whose help does not describe it.
-const STATUS: &str =
-    "0 success, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.";
+const STATUS: &str = "0 success, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.";
 /// The exit status after a signal, which applies to every command.
 const SIGNALS: &str = "130 or 143 after SIGINT or SIGTERM, with nothing left behind.";
 

@@ -171,9 +171,7 @@ impl SupervisionError {
                     "shorten `travel`{of_stop}, choose a shaper that overshoots less, or lower the counts_per_unit of the loop"
                 )
             }
-            Self::Travel { .. } => {
-                "widen `travel`, or raise counts_per_unit for finer counts".to_owned()
-            }
+            Self::Travel { .. } => "widen `travel`, or raise counts_per_unit for finer counts".to_owned(),
         }
     }
 }
