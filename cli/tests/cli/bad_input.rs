@@ -104,7 +104,12 @@ fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_t
     // The tick has 200 clocks, and 700 at the largest rate of whole periods of 100 clocks.
     let machine = fast_stage("250_000", "500_000");
     let sum = "capture 4 + divide 102 + shape 43 + control 517 = 666 clocks";
-    let words = ["machine.toml:13: clock.sample_hz", sum, "lasts 200", "up to 71428.5"];
+    let words = [
+        "machine.toml:13: clock.sample_hz",
+        sum,
+        "lasts only 200",
+        "up to 71428.5",
+    ];
     for command in ["generate", "run", "verify"] {
         refused(&[command], &machine, &words);
     }
@@ -122,7 +127,12 @@ fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_t
 #[test]
 fn cli_a_tick_too_short_for_a_division_names_the_sample_rate() {
     let machine = one_axis("kind = \"zvd\"", MODE).replace("10_000", "500_000") + "[axis.encoder]\n";
-    let words = ["machine.toml:4: clock.sample_hz", "divide 102", "lasts 100", "up to"];
+    let words = [
+        "machine.toml:4: clock.sample_hz",
+        "divide 102",
+        "lasts only 100",
+        "up to",
+    ];
     refused(&["generate"], &machine, &words);
 }
 

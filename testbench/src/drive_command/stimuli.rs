@@ -80,7 +80,7 @@ impl DriveCommandRandom {
             SupervisorState::Run,
         ]
         .map(|state| state as u8);
-        let any_state = rng.random_range(0..8);
+        let any_state = rng.random_range(0..8_u64) as u8;
         let state = *pick(rng, &[states[0], states[1], states[2], states[3], states[4], any_state]);
         let on = matches!(
             SupervisorState::from_value(state.into()),
@@ -89,7 +89,7 @@ impl DriveCommandRandom {
         // Now and then the outputs take values that no supervisor produces.
         let outputs = [(); 3].map(|()| on != (rng.random_range(0..12) == 0));
         let size = rng.random_range(0..=16);
-        let any_limit: u16 = rng.random_range(0..=65_535);
+        let any_limit: i64 = rng.random_range(0..=65_535);
         let one_bit = rng.random_range(3..16);
         self.mood = Mood {
             state,
@@ -98,7 +98,7 @@ impl DriveCommandRandom {
             kick_pace: *pick(rng, &[3, 10, 30, 100]),
             line_pace: *pick(rng, &[2, 20, 100_000, 100_000]),
             hold_ticks: *pick(rng, &[0, 1, 2, 3, 5, 1 << one_bit, 1 << one_bit, 65_535]),
-            limit: *pick(rng, &[0, 65_535, any_limit, any_limit >> size]),
+            limit: *pick(rng, &[0, 65_535, any_limit, any_limit >> size]) as u16,
             self_test: rng.random_range(0..3) == 0,
             valley_pace: *pick(rng, &[1, 4, 20, 60]),
         };
@@ -107,10 +107,10 @@ impl DriveCommandRandom {
     /// Draws a manual duty of any size, also at the limits and one LSB beyond.
     fn new_direct_duty(&mut self) {
         let rng = &mut self.rng;
-        let any: i32 = rng.random_range(-65_536..=65_535);
-        let about = i32::from(self.mood.limit) + rng.random_range(-1..=2);
+        let any: i64 = rng.random_range(-65_536..=65_535);
+        let about = i64::from(self.mood.limit) + rng.random_range(-1..=2);
         let small = any >> rng.random_range(0..17);
-        self.direct_duty = *pick(rng, &[any, small, small, about, -about, 0, -65_536, 65_535]);
+        self.direct_duty = *pick(rng, &[any, small, small, about, -about, 0, -65_536, 65_535]) as i32;
     }
 }
 
@@ -127,7 +127,7 @@ impl Stimuli for DriveCommandRandom {
         }
         let mood = self.mood;
         let rng = &mut self.rng;
-        let any: i32 = rng.random_range(-131_072..=131_071);
+        let any: i64 = rng.random_range(-131_072..=131_071);
         let about_the_end = rng.random_range(65_534..=65_537);
         let small = any >> rng.random_range(0..18);
         let controller_duty = *pick(rng, &[any, small, about_the_end, -about_the_end]);
@@ -143,7 +143,7 @@ impl Stimuli for DriveCommandRandom {
         let mut inputs = Inputs {
             rst: self.clock < 2 || once_in(1000),
             tick: once_in(mood.tick_pace),
-            controller_duty,
+            controller_duty: controller_duty as i32,
             controller_valid: once_in(6),
             axis_state: state,
             axis_pwm_enable: pwm,
@@ -162,7 +162,7 @@ impl Stimuli for DriveCommandRandom {
             gates: 0,
             valley: once_in(mood.valley_pace),
         };
-        inputs.gates = rng.random_range(0..16);
+        inputs.gates = rng.random_range(0..16_u64) as u8;
         let in_direct_mode = Inputs {
             rst: false,
             axis_state: SupervisorState::Ready as u8,
