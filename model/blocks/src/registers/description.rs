@@ -230,14 +230,14 @@ impl Description {
 
     /// Adds a register.
     #[must_use]
-    pub fn with(mut self, name: &str, offset: u32, access: Access, meaning: &str, fields: Vec<Field>) -> Self {
-        self.registers.push(Register {
-            name: name.to_owned(),
-            offset,
-            access,
-            meaning: meaning.to_owned(),
-            fields,
-        });
+    pub fn with(self, name: &str, offset: u32, access: Access, meaning: &str, fields: Vec<Field>) -> Self {
+        self.with_register(Register::new(name, offset, access, meaning, fields))
+    }
+
+    /// Adds a register.
+    #[must_use]
+    pub fn with_register(mut self, register: Register) -> Self {
+        self.registers.push(register);
         self
     }
 
@@ -380,7 +380,27 @@ impl Field {
     }
 }
 
+impl Access {
+    /// A command whose strobe has this name.
+    pub(crate) fn command(strobe: &str) -> Self {
+        Self::Command {
+            strobe: strobe.to_owned(),
+        }
+    }
+}
+
 impl Register {
+    /// Describes a register.
+    pub fn new(name: &str, offset: u32, access: Access, meaning: &str, fields: Vec<Field>) -> Self {
+        Self {
+            name: name.to_owned(),
+            offset,
+            access,
+            meaning: meaning.to_owned(),
+            fields,
+        }
+    }
+
     /// Number of words that it takes, from its offset on.
     pub fn words(&self) -> u32 {
         match self.access {

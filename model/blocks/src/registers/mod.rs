@@ -38,6 +38,7 @@ mod error;
 mod map;
 pub mod maps;
 mod markdown;
+pub(crate) mod tables;
 
 pub use bank::RegisterBank;
 pub use description::{

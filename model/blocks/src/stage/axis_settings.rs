@@ -2,15 +2,15 @@
 //! encoder.
 
 use super::config::StageAxis;
-use super::register::{command, register, with_the_drive_off};
-use crate::registers::{Access, Field, Register, maps};
+use super::registers::with_the_drive_off;
+use crate::registers::{Access, Field, Register, tables};
 
 /// The registers in words of the axis's window, preceded by the parameters of its build.
 pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
     [
         parameters(axis),
         commands(),
-        tables(axis),
+        loaded_tables(axis),
         supervision(axis),
         encoder(axis),
     ]
@@ -20,7 +20,7 @@ pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
 fn parameters(axis: &StageAxis) -> Vec<Register> {
     let constant = |name: &str, offset, meaning: &str, value| {
         let field = Field::new(name, 0, 32, meaning).with_reset(value);
-        register(name, offset, Access::Constant, "parameter of the build", vec![field])
+        Register::new(name, offset, Access::Constant, "parameter of the build", vec![field])
     };
     vec![
         constant(
@@ -53,7 +53,7 @@ fn parameters(axis: &StageAxis) -> Vec<Register> {
 
 fn commands() -> Vec<Register> {
     vec![
-        register(
+        Register::new(
             "control",
             0x08,
             Access::Configuration,
@@ -72,26 +72,32 @@ fn commands() -> Vec<Register> {
                 ),
             ],
         ),
-        register("stop", 0x09, command("stop"), "quick stop, then HOLD", vec![]),
-        register(
+        Register::new("stop", 0x09, Access::command("stop"), "quick stop, then HOLD", vec![]),
+        Register::new(
             "clear_faults",
             0x0a,
-            command("clear_faults"),
+            Access::command("clear_faults"),
             "forgets the causes that are over, and the flags of all blocks",
             vec![],
         ),
-        register("flush", 0x0b, command("flush"), "drops the waiting entries", vec![]),
-        register(
+        Register::new(
+            "flush",
+            0x0b,
+            Access::command("flush"),
+            "drops the waiting entries",
+            vec![],
+        ),
+        Register::new(
             "kick",
             0x0c,
-            command("kick"),
+            Access::command("kick"),
             "kicks the host's watchdog",
             vec![Field::new("kick_word", 0, 32, "0x4b49434b, `KICK`")],
         ),
-        register(
+        Register::new(
             "homed",
             0x0f,
-            command("write_homed"),
+            Access::command("write_homed"),
             "sets whether the axis is homed; the machine file may let the soft limits act only then",
             vec![Field::flag(
                 "homed_value",
@@ -99,10 +105,10 @@ fn commands() -> Vec<Register> {
                 "the origin, to which the soft limits refer, is known",
             )],
         ),
-        register(
+        Register::new(
             "direct",
             0x0d,
-            command("direct_kick"),
+            Access::command("direct_kick"),
             "duty of direct mode, which expires after some time",
             vec![
                 Field::new("direct_duty", 0, 17, "limited by the machine file")
@@ -110,7 +116,7 @@ fn commands() -> Vec<Register> {
                     .with_unit("clocks"),
             ],
         ),
-        register(
+        Register::new(
             "fifo_control",
             0x0e,
             Access::Configuration,
@@ -126,7 +132,7 @@ fn commands() -> Vec<Register> {
                 .with_unit("ticks"),
             ],
         ),
-        register(
+        Register::new(
             "segment",
             0x10,
             Access::Words {
@@ -140,78 +146,23 @@ fn commands() -> Vec<Register> {
     ]
 }
 
-fn tables(axis: &StageAxis) -> Vec<Register> {
-    let laws = [
-        (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
-        (1, "pd", "proportional and derivative"),
-        (2, "pid", "proportional, integral and derivative"),
-    ];
-    let banks = [
-        (0, "machine", "settings of the machine, in a ROM"),
-        (1, "loaded_1", "settings loaded into bank 1"),
-        (2, "loaded_2", "settings loaded into bank 2"),
-    ];
+fn loaded_tables(axis: &StageAxis) -> Vec<Register> {
     vec![
-        register(
-            "tap_address",
-            0x14,
-            Access::Configuration,
-            "address of the tap to write or read",
-            maps::tap_address(&axis.shaper),
-        ),
-        register(
-            "tap",
-            0x15,
-            command("tap_write"),
-            "writes a tap",
-            maps::tap(&axis.shaper),
-        ),
-        register(
-            "swap",
-            0x16,
-            command("swap"),
-            "makes a bank active",
-            maps::swap(&axis.shaper),
-        ),
-        register(
-            "tap_read",
-            0x27,
-            command("tap_read"),
-            "reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low",
-            vec![],
-        ),
-        register(
-            "setting_address",
-            0x17,
-            Access::Configuration,
-            "address of the setting to write or read",
-            vec![
-                Field::new("setting_row", 0, 4, "row of the setting: see docs/sliding_mode.md"),
-                Field::new("setting_bank", 8, 2, "bank 1 or 2"),
-            ],
-        ),
-        register(
-            "setting",
-            0x18,
-            command("setting_write"),
-            "writes a setting",
-            vec![Field::new("setting_word", 0, 32, "mantissa and shift, or the limit")],
-        ),
-        register(
-            "setting_read",
-            0x26,
-            command("setting_read"),
-            "reads back the word at `SETTING_ADDRESS`, which must stay until `setting_read_waits` is low",
-            vec![],
-        ),
-        register(
+        tables::tap_address(&axis.shaper, 0x14),
+        tables::tap(&axis.shaper, 0x15),
+        tables::swap(&axis.shaper, 0x16),
+        tables::tap_read(0x27),
+        tables::setting_address(0x17),
+        tables::setting(0x18),
+        tables::setting_read(0x26),
+        Register::new(
             "law",
             0x19,
             Access::Staged,
             "control law and settings in use",
             vec![
-                Field::choice("law", 0, 2, "control law", &laws).with_reset(axis.law as u32),
-                Field::choice("law_bank", 8, 2, "settings in use; bank 3 is all 0", &banks),
+                tables::law().with_reset(axis.law as u32),
+                tables::setting_bank("law_bank"),
             ],
         ),
     ]
@@ -226,21 +177,21 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
             .with_reset(value as u32)
     };
     vec![
-        register(
+        Register::new(
             "soft_limit_plus",
             0x1a,
             Access::Configuration,
             "end of the travel, in counts since reset: see `ORIGIN`",
             vec![limit("soft_limit_plus", watched.soft_limit_plus)],
         ),
-        register(
+        Register::new(
             "soft_limit_minus",
             0x1b,
             Access::Configuration,
             "the other end of the travel",
             vec![limit("soft_limit_minus", watched.soft_limit_minus)],
         ),
-        register(
+        Register::new(
             "following_error_limit",
             0x1c,
             Access::Configuration,
@@ -251,7 +202,7 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
                     .with_reset(watched.following_error_limit),
             ],
         ),
-        register(
+        Register::new(
             "watchdog",
             0x1d,
             Access::Configuration,
@@ -275,7 +226,7 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
                 .with_reset(watched.off_causes.into()),
             ],
         ),
-        register(
+        Register::new(
             "stop_deceleration",
             0x1e,
             Access::Configuration,
@@ -286,7 +237,7 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
                     .with_reset(watched.stop_deceleration),
             ],
         ),
-        register(
+        Register::new(
             "settle",
             0x1f,
             Access::Configuration,
@@ -302,7 +253,7 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
 
 fn encoder(axis: &StageAxis) -> Vec<Register> {
     vec![
-        register(
+        Register::new(
             "encoder",
             0x24,
             with_the_drive_off(),
@@ -312,14 +263,14 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
                     .with_reset(axis.encoder_invert.into()),
             ],
         ),
-        register(
+        Register::new(
             "pwm_trigger",
             0x25,
             Access::Configuration,
             "phase at which the pin `pwm_trigger` is high for a clock, for an ADC for example",
             vec![Field::new("trigger_phase", 0, 16, "time after the valley").with_unit("clocks")],
         ),
-        register(
+        Register::new(
             "index",
             0x20,
             Access::Configuration,
@@ -342,17 +293,17 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
                 Field::flag("velocity_m", 12, "velocity is the counts per tick alone"),
             ],
         ),
-        register(
+        Register::new(
             "index_arm",
             0x21,
-            command("index_arm"),
+            Access::command("index_arm"),
             "latches the next index",
             vec![],
         ),
-        register(
+        Register::new(
             "preset",
             0x22,
-            command("preset"),
+            Access::command("preset"),
             "sets the user's position; the loop's count does not jump",
             vec![
                 Field::new("preset_value", 0, 32, "position")

@@ -1,9 +1,9 @@
 //! Registers of an axis that a host reads: its state, the causes of a fault, and positions and velocities.
 
 use super::config::{StageAxis, StageScale};
-use super::register::{register, with_the_drive_off};
+use super::registers::with_the_drive_off;
 use crate::axis::SupervisorState;
-use crate::registers::{Access, Field, Register, maps};
+use crate::registers::{Access, Field, Register, tables};
 
 /// The registers, in words of the axis's window.
 pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
@@ -14,10 +14,10 @@ pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
 pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
     let live = |name: &str, offset, meaning: &str| {
         let field = Field::new(name, 0, 32, meaning).signed().with_unit("counts");
-        register(name, offset, Access::Live, meaning, vec![field])
+        Register::new(name, offset, Access::Live, meaning, vec![field])
     };
     vec![
-        register(
+        Register::new(
             "scale_control",
             0x23,
             with_the_drive_off(),
@@ -39,7 +39,7 @@ fn states() -> Vec<Register> {
         .map(|(value, name, meaning)| (*value, name.as_str(), *meaning))
         .collect();
     vec![
-        register(
+        Register::new(
             "status",
             0x28,
             Access::Live,
@@ -76,14 +76,14 @@ fn states() -> Vec<Register> {
                 Field::flag("tap_read_waits", 27, "a read by `TAP_READ` waits"),
             ],
         ),
-        register(
+        Register::new(
             "causes",
             0x29,
             Access::Live,
             "causes of a fault, until `CLEAR_FAULTS`: see docs/axis.md",
             vec![Field::new("causes", 0, 17, "one bit per cause")],
         ),
-        register(
+        Register::new(
             "flags",
             0x2a,
             Access::Live,
@@ -121,7 +121,7 @@ fn states() -> Vec<Register> {
                 Field::flag("segments_out_of_range", 24, "the command came near the end of its word"),
             ],
         ),
-        register(
+        Register::new(
             "events",
             0x2b,
             Access::Sticky,
@@ -136,7 +136,7 @@ fn states() -> Vec<Register> {
                 Field::flag("direct_expired", 2, "direct mode ended because its time ran out"),
             ],
         ),
-        register(
+        Register::new(
             "saturations",
             0x2c,
             Access::Live,
@@ -157,7 +157,7 @@ fn states() -> Vec<Register> {
                 Field::new("limited_ticks", 16, 16, "time since which the command has been clamped").with_unit("ticks"),
             ],
         ),
-        register(
+        Register::new(
             "fifo",
             0x2d,
             Access::Live,
@@ -170,7 +170,7 @@ fn states() -> Vec<Register> {
                 Field::new("late_ticks", 16, 8, "time extrapolated since reset, modulo 2^8").with_unit("ticks"),
             ],
         ),
-        register(
+        Register::new(
             "self_test",
             0x2e,
             Access::Live,
@@ -190,22 +190,7 @@ fn states() -> Vec<Register> {
 }
 
 fn read_back(axis: &StageAxis) -> Vec<Register> {
-    vec![
-        register(
-            "setting_loaded",
-            0x3e,
-            Access::Live,
-            "word read back by `SETTING_READ`; 0 where nothing was written since the reset",
-            vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
-        ),
-        register(
-            "tap_loaded",
-            0x3f,
-            Access::Live,
-            "tap read back by `TAP_READ`; 0 where no tap is loaded",
-            maps::tap_loaded(&axis.shaper),
-        ),
-    ]
+    vec![tables::setting_loaded(0x3e), tables::tap_loaded(&axis.shaper, 0x3f)]
 }
 
 /// Live registers of positions and velocities, and shadows of position and velocity.
@@ -218,11 +203,12 @@ fn motion() -> Vec<Register> {
         }
         .with_unit(unit)
     };
-    let live =
-        |name: &str, offset, field: Field| register(name, offset, Access::Live, &field.meaning.clone(), vec![field]);
+    let live = |name: &str, offset, field: Field| {
+        Register::new(name, offset, Access::Live, &field.meaning.clone(), vec![field])
+    };
     let shadow = |of: &str, offset, meaning: &str| {
         let access = Access::Shadow { of: of.to_owned() };
-        register(&format!("snapshot_{of}"), offset, access, meaning, vec![])
+        Register::new(&format!("snapshot_{of}"), offset, access, meaning, vec![])
     };
     vec![
         live(

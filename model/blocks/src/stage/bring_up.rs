@@ -1,6 +1,6 @@
 //! Registers for bringing an axis up: trace memory, test signals, and encoder edges without a machine.
 
-use super::register::{command, register, with_the_drive_off};
+use super::registers::with_the_drive_off;
 use crate::registers::{Access, Field, Register};
 
 /// Signals that can be recorded: net, and meaning of its words.
@@ -59,14 +59,14 @@ fn trace() -> Vec<Register> {
         Field::choice("trace_trigger_mode", 24, 2, "event that triggers the trace", &modes),
     ];
     vec![
-        register(
+        Register::new(
             "trace_setup",
             0x48,
             Access::Configuration,
             "signals and trigger of the trace; must not change during a trace",
             [selects.to_vec(), more].concat(),
         ),
-        register(
+        Register::new(
             "trace_rate",
             0x49,
             Access::Configuration,
@@ -76,36 +76,42 @@ fn trace() -> Vec<Register> {
                 Field::new("trace_pre_trigger", 16, 11, "rows before the trigger"),
             ],
         ),
-        register(
+        Register::new(
             "trace_level",
             0x4a,
             Access::Configuration,
             "level of the trigger",
             vec![Field::new("trace_trigger_level", 0, 32, "in the unit of the signal").signed()],
         ),
-        register(
+        Register::new(
             "trace_arm",
             0x4b,
-            command("trace_arm"),
+            Access::command("trace_arm"),
             "discards the trace and begins a new one",
             vec![],
         ),
-        register("trace_halt", 0x4c, command("trace_halt"), "ends the trace now", vec![]),
-        register(
+        Register::new(
+            "trace_halt",
+            0x4c,
+            Access::command("trace_halt"),
+            "ends the trace now",
+            vec![],
+        ),
+        Register::new(
             "trace_address",
             0x4d,
             Access::Configuration,
             "index of the word in `TRACE_DATA`; the oldest is 0",
             vec![Field::new("trace_address", 0, 11, "row times signals, plus signal")],
         ),
-        register(
+        Register::new(
             "trace_data",
             0x4e,
             Access::Live,
             "a word of the trace, while it is idle",
             vec![Field::new("trace_data", 0, 32, "value of the signal")],
         ),
-        register(
+        Register::new(
             "trace_status",
             0x4f,
             Access::Live,
@@ -117,7 +123,7 @@ fn trace() -> Vec<Register> {
                 Field::new("trace_trigger_row", 16, 11, "row of the trigger"),
             ],
         ),
-        register(
+        Register::new(
             "bring_up_events",
             0x50,
             Access::Sticky,
@@ -138,7 +144,7 @@ fn excitation() -> Vec<Register> {
         (3, "square", "a square wave"),
     ];
     vec![
-        register(
+        Register::new(
             "excitation",
             0x54,
             Access::Configuration,
@@ -155,7 +161,7 @@ fn excitation() -> Vec<Register> {
                 .with_unit("counts / 256"),
             ],
         ),
-        register(
+        Register::new(
             "excitation_time",
             0x55,
             Access::Configuration,
@@ -178,14 +184,14 @@ fn excitation() -> Vec<Register> {
                 ),
             ],
         ),
-        register(
+        Register::new(
             "excitation_length",
             0x56,
             Access::Configuration,
             "duration of the test signal",
             vec![Field::new("excitation_duration", 0, 24, "0: the signal never begins").with_unit("ticks")],
         ),
-        register(
+        Register::new(
             "excitation_state",
             0x57,
             Access::Live,
@@ -197,7 +203,7 @@ fn excitation() -> Vec<Register> {
 
 fn generator() -> Vec<Register> {
     vec![
-        register(
+        Register::new(
             "generator",
             0x58,
             with_the_drive_off(),
@@ -207,7 +213,7 @@ fn generator() -> Vec<Register> {
                 Field::new("index_every", 16, 16, "distance from index to index; 0: no index").with_unit("counts"),
             ],
         ),
-        register(
+        Register::new(
             "generator_rate",
             0x59,
             Access::Configuration,
@@ -218,7 +224,7 @@ fn generator() -> Vec<Register> {
                     .with_unit("counts/clock"),
             ],
         ),
-        register(
+        Register::new(
             "generated_count",
             0x5a,
             Access::Live,

@@ -1,6 +1,5 @@
 //! Registers of the error table: when it counts, what is loaded into it, and the error in force.
 
-use super::register::{command, register};
 use crate::error_table::{ENTRY_BITS, ErrorTableConfig};
 use crate::registers::{Access, Field, Register};
 
@@ -14,7 +13,7 @@ fn what_is_built(table: &ErrorTableConfig) -> Vec<Register> {
     let constant =
         |name: &str, low, width, meaning: &str, value| Field::new(name, low, width, meaning).with_reset(value);
     vec![
-        register(
+        Register::new(
             "error_format",
             0x60,
             Access::Constant,
@@ -43,7 +42,7 @@ fn what_is_built(table: &ErrorTableConfig) -> Vec<Register> {
                 ),
             ],
         ),
-        register(
+        Register::new(
             "error_first",
             0x61,
             Access::Constant,
@@ -66,7 +65,7 @@ fn loading(table: &ErrorTableConfig) -> Vec<Register> {
             .with_unit("counts")
     };
     vec![
-        register(
+        Register::new(
             "error_control",
             0x62,
             Access::Configuration,
@@ -82,7 +81,7 @@ fn loading(table: &ErrorTableConfig) -> Vec<Register> {
                 ),
             ],
         ),
-        register(
+        Register::new(
             "error_address",
             0x63,
             Access::Configuration,
@@ -92,28 +91,28 @@ fn loading(table: &ErrorTableConfig) -> Vec<Register> {
                 Field::choice("error_bank", 8, 1, "1 to write", &banks),
             ],
         ),
-        register(
+        Register::new(
             "error_entry",
             0x64,
-            command("error_write"),
+            Access::command("error_write"),
             "writes an entry: the first begins anew, others follow in turn",
             vec![entry("error_entry", "true less counted position")],
         ),
-        register(
+        Register::new(
             "error_read",
             0x65,
-            command("error_read"),
+            Access::command("error_read"),
             "reads the entry at `ERROR_ADDRESS` back, which stays until `error_read_waits` is low",
             vec![],
         ),
-        register(
+        Register::new(
             "error_loaded",
             0x66,
             Access::Live,
             "what `ERROR_READ` found: 0 where no entry is loaded",
             vec![entry("error_loaded", "true less counted position")],
         ),
-        register(
+        Register::new(
             "error_status",
             0x67,
             Access::Live,
@@ -129,7 +128,7 @@ fn loading(table: &ErrorTableConfig) -> Vec<Register> {
 }
 
 fn now() -> Register {
-    register(
+    Register::new(
         "error_now",
         0x68,
         Access::Live,
@@ -143,7 +142,7 @@ fn now() -> Register {
 }
 
 fn events() -> Register {
-    register(
+    Register::new(
         "error_events",
         0x69,
         Access::Sticky,

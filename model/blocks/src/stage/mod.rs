@@ -25,7 +25,6 @@ mod axis_words;
 mod bring_up;
 mod config;
 mod error_table;
-mod register;
 mod registers;
 mod schedule;
 mod supervision;

@@ -1,7 +1,6 @@
 //! The register map of a stage: a window of its own, and one per axis, all alike.
 
 use super::config::{StageAxis, StageConfig};
-use super::register::command;
 use super::{axis_settings, axis_words, bring_up, error_table};
 use crate::group::MOST_AXES;
 use crate::registers::maps;
@@ -71,7 +70,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         .with(
             "start",
             0x0a,
-            command("start"),
+            Access::command("start"),
             "starts all these axes in one tick, or none",
             vec![Field::new("start_axes", 0, MOST_AXES as u32, "bit k: axis k")],
         )
@@ -122,6 +121,13 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         description.registers.extend(placed);
     }
     description
+}
+
+/// Access of registers that change the loop's feedback: written only while the axis's drive is off.
+pub(super) fn with_the_drive_off() -> Access {
+    Access::Guarded {
+        while_low: "drive_enable".to_owned(),
+    }
 }
 
 /// The register with the axis's name as prefix, in the axis's window.

@@ -8,7 +8,7 @@ mod sliding_mode;
 pub use pulse_counter::pulse_counter;
 pub use pwm::pwm;
 pub use shaper::shaper;
-pub(crate) use shaper::{swap, tap, tap_address, tap_loaded, word_name};
+pub(crate) use shaper::word_name;
 pub use sliding_mode::sliding_mode;
 
 use super::{Field, FlagSource};

@@ -15,9 +15,6 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
             .with_reset(divider.tick_clocks())
             .with_unit("clocks"),
     ];
-    let command = |strobe: &str| Access::Command {
-        strobe: strobe.to_owned(),
-    };
     let about = "Pulse counter: turns encoder or scale signals into position, index and velocity.";
     Description::new("pulse_counter", about, *b"PCNT", (2, 0), parameters)
         .with("snapshot", 0x08, Snapshot, "freezes the words `SNAPSHOT_...`", vec![])
@@ -56,21 +53,21 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
         .with(
             "preset",
             0x18,
-            command("preset"),
+            Access::command("preset"),
             "the position becomes `PRESET_VALUE`; 0 clears it",
             vec![],
         )
         .with(
             "index_arm",
             0x19,
-            command("index_arm"),
+            Access::command("index_arm"),
             "latches the next index",
             vec![],
         )
         .with(
             "clear_flags",
             0x1a,
-            command("clear_flags"),
+            Access::command("clear_flags"),
             "clears the counter's flags in `STATUS`",
             vec![],
         )

@@ -6,9 +6,6 @@ use crate::pwm::{BridgeMode, PwmConfig, TIME_BITS};
 /// The map of a PWM that has this mode and period after reset. `period_clocks` is 2 to 65,536.
 pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Description {
     use Access::{Configuration, Live, Sticky};
-    let command = |strobe: &str| Access::Command {
-        strobe: strobe.to_owned(),
-    };
     let guarded = || Access::Guarded {
         while_low: "running".to_owned(),
     };
@@ -149,14 +146,14 @@ pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Descript
         .with(
             "feed",
             0x1e,
-            command("host_strobe"),
+            Access::command("host_strobe"),
             "feeds the watchdog: the controller is alive",
             vec![],
         )
         .with(
             "clear_trip",
             0x1f,
-            command("clear_trip"),
+            Access::command("clear_trip"),
             "forgets the causes that are over",
             vec![],
         )

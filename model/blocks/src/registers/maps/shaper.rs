@@ -1,15 +1,11 @@
 //! Registers of the stand-alone shaper.
 
-use super::super::{Access, Description, Field};
+use super::super::{Access, Description, Field, tables};
 use crate::shaper::ShaperConfig;
-use posicast_taps::COEFFICIENT_BITS;
 
 /// The map of a shaper. Words are called `x` and `y`, or for a motion shaper `x_0`, `y_0` and so on.
 pub fn shaper(config: &ShaperConfig) -> Description {
     use Access::{Configuration, Live, Sticky};
-    let command = |strobe: &str| Access::Command {
-        strobe: strobe.to_owned(),
-    };
     let about = "Input shaper: samples come from registers or pins, tables are loaded through registers.";
     let mut description = Description::new("shaper", about, *b"SHPR", (1, 1), parameters(config))
         .with(
@@ -62,11 +58,17 @@ pub fn shaper(config: &ShaperConfig) -> Description {
         description = description.with(&x, offset, Configuration, "the next sample", vec![field]);
     }
     description = description
-        .with("strobe", 0x1c, command("host_strobe"), "takes the sample", vec![])
+        .with(
+            "strobe",
+            0x1c,
+            Access::command("host_strobe"),
+            "takes the sample",
+            vec![],
+        )
         .with(
             "start",
             0x1d,
-            command("host_start"),
+            Access::command("host_start"),
             "begins anew from the sample",
             vec![],
         );
@@ -75,30 +77,14 @@ pub fn shaper(config: &ShaperConfig) -> Description {
         let field = Field::new(&y, 0, config.word_bits(), "shaped command word").signed();
         description = description.with(&y, offset, Live, "the last sample, shaped", vec![field]);
     }
-    description
-        .with(
-            "tap_address",
-            0x28,
-            Configuration,
-            "address of the tap to write or read",
-            tap_address(config),
-        )
-        .with("tap", 0x29, command("tap_write"), "writes a tap", tap(config))
-        .with("swap", 0x2a, command("swap"), "makes a bank active", swap(config))
-        .with(
-            "tap_read",
-            0x2b,
-            command("tap_read"),
-            "reads back the tap at `TAP_ADDRESS`, which must stay until `tap_read_waits` is low",
-            vec![],
-        )
-        .with(
-            "tap_loaded",
-            0x2c,
-            Live,
-            "tap read back by `TAP_READ`; 0 where no tap is loaded",
-            tap_loaded(config),
-        )
+    let tables = [
+        tables::tap_address(config, 0x28),
+        tables::tap(config, 0x29),
+        tables::swap(config, 0x2a),
+        tables::tap_read(0x2b),
+        tables::tap_loaded(config, 0x2c),
+    ];
+    tables.into_iter().fold(description, Description::with_register)
 }
 
 /// Name of a word: `x` and `y` for the plain shaper, else with the channel's number.
@@ -131,53 +117,4 @@ fn parameters(config: &ShaperConfig) -> Vec<Field> {
         .with_unit("bits"),
         parameter("modulo", "1: the position wraps", modulo.into()),
     ]
-}
-
-/// Fields of the register `tap_address`.
-pub(crate) fn tap_address(config: &ShaperConfig) -> Vec<Field> {
-    vec![
-        Field::new(
-            "tap_index",
-            0,
-            config.tap_index_bits(),
-            "index in the table: taps are written from 0 on, in order",
-        ),
-        Field::new("tap_bank", 8, 2, "bank 1 or 2"),
-    ]
-}
-
-/// Fields of the register `tap`.
-pub(crate) fn tap(config: &ShaperConfig) -> Vec<Field> {
-    vec![
-        Field::new("tap_coefficient", 0, COEFFICIENT_BITS, "coefficient").fixed(config.coefficient_fraction()),
-        Field::new(
-            "tap_delay",
-            COEFFICIENT_BITS,
-            config.ring_address_bits(),
-            "delay; all ones is not allowed",
-        )
-        .with_unit("samples"),
-    ]
-}
-
-/// Fields of the register `tap_loaded`, as those of [`tap`].
-pub(crate) fn tap_loaded(config: &ShaperConfig) -> Vec<Field> {
-    vec![
-        Field::new("loaded_coefficient", 0, COEFFICIENT_BITS, "coefficient").fixed(config.coefficient_fraction()),
-        Field::new("loaded_delay", COEFFICIENT_BITS, config.ring_address_bits(), "delay").with_unit("samples"),
-    ]
-}
-
-/// Fields of the register `swap`.
-pub(crate) fn swap(config: &ShaperConfig) -> Vec<Field> {
-    let ways = [
-        (0, "at_once", "from the next sample on"),
-        (1, "handover", "each increment passes one table"),
-        (2, "when_settled", "once the command stands still"),
-    ];
-    let how = config
-        .motion()
-        .map(|_| Field::choice("swap_how", 4, 2, "when the swap takes effect", &ways));
-    let bank = Field::new("swap_bank", 0, 2, "bank 0, 1 or 2");
-    [bank].into_iter().chain(how).collect()
 }

@@ -1,26 +1,13 @@
 //! Registers of the stand-alone controller.
 
-use super::super::{Access, Description, Field, FlagSource};
+use super::super::{Access, Description, Field, FlagSource, tables};
 
 /// The map of a controller with its settings in banks. `law` and `modulo` are the reset values for the machine.
 pub fn sliding_mode(law: u32, modulo: bool) -> Description {
     use Access::{Configuration, Live, Snapshot, Staged, Sticky};
-    let command = |strobe: &str| Access::Command {
-        strobe: strobe.to_owned(),
-    };
     let commit = Access::Commit {
         tick: "ends".to_owned(),
     };
-    let laws = [
-        (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
-        (1, "pd", "proportional and derivative"),
-        (2, "pid", "proportional, integral and derivative"),
-    ];
-    let banks = [
-        (0, "machine", "settings of the machine, in a ROM"),
-        (1, "loaded_1", "settings loaded into bank 1"),
-        (2, "loaded_2", "settings loaded into bank 2"),
-    ];
     let reference = |index: usize, meaning: &str, fraction: u32, unit: &str| {
         Field::new(&format!("host_x_{index}"), 0, 32, meaning)
             .fixed(fraction)
@@ -54,9 +41,9 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             Staged,
             "control law and settings in use",
             vec![
-                Field::choice("law", 0, 2, "control law", &laws).with_reset(law & 3),
+                tables::law().with_reset(law & 3),
                 Field::flag("modulo", 4, "a rotary axis: references wrap").with_reset(modulo.into()),
-                Field::choice("bank", 8, 2, "settings in use; bank 3 is all 0", &banks),
+                tables::setting_bank("bank"),
             ],
         )
         .with("status", 0x12, Live, "state of the controller", status())
@@ -125,52 +112,31 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "measured",
             vec![reference(4, velocity, 16, "counts/tick")],
         )
-        .with("start", 0x1d, command("host_strobe"), "computes a command", vec![])
+        .with(
+            "start",
+            0x1d,
+            Access::command("host_strobe"),
+            "computes a command",
+            vec![],
+        )
         .with(
             "clear_integral",
             0x1e,
-            command("clear_integral"),
+            Access::command("clear_integral"),
             "clears the integral, for the start of a motion",
             vec![],
         )
         .with(
             "clear_flags",
             0x1f,
-            command("clear_flags"),
+            Access::command("clear_flags"),
             "clears the flags in `STATUS`",
             vec![],
         )
-        .with(
-            "setting_address",
-            0x28,
-            Configuration,
-            "address of the setting to write or read",
-            vec![
-                Field::new("setting_row", 0, 4, "row of the setting: see docs/sliding_mode.md"),
-                Field::new("setting_bank", 8, 2, "bank 1 or 2"),
-            ],
-        )
-        .with(
-            "setting",
-            0x29,
-            command("setting_write"),
-            "writes a setting",
-            vec![Field::new("setting_word", 0, 32, "mantissa and shift, or the limit")],
-        )
-        .with(
-            "setting_read",
-            0x2a,
-            command("setting_read"),
-            "reads back the word at `SETTING_ADDRESS`, which must stay until `setting_read_waits` is low",
-            vec![],
-        )
-        .with(
-            "setting_loaded",
-            0x2b,
-            Live,
-            "word read back by `SETTING_READ`; 0 where nothing was written since the reset",
-            vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
-        )
+        .with_register(tables::setting_address(0x28))
+        .with_register(tables::setting(0x29))
+        .with_register(tables::setting_read(0x2a))
+        .with_register(tables::setting_loaded(0x2b))
         .with_shadowed(
             "error",
             0x20,
