@@ -1,7 +1,7 @@
 //! Runs the fault campaign with any number of cases; see `docs/fault-campaign.md`.
 //!
 //! ```text
-//! cargo run --release -p posicast-testbench --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
+//! cargo run --release --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
 //! ```
 //!
 //! `--rtl N` runs N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins

@@ -1,5 +1,5 @@
 //! Measures which lines, nets and bins of the blocks the lockstep runs reach, and explains those that are not
-//! reached: `cargo run --release -p posicast-testbench --example coverage [-- OPTIONS]`.
+//! reached: `cargo run --release --example coverage [-- OPTIONS]`.
 //!
 //! ```text
 //! --block NAME    only these blocks; may be given several times

@@ -1,5 +1,5 @@
 //! Lists what is behind each asynchronous pin of the stage of `examples/xy-stage.toml`, on its netlist:
-//! `cargo run --release -p posicast-testbench --example crossings [-- --write]`.
+//! `cargo run --release --example crossings [-- --write]`.
 //!
 //! `--write` renews the table in ladder/RESULTS.md. Exit status: 0 if the page has this table, 1 if not, 2 if it cannot run, 3 without Yosys.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]

@@ -1,5 +1,5 @@
 //! Puts mutants into the blocks and finds out whether each is detected:
-//! `cargo run --release -p posicast-testbench --example mutate [-- OPTIONS]`.
+//! `cargo run --release --example mutate [-- OPTIONS]`.
 //!
 //! ```text
 //! --block NAME    only this block                    --mutants N   per block (60)

@@ -2,6 +2,8 @@
 //!
 //! - [`coverage`] measures which lines, nets and conditions a lock step reaches, and requires a reason for the rest.
 //! - [`mutation`] puts faults into the blocks, and finds out which checks detect them.
+//! - [`proofs`] lists the proofs.
+//! - [`netlist`] lists the netlists that are equal to their RTL.
 //! - [`crossings`] checks the logic behind each asynchronous pin.
 //! - [`table`] puts the results of all rungs of the verification ladder into one table.
 //! - [`page`] renews a table of `ladder/RESULTS.md`.
@@ -9,5 +11,7 @@
 pub mod coverage;
 pub mod crossings;
 pub mod mutation;
+pub mod netlist;
 pub mod page;
+pub mod proofs;
 pub mod table;

@@ -56,6 +56,16 @@ impl Marks {
     }
 }
 
+/// Returns a table with one row for each of these first cells: that of `new` if it has one, otherwise that of `old`.
+pub(crate) fn merged(head: &str, old: &str, new: &str, first_cells: impl Iterator<Item = String>) -> String {
+    let row = |cells: String| {
+        let mut rows = new.lines().chain(old.lines());
+        rows.find(|row| row.starts_with(&cells)).map(|row| format!("{row}\n"))
+    };
+    let rows: String = first_cells.filter_map(row).collect();
+    format!("{head}{rows}")
+}
+
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/RESULTS.md");
 
 fn failed(doing: &'static str) -> impl Fn(std::io::Error) -> Error {

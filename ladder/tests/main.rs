@@ -4,6 +4,7 @@
 mod coverage;
 mod crossings;
 mod mutation;
+mod proof_tables;
 mod stage_datasheet;
 mod stage_wires;
 mod verification_page;

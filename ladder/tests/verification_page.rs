@@ -1,10 +1,8 @@
 //! The tables of `ladder/RESULTS.md` have a row for every block of the registry: a block that no program was run for is missing there.
-//! `docs/verification.md` names every proof.
 
 use posicast_ladder::mutation::all;
-use posicast_testbench::blocks::{Block, library, proofs};
+use posicast_testbench::blocks::{Block, library};
 
-const PAGE: &str = include_str!("../../docs/verification.md");
 const RESULTS: &str = include_str!("../RESULTS.md");
 
 /// The part of a page below this heading, up to the next of the same level.
@@ -34,18 +32,4 @@ fn every_block_but_the_stage_has_its_row_of_netlists() {
     let blocks = blocks.iter().filter(|block| block.name() != "stage");
     let row = |block: &dyn Block| format!("\n| {} | {} | ", block.name(), block.instance());
     assert_eq!(missing("Netlist", blocks.map(|block| row(block.as_ref()))), [""; 0]);
-}
-
-/// A proof has a row with its name in it, or a paragraph of its own.
-#[test]
-fn every_proof_is_on_the_page() {
-    let table = section(PAGE, "Proofs");
-    let tasks = proofs().unwrap();
-    let is_there = |name: &str| table.contains(&format!("\n### {name}\n")) || table.contains(&format!("`{name}`"));
-    let missing: Vec<&str> = tasks
-        .iter()
-        .map(|task| task.name)
-        .filter(|name| !is_there(name))
-        .collect();
-    assert_eq!(missing, [""; 0]);
 }

@@ -1,5 +1,5 @@
 //! Proves the properties (`testbench/src/*/*.sv`) of the blocks:
-//! `cargo run -p posicast-testbench --example formal [-- BLOCK…]`.
+//! `cargo run --example formal [-- BLOCK…]`.
 //!
 //! Prints a row per proof. Exit status: 0 if all properties are proven and all covers reached, 1 otherwise, 2 if it
 //! cannot run, 3 if a tool is missing. `POSICAST_FORMAL_KEEP` names a folder that keeps all files, including

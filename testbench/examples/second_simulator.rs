@@ -1,5 +1,5 @@
 //! Runs every block under Verilator and under Icarus, and compares their waveforms:
-//! `cargo run --release -p posicast-testbench --example second_simulator [-- --clocks N] [BLOCK…]`.
+//! `cargo run --release --example second_simulator [-- --clocks N] [BLOCK…]`.
 //!
 //! Prints a row per block. Exit status: 0 if all are equal, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]

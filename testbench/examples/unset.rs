@@ -1,5 +1,5 @@
 //! Proves of every block that nothing from before a reset reaches an output after it:
-//! `cargo run --release -p posicast-testbench --example unset [BLOCK…]`.
+//! `cargo run --release --example unset [BLOCK…]`.
 //!
 //! Prints a row per block. Without names it takes all blocks but the stage, which consists of them. Exit status: 0 if all are proven, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]

@@ -2,7 +2,7 @@
 
 use super::explanation::Explanation;
 use super::{Measured, Share};
-use crate::page::Marks;
+use crate::page::{self, Marks};
 use posicast_testbench::blocks::Block;
 
 /// Marks of the table.
@@ -46,14 +46,9 @@ fn percent(share: Share) -> String {
 
 /// Returns one row for each of these blocks: that of `new` if it has one, otherwise that of `old`.
 pub fn merged(old: &str, new: &str, subjects: &[Box<dyn Block>]) -> String {
-    let row_of = |block: &dyn Block| {
-        let first_cells = format!("| {} | {} |", block.name(), block.instance());
-        let mut rows = new.lines().chain(old.lines());
-        rows.find(|row| row.starts_with(&first_cells))
-            .map(|row| format!("{row}\n"))
-    };
-    let rows: String = subjects.iter().filter_map(|block| row_of(block.as_ref())).collect();
-    format!("{HEAD}{rows}")
+    let blocks = subjects.iter();
+    let first_cells = blocks.map(|block| format!("| {} | {} |", block.name(), block.instance()));
+    page::merged(HEAD, old, new, first_cells)
 }
 
 #[cfg(test)]

@@ -42,6 +42,31 @@ pub use moore::{FOREVER, Moore, OutputKind};
 pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, port_notes};
 pub(crate) use ports::{clocked_block, ports};
 
+/// The blocks with a datasheet, and their ports, which the table in `docs/NAME.md` shows.
+pub const PORT_LISTS: [(&str, PortList); 14] = [
+    ("axis", axis::PORTS),
+    ("divider", divider::PORTS),
+    ("drive_command", drive_command::PORTS),
+    ("encoder_generator", encoder_generator::PORTS),
+    ("error_table", error_table::PORTS),
+    ("excitation", excitation::PORTS),
+    ("linear_scale", linear_scale::PORTS),
+    ("pulse_counter", pulse_counter::PORTS),
+    ("pwm", pwm::PORTS),
+    ("segments", segments::PORTS),
+    ("sliding_mode", sliding_mode::PORTS),
+    ("spi_bridge", spi_bridge::PORTS),
+    ("trace", trace::PORTS),
+    ("uart_bridge", uart_bridge::PORTS),
+];
+
+/// As [`PORT_LISTS`], for lists with sizes.
+pub const SIZED_PORT_LISTS: [(&str, &[SizedPortRow]); 3] = [
+    ("cascade", cascade::PORTS),
+    ("shaper", shaper::plain::PORTS),
+    ("shaper", shaper::moving::PORTS),
+];
+
 /// Direction of a port, seen from the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {

@@ -1,37 +1,9 @@
 //! The table of ports in a block's datasheet agrees with its list of ports. `scripts/regenerate` writes it again.
 
-use posicast_blocks::{
-    Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, error_table,
-    excitation, linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, spi_bridge, trace, uart_bridge,
-};
+use posicast_blocks::{Direction, PORT_LISTS, PortList, SIZED_PORT_LISTS, SizedPortRow};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
-
-/// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 14] = [
-    ("axis", axis::PORTS),
-    ("divider", divider::PORTS),
-    ("drive_command", drive_command::PORTS),
-    ("encoder_generator", encoder_generator::PORTS),
-    ("error_table", error_table::PORTS),
-    ("excitation", excitation::PORTS),
-    ("linear_scale", linear_scale::PORTS),
-    ("pulse_counter", pulse_counter::PORTS),
-    ("pwm", pwm::PORTS),
-    ("segments", segments::PORTS),
-    ("sliding_mode", sliding_mode::PORTS),
-    ("spi_bridge", spi_bridge::PORTS),
-    ("trace", trace::PORTS),
-    ("uart_bridge", uart_bridge::PORTS),
-];
-
-/// The lists of blocks with sizes.
-const SIZED: [(&str, &[SizedPortRow]); 3] = [
-    ("cascade", cascade::PORTS),
-    ("shaper", shaper::plain::PORTS),
-    ("shaper", shaper::moving::PORTS),
-];
 
 const TITLE: &str = "| port | | width |";
 
@@ -96,10 +68,10 @@ fn with_tables(datasheet: &str, tables: &[String]) -> Option<String> {
 #[test]
 fn golden_the_tables_of_ports_are_what_the_lists_say() -> Result<(), Box<dyn Error>> {
     let mut tables: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for (block, list) in DATASHEETS {
+    for (block, list) in PORT_LISTS {
         tables.entry(block).or_default().push(fixed(list));
     }
-    for (block, list) in SIZED {
+    for (block, list) in SIZED_PORT_LISTS {
         tables.entry(block).or_default().push(sized(list));
     }
     for (block, tables) in tables {

@@ -29,8 +29,8 @@ mod sources;
 pub use self::library::{library, library_named, library_sizes};
 pub use self::reached::{Reach, ReachedCount};
 pub use self::registry::{
-    AreaBudget, AreaRow, BenchSizes, BlockMutant, BlockTrials, SmallBench, Trial, areas, benches, proofs, proofs_named,
-    small_benches, trials,
+    AreaBudget, AreaRow, BenchSizes, BlockMutant, BlockTrials, SmallBench, Trial, areas, benches, proofs,
+    proofs_by_block, proofs_named, small_benches, trials,
 };
 pub use self::sources::{Sources, rusthdl};
 

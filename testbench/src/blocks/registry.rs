@@ -267,6 +267,14 @@ pub fn proofs() -> Result<Vec<Task>, Error> {
     joined(|row| (row.proofs)())
 }
 
+/// Returns all proofs with the name of the block whose row has them; that of a component or stage is empty.
+///
+/// # Errors
+/// As [`proofs`].
+pub fn proofs_by_block() -> Result<Vec<(&'static str, Task)>, Error> {
+    joined(|row| Ok((row.proofs)()?.into_iter().map(|task| (row.name, task)).collect()))
+}
+
 /// Returns the proofs that use this property file; they all belong to one row.
 ///
 /// # Errors

@@ -1,14 +1,15 @@
 //! Synthesises every block with Yosys to a netlist of logic elements, simulates it against the model and proves it
-//! equal to the RTL: `cargo run --release -p posicast-testbench --example netlist [-- --clocks N] [BLOCK…]`.
+//! equal to the RTL: `cargo run --release --example netlist [-- --write] [--clocks N] [BLOCK…]`.
 //!
 //! Prints a row per block. Without names it takes all blocks but the stage, which consists of them. `--clocks 0` only
-//! proves. Exit status: 0 if all are equal, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
+//! proves. `--write` renews the table in `ladder/RESULTS.md`, or the rows of the blocks that are named. Exit status: 0 if all are equal, 1 otherwise, 2 if it cannot run, 3 if a tool is missing.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is a program")]
 
 use std::error::Error;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use posicast_ladder::netlist;
 use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources, library_named};
 use posicast_testbench::lockstep::report;
@@ -37,6 +38,10 @@ fn main() -> ExitCode {
 fn compare() -> Result<bool, Box<dyn Error>> {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     let mut clocks = CLOCKS;
+    let write = names.first().is_some_and(|first| first == "--write");
+    if write {
+        names.remove(0);
+    }
     if names.first().is_some_and(|first| first == "--clocks") {
         clocks = names.get(1).ok_or("--clocks needs a number")?.parse()?;
         names.drain(..2);
@@ -46,15 +51,22 @@ fn compare() -> Result<bool, Box<dyn Error>> {
     blocks.retain(|block| !names.is_empty() || block.name() != "stage");
     println!("| block | instance | LUT | flip-flops | kept | simulated | RTL = netlist | seconds |");
     println!("|---|---|---|---|---|---|---|---|");
-    let mut is_good = true;
+    let (mut is_good, mut rows) = (true, String::new());
     for block in blocks {
-        is_good &= row(&yosys, block.as_ref(), clocks)?;
+        match row(&yosys, block.as_ref(), clocks)? {
+            Some(kept) => rows += &netlist::row(block.as_ref(), kept),
+            None => is_good = false,
+        }
+    }
+    if write && is_good {
+        let all = library_named(&[])?;
+        netlist::MARKS.renew(|old| netlist::renewed(old, &rows, &all))?;
     }
     Ok(is_good)
 }
 
-/// Prints a block's row, and returns whether it is good.
-fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Error>> {
+/// Prints a block's row. Returns the number of memories and multipliers that were kept if netlist, model and RTL are equal.
+fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<Option<usize>, Box<dyn Error>> {
     let parts = NetlistParts::of(block.modules()?);
     let (logic, kept) = (Sources::of_modules(&parts.logic)?, Sources::of_modules(&parts.kept)?);
     let netlist = yosys.netlist(logic.files(), kept.files(), &block.top())?;
@@ -85,5 +97,6 @@ fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Er
         block.instance(),
         time.as_secs_f64()
     );
-    Ok(matches && *verdict == EquivalenceVerdict::Equivalent)
+    let is_equal = matches && *verdict == EquivalenceVerdict::Equivalent;
+    Ok(is_equal.then_some(*kept))
 }
