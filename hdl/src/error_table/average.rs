@@ -1,4 +1,8 @@
-//! The one adder: the average of what it has and what comes, in every clock, and that rounded half up by the bit dropped last.
+//! The adder of the error table: a running average.
+//!
+//! In every clock `average` becomes half the sum of itself and `entry`, `whole` or 0. `rounded` is the average, rounded
+//! half up by the bit that was dropped last. `load` sets the average to `entry`, or to 0 without `takes_entry`; `clear`
+//! sets it to 0.
 
 use crate::prelude::*;
 

@@ -1,9 +1,11 @@
-//! The entries: bank 0 a ROM with the machine's, bank 1 a RAM; how bank 1 is loaded, and how a host reads an entry back.
+//! Stores the entries: bank 0 is a ROM with the machine's, bank 1 is a RAM that a host loads. A host can read back
+//! both.
 //!
-//! - A write with index 0 begins bank 1 anew, one with the number of entries so far goes on. Refused, with no effect but the flag: a
-//!   write to bank 0, to bank 1 while it is in use, out of turn, behind the last entry, and an entry too far from the one before it.
-//! - A host's read takes the memories in the first clock in which no pass is `busy` and nothing is written; an entry that is not loaded
-//!   reads as 0.
+//! - A write with index 0 begins a new table in bank 1; the index of each further write must be the number of entries
+//!   so far. These are refused, with no effect except the flag: a write to bank 0, to bank 1 while it is in use, out of
+//!   sequence, or beyond the last entry, and an entry that differs too much from the one before it.
+//! - A host's read uses the memories in the first clock in which no pass is `busy` and nothing is written; an entry
+//!   that is not loaded reads as 0.
 
 use crate::prelude::*;
 use posicast_blocks::error_table::ErrorTableConfig;
@@ -65,7 +67,7 @@ impl Logic for EntryBanks {
     fn update(&mut self) {
         comment!("@module error_entry_banks");
 
-        comment!("Loading: in turn, while the bank is not in use");
+        comment!("Load in sequence, while the bank is not in use");
         self.index.next = bit_cast::<9, 8>(self.error_index.val());
         self.begins.next = !self.error_index.val().any();
         self.is_complete.next = self.loaded.q.val() == self.all_entries.val();
@@ -88,7 +90,7 @@ impl Logic for EntryBanks {
         self.loaded_errors.write_address.next = self.error_index.val();
         self.loaded_errors.write_data.next = unsigned_cast(self.error_entry.val());
 
-        comment!("A host reads while no pass does");
+        comment!("A host reads an entry back while no pass runs");
         self.serves.next = self.waits.q.val() & !self.served.q.val() & !self.busy.val() & !self.error_write.val();
         self.served.d.next = self.serves.val();
         self.waits.d.next = self.error_read.val() | (self.waits.q.val() & !self.served.q.val());
@@ -98,7 +100,7 @@ impl Logic for EntryBanks {
         }
         self.served_entry.d.next = self.index.val() < self.entries.val();
 
-        comment!("Reading");
+        comment!("Select the entry");
         self.read_address.next = self.address.val();
         if self.serves.val() {
             self.read_address.next = self.error_index.val();

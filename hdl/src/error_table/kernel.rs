@@ -1,4 +1,4 @@
-//! Which table counts, and how much; the sum.
+//! Controls the weight and the bank in use, and subtracts the error from the position reference.
 
 use super::entry_banks::EntryBanks;
 use super::lookup::Lookup;
@@ -32,8 +32,8 @@ impl Logic for ErrorTable {
     fn update(&mut self) {
         comment!("@module error_table");
 
-        comment!("The weight goes up, or down, by one; bank and");
-        comment!("origin are taken where it is 0");
+        comment!("The weight goes up or down by one; bank and origin");
+        comment!("change only while it is 0");
         self.off.next = !self.weight.q.val().any();
         self.wanted.next =
             self.error_enable.val() & self.homed.val() & (!self.error_select.val() | self.banks.complete.val());
@@ -59,7 +59,7 @@ impl Logic for ErrorTable {
             }
         }
 
-        comment!("The place: counts from the first entry on");
+        comment!("The position relative to the first entry");
         self.reference_bits.next = unsigned_cast(self.position_reference.val());
         self.reference_counts.next = signed_cast(self.reference_bits.val().get_bits::<24>(8));
         self.position.next = signed_bit_cast::<32, 24>(self.reference_counts.val());
@@ -90,7 +90,7 @@ impl Logic for ErrorTable {
         self.banks.error_entry.next = self.error_entry.val();
         self.banks.error_read.next = self.error_read.val();
 
-        comment!("The reference less the error in force");
+        comment!("The reference minus the error in use");
         self.fine_error.next = signed_bit_cast::<32, 18>(self.lookup.error.val());
         self.error_bits.next = unsigned_cast(self.fine_error.val());
         self.in_force.next = self.fine_error.val();

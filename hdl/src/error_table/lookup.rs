@@ -1,13 +1,21 @@
-//! The pass: the place of a position among the entries, and the error there times the weight, a bit per clock.
+//! Finds the entries beside a position, interpolates the error there, and multiplies it by the weight, one bit per
+//! clock.
 //!
 //! ```text
-//! step    0         1 .. 40            41         42      43         44 .. 43+K        44+K       45+K .. 54+K    55+K
-//!         place :=  turns once round   index and  E_n is  average    average := (average + E_n or E_n+1) / 2      shown
-//!                   index: bits K ..   inside     read    := E_n     by bits 0 ..      whole :=   by the weight's
+//! step           action
+//! 0              place := position relative to the first entry, in 256ths of a count
+//! 1 .. 40        the place rotates once: its bits from K on become the index n; bits above show a place outside
+//! 41             n := the first or the last entry, if the place is outside the table
+//! 42             E_n is read
+//! 43             average := E_n
+//! 44 .. 43+K     average := (average + E_n or E_n+1) / 2       by the bits of the fraction
+//! 44+K           whole := average, rounded; place := weight; average := 0
+//! 45+K .. 54+K   average := (average + 0 or whole) / 2         by the bits of the weight
+//! 55+K           error := average, rounded; at the full weight, whole
 //! ```
 //!
-//! K: bits of the place below the index. The average of both neighbours by the fraction's bits, lowest first, is the interpolation
-//! without a product; the average of 0 and the whole error by the bits of the weight is the weighted error.
+//! K is the number of bits of the place below the index: the fraction. Averaging both neighbours by these bits, lowest
+//! first, interpolates without a multiplier. Averaging 0 and the whole error by the bits of the weight multiplies them.
 
 use super::average::Average;
 use crate::prelude::*;
@@ -62,7 +70,7 @@ impl Logic for Lookup {
     fn update(&mut self) {
         comment!("@module error_lookup_${value index_end}x${value last}");
 
-        comment!("Steps from valid on");
+        comment!("Count the steps from valid on");
         self.last_step.next = self.step.q.val() == self.end_step.val();
         self.step.d.next = self.first_step.val();
         self.runs.d.next = false;
@@ -75,7 +83,7 @@ impl Logic for Lookup {
             self.runs.d.next = true;
         }
 
-        comment!("The place turns, but where an entry is awaited");
+        comment!("The place rotates, except while an entry is read");
         self.reads_first.next = self.step.q.val() == self.first_entry.val();
         self.leaving.next = self.place_low.q.val().get_bit(0);
         self.entering_high.next = bit_cast::<32, 8>(self.place_low.q.val());
@@ -106,7 +114,7 @@ impl Logic for Lookup {
             self.below.d.next = self.leaving.val();
         }
 
-        comment!("Outside the end values hold");
+        comment!("Outside the table, its end values are used");
         self.in_range.next = !self.beyond.q.val() & (self.index.q.val() < self.last.val());
         if self.step.q.val() == self.settle_step.val() {
             self.in_table.d.next = self.in_range.val();
@@ -122,7 +130,7 @@ impl Logic for Lookup {
             self.address.next = self.index.q.val() + self.one_index.val();
         }
 
-        comment!("The average: of neighbours, then of 0 and the error");
+        comment!("Average the neighbours, then 0 and the error");
         self.fades.next = self.step.q.val() > self.found_step.val();
         self.average.clk.next = self.clk.val();
         self.average.rst.next = self.rst.val();

@@ -44,8 +44,8 @@ pub fn emit(config: &ErrorTableConfig, prefix: &str) -> Result<Vec<Module>, Emit
         top: "error_table".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Error table: the measured error of screw or scale over position, interpolated linearly,\n\
-                    times a weight that goes up and down slowly, is taken from the position reference."
+            about: "Error table: interpolates the measured error of screw or scale over position, and subtracts it\n\
+                    from the position reference, times a weight that goes up and down slowly."
                 .to_owned(),
             parameters: vec![
                 parameter("entries", config.entries().len().to_string(), "per bank"),
