@@ -1,7 +1,7 @@
 //! Decodes frames and stores the request: COBS, length, time-out.
 //!
-//! `left` is the number of bytes until the next code of COBS; each code but the first stands for a 0. A frame that is damaged is
-//! skipped up to its end. A delimiter begins a new frame, whatever came before it.
+//! `left` is the number of bytes before the next code of COBS; each code except the first stands for a 0. A damaged
+//! frame is skipped up to its end. A delimiter begins a new frame, whatever came before it.
 
 use crate::prelude::*;
 use posicast_blocks::link::MOST_REQUEST_BYTES;
@@ -86,7 +86,7 @@ impl Logic for FrameDecoder {
             }
         }
 
-        comment!("What is decoded, and the header");
+        comment!("Store the decoded byte, and keep the header");
         self.place.next = self.length_q.q.val();
         if !self.begun.q.val() {
             self.place.next = self.none.val();

@@ -1,7 +1,8 @@
-//! The reply, as it is on the line: COBS while its bytes come, one per clock at most.
+//! Stores the reply, and encodes it with COBS while its bytes come, one per clock at most.
 //!
-//! The first place is left for the distance to the first 0. A 0 leaves its place for the distance to the next, and tells the
-//! place before how far it is.
+//! Place 0 is reserved for the distance to the first 0. A 0 is not stored: its place is reserved for the distance to
+//! the next 0, and the distance to itself goes to the place that was reserved before. `close` writes the last distance,
+//! to the end of the frame.
 
 use crate::prelude::*;
 

@@ -6,7 +6,9 @@
 //!           └── executed before ─────────────────────────────────────────────────► send
 //! ```
 //!
-//! Both passes over the addresses are the same states; `looks` tells the first, which accesses nothing.
+//! The same states pass over the addresses twice: first, while `looks` is high, they only check each address; then they
+//! access the words. A request with the sequence number of the last one was executed before, unless the number is 0:
+//! its reply is sent again.
 
 use crate::prelude::*;
 use posicast_blocks::link::{LinkStatus, MOST_WORDS, VERSION};
@@ -185,7 +187,7 @@ impl Logic for Sequencer {
             }
         }
 
-        comment!("Look at the address, or access the word");
+        comment!("Check the address, or access the word");
         self.exists.next = self.address_q.q.val() < self.address_limit.val();
         self.accesses.next = self.is_access.val() & !self.looks.q.val() & self.exists.val();
         self.accessed.next = self.accesses.val() & !self.waitrequest.val();

@@ -1,7 +1,8 @@
-//! Takes bytes from the host and gives it bytes: SPI, mode 0, most significant bit first, this end is the peripheral.
+//! Exchanges bytes with the host as an SPI peripheral, in mode 0, most significant bit first.
 //!
-//! The lines are looked at in every clock, behind synchronisers of equal length, so a bit is the level of `spi_mosi` in the clock that
-//! shows the rising edge. A byte for the host waits until its first bit is taken: a selection that ends before loses nothing.
+//! The lines are sampled in every clock, behind synchronisers of equal length. So a bit is the level of `spi_mosi` in
+//! the clock that shows the rising edge of `spi_sck`. A byte for the host is kept until the host takes its first bit:
+//! it is not lost if the selection ends before.
 
 use crate::prelude::*;
 

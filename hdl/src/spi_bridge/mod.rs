@@ -38,7 +38,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
         prefix: prefix.to_owned(),
         header: Header {
             about: "Bridge from SPI (mode 0) to registers: frames with COBS and CRC-32, Avalon-MM host.\n\
-                    Reads and writes words only for a whole frame whose CRC holds."
+                    Reads and writes words only for a complete frame with a correct CRC."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: Vec::new(),

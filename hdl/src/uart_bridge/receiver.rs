@@ -1,9 +1,9 @@
-//! Takes bytes from the line: start bit, eight bits of data, lowest first, stop bit.
+//! Receives bytes from the line: start bit, eight data bits, lowest first, stop bit.
 //!
-//! The line is looked at once in each eighth of a bit. Its level is that of two of the last three looks. From the first
-//! low level on, a bit is taken in every eighth eighth, the first one three eighths later: in its middle.
+//! The line is sampled once in each eighth of a bit; its level is the majority of the last three samples. The first low
+//! level begins a start bit. From there on a bit is taken every eight samples, in its middle.
 //!
-//! The line is inverted before its synchroniser, whose reset value is low: an idle line.
+//! The line is inverted before its synchroniser, so that the reset value of the synchroniser, low, is an idle line.
 
 use crate::prelude::*;
 
@@ -37,7 +37,7 @@ impl Logic for Receiver {
         self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = !self.uart_rx.val();
 
-        comment!("Two of the last three looks");
+        comment!("Majority of the last three samples");
         self.look.next = self.synchroniser.level.val();
         self.low.next = (self.look.val() & self.newer.q.val())
             | (self.look.val() & self.older.q.val())

@@ -1,4 +1,4 @@
-//! Puts bytes on the line: start bit, eight bits of data, lowest first, stop bit, each for eight eighths of a bit.
+//! Sends bytes on the line: start bit, eight data bits, lowest first, stop bit. Each bit takes eight ticks.
 
 use crate::prelude::*;
 
