@@ -1,8 +1,8 @@
-//! The waiting entries: 64 of 4 words in block RAM, and the pointers.
+//! The memory of the command FIFO, 64 entries of 4 words in block RAM, and its pointers.
 //!
-//! `pop` makes the oldest entry the one that plays: its slot, `head`, is read in every tick, and is free again at the next
-//! `pop` or once nothing plays. The slots after it wait, those after them are a batch in the making, and a word goes into the first one
-//! after those; word 3 commits it, or stages it for its batch.
+//! `pop` makes the oldest waiting entry the current one: its slot, `head`, is read in every tick, and becomes free at
+//! the next `pop`, or when nothing plays any more. The slots after it hold the waiting entries, then the entries of an
+//! incomplete batch, then the entry whose words are being written. Word 3 commits an entry, or stages it for its batch.
 
 use crate::prelude::*;
 
@@ -107,8 +107,8 @@ impl Logic for CommandFifo {
             self.too_wide.d.next = false;
         }
 
-        comment!("A batch waits for its last entry; one that is");
-        comment!("dropped takes the others with it");
+        comment!("Entries of a batch are staged until the last one;");
+        comment!("an entry that is dropped takes the others with it");
         self.stages.next = self.entered.val() & self.more.val();
         self.released.next = self.entered.val() & !self.more.val();
         self.spoils.next = self.spoilt.q.val();
@@ -121,7 +121,7 @@ impl Logic for CommandFifo {
         }
         self.spoilt.d.next = self.spoils.val();
 
-        comment!("Some in, one out");
+        comment!("Number of waiting entries, and the head");
         self.level_step.next = self.no_level.val();
         if self.released.val() {
             self.level_step.next = self.staged.q.val() + self.one_level.val();

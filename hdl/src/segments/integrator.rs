@@ -1,7 +1,7 @@
-//! `a += j; v += a; p += v`, a quick stop, a point, a cubic and an extrapolation, byte by byte on one adder.
+//! Computes `a += j; v += a; p += v`, a quick stop, a point, a cubic and an extrapolation, byte by byte with one adder.
 //!
-//! Each register rotates past the adder, lowest byte first, as `passes` controls; the sum is written back. Outputs
-//! are rounded from the registers when these are at rest.
+//! Each register rotates past the adder, lowest byte first, as `passes` controls; the sum is written back. The outputs
+//! are the rounded registers, taken when these do not rotate.
 
 use super::passes::Passes;
 use crate::prelude::*;
@@ -85,8 +85,8 @@ impl Logic for Integrator {
         self.passes.speed_failed.next = self.speed_failed.q.val();
         self.passes.moving.next = self.moving.q.val();
 
-        comment!("A byte of the entry: half a word first, since");
-        comment!("a memory's output comes late in its clock");
+        comment!("A byte of the entry, selected in two steps, because");
+        comment!("the output of a memory comes late in its clock");
         self.entry_half.d.next = self.read_data.val().get_bits::<16>(0);
         if self.passes.read_byte_1.val() {
             self.entry_half.d.next = self.read_data.val().get_bits::<16>(16);
@@ -133,8 +133,8 @@ impl Logic for Integrator {
             + self.shifted_addend.val().replace_bit(0, self.carry.q.val());
         self.sum.next = self.wide_sum.val().get_bits::<8>(1);
         self.backwards.next = self.exact_velocity.q.val().get_bit(47);
-        comment!("In the last 32nd before an end of the word, and");
-        comment!("outwards; in the last 64th a stop is immediate");
+        comment!("Outwards in the last 32nd before an end of the word;");
+        comment!("in the last 64th a stop is immediate");
         self.below.next = self.exact_position.q.val().get_bit(55);
         self.outwards.next = (self.backwards.val() == self.below.val()) & !self.modulo.val();
         self.upper_bits.next = self.exact_position.q.val().get_bits::<6>(49);
@@ -151,7 +151,7 @@ impl Logic for Integrator {
                 self.passes.carry.val() | (self.brakes.val() & !self.backwards.val() & !self.stands.val());
         }
 
-        comment!("Beyond the end, a change of sign, any motion");
+        comment!("Detect overflow, a change of sign, and motion");
         self.turned_sign.next = self.sum.val().get_bit(7) != self.augend.val().get_bit(7);
         self.unfit.next = self.turned_sign.val() & (self.augend.val().get_bit(7) == self.addend.val().get_bit(7));
         if self.passes.judges_jerk.val() {
@@ -171,7 +171,7 @@ impl Logic for Integrator {
             self.moving.d.next = false;
         }
 
-        comment!("Acceleration: a stop's begins at its tick");
+        comment!("Acceleration; a stop sets it at the tick");
         self.deceleration.next = bit_cast::<40, 31>(self.stop_deceleration.val()) << 8;
         self.acceleration_byte.next = self.exact_acceleration.q.val().get_bits::<8>(0);
         if self.passes.write_acceleration.val() {
@@ -232,7 +232,7 @@ impl Logic for Integrator {
             self.ticks.d.next = self.no_ticks.val();
         }
 
-        comment!("Each rounded once, half up, without wrapping");
+        comment!("Round each once, half up, without wrapping");
         self.velocity_half.next = self.half.val();
         if self.velocity_ends.q.val() {
             self.velocity_half.next = self.no_half.val();
@@ -258,7 +258,7 @@ impl Logic for Integrator {
         self.overflowed.next = self.passes.failed.val();
         self.leaves.next = self.past_reach.val() & self.moving.q.val();
         self.entry_ends.next = self.carry.q.val();
-        comment!("Counted on from the end of an entry");
+        comment!("Ticks since the end of the entry");
         self.ticks_after.next = self.ticks.q.val().get_bits::<8>(0);
         self.decides.next = self.passes.decides.val();
         self.reads_flags.next = self.passes.reads_flags.val();

@@ -39,7 +39,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
         prefix: prefix.to_owned(),
         header: Header {
             about: "Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.\n\
-                    Without an entry while moving: on for `extrapolation` ticks, then a quick stop."
+                    If no entry is left while moving: constant velocity for `extrapolation` ticks, then a quick stop."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![

@@ -1,17 +1,23 @@
 //! Controls which bytes are added in which clock of a tick: six passes of eight clocks, and one that reads.
 //!
 //! ```text
-//! phase    1…5       9…14     17…21            25…30       33…39       41…43    44      49…51
-//! sum      a + j     v + a    a − j, −v        v + a       p + v       ticks            ticks
-//! goes to  a         (looked  a, if it did     v           p           ticks    outputs ticks of the next
-//!          (point: w2)  at)   not fit, at rest (point: w1) (point: w0)                  entry
+//! phase     sum               goes to
+//! 1 .. 5    a + j             a         a point loads word 2
+//! 9 .. 14   v + a                       only checks: does v fit, or in a stop, does its sign change
+//! 17 .. 21  a - j, or 0 - v   a         if a + j did not fit; in the last tick of a stop
+//! 25 .. 30  v + a             v         a point loads word 1
+//! 33 .. 39  p + v             p         a point loads word 0
+//! 41 .. 43  ticks + 1         ticks
+//! 44                          outputs
+//! 49 .. 51  0 - ticks         ticks     of the next entry
 //! ```
 //!
-//! The first tick of a cubic is a point's, but for the position; its others have a jerk of four bytes, whose sign makes the fifth. An extrapolated tick has
-//! no entry.
+//! The first tick of a cubic loads a and v as a point does, but adds v to p. In its other ticks the jerk has four
+//! bytes, and its sign makes the fifth. An extrapolated tick uses no word of an entry, and its a is 0.
 //!
-//! The first clock of a pass clears what is to be loaded and sets the carry; a turn of a register leaves it as it was, but
-//! for what is written. Words of an entry come two clocks after their address, bytes of it one clock after theirs.
+//! The first clock of a pass clears the register that is to be loaded, and sets the carry. A register that rotates
+//! keeps its value, except where the sum is written. The words of an entry come two clocks after their address, its
+//! bytes one clock after theirs.
 
 use crate::prelude::*;
 
@@ -122,7 +128,7 @@ impl Logic for Passes {
         self.from_odd_q.d.next = self.odd.val() | self.reads.val();
         self.from_odd.next = self.from_odd_q.q.val();
 
-        comment!("Before the first byte: 0, and the carry");
+        comment!("First clock of a pass: clear, and set the carry");
         self.first.next = !self.any_slot.val();
         self.clear_acceleration.next = self.corrects.val() & !self.any_slot.val() & self.comes_to_rest.val();
         self.clear_velocity.next =
@@ -166,7 +172,7 @@ impl Logic for Passes {
         self.decides.next = self.counts.val() & self.slot_2.val() & !self.slot_1.val() & !self.slot_0.val();
         self.ends.next = self.reads.val() & self.slot_1.val() & self.slot_0.val();
 
-        comment!("The entry's words and bytes, ahead");
+        comment!("Select the words and bytes of the entry, ahead");
         self.from_third.next = self.slot_2.val() | self.slot_1.val();
         self.from_fourth.next = self.slot_2.val() | (self.slot_1.val() & self.slot_0.val());
         self.fifth_ahead.next = !self.slot_2.val() & self.slot_1.val() & self.slot_0.val();
