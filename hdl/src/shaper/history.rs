@@ -1,12 +1,13 @@
-//! The samples since the last start, and before it the start's words, in C ring buffers that move together.
+//! Stores the samples since the last start, and the words of the start itself, in C ring buffers that move together.
 //!
-//! There is a ring buffer of 2^A words in block RAM per channel, with the newest word at `head`. A strobe appends
-//! `x`; so does a start, and from then on `age` counts the strobes, so that the start's word is that many words back.
-//! `sample` is one clock after `delay` the word `ring[head − min(delay, age)]`, so that everything before the start
-//! is the start's own word. Its address is kept in `origin`, so that difference and comparison run in parallel.
+//! Each channel has a ring buffer of 2^A words in block RAM, with the newest word at `head`. A strobe or a start
+//! appends `x`. From a start on `age` counts the strobes, so that the word of the start is `age` words back. One clock
+//! after `delay`, `sample` is the word `ring[head − min(delay, age)]`: a sample from before the start is the word of
+//! the start. The address of that word is kept in `origin`, so that subtraction and comparison run in parallel.
 //!
-//! After a reset `age` counts from the first strobe. The samples before that are 0, which is not in a ring buffer:
-//! `blank` tells so, one clock before the sample. So no word is used that was not written since the reset.
+//! After a reset `age` counts from the first strobe, and the samples before it are 0. The ring buffer does not contain
+//! this 0: `blank` is high instead, one clock before the sample. So no word is used that was not written since the
+//! reset.
 //!
 //! `delay` is at most 2^A − 2, so the word read is never the one being written.
 
@@ -34,7 +35,7 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
     fn update(&mut self) {
         comment!("@module history_${width x$0}x${words delay}x${count x}");
 
-        comment!("A strobe adds x; a start also clears");
+        comment!("A strobe appends x; a start also clears the age");
         self.writes.next = self.strobe.val() | self.start.val();
         self.next_head.next = self.head.q.val() + self.one_sample.val();
         if self.writes.val() {
@@ -52,7 +53,7 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
             self.origin.d.next = self.next_head.val();
         }
 
-        comment!("The sample delay samples back");
+        comment!("Read the sample that is delay samples old");
         self.before_start.next = self.delay.val() > self.age.q.val();
         self.address.next = self.head.q.val() - self.delay.val();
         if self.before_start.val() {

@@ -12,8 +12,8 @@
 //! new table to those with d < m. Any other tap uses `x[n − m]` for the position, and counts as zero for velocity and
 //! acceleration.
 //!
-//! After a channel there is one clock without a tap: when its stage reaches the accumulator, one sum is taken and the
-//! next begins. `lasts` marks it on the way; that of a strobe's own clock comes before the first channel.
+//! After a channel there is one clock without a tap: when it reaches the accumulator, one sum is taken and the next
+//! begins. `lasts` carries a mark with it from stage to stage; the mark of the strobe comes before the first channel.
 //!
 //! With N products `y` comes N + C + 9 clocks after the strobe. In addition to the plain shaper there are one clock
 //! for the handover, one from the ring buffers to the multiplier, and one between two channels.
@@ -145,7 +145,7 @@ impl<
         self.sums.start.next = self.start.val();
         self.sums.clear_flags.next = self.clear_flags.val();
 
-        comment!("A product per clock, and none after a channel");
+        comment!("One product per clock, and a gap after a channel");
         self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
         self.table_ends.next = self.tap_number.val() == self.banks.taps.val();
         self.ends.next = false;

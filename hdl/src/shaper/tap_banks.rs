@@ -10,11 +10,12 @@
 //!   sequence, with a delay of all ones, while a swap is pending, or in the clock of a `swap`; a swap while one is
 //!   pending, to bank 3, or to a bank whose sum is not one.
 //! - A swap waits for the next strobe with `take`. So a table whose sum is not one never becomes active, and one that
-//!   is active or about to be never changes. A swap that is not `known` is refused.
+//!   is active or about to be never changes. A swap with `known` low is refused.
 //! - For a handover, `old` reads the table that was active before; `locked` refuses writes and swaps as a pending
 //!   swap does; `reach` is the longest delay of both tables of the last swap.
 //! - A host can read back any tap. Its read uses the tables in the first clock in which no pass is `busy` and nothing
-//!   is written; a tap that is not loaded reads as 0. The word passes `word` too, while no pass uses it.
+//!   is written; a tap that is not loaded reads as 0. Its word also passes the register `word`, which no pass uses
+//!   then.
 
 use crate::prelude::*;
 use posicast_blocks::shaper::ShaperConfig;
