@@ -1,4 +1,4 @@
-//! Holds a word as it was at the last tick, from that clock on.
+//! Holds the value that a word had at the last tick; in the clock of a tick it already has the new value.
 
 use crate::prelude::*;
 

@@ -1,9 +1,9 @@
 //! The checks at ticks: limits, soft limits, errors against their limits, and time limits.
 //!
-//! Numbers are compared byte by byte from the tick on, and twice: a limit that a host writes meanwhile causes
-//! nothing. The findings of both rounds are registered, so that no comparison is on the way to the state. Bytes are
-//! taken in clocks 0 to 3 and 5 to 8 after the tick and compared one clock later; the results are evaluated in clocks
-//! 5 and 10, and causes come in clock 11.
+//! From the tick on, numbers are compared byte by byte, and twice: only what both rounds find is a cause, so a limit
+//! that a host writes meanwhile causes nothing. The findings are registered, which keeps the comparisons off the path
+//! to the state. Bytes are taken in clocks 0 to 3 and 5 to 8 after the tick and compared one clock later; the results
+//! are evaluated in clocks 5 and 10, and causes come in clock 11.
 
 use super::at_tick::AtTick;
 use super::lasts::Lasts;
@@ -122,7 +122,8 @@ impl Logic for Monitors {
             self.shaped_backward.d.next = self.reference_velocity_bits.val().get_bit(31);
         }
 
-        comment!("Leaving a switch bounces: new with motion only");
+        comment!("Only motion towards a switch counts, because the");
+        comment!("switch bounces when the axis leaves it");
         self.limit_plus.next =
             self.on_plus.q.val() & (self.forward.q.val() | (!self.was_on_plus.q.val() & self.shaped_forward.q.val()));
         self.limit_minus.next = self.on_minus.q.val()
@@ -155,7 +156,8 @@ impl Logic for Monitors {
         self.error_limit.number.next = self.error.val();
         self.error_limit.limit.next = self.following_error_limit.val();
         self.error_limit.zero_counts.next = false;
-        comment!("A scale computes its next value from the tick on");
+        comment!("Keep the deviation: from the tick on, the scale");
+        comment!("computes the next one");
         self.deviation_at_tick.clk.next = self.clk.val();
         self.deviation_at_tick.rst.next = self.rst.val();
         self.deviation_at_tick.tick.next = self.tick.val();
@@ -193,7 +195,8 @@ impl Logic for Monitors {
         self.motion_above.next = self.motion_bits.val().get_bits::<30>(2);
         self.not_forward.d.next = self.motion_bits.val().get_bit(31) | !self.motion_above.val().any();
         self.not_backward.d.next = !self.motion_bits.val().get_bit(31) | self.motion_above.val().all();
-        comment!("Motion against the command may count as none");
+        comment!("Motion against the command does not count with");
+        comment!("watches_direction");
         self.not_its_way.next = self.not_forward.q.val();
         if self.drive_backward.q.val() {
             self.not_its_way.next = self.not_backward.q.val();
@@ -204,7 +207,7 @@ impl Logic for Monitors {
             & (self.watches_direction.val() | !self.moves.val())
             & (self.drive_backward.q.val() == self.still_backward.q.val())
             & self.commands.exceeds.val();
-        comment!("The way back counts from the point of reversal");
+        comment!("After a reversal, motion counts from that point");
         if self.over.val() & (!self.stands.val() | self.moves.val()) {
             self.still_since.d.next = self.captured.q.val();
             self.still_backward.d.next = self.drive_backward.q.val();

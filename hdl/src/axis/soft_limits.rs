@@ -1,4 +1,4 @@
-//! Compares the shaped position with both soft limits; there are none if both are 0, or while they wait.
+//! Compares the shaped position with both soft limits. The limits are disabled if both are 0, or while `waits` is high.
 
 use super::bytes::Bytes;
 use super::larger::Larger;

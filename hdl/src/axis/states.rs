@@ -114,7 +114,7 @@ impl Logic for States {
         self.goes_quiet.next = self.timed_out.val() & self.closing.q.val();
         self.closes.next = self.in_hold.val() & self.timed_out.val() & !self.enable.val() & !self.closing.q.val();
 
-        comment!("The transition table; switching off is FAULT");
+        comment!("The transition table; switching off leads to FAULT");
         self.ready_to_fault.next = self.in_ready.val() & self.fault.val();
         self.ready_to_hold.next = self.in_ready.val() & self.goes_on.val() & self.drive_ready.val() & !self.fault.val();
         self.hold_to_fault.next = self.in_hold.val() & self.fault.val() & (self.cut.val() | self.closing.q.val());

@@ -1,5 +1,5 @@
-//! The timer of brake and shaper, in ticks. It is loaded in the first clock of its event, and over two clocks later
-//! at the earliest. It is cleared in the clock before, so that loading uses the same adder as counting.
+//! The timer of brake and shaper, in ticks. It is cleared in the clock before it is loaded, so that loading uses the
+//! same adder as counting. It is loaded in the first clock of its event, and elapses two clocks later at the earliest.
 
 use crate::prelude::*;
 
@@ -48,7 +48,7 @@ impl Logic for Timer {
         if self.loads.val() {
             self.less_one.next = self.no_ticks.val();
         }
-        comment!("Minus one has a carry unless the count is 0");
+        comment!("Adding -1 carries unless the count is 0");
         self.addend.next = self.released.val() | self.settled.val() | self.applied.val() | self.less_one.val();
         self.sum.next = bit_cast::<17, 16>(self.left.q.val()) + bit_cast::<17, 16>(self.addend.val());
         self.at_zero.next = !self.sum.val().get_bit(16);

@@ -1,5 +1,5 @@
-//! The drive command: one multiplexer for both duties, one comparison for both signs of the manual one, and a counter
-//! for each gate that is tested.
+//! Selects the duty with one multiplexer, limits a manual duty of either sign with one comparison, and counts the
+//! on-time of each gate that is tested.
 
 use crate::prelude::*;
 use posicast_blocks::axis::SupervisorState;
@@ -70,7 +70,7 @@ impl Logic for DriveCommand {
         self.active.d.next = self.next_active.val();
 
         comment!("Self-test: pins masked, drive and brake off; the");
-        comment!("mask stays for a clock with the PWM off");
+        comment!("mask stays on for a last clock with the PWM off");
         self.next_test.next = self.next_active.val() & self.self_test.val();
         self.tested.next = self.active.q.val() & self.masked.q.val();
         self.pwm_enable_q.d.next = (self.axis_pwm_enable.val() & !self.tested.val()) | self.next_active.val();
@@ -89,7 +89,8 @@ impl Logic for DriveCommand {
             self.bound.next = self.least.val();
         }
 
-        comment!("Manual: twice the size, + 1 if negative; no carry");
+        comment!("Compare 2 * ~duty + 1 with 2 * limit: this saves the");
+        comment!("carry chain of a negation");
         self.negative.next = self.direct_bits.val().get_bit(16);
         self.direct_size.next = self.direct_bits.val().get_bits::<16>(0);
         self.odd.next = self.no_bit.val();
@@ -116,8 +117,8 @@ impl Logic for DriveCommand {
             }
         }
 
-        comment!("0 while off, at a change, for a tick where the");
-        comment!("sign changes, and towards a limit switch");
+        comment!("The duty is 0 while off, at a change of mode, for a");
+        comment!("tick if its sign changes, and towards a limit switch");
         if self.tick.val() {
             self.backward.d.next = self.negative.val();
         }
@@ -148,8 +149,8 @@ impl Logic for DriveCommand {
             }
         }
 
-        comment!("On-time of a gate in a period; the last clock is");
-        comment!("added as it is counted, so that a valley clears");
+        comment!("On-time of a gate in a period: at a valley the sum");
+        comment!("is the result, and the counter is cleared");
         self.high_was_on.d.next = self.not_on.val();
         self.low_was_on.d.next = self.not_on.val();
         if self.masked.q.val() {

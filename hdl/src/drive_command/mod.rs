@@ -31,8 +31,8 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
         top: "drive_command".to_owned(),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Selects the PWM's duty: the controller's, saturated, while the supervisor wants it;\n\
-                    in direct mode, in READY and while it is kicked, a manual duty with a limit; else nothing."
+            about: "Selects the PWM's duty. Direct mode (READY, kick not expired): the limited manual duty.\n\
+                    Otherwise the controller's duty, saturated, or 0 while the drive is off."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: Vec::new(),

@@ -54,8 +54,8 @@ impl<const A: usize> Logic for TraceMemory<A> {
             self.oldest.d.next = self.no_address.val();
         }
 
-        comment!("Only words of the trace are shown; full, the");
-        comment!("difference is 0, and the OR saves logic");
+        comment!("Only words of the trace are shown. If full, the");
+        comment!("difference is 0, and an OR replaces a sum");
         self.between.next = self.pointer.q.val() - self.oldest.q.val();
         self.words.next = bit_cast::<12, A>(self.between.val());
         if self.full.val() {

@@ -87,7 +87,7 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
         prefix: prefix.to_owned(),
         header: Header {
             about: "Trace memory: records up to four of 16 signals, row by row, around a trigger.\n\
-                    arm begins; the words are read by address, in order of time, when it is over."
+                    arm begins a trace; after its end, the words are read by address, in order of time."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![

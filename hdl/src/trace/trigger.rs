@@ -37,7 +37,7 @@ impl Logic for Trigger {
         self.difference.next = self.wide_value.val() - self.wide_level.val();
         self.above.next = !self.difference.val().get_bit(32);
 
-        comment!("From row to row; the first row has none before it");
+        comment!("Compare with the row before; the first row has none");
         self.comes.next = true;
         if self.mode.val() == self.rising_mode.val() {
             self.comes.next = self.has_row.q.val() & self.above.val() & !self.was_above.q.val();
