@@ -1,16 +1,17 @@
 //! Multiplies, divides and negates with one bit per clock in one register.
 //!
 //! ```text
-//! phase  27 …  44   product = { partial sum (17), what is left of steps (18) } moves down: T is added where the lowest bit
-//!                   of |steps| is set
-//! phase  45 …  95   product moves up: |steps| · T leaves at the top into the remainder; quotient bits enter at the bottom,
-//!                   and leave as the 16 fraction bits: zeros, or the quotient is clamped and what follows does not matter
-//! phase  96 … 127   product moves down once more: the quotient's bits enter at the top, negated or not
+//! phase  27 .. 44   product = { partial sum (17), remaining bits of steps (18) } shifts down: T is added where the
+//!                   lowest bit of |steps| is 1
+//! phase  45 .. 95   product shifts up: |steps| · T leaves at the top into the remainder, quotient bits enter at the
+//!                   bottom. The first 16 of these are stored as 0, and leave at the top as the 16 fraction bits of
+//!                   the dividend
+//! phase  96 .. 127  product shifts down once more: the bits of the quotient enter at the top, negated or not
 //! ```
 //!
-//! A number is negated lowest bit first, which needs no adder: after the lowest one, every bit is inverted. |steps| ·
-//! T < 2^35 and 16 fraction bits give a quotient of 51 bits. If its upper 20 are not zero, it is clamped: all bits
-//! are ones from there on. The phases are numbered such that they are easy to decode.
+//! To negate a number lowest bit first needs no adder: every bit after the lowest 1 is inverted. |steps| · T < 2^35 and
+//! 16 fraction bits give a quotient of 51 bits. If one of its upper 20 bits is 1, it is clamped: all further bits are
+//! ones. The numbers of the phases are chosen so that they are easy to decode.
 
 use crate::prelude::*;
 use posicast_blocks::divider::DividerConfig;
@@ -53,7 +54,7 @@ impl Logic for Divider {
             self.overrun_q.d.next = false;
         }
 
-        comment!("Lowest bit first: negate what is negative");
+        comment!("Negate a negative number, lowest bit first");
         self.magnitude_bit.next = self.product.q.val().get_bit(0) ^ (self.negative.q.val() & self.turns_over.q.val());
         self.turns_over.d.next = self.downward.q.val() & (self.turns_over.q.val() | self.product.q.val().get_bit(0));
 
@@ -103,7 +104,7 @@ impl Logic for Divider {
         if self.busy_q.q.val() {
             self.next_phase.next = self.phase.q.val() + self.one_phase.val();
         }
-        comment!("Clamped; 0 is too small while multiplying");
+        comment!("Clamp; while multiplying, the remainder is 0");
         if self.subtracts.val() & !self.fits.q.val() {
             self.too_large.d.next = true;
         }

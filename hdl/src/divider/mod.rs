@@ -45,7 +45,7 @@ pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitErr
         prefix: prefix.to_owned(),
         header: Header {
             about: "Velocity: quotient = steps * tick_clocks * 2^16 / elapsed, toward zero, in Q16.16\n\
-                    elapsed = 0 stands for one tick. One division at a time, always as long."
+                    elapsed = 0 stands for one tick. One division at a time; each takes the same time."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![

@@ -69,7 +69,7 @@ impl Logic for EncoderGenerator {
             self.period.d.next = self.no_period.val();
         }
 
-        comment!("A and B in every other clock at most");
+        comment!("A and B change in every other clock at most");
         self.next_a.next = self.sum_bits.val().get_bit(33) ^ self.sum_bits.val().get_bit(32);
         self.next_b.next = self.sum_bits.val().get_bit(33);
         self.next_z.next = !self.sum_bits.val().get_bit(33)

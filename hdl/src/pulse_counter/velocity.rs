@@ -1,4 +1,5 @@
-//! Velocity by M/T: the steps of a tick divided by the time between the last edges before successive ticks.
+//! Measures the velocity by the M/T method: divides the steps of a tick by the time between the last edge before this
+//! tick and the last edge before the previous tick.
 //!
 //! ```text
 //! edges     |     |     |      |      |
@@ -6,12 +7,12 @@
 //!           ├───────────┤      at the second tick: 2 steps in this time, from the last edge before the first tick
 //! ```
 //!
-//! At a tick, `steps` and `elapsed` are given to the divider and stay until the next tick; the quotient may come at
-//! any clock between. `job` tells its meaning: a tick without an edge gives the velocity of one count since the last
-//! edge, which the velocity cannot exceed; without anything to measure, the velocity is 0.
+//! At a tick, `steps` and `elapsed` go to the divider and stay until the next tick; the quotient may come in any clock
+//! between. `job` is the meaning of the quotient. After a tick without an edge it is a bound: the velocity of one count
+//! since the last edge, which the velocity cannot exceed. If there is nothing to measure, the velocity becomes 0.
 //!
-//! `smoothed` is Q16.19 plus 3/8 LSB of Q16.16, so that truncating the extra bits rounds. The sum in `resolved` has
-//! one more bit at the bottom, which is one and makes the shift round half up.
+//! `smoothed` is Q16.19 plus 3/8 LSB of Q16.16, so that truncating the extra bits rounds. The sum in `resolved` has one
+//! more bit at the bottom, whose value 1 makes the shift round half up.
 
 use crate::prelude::*;
 
@@ -120,16 +121,16 @@ impl Logic for Velocity {
         self.last_stamp.next =
             (bit_cast::<24, 5>(self.last_high.val()) << 19) | bit_cast::<24, 19>(self.last_low.q.val());
 
-        comment!("The time from the reference to the last edge");
-        comment!("or, without one in this tick, to now");
+        comment!("Time from the reference to the last edge, or to now");
+        comment!("in a tick without an edge");
         self.interval.next = self.last_stamp.val() - self.reference_stamp.q.val();
         self.recent.next = self.interval.val().get_bits::<8>(16) < self.timeout.val();
         self.fresh.next = self.known.q.val() & (self.recent.val() | self.moved.q.val());
         self.lost.next = !self.velocity_m.val() & (!self.known.q.val() | self.turned.q.val());
         self.rests.next = !self.velocity_m.val() & (!self.fresh.val() | self.turned.q.val());
 
-        comment!("Steps; 0 without an edge, where 1 or -1 is");
-        comment!("divided: a borrow at bit 0 sets all bits to one");
+        comment!("Steps of the tick. Without an edge they are 0, and");
+        comment!("1 or -1 is divided: a borrow at bit 0 gives -1");
         self.waits.next = !self.moved.q.val() & !self.velocity_m.val();
         self.borrow.next = self.no_borrow.val();
         if self.waits.val() & self.smoothed.q.val().get_bit(34) {
@@ -174,12 +175,12 @@ impl Logic for Velocity {
             self.steps_q.d.next = self.no_steps.val();
         }
 
-        comment!("Time of the last edge, or now after a tick without");
+        comment!("Time of the last edge; until the first edge, now");
         if self.step.val() | self.tick.val() | !self.moved.q.val() {
             self.last_low.d.next = self.time_stamp.val().get_bits::<19>(0);
         }
 
-        comment!("An edge; at a tick it belongs to the next one");
+        comment!("An edge in the clock of a tick belongs to the next");
         if self.step.val() {
             self.last_up.d.next = self.up.val();
             self.moved.d.next = true;

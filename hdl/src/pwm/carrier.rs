@@ -1,13 +1,13 @@
 //! The carrier: the position in the period, the leads before its boundaries, and the phase relative to the time base.
 //!
-//! A boundary comes a fixed number of clocks after its lead: 32 after a valley's, at `period` − 32; 16 after a
-//! peak's, at half of that. The command counts these clocks, and tells when the boundary is reached. So one register
-//! serves both, and the command's results are ready at the boundary. The strobes come with the pins, one clock after
-//! the position.
+//! A lead announces each boundary: the valley's comes at `period` − 32, 32 clocks before the valley; the peak's comes
+//! at half this position, 16 clocks before the peak. So one register serves both. The command counts the clocks from
+//! the lead and reports the boundary, where its results are ready. The strobes come with the pins, one clock after the
+//! position.
 //!
-//! While off, a carrier that a `sync` has found at another phase waits at `phase` for the next one; no position is
-//! loaded. The same holds for a carrier that has a time base and another period than before, and after reset for one
-//! that is built for a time base.
+//! The carrier is aligned by waiting; no position is loaded. If a `sync` finds it at another phase, the carrier, once
+//! off, waits at `phase` for the next `sync`. It also waits if its period has changed and it has a time base, and after
+//! reset if it is built for a time base.
 
 use crate::prelude::*;
 
@@ -61,8 +61,8 @@ impl Logic for Carrier {
         self.valley_lead.next = self.position.q.val() == self.lead.val();
         self.peak_lead.next = self.position.q.val() == (self.lead.val() >> 1);
 
-        comment!("Out of phase and off, it waits for a sync;");
-        comment!("with another period it is in phase only by chance");
+        comment!("A carrier that is off and out of phase waits for a");
+        comment!("sync; a new period puts it out of phase");
         self.in_use.next = self.period_q.q.val().get_bits::<16>(0) == self.period.val();
         self.timed.d.next = self.timed.q.val() | self.sync.val();
         self.in_phase.next = self.position.q.val() == self.phase.val();

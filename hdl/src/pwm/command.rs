@@ -91,7 +91,7 @@ impl Logic for Command {
                     | self.to_fall.q.val()));
         self.down.next = !self.works.q.val() & !self.rises.q.val();
 
-        comment!("What the step adds");
+        comment!("Operands that the step adds");
         self.loads.next = self.once.q.val() | (self.twice.q.val() & !self.locked.val());
         self.turned.next = self.below_zero.val()
             & (self.size.q.val() | (self.loads.val() & (self.limited.q.val() == self.locked.val())));
@@ -166,7 +166,7 @@ impl Logic for Command {
                 | (self.first.val() ^ self.second.val()));
         }
 
-        comment!("Small constants, if it is none of these");
+        comment!("Small constants, if no operand is selected");
         self.step_size.next = 0.into();
         if self.counts.val() {
             self.step_size.next = 4.into();
@@ -210,7 +210,7 @@ impl Logic for Command {
                 self.duty_q.d.next = self.duty.val();
             }
 
-            comment!("The tokens");
+            comment!("Tokens of the steps");
             self.size.d.next = self.taking.val();
             self.over_maximum.d.next = self.size.q.val();
             self.over_period.d.next = self.over_maximum.q.val();

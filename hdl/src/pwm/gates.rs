@@ -33,7 +33,7 @@ impl Logic for Gates {
     fn update(&mut self) {
         comment!("@module pwm_gates_${value a_high_off}${value a_low_off}${value b_high_off}${value b_low_off}");
 
-        comment!("Half bridge; and the other modes from there");
+        comment!("Half bridge; the other modes modify it");
         self.a_high_gate.d.next = self.high_side.val();
         self.a_low_gate.d.next = self.low_side.val();
         self.b_high_gate.d.next = false;

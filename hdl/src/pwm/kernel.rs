@@ -74,11 +74,11 @@ impl Logic for Pwm {
         self.guard.filtered_fault_n.next = self.filtered_fault_n.val();
         self.guard.clear_trip.next = self.clear_trip.val();
 
-        comment!("Off at once; on at a valley, with a command from");
-        comment!("registers that have not changed meanwhile");
+        comment!("Switch off at once, and on at a valley whose");
+        comment!("command was computed from unchanged settings");
         self.settled.next = self.timing.settled.val() & self.carrier.settled.val();
         self.stable.d.next = self.settled.val() & (self.stable.q.val() | !self.command.computes.val());
-        comment!("Not if both sides last exactly the minimum:");
+        comment!("Do not start if both sides last exactly the minimum:");
         comment!("a leg that is late once would stay late");
         self.busy_clocks.next = (bit_cast::<16, 10>(self.timing.dead_time_used.val())
             + bit_cast::<16, 10>(self.timing.minimum_pulse_used.val()))

@@ -46,7 +46,7 @@ impl Logic for Trip {
         self.fault_latch.trip_n.next = self.trip_n.val();
         self.armed.next = self.fault_latch.armed.val() & self.trip_n.val();
 
-        comment!("Cleared once off and once the cause is over");
+        comment!("Clear the latch once off and once the cause is over");
         self.armed_synchroniser.clk.next = self.clk.val();
         self.armed_synchroniser.rst.next = self.rst.val();
         self.armed_synchroniser.pin.next = self.fault_latch.armed.val();
