@@ -1,5 +1,5 @@
-//! What the axes of a stage have to do with each other: common start, group stop, emergency stop. They start in one clock, and
-//! one that stops for a fault stops all.
+//! Couples the axes of a stage: common start, group stop, emergency stop, feed hold. Requested axes start in the same
+//! clock; an axis that stops because of a fault stops all others.
 //!
 //! The reference is `posicast_blocks::group`.
 
@@ -57,7 +57,7 @@ impl<const N: usize> Logic for Group<N> {
             }
         }
 
-        comment!("Feed hold: once all its axes rest");
+        comment!("The feed hold begins once all its axes rest");
         self.moving.next = false;
         for i in 0..N {
             if self.feed_hold[i].val() & !self.rests[i].val() {

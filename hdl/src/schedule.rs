@@ -1,9 +1,9 @@
-//! The schedule starts the controllers of a stage a fixed number of clocks after each tick.
+//! Starts the controllers of a stage a fixed number of clocks after each tick.
 //!
 //! The reference is `posicast_blocks::schedule`.
 //!
-//! A counter runs freely from 0 in the clock after a tick, and wraps after as many bits as the time needs; synthesis
-//! removes the bits above. `waits` tells whether the end of the count matters.
+//! A free-running counter is 0 in the clock after a tick, and has as many bits as the time needs; synthesis removes the
+//! bits above. `waits` is high from the tick to the start: only then the end of the count matters.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;

@@ -1,9 +1,8 @@
 //! The settings of a controller that stands alone: bank 0 is a ROM with the machine's settings, banks 1 and 2 can be
 //! loaded.
 //!
-//! The reference is `posicast_blocks::setting_banks`. Which rows were written since the reset is kept in flip-flops,
-//! since a memory has no reset: others read as 0. A
-//! host reads any row back while the controller is not busy.
+//! The reference is `posicast_blocks::setting_banks`. A memory has no reset, so flip-flops mark the rows that were
+//! written since the reset; other rows read as 0. A host can read back any row while the controller is not busy.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, own_name};
 use crate::prelude::*;
@@ -64,7 +63,8 @@ impl Logic for SettingBanks {
             self.written.d.next = self.written.q.val() | (self.one.val() << self.write_address.val());
         }
 
-        comment!("A host's read takes the place of one that the controller does not use; it waits for such a clock");
+        comment!("A host's read waits for a clock without busy and");
+        comment!("without a write");
         self.serves.next =
             self.read_waits.q.val() & !self.served.q.val() & !self.busy.val() & !self.setting_write.val();
         self.served.d.next = self.serves.val();

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! One RAM holds the ring buffers of all stages, which share `head` and `age`: a word's address is `{stage, head}`.
-//! `age` counts the samples since the start, so no word is used that was not written since; before the start, a stage
-//! had its constant input `earlier`, the start value doubled from stage to stage.
+//! `age` counts the samples since the start, so no word is used that was not written since. Before the start, the
+//! input of a stage was constant: `earlier`, the start value doubled from stage to stage.
 //!
 //! A delay is 1 to 2^A − 2, so the word read is never the one written in the same clock.
 

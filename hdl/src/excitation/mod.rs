@@ -37,7 +37,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
         prefix: prefix.to_owned(),
         header: Header {
             about: "Excitation: PRBS, chirp or square on the position reference, behind the shaper.\n\
-                    Ends by itself; 0 in the tick after enable or allowed falls."
+                    It ends by itself, and is 0 in the tick after enable or allowed falls."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![

@@ -69,7 +69,8 @@ impl Logic for Wave {
         self.scales.next = self.phase.q.val() == self.scale_phase.val();
         self.too_fast.next = false;
 
-        comment!("Behind by: plus 256 frequencies, minus periods");
+        comment!("Lag of the angle: add 256 frequencies at a tick,");
+        comment!("subtract a period per step");
         self.operand.next = bit_cast::<23, 18>(self.frequency.q.val().get_bits::<18>(4)) << 1;
         self.not_period.next = !self.period_ticks.val();
         if self.turns.val() {
@@ -89,7 +90,7 @@ impl Logic for Wave {
             self.too_fast.next = self.chirp.val() & self.next_frequency.val().get_bit(22);
         }
 
-        comment!("A step of the angle, if behind; a whole turn");
+        comment!("Step the angle while it lags; detect a whole turn");
         self.next_angle.next = self.angle.q.val() + self.one_step.val();
         self.whole_turn.next = self.turns.val() & !self.ahead_sum.val().get_bit(21) & self.angle.q.val().all();
         if self.turns.val() {
@@ -168,7 +169,7 @@ impl Logic for Wave {
             self.clocks.d.next = self.no_clock.val();
         }
 
-        comment!("A tick; without a signal all is as at the start");
+        comment!("A tick begins; without a signal, everything is reset");
         if self.valid.val() {
             self.phase.d.next = self.advance_phase.val();
         }

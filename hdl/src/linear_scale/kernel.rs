@@ -42,7 +42,7 @@ impl Logic for LinearScale {
         }
         self.position_q.d.next = self.other_position.val();
 
-        comment!("Computation; on velocity only with use_scale");
+        comment!("The computation; of the velocity only with use_scale");
         self.for_position.next = self.of_position.q.val() | !self.use_scale.val();
         self.serial.clk.next = self.clk.val();
         self.serial.rst.next = self.rst.val();
@@ -90,8 +90,8 @@ impl Logic for LinearScale {
             self.entering.next = self.smallest.val();
         }
 
-        comment!("Deviation: shifted; low: loaded or clamped;");
-        comment!("filled at its end, or with 0 by align");
+        comment!("The deviation is loaded with the operand, shifted,");
+        comment!("and clamped at the end; align makes it 0");
         self.silent.next = self.asked_now.val() | self.aligning.q.val();
         self.saturates.next = self.ends_position.val() & self.serial.overflows.val() & !self.silent.val();
         self.fills_deviation.next = self.saturates.val()
@@ -119,7 +119,7 @@ impl Logic for LinearScale {
         }
         self.valid_q.d.next = self.ends_position.val();
 
-        comment!("The velocity likewise");
+        comment!("The velocity, in the same way");
         self.fills_velocity.next = self.ends_velocity.val() & self.serial.overflows.val();
         self.low_velocity.next = self.takes_velocity.val() | (self.fills_velocity.val() & !self.serial.negative.val());
         self.velocity_filler.next = self.smallest.val();

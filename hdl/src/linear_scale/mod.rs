@@ -33,7 +33,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
         header: Header {
             about: "Compares motor and linear scale: deviation since align, position and velocity of the loop's \
                 counter.\n\
-                    One product of a bit per clock at a time, in the registers of deviation and velocity."
+                    Multiplies one bit per clock, one product at a time, in the registers of deviation and velocity."
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![Parameter {

@@ -67,14 +67,14 @@ impl Logic for Limiter {
         }
         self.part.next = self.margin.val().get_bits::<32>(1) ^ self.inverts.val();
 
-        comment!("Its steps, one per clock");
+        comment!("Steps of the limiter, one per clock");
         self.inverted.d.next = self.take.val();
         self.compares.d.next = self.inverted.q.val();
         self.returns.d.next = self.compares.q.val();
         self.cuts.d.next = self.returns.q.val();
         self.decides.d.next = self.cuts.q.val();
 
-        comment!("Minus the limit twice, inverted once: magnitude");
+        comment!("Negative x: inverted x - limit, minus limit: -x - 1");
         self.works.next = self.cuts.q.val() & self.over.q.val();
         if (self.take.val() | self.inverted.q.val()) & self.negative.val() {
             self.works.next = true;

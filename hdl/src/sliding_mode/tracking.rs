@@ -1,7 +1,8 @@
-//! The error e = r − x, taken at `capture` and saturated; the clock after tells whether it saturated.
+//! Computes the error e = r − x at `capture`, and saturates it to Q16.8; one clock later `high` or `low` reports a
+//! saturation.
 //!
-//! The difference of positions is exact modulo 2^32 counts, as the pulse counter counts, or for a rotary axis modulo
-//! 2^24, as its reference counts; then it saturates to Q16.8.
+//! Before saturation the difference is exact: modulo 2^32 counts, the range of the pulse counter, or for a rotary axis
+//! modulo 2^24 counts, the range of its reference.
 
 use crate::prelude::*;
 
