@@ -30,7 +30,7 @@ impl Logic for PinRegister {
         Verilog::Custom(
             "\
 // @leaf pin_register
-// @about One flip-flop for an asynchronous input, without reset; a synchroniser must follow. Constrain as its first:
+// @about One flip-flop for an asynchronous input, without reset; a synchroniser must follow. Constrain its path:
 // @about set_false_path -to [get_registers *|pin_register_q]
 (* preserve, keep, async_reg = \"true\", altera_attribute = \"-name SYNCHRONIZER_IDENTIFICATION FORCED\" *)
 reg pin_register_q;

@@ -66,9 +66,9 @@ impl<const D: usize, const N: usize> Logic for Ram<D, N> {
             "\
 // @leaf ram_${words write_address}x${width write_data} reg: read_data
 // @about Block RAM, ${words write_address} words of ${width write_data} bits: one write port, one read port, read data one clock after the address.
-// @about No reset: what was not written is unknown, and so is a word read in the clock in which it is written.
-// @about A registered read in one clocked block is what becomes block RAM. The attributes tell Yosys and Quartus that
-// @about no word is read in the clock in which it is written; else either builds logic around the memory for that.
+// @about No reset: a word is unknown until it is written, and if it is read in the clock in which it is written.
+// @about Synthesis infers block RAM from a registered read in the same clocked block. The attributes tell Yosys and
+// @about Quartus that no word is read in the clock in which it is written; otherwise both would add bypass logic.
 (* no_rw_check, ramstyle = \"no_rw_check\" *)
 reg [${last_bit write_data}:0] words [0:${last_word write_address}];
 always @(posedge clk) begin

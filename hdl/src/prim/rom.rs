@@ -68,7 +68,7 @@ impl<const D: usize, const N: usize> Logic for Rom<D, N> {
 // @leaf {name} reg: data
 // @of_machine
 // @about Block ROM, {used} of ${{words address}} words of ${{width data}} bits are used: data one clock after the address.
-// @about A memory with contents and a registered read is what becomes block RAM; a `case` would become logic.
+// @about Synthesis infers block RAM from a memory with contents and a registered read; a `case` would become logic.
 reg [${{last_bit data}}:0] words [0:${{last_word address}}];
 initial begin
 {contents}end

@@ -37,7 +37,7 @@ impl<const A: usize, const B: usize, const P: usize> Logic for SMul<A, B, P> {
             "\
 // @leaf smul_{A}x{B} reg: product
 // @about Signed multiplier, {A} x {B} bits, inputs and output registered: product two clocks after the operands.
-// @about Without reset and enable, so that all three registers are those inside a multiplier block.
+// @about No reset and no enable, so that all three registers fit inside a multiplier block.
 reg signed [{a_last}:0] a_q;
 reg signed [{b_last}:0] b_q;
 always @(posedge clk) begin

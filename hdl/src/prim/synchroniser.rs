@@ -35,10 +35,10 @@ impl Logic for Synchroniser {
         Verilog::Custom(
             "\
 // @leaf synchroniser
-// @about Two flip-flops for an asynchronous input. Constrain the first, and nothing else:
+// @about Two flip-flops for an asynchronous input. Constrain only the path to the first:
 // @about set_false_path -to [get_registers *|synchroniser_first]
-// @about The attributes keep both flip-flops apart from all other logic and next to each other, and let the timing
-// @about analysis tell how long the first may take to settle.
+// @about The attributes keep other logic away from both flip-flops, place them next to each other, and let the timing
+// @about analyser report how long the first may take to settle.
 (* preserve, keep, async_reg = \"true\", altera_attribute = \"-name SYNCHRONIZER_IDENTIFICATION FORCED\" *)
 reg synchroniser_first;
 (* preserve, keep, async_reg = \"true\" *)

@@ -28,7 +28,7 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     let header = Header {
         about: format!(
             "Registers of {}: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.\n\
-             Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.\n\
+             Commands take whole words only. Reads have no side effect; addresses without a register read as 0.\n\
              Digest of the map: {:08x}.",
             map.name(),
             digest(&body)

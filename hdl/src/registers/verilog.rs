@@ -97,7 +97,7 @@ fn offsets(lines: &mut Lines, map: &RegisterMap) {
         .max()
         .unwrap_or(0);
     let (width, high) = (map.address_bits(), map.address_bits() - 1);
-    lines.line("// Words of the window.");
+    lines.line("// Word offsets of the registers.");
     for register in map.registers() {
         let name = register.name.to_uppercase();
         lines.line(&format!(
@@ -142,7 +142,7 @@ fn takes_whole_words(map: &RegisterMap) -> bool {
 
 fn writes(lines: &mut Lines, map: &RegisterMap) {
     if map.registers().iter().any(is_masked) {
-        lines.line("// Bits that a write reaches, and what it puts there.");
+        lines.line("// The enabled bits of a write, and the data with all other bits 0.");
         lines.line("wire [31:0] mask = {");
         lines
             .line("    {8{avs_byteenable[3]}}, {8{avs_byteenable[2]}}, {8{avs_byteenable[1]}}, {8{avs_byteenable[0]}}");
@@ -154,7 +154,7 @@ fn writes(lines: &mut Lines, map: &RegisterMap) {
     }
     lines.section(|lines| {
         if writables(map).next().is_some() {
-            lines.line("// What is written in this clock.");
+            lines.line("// The register that is written in this clock.");
         }
         for register in writables(map) {
             let (name, constant) = (&register.name, register.name.to_uppercase());
@@ -254,7 +254,7 @@ fn read_flops(groups: usize) -> Vec<Flop> {
 
 fn reads(lines: &mut Lines, groups: &[ReadGroup<'_>], flops: &[Flop]) {
     if groups.len() > 1 {
-        lines.line("// Each group of words has a register, which is 0 where the word read is of another group.");
+        lines.line("// Each group of words has a read register, which is 0 if the address is in another group.");
         declare(lines, flops, "");
     }
     for (group, flop) in groups.iter().zip(flops) {
