@@ -9,11 +9,11 @@ use std::error::Error;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use posicast_ladder::netlist;
+use posicast_ladder::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
+use posicast_ladder::netlist_table;
 use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources, library_named};
 use posicast_testbench::lockstep::report;
-use posicast_testbench::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 
 /// Default number of clocks of the simulation.
 const CLOCKS: u64 = 100_000;
@@ -54,13 +54,13 @@ fn compare() -> Result<bool, Box<dyn Error>> {
     let (mut is_good, mut rows) = (true, String::new());
     for block in blocks {
         match row(&yosys, block.as_ref(), clocks)? {
-            Some(kept) => rows += &netlist::row(block.as_ref(), kept),
+            Some(kept) => rows += &netlist_table::row(block.as_ref(), kept),
             None => is_good = false,
         }
     }
     if write && is_good {
         let all = library_named(&[])?;
-        netlist::MARKS.renew(|old| netlist::renewed(old, &rows, &all))?;
+        netlist_table::MARKS.renew(|old| netlist_table::renewed(old, &rows, &all))?;
     }
     Ok(is_good)
 }

@@ -1,27 +1,161 @@
-//! The table of netlists in `ladder/RESULTS.md`: a row per block whose netlist is equal to its RTL.
+//! Compares a block's netlist, as a synthesiser wrote it, with the block, by simulation and by proof.
+//!
+//! ```text
+//!  modules ─┬─ logic ─► synthesiser ─► netlist ─┬─► with models of its cells ─► Verilator, lock step with the model
+//!           │                                   └─► ┐
+//!           └─ memories, multipliers: kept ─────────┴─► RTL = netlist?  Yosys: miter ─► ABC: register correspondence, PDR
+//! ```
+//!
+//! - Memories, ROMs and multipliers are modules of their own, which a device has as blocks. They are kept: the
+//!   simulation uses them unchanged; the proof cuts them out, on both sides. Their outputs are then free, and their
+//!   inputs are compared like outputs. Equal inputs give equal contents, so the proof holds for the whole.
+//! - The proof is for all inputs in all clocks from power-up on, resets included, without a bound.
+//! - An asynchronous clear counts as a synchronous one.
+//! - The netlist is read from its text, so a changed table is detected.
 
-use posicast_testbench::blocks::Block;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
-use crate::page::{Marks, merged};
+use posicast_hdl::emit::Module;
+use posicast_system::scratch;
 
-/// Marks of the table.
-pub const MARKS: Marks = Marks {
-    begin: "<!-- netlists: written by `--example netlist -- --write` -->",
-    end: "<!-- end of netlists -->",
-};
-const HEAD: &str = "| block | instance | kept |\n|---|---|---|\n";
+use posicast_testbench::Error;
+use posicast_testbench::blocks::{self, Block, Sources};
+use posicast_testbench::lockstep::report::LockstepReport;
 
-/// First cells of a block's row.
-fn key(block: &dyn Block) -> String {
-    format!("| {} | {} |", block.name(), block.instance())
+use crate::sides::Sides;
+
+/// Length in clocks of the longest difference that is searched for: longer than a division.
+const SEARCHED_CLOCKS: u32 = 150;
+
+/// Whether two versions of a block are equivalent: its RTL and its netlist, or the block and a mutant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EquivalenceVerdict {
+    /// They are equivalent, for all inputs and without a bound.
+    Equivalent,
+    /// Some input makes them differ in this clock after power-up, from 0.
+    Different {
+        /// Number of the clock.
+        clock: u32,
+    },
+    /// Neither was found within the time limit.
+    Unknown,
 }
 
-/// Returns the row of a block whose netlist keeps so many memories and multipliers as they are.
-pub fn row(block: &dyn Block, kept: usize) -> String {
-    format!("{} {kept} |\n", key(block))
+/// A block's Verilog, sorted by what is mapped.
+#[derive(Debug, Clone)]
+pub struct NetlistParts {
+    /// Modules that are mapped to logic elements, the top among them.
+    pub logic: Vec<Module>,
+    /// Modules that are kept.
+    pub kept: Vec<Module>,
 }
 
-/// Returns the table with a row for each of `blocks`: that of `new` if it has one, otherwise that of `old`.
-pub fn renewed(old: &str, new: &str, blocks: &[Box<dyn Block>]) -> String {
-    merged(HEAD, old, new, blocks.iter().map(|block| key(block.as_ref())))
+impl NetlistParts {
+    /// Sorts a block's modules.
+    pub fn of(modules: Vec<Module>) -> Self {
+        let is_kept = |module: &Module| module.has_memory() || module.text.contains(" <= a_q * b_q;");
+        let (kept, logic) = modules.into_iter().partition(is_kept);
+        Self { logic, kept }
+    }
+}
+
+/// Runs the netlist, with the models of its cells, in lock step with the block's model.
+///
+/// # Errors
+/// Those of [`Sources::verilated`] and [`blocks::check`].
+pub fn simulate(
+    block: &dyn Block,
+    parts: &NetlistParts,
+    netlist: &str,
+    cell_models: &str,
+    clocks: u64,
+    seed: u64,
+) -> Result<LockstepReport, Error> {
+    let mut modules = parts.kept.clone();
+    for (name, text) in [("cell_models", cell_models), ("netlist", netlist)] {
+        modules.push(Module {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            ports: Vec::new(),
+            clocked: true,
+        });
+    }
+    let sources = Sources::of_modules(&modules)?;
+    let mut device = sources.verilated(block, seed)?;
+    blocks::check(block, &mut device, clocks, seed, &mut |_| {})
+}
+
+/// Checks whether the netlist is equivalent to the RTL, with files in `folder`. Each of ABC's engines gets the time
+/// limit `limit`.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses RTL or netlist, for
+/// example because only one of them has a port or kept module; [`Error::File`] for the files.
+pub fn equivalent(
+    top: &str,
+    parts: &NetlistParts,
+    netlist: &str,
+    cell_models: &str,
+    folder: &Path,
+    limit: Duration,
+) -> Result<EquivalenceVerdict, Error> {
+    let sides = Sides::new(top, &parts.kept, folder)?;
+    sides.write("netlist.v", netlist)?;
+    sides.write("cell_models.v", cell_models)?;
+    let rtl = sides.write_modules(&parts.logic)?.join(" ");
+    let script = format!(
+        "{}{}design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
+         miter -equiv -flatten -make_assert gold gate miter\nhierarchy -top miter\nproc\nsetundef -undriven -zero\n\
+         delete -output\nopt -fast\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
+         write_aiger -I -B -zinit -no-startoffset miter.aig\n",
+        sides.side(&rtl, "gold"),
+        sides.side("netlist.v cell_models.v", "gate")
+    );
+    let doing = ["joining RTL and netlist", "comparing RTL and netlist"];
+    sides.decide(("miter", &script), SEARCHED_CLOCKS, limit, doing)
+}
+
+/// Result for a block.
+#[derive(Debug, Clone)]
+pub struct EquivalenceOutcome {
+    /// Number of logic elements that compute, and of flip-flops.
+    pub cells: [usize; 2],
+    /// Number of kept modules.
+    pub kept: usize,
+    /// Lock step of the netlist with the model; `None` if it was not simulated.
+    pub simulated: Option<LockstepReport>,
+    /// Equivalence of the netlist with the RTL.
+    pub verdict: EquivalenceVerdict,
+    /// Duration without the synthesis.
+    pub time: Duration,
+}
+
+/// Simulates a netlist for this many clocks (0: not at all), and proves it.
+///
+/// # Errors
+/// Those of [`simulate`] and [`equivalent`].
+pub fn check(
+    block: &dyn Block,
+    parts: &NetlistParts,
+    (netlist, cell_models): (&str, &str),
+    (clocks, seed): (u64, u64),
+    limit: Duration,
+) -> Result<EquivalenceOutcome, Error> {
+    let start = Instant::now();
+    let simulated = match clocks {
+        0 => None,
+        _ => Some(simulate(block, parts, netlist, cell_models, clocks, seed)?),
+    };
+    let temporary = std::env::temp_dir();
+    let folder = scratch::Folder::new(scratch::PREFIX);
+    let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
+    let verdict = equivalent(&block.top(), parts, netlist, cell_models, folder.path(), limit)?;
+    Ok(EquivalenceOutcome {
+        cells: ["  cycloneive_lcell_comb ", "  dffeas "].map(|cell| netlist.matches(cell).count()),
+        kept: parts.kept.len(),
+        simulated,
+        verdict,
+        time: start.elapsed(),
+    })
 }

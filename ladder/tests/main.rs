@@ -4,7 +4,9 @@
 mod coverage;
 mod crossings;
 mod mutation;
+mod netlist;
 mod proof_tables;
 mod stage_datasheet;
 mod stage_wires;
+mod unset;
 mod verification_page;

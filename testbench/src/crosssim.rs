@@ -28,7 +28,6 @@ use crate::blocks::{Block, Sources};
 use crate::icarus::SCOPE;
 use crate::lockstep::report::{self, LockstepReport};
 use crate::lockstep::{self, Clock};
-use crate::netlist::has_memory;
 use crate::wave::{Heading, Recorder};
 use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
 
@@ -180,7 +179,7 @@ impl Bench<'_> {
 /// The module without the values that its registers have at power-up. A memory keeps its contents, because those of a
 /// ROM are fixed.
 pub fn without_initial_values(module: &Module) -> Module {
-    if has_memory(module) {
+    if module.has_memory() {
         return module.clone();
     }
     let mut text = String::with_capacity(module.text.len());

@@ -17,7 +17,6 @@
 //! - [`asynchronous`] tests effects that no clock samples.
 //! - [`crosssim`] compares the waveforms of two simulators.
 //! - [`formal`] proves the properties of property files.
-//! - [`netlist`] simulates and proves what a synthesiser made of a block.
 //! - [`replay`] plays a recording into model and RTL.
 //! - [`named_mutant`] replaces a text of the Verilog by another: a deliberate fault.
 //! - [`wave`] writes waveforms; the crate `wavecmp` compares two of them.
@@ -43,7 +42,6 @@ pub mod linear_scale;
 pub mod linked_stage;
 pub mod lockstep;
 pub mod named_mutant;
-pub mod netlist;
 pub mod parts;
 mod patience;
 pub mod pulse_counter;
@@ -55,7 +53,6 @@ pub mod replay;
 pub mod segments;
 pub mod shaper;
 pub mod shard;
-mod sides;
 pub mod sliding_mode;
 pub mod spi_bridge;
 pub mod stage;
@@ -63,7 +60,6 @@ pub mod stimuli;
 mod tool;
 pub mod trace;
 pub mod uart_bridge;
-pub mod unset;
 pub mod verilator;
 pub mod wave;
 pub mod yosys;

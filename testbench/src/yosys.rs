@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use crate::Error;
-use crate::formal::{ABC, YOSYS, asserted};
+use crate::formal::{self, ABC, YOSYS, asserted};
 
 /// Runs the Yosys script `script`, a file in `folder`. `doing` describes the task in an error.
 ///
@@ -16,10 +16,18 @@ pub fn run_script(folder: &Path, script: &str, doing: &'static str) -> Result<()
     YOSYS.run(&mut yosys, doing).map(drop)
 }
 
-/// Runs ABC's commands in `folder` and returns its output; `None` if ABC exceeded its time limit.
+/// Runs ABC's commands in `folder` and returns its output.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without ABC, [`Error::ToolFailed`] where it stops with an error.
+pub fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String, Error> {
+    formal::abc(folder, commands, doing)
+}
+
+/// As [`abc`]; `None` if ABC exceeded its time limit.
+///
+/// # Errors
+/// As [`abc`].
 pub fn abc_within(
     folder: &Path,
     commands: &str,

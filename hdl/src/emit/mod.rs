@@ -96,6 +96,11 @@ impl Module {
                 && (behind.is_empty() || size.is_some_and(|first| first.is_ascii_digit()))
         })
     }
+
+    /// Whether it contains a memory: of all modules only the leaves RAM and ROM do.
+    pub fn has_memory(&self) -> bool {
+        self.text.contains(" words [0:")
+    }
 }
 
 /// Parameters of [`emit()`] in addition to the block.

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::Mutant;
 use super::netlist::Netlist;
+use crate::netlist::EquivalenceVerdict;
 use posicast_testbench::Error;
-use posicast_testbench::netlist::EquivalenceVerdict;
 use posicast_testbench::yosys::{abc_within, counterexample_clock};
 
 /// Largest number of bits of memories that are converted to registers.

@@ -43,8 +43,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use self::netlist::Netlist;
+use crate::netlist::EquivalenceVerdict;
 use posicast_testbench::Error;
-use posicast_testbench::netlist::EquivalenceVerdict;
 
 /// Number of mutants, and effort for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

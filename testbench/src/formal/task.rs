@@ -7,7 +7,6 @@ use posicast_hdl::emit::Module;
 
 use super::names::as_inputs;
 use crate::Error;
-use crate::netlist::has_memory;
 
 /// Method of proof. Both are unbounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +80,7 @@ impl Task {
     /// What can have any value in every clock: products where multipliers are cut out, and words read from memories unless the
     /// proof keeps them.
     pub fn left_open(&self) -> Vec<&'static str> {
-        let has_memory = self.modules.iter().any(has_memory);
+        let has_memory = self.modules.iter().any(Module::has_memory);
         let products = self.leaves_products_open.then_some("products");
         let memories = (has_memory && !self.keeps_memories).then_some("memories");
         products.into_iter().chain(memories).collect()

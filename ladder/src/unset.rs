@@ -19,9 +19,10 @@ use std::time::Duration;
 use posicast_hdl::emit::Module;
 use posicast_system::scratch;
 
-use crate::Error;
-use crate::blocks::Block;
-use crate::crosssim::without_initial_values;
+use posicast_testbench::Error;
+use posicast_testbench::blocks::Block;
+use posicast_testbench::crosssim::without_initial_values;
+
 use crate::netlist::{EquivalenceVerdict, NetlistParts};
 use crate::sides::Sides;
 
@@ -45,7 +46,7 @@ endmodule
 /// Compares two copies of a block, as [`independent`].
 ///
 /// # Errors
-/// As [`independent`]; [`crate::Error`] of the emitter where the block has no Verilog.
+/// As [`independent`]; [`Error`] of the emitter where the block has no Verilog.
 pub fn check(block: &dyn Block, limit: Duration) -> Result<EquivalenceVerdict, Error> {
     let temporary = std::env::temp_dir();
     let folder = scratch::Folder::new(scratch::PREFIX).map_err(Error::file(&temporary, "create a folder in"))?;

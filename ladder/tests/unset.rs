@@ -2,11 +2,11 @@
 //!
 //! The example `unset` covers all blocks, in `scripts/verify-all`.
 
-use crate::support::broken;
 use posicast_hdl::emit::Module;
+use posicast_ladder::netlist::{EquivalenceVerdict, NetlistParts};
+use posicast_ladder::unset::{RESET_CLOCKS, independent};
 use posicast_testbench::blocks::library;
-use posicast_testbench::netlist::{EquivalenceVerdict, NetlistParts};
-use posicast_testbench::unset::{RESET_CLOCKS, independent};
+use posicast_testbench::named_mutant::NamedMutant;
 use std::time::Duration;
 
 fn modules(name: &str) -> (String, Vec<Module>) {
@@ -32,7 +32,13 @@ fn netlist_nothing_from_before_the_reset_is_shown() {
 #[test]
 fn netlist_a_register_without_reset_is_found() {
     let (top, modules) = modules("divider");
-    let wrong = broken(&modules, "        saturated_q <= 1'd0;\n", "");
+    let without_reset = NamedMutant {
+        name: "a register without reset",
+        module: None,
+        from: "        saturated_q <= 1'd0;\n",
+        to: "",
+    };
+    let wrong = without_reset.put_into(&modules).unwrap();
     assert_eq!(
         verdict(&top, wrong),
         EquivalenceVerdict::Different { clock: RESET_CLOCKS }

@@ -5,10 +5,10 @@
 
 use std::time::Duration;
 
+use posicast_ladder::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 use posicast_synth::yosys::{CELL_MODELS, Yosys};
 use posicast_testbench::blocks::{Block, Sources, library};
 use posicast_testbench::lockstep::report;
-use posicast_testbench::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 
 const CLOCKS: u64 = 20_000;
 

@@ -7,10 +7,10 @@
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use posicast_ladder::netlist::{EquivalenceVerdict, NetlistParts};
+use posicast_ladder::unset::check;
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, library_named};
-use posicast_testbench::netlist::{EquivalenceVerdict, NetlistParts};
-use posicast_testbench::unset::check;
 
 /// Time limit of each engine of a proof.
 const LIMIT: Duration = Duration::from_secs(300);

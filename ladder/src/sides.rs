@@ -9,8 +9,9 @@ use std::time::Duration;
 
 use posicast_hdl::emit::Module;
 
-use crate::Error;
-use crate::formal::{YOSYS, abc, asserted};
+use posicast_testbench::Error;
+use posicast_testbench::yosys::{abc, counterexample_clock, run_script};
+
 use crate::netlist::EquivalenceVerdict;
 
 /// The top module of both sides, the modules that are kept in both, and the folder with the files.
@@ -92,9 +93,7 @@ impl<'a> Sides<'a> {
     ) -> Result<EquivalenceVerdict, Error> {
         let file = format!("{name}.ys");
         self.write(&file, script)?;
-        let mut yosys = YOSYS.command_in(self.folder);
-        yosys.args(["-q", &file]);
-        YOSYS.run(&mut yosys, joining)?;
+        run_script(self.folder, &file, joining)?;
 
         let seconds = limit.as_secs().max(1);
         let proof = format!("read_aiger {name}.aig; fold; strash; scorr; pdr -T {seconds}");
@@ -102,9 +101,11 @@ impl<'a> Sides<'a> {
             return Ok(EquivalenceVerdict::Equivalent);
         }
         let search = format!("read_aiger {name}.aig; fold; strash; bmc3 -F {searched_clocks} -T {seconds}");
-        let found = asserted(&abc(self.folder, &search, comparing)?).next();
-        Ok(found.map_or(EquivalenceVerdict::Unknown, |(_, clock)| {
-            EquivalenceVerdict::Different { clock }
-        }))
+        let found = counterexample_clock(&abc(self.folder, &search, comparing)?);
+        Ok(
+            found.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
+                clock,
+            }),
+        )
     }
 }
