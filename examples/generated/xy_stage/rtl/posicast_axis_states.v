@@ -157,7 +157,7 @@ module posicast_axis_states (
     assign goes_quiet = timed_out & closing;
     assign closes = in_hold & timed_out & !enable & !closing;
 
-    // The transition table; switching off is FAULT
+    // The transition table; switching off leads to FAULT
     assign ready_to_fault = in_ready & fault;
     assign ready_to_hold = in_ready & goes_on & drive_ready & !fault;
     assign hold_to_fault = in_hold & fault & (cut | closing);

@@ -1,22 +1,22 @@
 // posicast_channel_sums_32x57x3_f16
 // Computes `saturate( (sum of coefficient * sample + 2^(F-1)) >> F )` of every channel, one after
-// the other, and shows the results together.
+// the other, and outputs all results in one clock.
 //
-// `begin_pass` is a strobe. Then there is a `boundary` before the first channel's products and one
-// after each channel's. The product in the clock of a boundary belongs to no channel; the products
-// of all other clocks up to the last boundary are added. A boundary takes the sum and replaces it
-// by the half for rounding. At the last boundary all outputs change in one clock, and `valid` shows
-// it.
+// `begin_pass` is the strobe. A `boundary` comes before the products of the first channel, and
+// after those of each channel: it stores the sum of the channel that ends, and loads the
+// accumulator with the half for rounding. Products between two boundaries are added; the product in
+// the clock of a boundary is ignored. At the last boundary all outputs change, and `valid` is high
+// for one clock.
 //
-// A sample is that of `sample_channel`, or 0 if it was `blank` a clock before; its product comes
-// four clocks after it.
+// A sample is that of `sample_channel`. It counts as 0 if `blank` was high one clock before. Its
+// product comes four clocks after it.
 //
-// The result fits its word if the accumulator's bits from the word's sign bit up are equal.
-// Otherwise its register is cleared and a flag tells at which end it is, because clearing a
-// register takes no logic.
+// The result fits its word if the accumulator's bits from the word's sign bit up are equal. If it
+// does not, its register is cleared, which takes no logic, and a flag shows whether the result is
+// above or below the word.
 //
-// A position that wraps gets differences from its newest word as samples: the accumulator begins
-// with that word times 2^F, and the sum is taken modulo 2^W.
+// For a position that wraps, the samples are differences from its newest word: the accumulator
+// begins with that word times 2^F, and the sum is taken modulo 2^W.
 //
 // 2 * 2^T + 1 products of W + 18 bits fit in ACC = W + 19 + T bits, including the half: the
 // accumulator never overflows.

@@ -1,6 +1,6 @@
 // posicast_group_2
-// What the axes of a stage have to do with each other: common start, group stop, emergency stop.
-// They start in one clock, and one that stops for a fault stops all.
+// Couples the axes of a stage: common start, group stop, emergency stop, feed hold. Requested axes
+// start in the same clock; an axis that stops because of a fault stops all others.
 //
 // The reference is `posicast_blocks::group`.
 //
@@ -92,7 +92,7 @@ module posicast_group_2 (
             emergency_q_next = 1'd1;
         end
 
-        // Feed hold: once all its axes rest
+        // The feed hold begins once all its axes rest
         moving = 1'd0;
         if (feed_hold_0 & !rests_0) begin
             moving = 1'd1;

@@ -3,8 +3,8 @@
 //
 // `take` lets the waiting swap take effect at this strobe: at once, or once the position has stood
 // still for `reach` samples, the longest delay of both tables. In a handover `active` is high, and
-// `since` counts the samples since the last one that the old table shaped alone; it ends above
-// `reach`. `newest` is the position of the last sample.
+// `since` counts the samples since the last one that the old table shaped alone; the handover ends
+// when `since` exceeds `reach`. `newest` is the position of the last sample.
 //
 // A tap passes through on its way from the tables to the ring buffers: it comes two clocks after
 // its `old`, `correcting` and `of_position`, and leaves one clock later. A tap of the old table

@@ -1,16 +1,16 @@
 // posicast_history_32x128x3
-// The samples since the last start, and before it the start's words, in C ring buffers that move
-// together.
+// Stores the samples since the last start, and the words of the start itself, in C ring buffers
+// that move together.
 //
-// There is a ring buffer of 2^A words in block RAM per channel, with the newest word at `head`. A
-// strobe appends `x`; so does a start, and from then on `age` counts the strobes, so that the
-// start's word is that many words back. `sample` is one clock after `delay` the word `ring[head -
-// min(delay, age)]`, so that everything before the start is the start's own word. Its address is
-// kept in `origin`, so that difference and comparison run in parallel.
+// Each channel has a ring buffer of 2^A words in block RAM, with the newest word at `head`. A
+// strobe or a start appends `x`. From a start on `age` counts the strobes, so that the word of the
+// start is `age` words back. One clock after `delay`, `sample` is the word `ring[head - min(delay,
+// age)]`: a sample from before the start is the word of the start. The address of that word is kept
+// in `origin`, so that subtraction and comparison run in parallel.
 //
-// After a reset `age` counts from the first strobe. The samples before that are 0, which is not in
-// a ring buffer: `blank` tells so, one clock before the sample. So no word is used that was not
-// written since the reset.
+// After a reset `age` counts from the first strobe, and the samples before it are 0. The ring
+// buffer does not contain this 0: `blank` is high instead, one clock before the sample. So no word
+// is used that was not written since the reset.
 //
 // `delay` is at most 2^A - 2, so the word read is never the one being written.
 //
@@ -77,11 +77,11 @@ module posicast_history_32x128x3 (
         .read_data     (ring_2_read_data)
     );
 
-    // A strobe adds x; a start also clears
+    // A strobe appends x; a start also clears the age
     assign writes = strobe | start;
     assign next_head = head + 7'd1;
 
-    // The sample delay samples back
+    // Read the sample that is delay samples old
     assign before_start = delay > age;
     assign blank = before_start & !started;
     assign ring_0_write_data = $unsigned(x_0);

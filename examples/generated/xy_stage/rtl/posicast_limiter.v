@@ -79,7 +79,7 @@ module posicast_limiter (
             inverts = ~32'd0;
         end
 
-        // Minus the limit twice, inverted once: magnitude
+        // Negative x: inverted x - limit, minus limit: -x - 1
         works = cuts & over;
         if ((take | inverted) & negative) begin
             works = 1'd1;
@@ -124,7 +124,7 @@ module posicast_limiter (
         low_q <= 1'd0;
         ticks <= 16'd0;
     end else begin
-        // Its steps, one per clock
+        // Steps of the limiter, one per clock
         inverted <= take;
         compares <= inverted;
         returns <= compares;

@@ -237,11 +237,11 @@ module posicast_pwm_25x50_0000 (
         .gates     (pin_gates_gates)
     );
 
-    // Off at once; on at a valley, with a command from
-    // registers that have not changed meanwhile
+    // Switch off at once, and on at a valley whose
+    // command was computed from unchanged settings
     assign settled = timing_settled & carrier_settled;
 
-    // Not if both sides last exactly the minimum:
+    // Do not start if both sides last exactly the minimum:
     // a leg that is late once would stay late
     assign busy_clocks = ({6'd0, timing_dead_time_used} + {6'd0, timing_minimum_pulse_used}) << 1;
     assign no_slack = period == busy_clocks;

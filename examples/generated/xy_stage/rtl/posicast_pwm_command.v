@@ -128,7 +128,7 @@ module posicast_pwm_command (
     assign counts = !works | (!takes & !(less_dead_first | less_dead | shortness | to_fall));
     assign down = !works & !rises;
 
-    // What the step adds
+    // Operands that the step adds
     assign loads = once | (twice & !locked);
     assign turned = below_zero & (size | (loads & (limited == locked)));
     assign of_period = over_period | less_period | less_periods | plus_period | plus_periods
@@ -221,7 +221,7 @@ module posicast_pwm_command (
             chosen = ~((first & second & {2'd0, period}) | (first ^ second));
         end
 
-        // Small constants, if it is none of these
+        // Small constants, if no operand is selected
         step_size = 19'd0;
         if (counts) begin
             step_size = 19'd4;
@@ -261,7 +261,7 @@ module posicast_pwm_command (
                 duty_q_next = duty;
             end
 
-            // The tokens
+            // Tokens of the steps
             size_next = taking;
             over_maximum_next = size;
             over_period_next = over_maximum;

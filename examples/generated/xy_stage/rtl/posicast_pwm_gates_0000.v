@@ -50,7 +50,7 @@ module posicast_pwm_gates_0000 (
     assign gates = {b_low_gate, leg_b_high[2:0]};
 
     always @(*) begin
-        // Half bridge; and the other modes from there
+        // Half bridge; the other modes modify it
         a_high_gate_next = high_side;
         a_low_gate_next = low_side;
         b_high_gate_next = 1'd0;

@@ -52,7 +52,7 @@ module posicast_pwm_trip (
         .armed  (fault_latch_armed)
     );
 
-    // Cleared once off and once the cause is over
+    // Clear the latch once off and once the cause is over
     posicast_synchroniser u_armed_synchroniser (
         .clk   (clk),
         .rst   (rst),

@@ -1,6 +1,6 @@
 // posicast_segments
 // Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.
-// Without an entry while moving: on for `extrapolation` ticks, then a quick stop.
+// If no entry is left while moving: constant velocity for `extrapolation` ticks, then a quick stop.
 //
 // Ticks, states and flags of the command FIFO; memory and integrator are parts of it.
 //

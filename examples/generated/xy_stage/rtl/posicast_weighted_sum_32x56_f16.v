@@ -2,11 +2,10 @@
 // Computes `y = saturate( (sum of coefficient * sample + 2^(F-1)) >> F )`, exactly except for the
 // one rounding.
 //
-// `begin` loads the half for rounding into the accumulator. A coefficient comes one clock before
-// its sample, and its product three clocks after the sample; `add` marks the products that are
-// added. A sample that is `blank`, which is told in the clock of its coefficient, counts as 0.
-// `finish` comes in the clock after the last `add` and moves the result to `y`, which holds it.
-// `start` sets `y` to `x`.
+// `begin_pass` loads the half for rounding into the accumulator. A coefficient comes one clock
+// before its sample, and its product three clocks after the sample; `add` marks the products that
+// are added. If `blank` is high with a coefficient, its sample counts as 0. `finish` comes in the
+// clock after the last `add` and moves the result to `y`, which holds it. `start` sets `y` to `x`.
 //
 // The result fits its word if the accumulator's bits from the word's sign bit up are equal.
 //

@@ -219,7 +219,7 @@ module xy_stage_y_motion_shaper_32x3 (
     assign of_position = channel == FIRST_CHANNEL;
     assign old = handover_active & !second;
 
-    // A product per clock, and none after a channel
+    // One product per clock, and a gap after a channel
     assign tap_number = {1'd0, tap} + 7'd1;
     assign table_ends = tap_number == banks_taps;
 
