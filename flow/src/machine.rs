@@ -88,6 +88,12 @@ impl Unreadable {
     }
 }
 
+/// The names of the axes of the plane in which paths and circles lie, such as `x and y`.
+pub(crate) fn plane_name(machine: &Machine) -> String {
+    let names: Vec<&str> = machine.axes.iter().take(2).map(|axis| axis.name.as_str()).collect();
+    names.join(" and ")
+}
+
 /// The text of a file, or why it cannot be read.
 fn text_of(path: &Path) -> Result<String, Unreadable> {
     let said = |error: std::io::Error| Unreadable::File(error.to_string());

@@ -1,5 +1,6 @@
 //! The distances of a path by kind of shaper: text, JSON and picture.
 
+use crate::machine::plane_name;
 use crate::plot::{Curve, Panel, label, time_axis};
 use crate::text::{Table, UnitDocument};
 use posicast_machine::contour::{ContourRow, CornerRules, FREQUENCY_FACTORS, FollowedContour, Survey};
@@ -93,13 +94,6 @@ impl Report<'_> {
     }
 
     pub(super) fn text(&self) -> String {
-        let axes: Vec<&str> = self
-            .machine
-            .axes
-            .iter()
-            .take(2)
-            .map(|axis| axis.name.as_str())
-            .collect();
         let rapids = if self.survey.rapid_length > 0.0 {
             format!(
                 " ({} of it rapids)",
@@ -112,7 +106,7 @@ impl Report<'_> {
             "{}: {} of axes {}, {}{rapids} in {}, {}\nlargest distance of the load from the path{}, its modes at\n",
             self.machine.name,
             self.name,
-            axes.join(" and "),
+            plane_name(self.machine),
             self.unit().show_round(self.survey.length, ""),
             show_seconds(self.survey.duration_s, 3),
             counted(self.survey.stops as u64, "stop"),

@@ -3,6 +3,7 @@
 use super::verdicts::equals_model;
 use crate::contour::PathOptions;
 use crate::failure::Failure;
+use crate::machine::plane_name;
 use crate::moves::Motion;
 use crate::observer::Observer;
 use crate::plot::{Curve, Panel, label, time_axis};
@@ -141,10 +142,9 @@ impl Contours<'_> {
             table.row([name.to_owned(), peak, rms].into_iter().chain(rapid));
         }
         let mut text = format!(
-            "\nContour {} of axes {} and {}: {} in {}, {}\n{}",
+            "\nContour {} of axes {}: {} in {}, {}\n{}",
             self.path.name,
-            machine.axes[0].name,
-            machine.axes[1].name,
+            plane_name(machine),
             unit.show_round(survey.length, ""),
             show_seconds(survey.duration_s, 3),
             counted(survey.stops as u64, "stop"),

@@ -2,6 +2,7 @@
 
 use super::contours::{ContourDocument, Contours};
 use super::{Circles, ClosedLoop};
+use crate::machine::plane_name;
 use crate::run::gain::{Gain, GainSource, Track};
 use crate::run::pictures::slowest_period_s;
 use crate::text::{Table, UnitDocument};
@@ -146,16 +147,9 @@ impl ClosedLoop<'_> {
         if let Ok(matched) = &circles.matched {
             row("delays made equal", matched);
         }
-        let names: Vec<&str> = self
-            .machine
-            .axes
-            .iter()
-            .take(2)
-            .map(|axis| axis.name.as_str())
-            .collect();
         let mut text = format!(
             "\nCircle of axes {}, radius {} at {}\n{}",
-            names.join(" and "),
+            plane_name(self.machine),
             unit.show_round(circles.circle.radius, ""),
             unit.show_round(circles.circle.speed, "/s"),
             table.text("  ")
