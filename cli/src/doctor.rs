@@ -7,6 +7,7 @@ use posicast_flow::Failure;
 use posicast_flow::style;
 use posicast_flow::text::Table;
 use posicast_system::tool::{self, Ended};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
@@ -54,7 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Result for a tool.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Finding {
     tool: &'static str,
     /// Path of the executable; `None` if there is none.
@@ -154,8 +155,9 @@ fn text(found: &[Finding]) -> String {
     text
 }
 
-#[derive(Serialize)]
-struct Document<'a> {
+/// `doctor --json`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
     /// Whether everything that `run` needs is installed.
     ready: bool,
     missing: &'a [&'a str],

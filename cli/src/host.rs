@@ -16,6 +16,8 @@ use posicast_machine::machine_file::Machine;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+pub(crate) use self::text::Document as StatusDocument;
+
 /// Operate a stage through its serial line, SPI or a network: show its state, move, record, load a shaper
 #[derive(clap::Args)]
 #[command(after_help = "\

@@ -13,9 +13,12 @@ use posicast_flow::text::Table;
 use posicast_papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+
+pub(crate) use beyond::Document as BeyondDocument;
 
 /// Compare the source papers' tables with ours, with a verdict per row
 #[derive(clap::Args)]
@@ -203,8 +206,8 @@ fn difference_text(difference: f64) -> String {
 }
 
 /// `reproduce --json`: the command line's contract.
-#[derive(Serialize)]
-struct Document<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
     papers: Vec<PaperDocument<'a>>,
     reproduced: usize,
     errata: usize,
@@ -212,13 +215,13 @@ struct Document<'a> {
     not_reproduced: usize,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct PaperDocument<'a> {
     name: &'static str,
     rows: Vec<RowDocument<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct RowDocument<'a> {
     item: &'a str,
     paper: ValueDocument<'a>,
@@ -227,7 +230,7 @@ struct RowDocument<'a> {
     reason: &'a str,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
 enum ValueDocument<'a> {
     Number(f64),

@@ -1,25 +1,32 @@
-//! `posicast schema`: writes the JSON Schema of the machine file, for editors, or that of a run's report, for programs.
+//! `posicast schema`: writes the JSON Schema of the machine file, for editors, or that of a document that a command prints, for programs.
 
 use crate::output;
-use posicast_flow::Failure;
-use posicast_flow::text::{json_text, shell_word, write_text};
+use crate::{doctor, host, reproduce};
+use clap::ValueEnum;
+use posicast_flow::text::{json_schema, json_text, shell_word, write_text};
+use posicast_flow::{Failure, compare, design, generate, identify, run, simulate, synth, verify};
 use posicast_machine::machine_file;
 use posicast_system::output::OutputFiles;
+use posicast_testbench::shard::Merged;
 use std::path::{Path, PathBuf};
 
-/// Print the JSON Schema of the machine file, for editors that complete and check TOML; with --report, that of report.json
+/// Print the JSON Schema of the machine file, for editors that complete and check TOML; with NAME, that of a JSON document
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   posicast schema -o posicast-machine.schema.json
-  posicast schema --report -o posicast-report.schema.json
+  posicast schema report -o posicast-report.schema.json
+  posicast schema design
 
 Machine files that `posicast new` writes name a file posicast-machine.schema.json beside them. Editors with Taplo (Even Better
 TOML) then complete keys, show what they mean and mark what is out of range. The schema has few rules about several keys
 together: `posicast design` checks everything.")]
 pub(crate) struct Args {
-    /// Write the schema of `report.json` and of `run --json` instead
-    #[arg(long)]
+    /// Whose schema
+    #[arg(value_enum, default_value_t = Name::MachineFile)]
+    name: Name,
+    /// The same as the name `report`
+    #[arg(long, conflicts_with = "name")]
     report: bool,
     /// File to write [default: standard output]
     #[arg(short, long, value_name = "FILE")]
@@ -27,6 +34,68 @@ pub(crate) struct Args {
     /// Replace a file that posicast did not write, or that was changed since
     #[arg(long, requires = "output")]
     force: bool,
+}
+
+/// What a schema describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Name {
+    /// The machine file
+    MachineFile,
+    /// `report.json` after `run`, and `run --json`
+    Report,
+    /// `design --json`, and `report.json` after `generate`
+    Design,
+    /// `design --compare --json`
+    Compare,
+    /// `generate --json`
+    Generate,
+    /// `simulate --json`, with --contour too
+    Simulate,
+    /// `verify --json`
+    Verify,
+    /// `diff --json`
+    Diff,
+    /// `campaign merge --json`
+    Campaign,
+    /// `synth --json`
+    Synth,
+    /// `identify --json`
+    Identify,
+    /// `host status --json`
+    HostStatus,
+    /// `reproduce --json`
+    Reproduce,
+    /// `reproduce --beyond --json`
+    Beyond,
+    /// `doctor --json`
+    Doctor,
+}
+
+impl Name {
+    /// The schema as text.
+    fn text(self) -> Result<String, Failure> {
+        let mut schema = match self {
+            Self::MachineFile => return json_text(&machine_file::schema()),
+            Self::Diff => return Ok(wavecmp::diff::JSON_SCHEMA.to_owned()),
+            Self::Report => json_schema::<run::Document>(),
+            Self::Design => json_schema::<design::Document>(),
+            Self::Compare => json_schema::<compare::Document>(),
+            Self::Generate => json_schema::<generate::Document>(),
+            Self::Simulate => json_schema::<simulate::Simulated>(),
+            Self::Verify => json_schema::<verify::Document>(),
+            Self::Campaign => json_schema::<Merged>(),
+            Self::Synth => json_schema::<synth::Document>(),
+            Self::Identify => json_schema::<identify::Document>(),
+            Self::HostStatus => json_schema::<host::StatusDocument>(),
+            Self::Reproduce => json_schema::<reproduce::Document<'_>>(),
+            Self::Beyond => json_schema::<reproduce::BeyondDocument<'_>>(),
+            Self::Doctor => json_schema::<doctor::Document<'_>>(),
+        };
+        let name = self.to_possible_value();
+        let title = name.map_or_else(String::new, |name| format!("posicast {}", name.get_name()));
+        schema.insert("title".to_owned(), title.into());
+        json_text(&schema)
+    }
 }
 
 /// Name of the schema's file in the first line of machine files that `posicast new` writes.
@@ -39,11 +108,8 @@ pub(crate) fn hint(machine: &Path) -> String {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let text = if args.report {
-        json_text(&posicast_flow::run::schema())?
-    } else {
-        json_text(&machine_file::schema())?
-    };
+    let name = if args.report { Name::Report } else { args.name };
+    let text = name.text()?;
     let Some(path) = &args.output else {
         return output::print(&text);
     };

@@ -16,6 +16,7 @@ use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
 use posicast_testbench::linked_stage::LinkedStageBlock;
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -79,7 +80,7 @@ pub(crate) fn add(
 }
 
 /// The files that were generated, and their folder.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     name: String,
     folder: String,

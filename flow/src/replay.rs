@@ -10,6 +10,7 @@ use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::replay::{Exercised, Extent, Replay, is_timing};
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::WaveError;
@@ -48,7 +49,7 @@ impl Recording {
 }
 
 /// Result of a replay, beside the rows of the report.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Replayed {
     file: PathBuf,
     /// Number of clocks that were replayed, and of clocks in which recorded outputs were compared.

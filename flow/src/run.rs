@@ -48,7 +48,7 @@ use std::path::PathBuf;
 use waves::Waves;
 
 pub use options::{Detail, Options};
-pub use report::{Document, schema};
+pub use report::Document;
 
 /// Runs all steps: design, Verilog, simulation, comparison, estimate, verdict.
 ///

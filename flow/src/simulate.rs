@@ -20,6 +20,7 @@ use posicast_machine::simulation::{AxisSimulation, simulate_axis};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::{Heading, Recorder, Signal};
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::diff::SAMPLE_CLOCK;
@@ -42,7 +43,7 @@ pub struct Options {
 }
 
 /// The result of a simulation.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Simulated {
     /// Result of a command, as a waveform.
@@ -177,7 +178,7 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
 }
 
 /// `simulate --json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     name: String,
     samples: usize,
@@ -185,7 +186,7 @@ pub struct Document {
     wave: String,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct AxisDocument {
     name: String,
     #[serde(flatten)]

@@ -16,6 +16,7 @@ use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::package;
 use posicast_synth::yosys::{BlockEstimate, Estimate, Excess, Family, Resources, Yosys, YosysError};
 use posicast_system::scratch::Folder;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -104,7 +105,7 @@ fn lacks(estimate: &Estimate) -> Vec<String> {
 }
 
 /// The estimate of the top, and of each component, which is not included in a sum.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     #[serde(flatten)]
     estimate: Estimate,

@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use anstream::adapter::strip_str;
 use posicast_machine::unit::AxisUnit;
 use posicast_system::output::write_text as write_whole;
-use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use std::path::Path;
 
@@ -33,6 +34,13 @@ pub fn json_text(document: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(document)
         .map(|text| text + "\n")
         .map_err(Failure::because)
+}
+
+/// The JSON Schema of a document as it is printed.
+#[must_use]
+pub fn json_schema<D: JsonSchema>() -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<D>()
 }
 
 /// Number of names of a list that a text shows; JSON has all.

@@ -1,9 +1,10 @@
 //! The programs that posicast calls.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Purpose of a tool.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Need {
     /// For `posicast run`, with all of its checks.

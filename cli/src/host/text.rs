@@ -7,16 +7,17 @@ use posicast_flow::Failure;
 use posicast_flow::text::{Table, UnitDocument};
 use posicast_host::{AxisStatus, causes};
 use posicast_machine::machine_file::{AxisSection, Machine};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// `host status --json`: positions in m or rad.
-#[derive(Serialize)]
-struct Document {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document {
     machine: String,
     axes: Vec<AxisDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct AxisDocument {
     name: String,
     #[serde(flatten)]

@@ -8,6 +8,7 @@ use posicast_flow::Observer;
 use posicast_flow::text::Table;
 use posicast_papers::{BeyondRow, beyond};
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Designs all examples, and prints the table or the JSON document.
@@ -66,12 +67,13 @@ fn text(rows: &[BeyondRow]) -> String {
     )
 }
 
-#[derive(Serialize)]
-struct Document<'a> {
+/// `reproduce --beyond --json`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
     beyond: Vec<RowDocument<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct RowDocument<'a> {
     item: &'a str,
     paper: Option<DurationDocument<'a>>,
@@ -82,7 +84,7 @@ struct RowDocument<'a> {
     proven: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct DurationDocument<'a> {
     duration_s: f64,
     name: &'a str,

@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, posicast};
+use crate::cli::support::{assert_fits_schema, example, json, posicast};
 use std::path::Path;
 use std::process::Output;
 
@@ -52,6 +52,7 @@ fn cli_campaign_gives_the_same_whatever_the_number_of_shards() {
     }
     assert_eq!(merged(&parts).stdout, whole.stdout);
     let document = json(&whole.stdout);
+    assert_fits_schema("campaign", &document);
     // The figures of a ZVD shaper are those of `design`.
     let design = json(
         &posicast()

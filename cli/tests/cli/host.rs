@@ -1,6 +1,6 @@
 //! `posicast host`, on the model of the stage with its machine behind a pseudo-terminal.
 
-use super::support::{example, generate, json, posicast, scratch};
+use super::support::{assert_fits_schema, example, generate, json, posicast, scratch};
 use posicast_blocks::linked_stage::address_limit;
 use posicast_closed_loop::linked_bench::LinkedBench;
 use posicast_closed_loop::stage_bench::StageBench;
@@ -92,7 +92,9 @@ fn cli_host_shows_moves_records_and_loads() {
     let run = |words: &[&str]| host(&served.port, &file, words);
     let (code, said, error) = run(&["status", "--json"]);
     assert_eq!(code, Some(0), "{error}");
-    let x = &json(said.as_bytes())["axes"][0];
+    let document = json(said.as_bytes());
+    assert_fits_schema("host-status", &document);
+    let x = &document["axes"][0];
     assert_eq!(
         (x["state"].as_str(), x["causes"][0].as_str()),
         (Some("OFF"), Some("pwm-tripped"))

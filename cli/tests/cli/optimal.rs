@@ -1,6 +1,6 @@
 //! `optimal` and its certificates from the command line, and all the way to RTL.
 
-use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{assert_fits_schema, example, json, one_axis, posicast, scratch};
 use predicates::prelude::*;
 
 #[test]
@@ -137,6 +137,7 @@ fn cli_reproduce_beyond_sets_the_shortest_beside_the_papers() {
     let mut reproduce = posicast();
     reproduce.args(["reproduce", "--beyond", "--json"]);
     let document = json(&reproduce.assert().success().get_output().stdout);
+    assert_fits_schema("beyond", &document);
     let rows = document["beyond"].as_array().unwrap();
     // Computed independently: one mode by insensitivity, four modes by uncertainty, the robot's two.
     let expected = [

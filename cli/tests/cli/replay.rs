@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, posicast};
+use crate::cli::support::{assert_fits_schema, example, json, posicast};
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::{Direction, Port};
 use posicast_testbench::blocks::Block;
@@ -104,6 +104,7 @@ fn cli_replay_of_our_own_lock_step_matches() {
     let output = replay(&path, &["--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     let document = json(&output.stdout);
+    assert_fits_schema("verify", &document);
     assert_eq!(document["result"], "match");
     assert_eq!(document["stimulus"]["clocks"], CLOCKS);
     assert!(document["stimulus"]["compared"].as_u64().unwrap() > CLOCKS - 10);

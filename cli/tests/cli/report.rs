@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{assert_fits_schema, example, json, one_axis, posicast, scratch};
 use scraper::{Html, Selector};
 use serde_json::Value;
 use std::path::Path;
@@ -15,20 +15,6 @@ struct Report {
     page: String,
     document: Value,
     status: Option<i32>,
-}
-
-/// Lets a schema refuse the keys that it does not name.
-fn close(schema: &mut Value) {
-    match schema {
-        Value::Object(of) => {
-            if of.contains_key("properties") {
-                of.entry("additionalProperties").or_insert(Value::Bool(false));
-            }
-            of.values_mut().for_each(close);
-        }
-        Value::Array(of) => of.iter_mut().for_each(close),
-        _ => {}
-    }
 }
 
 impl Report {
@@ -49,15 +35,7 @@ impl Report {
 
     /// Checks all that holds for every page, and returns it parsed.
     fn checked(&self) -> Html {
-        let mut schema = serde_json::from_str(include_str!("../../../docs/report.schema.json")).unwrap();
-        close(&mut schema);
-        let schema = jsonschema::validator_for(&schema).unwrap();
-        let errors: Vec<String> = schema
-            .iter_errors(&self.document)
-            .map(|error| format!("{}: {error}", error.instance_path()))
-            .collect();
-        assert!(errors.is_empty(), "{errors:#?}");
-
+        assert_fits_schema("report", &self.document);
         assert!(self.page.len() < LARGEST, "{} bytes", self.page.len());
         let html = Html::parse_document(&self.page);
         assert!(html.errors.is_empty(), "{:?}", html.errors);

@@ -4,6 +4,7 @@
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -58,8 +59,34 @@ pub(crate) fn one_axis(shaper: &str, mode: &str) -> String {
 }
 
 /// Parses the JSON document on standard output.
-pub(crate) fn json(output: &[u8]) -> serde_json::Value {
+pub(crate) fn json(output: &[u8]) -> Value {
     serde_json::from_slice(output).unwrap()
+}
+
+/// Checks a document against the schema of this name, which must name every key of it.
+pub(crate) fn assert_fits_schema(name: &str, document: &Value) {
+    let mut schema = json(&posicast().args(["schema", name]).output().unwrap().stdout);
+    close(&mut schema);
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> = schema
+        .iter_errors(document)
+        .map(|error| format!("{}: {error}", error.instance_path()))
+        .collect();
+    assert!(errors.is_empty(), "{name}: {errors:#?}");
+}
+
+/// Lets a schema refuse the keys that it does not name.
+fn close(schema: &mut Value) {
+    match schema {
+        Value::Object(of) => {
+            if of.contains_key("properties") {
+                of.entry("additionalProperties").or_insert(Value::Bool(false));
+            }
+            of.values_mut().for_each(close);
+        }
+        Value::Array(of) => of.iter_mut().for_each(close),
+        _ => {}
+    }
 }
 
 /// The crates of the model.

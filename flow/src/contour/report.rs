@@ -8,6 +8,7 @@ use posicast_machine::machine_file::Machine;
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::unit::show_seconds;
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -21,7 +22,7 @@ pub(super) struct Report<'a> {
 }
 
 /// `simulate --contour --json`. Lengths are in m.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     name: String,
     #[serde(flatten)]
@@ -38,7 +39,7 @@ pub struct Document {
     shapers: Vec<RowDocument>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct RowDocument {
     kind: String,
     in_file: bool,

@@ -3,10 +3,11 @@
 use super::findings::Findings;
 use posicast_identify::recommend::Recommendation;
 use posicast_identify::{FoundMode, Interval};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The modes of a log, and shapers for them.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     modes: Vec<ModeDocument>,
     recommended: Vec<RecommendedDocument>,
@@ -19,7 +20,7 @@ pub struct Document {
     remarks: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ModeDocument {
     frequency_hz: f64,
     damping: f64,
@@ -33,7 +34,7 @@ struct ModeDocument {
     damping_interval: [f64; 2],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct RecommendedDocument {
     kind: &'static str,
     duration_s: f64,

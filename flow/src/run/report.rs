@@ -23,8 +23,7 @@ use posicast_shaper::impulse::ImpulseSequence;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
-use schemars::generate::SchemaSettings;
-use schemars::{JsonSchema, Schema};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wavecmp::diff::Comparison;
@@ -257,13 +256,6 @@ impl RunReport<'_> {
     }
 }
 
-/// Returns the JSON Schema of [`Document`].
-#[must_use]
-pub fn schema() -> Schema {
-    let settings = SchemaSettings::draft2020_12().for_serialize();
-    settings.into_generator().into_root_schema_for::<Document>()
-}
-
 /// The result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -276,7 +268,6 @@ enum RunVerdict {
 
 /// `report.json` after `posicast run`, and `posicast run --json`. Times are in s, lengths in m, angles in rad.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "posicast report")]
 pub struct Document {
     /// Raised when a key is removed or gets another meaning; new keys do not raise it.
     #[schemars(extend("const" = REPORT_VERSION))]

@@ -5,6 +5,7 @@ use crate::observer::Observer;
 use crate::text::Table;
 use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::yosys::{Yosys, YosysError};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -15,14 +16,14 @@ pub(super) struct Clocks<'a> {
 }
 
 /// The highest clock frequency of a top.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ClockEstimate {
     pub(super) name: String,
     pub(super) mhz: f64,
 }
 
 /// `clocks` of `synth --json`.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ClockEstimates {
     pub(super) tops: Vec<ClockEstimate>,
     method: String,

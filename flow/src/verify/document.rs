@@ -6,10 +6,11 @@ use crate::replay::Replayed;
 use crate::style;
 use crate::text::{Table, few};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The result of a comparison.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     #[serde(flatten)]
     pub(super) report: LockstepReport,

@@ -12,6 +12,7 @@ use super::dependence::{self, Dependent};
 use crate::failure::Failure;
 use posicast_hdl::emit::Module;
 use posicast_synth::package::Contents;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,7 @@ const TAPS: &str = "machine_taps";
 const SHOWN: usize = 12;
 
 /// A place where the folder differs from what posicast generates from the machine file in it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub(super) struct Difference {
     /// Path of the file in the folder.
     file: String,
@@ -34,7 +35,7 @@ pub(super) struct Difference {
     what: String,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 enum Kind {
     /// The machine file was edited after the Verilog was generated.
@@ -61,7 +62,7 @@ impl Kind {
 }
 
 /// The findings about a folder.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Serialize, JsonSchema)]
 pub(super) struct Folder {
     /// Number of Verilog files that are, byte for byte, what posicast generates.
     identical: usize,

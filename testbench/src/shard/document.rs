@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use posicast_system::output;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -13,7 +14,7 @@ use super::Shard;
 pub const FORMAT: u32 = 1;
 
 /// Settings that all shards of a campaign share.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CampaignHead {
     /// Version of the files' format, [`FORMAT`].
     pub posicast_campaign: u32,
@@ -32,7 +33,7 @@ pub struct CampaignHead {
 }
 
 /// A machine file, by its contents.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct MachineFileHash {
     /// Name of the machine.
     pub name: String,
@@ -41,7 +42,7 @@ pub struct MachineFileHash {
 }
 
 /// Result of a unit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UnitResult {
     /// Number of the unit, from 0.
     pub unit: u64,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -62,7 +63,7 @@ pub enum MergeError {
 }
 
 /// A whole campaign.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Merged {
     /// The campaign.
     #[serde(flatten)]
@@ -76,7 +77,7 @@ pub struct Merged {
 }
 
 /// The units of one name.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MergedRow {
     /// The name.
     pub name: String,
