@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return Ok(());
     };
     match comparison.result {
-        DiffVerdict::Incomparable => Err(Failure::from(miette::miette!(help = INCOMPARABLE, "{line}"))),
+        DiffVerdict::Incomparable => Err(Failure::input(line).with_help(INCOMPARABLE)),
         _ => Err(Failure::Check(line)),
     }
 }

@@ -1,7 +1,9 @@
 //! Reports on standard error why a command stopped, and determines its exit status.
 
 use anstream::stderr;
-use posicast_flow::{Failure, style, with_causes};
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use posicast_flow::{Failure, Problem, style};
+use std::error::Error;
 use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -13,8 +15,10 @@ pub(crate) fn report(failure: &Failure) -> ExitCode {
     // If standard error cannot be written, nothing sensible is left to do.
     let _ = match failure {
         Failure::Check(line) => writeln!(stderr(), "posicast: {}", style::bad(line)),
-        Failure::Input(report) | Failure::MissingTool(report) if err.is_terminal() => writeln!(err, "{report:?}"),
-        Failure::Input(report) | Failure::MissingTool(report) => write_plain(&mut stderr(), report),
+        Failure::Input(problem) | Failure::MissingTool(problem) if err.is_terminal() => {
+            writeln!(err, "{:?}", drawn(problem))
+        }
+        Failure::Input(problem) | Failure::MissingTool(problem) => write_plain(&mut stderr(), problem),
     };
     ExitCode::from(match failure {
         Failure::Check(_) => 1,
@@ -26,18 +30,134 @@ pub(crate) fn report(failure: &Failure) -> ExitCode {
 /// Beginning of a line that describes an error.
 const ERROR: &str = "error:";
 
-fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result<()> {
-    writeln!(err, "{} {}", style::message(ERROR), with_causes(report))?;
-    write_help(err, report.help())?;
-    for related in report.related().into_iter().flatten() {
-        writeln!(err, "{} {related}", style::message(ERROR))?;
-        write_help(err, related.help())?;
-    }
-    Ok(())
+/// Writes the error in one line, and each line of its help as a separate line, for which a log can be searched.
+fn write_plain(err: &mut impl Write, problem: &Problem) -> std::io::Result<()> {
+    writeln!(err, "{} {problem}", style::message(ERROR))?;
+    let help = problem.help.as_deref().unwrap_or_default();
+    help.lines().try_for_each(|line| writeln!(err, "help: {line}"))
 }
 
-/// Writes each line of a help text as a separate line, for which a log can be searched.
-fn write_help(err: &mut impl Write, help: Option<Box<dyn fmt::Display + '_>>) -> std::io::Result<()> {
-    let help = help.map_or_else(String::new, |help| help.to_string());
-    help.lines().try_for_each(|line| writeln!(err, "help: {line}"))
+/// The problem as miette draws it for a terminal.
+fn drawn(problem: &Problem) -> miette::Report {
+    let causes = problem.causes.iter().rev();
+    let cause = causes.fold(None, |below, message| {
+        Some(Box::new(Cause {
+            message: message.clone(),
+            below,
+        }))
+    });
+    miette::Report::new(Drawn {
+        text: problem
+            .excerpt
+            .as_ref()
+            .map(|excerpt| NamedSource::new(&excerpt.file, excerpt.text.clone())),
+        problem: problem.clone(),
+        cause,
+    })
+}
+
+/// A problem with what miette asks for.
+#[derive(Debug)]
+struct Drawn {
+    problem: Problem,
+    cause: Option<Box<Cause>>,
+    text: Option<NamedSource<String>>,
+}
+
+/// A cause, and the one below it.
+#[derive(Debug)]
+struct Cause {
+    message: String,
+    below: Option<Box<Cause>>,
+}
+
+impl fmt::Display for Drawn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.problem.message)
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl Error for Drawn {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.cause.as_deref().map(|cause| cause as _)
+    }
+}
+
+impl Error for Cause {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.below.as_deref().map(|cause| cause as _)
+    }
+}
+
+impl Diagnostic for Drawn {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.problem.help.as_ref().map(|help| Box::new(help) as _)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.text.as_ref().map(|text| text as _)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let places = self.problem.excerpt.as_ref()?.places.iter();
+        let labels = places.map(|(span, what)| LabeledSpan::new_with_span(Some((*what).to_owned()), span.clone()));
+        Some(Box::new(labels))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use posicast_flow::Excerpt;
+
+    /// What a terminal without colours and a pipe show of a problem.
+    fn shown(problem: &Problem) -> (String, String) {
+        let mut terminal = String::new();
+        let handler = miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
+        handler.render_report(&mut terminal, drawn(problem).as_ref()).unwrap();
+        let mut pipe = Vec::new();
+        write_plain(&mut pipe, problem).unwrap();
+        (terminal, String::from_utf8(pipe).unwrap())
+    }
+
+    #[test]
+    fn a_terminal_shows_the_place_and_a_pipe_plain_lines() {
+        let problem = Problem {
+            message: "m.toml:2: damping: found 7".to_owned(),
+            help: Some("percent?\nelse below 1".to_owned()),
+            excerpt: Some(Box::new(Excerpt {
+                file: "m.toml".to_owned(),
+                text: "frequency_hz = 5\ndamping = 7\n".to_owned(),
+                places: vec![(27..28, "out of range")],
+            })),
+            ..Problem::default()
+        };
+        let (terminal, pipe) = shown(&problem);
+        for part in ["[m.toml:2:11]", "2 │ damping = 7", "out of range", "help: percent?"] {
+            assert!(terminal.contains(part), "{part} in {terminal}");
+        }
+        let end = ": damping: found 7\nhelp: percent?\nhelp: else below 1\n";
+        assert!(pipe.contains("error:") && pipe.ends_with(end), "{pipe}");
+    }
+
+    #[test]
+    fn causes_are_listed_on_a_terminal_and_joined_in_a_pipe() {
+        let problem = Problem {
+            message: "the log cannot be read: line 3".to_owned(),
+            causes: vec!["line 3".to_owned(), "no number".to_owned()],
+            ..Problem::default()
+        };
+        let (terminal, pipe) = shown(&problem);
+        assert!(
+            terminal.contains("├─▶ line 3") && terminal.contains("╰─▶ no number"),
+            "{terminal}"
+        );
+        assert!(pipe.ends_with(" the log cannot be read: line 3: no number\n"), "{pipe}");
+    }
 }

@@ -154,11 +154,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .map_err(|error| machine::of_hardware(&error, path))?;
     let way = Way::of((&args.port, line.baud), &machine, path)?;
     let stage = stage.ok_or_else(|| {
-        miette::miette!(
-            help = "give every axis encoder, PWM, drive and controller",
-            "{}: the machine has no stage",
-            path.display()
-        )
+        Failure::input(format!("{}: the machine has no stage", path.display()))
+            .with_help("give every axis encoder, PWM, drive and controller")
     })?;
     if let Action::Trace(trace) = &args.action {
         // Report errors of the file before the machine moves.
@@ -192,7 +189,7 @@ fn open<'m>(
     let link = way.open(options).map_err(|error| failure(error.into()))?;
     HostedStage::open(link, machine, stage).map_err(|error| match error {
         HostError::Link(LinkError::NoReply { .. } | LinkError::Line(_)) => {
-            Failure::MissingTool(miette::miette!(help = way.remedy(), "{way}: {error}"))
+            Failure::missing_tool(format!("{way}: {error}")).with_help(way.remedy())
         }
         error => failure(error),
     })
@@ -219,10 +216,7 @@ fn axis_of(machine: &Machine, name: &str, path: &Path) -> Result<usize, Failure>
     let found = machine.axes.iter().position(|axis| axis.name == name);
     found.ok_or_else(|| {
         let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
-        Failure::from(miette::miette!(
-            help = format!("the axes are {}", names.join(", ")),
-            "{}: no axis `{name}`",
-            path.display()
-        ))
+        Failure::input(format!("{}: no axis `{name}`", path.display()))
+            .with_help(format!("the axes are {}", names.join(", ")))
     })
 }

@@ -32,11 +32,7 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<(), Failure> {
     let shown = command.get_subcommands().filter(|one| !one.is_hide_set());
     let pages: Vec<clap::Command> = std::iter::once(&command).chain(shown).cloned().collect();
     std::fs::create_dir_all(&args.folder).map_err(|error| {
-        Failure::from(miette::miette!(
-            help = "name a folder that can be created",
-            "DIR {}: {error}",
-            args.folder.display()
-        ))
+        Failure::input(format!("DIR {}: {error}", args.folder.display())).with_help("name a folder that can be created")
     })?;
     let mut outputs = OutputFiles::new(args.force);
     let mut written = Vec::new();

@@ -103,11 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 /// nobody has changed it.
 fn claim(path: &Path, force: bool) -> Result<OutputFiles, Failure> {
     let there = |found: &str, help: &str| {
-        Failure::from(miette::miette!(
-            help = help,
-            "FILE {}: {found}; it is not replaced",
-            path.display()
-        ))
+        Failure::input(format!("FILE {}: {found}; it is not replaced", path.display())).with_help(help)
     };
     if path.is_file() && !force {
         let help = "name another file; --force replaces it if posicast wrote it and nobody has changed it since";

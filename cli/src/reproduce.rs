@@ -273,11 +273,8 @@ impl<'a> Document<'a> {
 
 fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::from(miette::miette!(
-            help = "name a folder that you may write to",
-            "cannot make the folder `{}`: {error}",
-            folder.display()
-        ))
+        Failure::input(format!("cannot make the folder `{}`: {error}", folder.display()))
+            .with_help("name a folder that you may write to")
     })?;
     let panels: Vec<Panel> = figures
         .into_iter()

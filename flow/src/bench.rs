@@ -89,10 +89,12 @@ impl Simulator {
     /// A Verilator that `$VERILATOR` names, or that fails to run, gives an error instead of counting as missing.
     pub(crate) fn choose(asked: Option<Self>, observer: &dyn Observer) -> Result<Self, Failure> {
         if IS_STATIC && asked == Some(Self::Verilator) {
-            return Err(Failure::from(miette::miette!(
-                help = "use --simulator icarus, or a posicast that is linked dynamically: cargo install --path cli --locked",
-                "this posicast is linked statically and cannot load the library that Verilator builds"
-            )));
+            return Err(Failure::input(
+                "this posicast is linked statically and cannot load the library that Verilator builds",
+            )
+            .with_help(
+                "use --simulator icarus, or a posicast that is linked dynamically: cargo install --path cli --locked",
+            ));
         }
         if let Some(simulator) = asked {
             return Ok(simulator);
@@ -269,7 +271,7 @@ pub(crate) fn compare_all(
         }
     }
     match failed {
-        Some(error) => Err(failure(error).with_help(&until_then(&reports, benches.len()))),
+        Some(error) => Err(failure(error).with_help(until_then(&reports, benches.len()))),
         None => Ok(LockstepReport::joined(reports)),
     }
 }

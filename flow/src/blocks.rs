@@ -111,7 +111,7 @@ fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
 /// A shaper for motion with the first axis's table, at the first size that holds it.
 fn motion_shaper(shapers: &[AxisShaper]) -> Result<ShaperConfig, Failure> {
     let Some(first) = shapers.first() else {
-        return Err(Failure::from(miette::miette!("the machine has no axis")));
+        return Err(Failure::input("the machine has no axis"));
     };
     let bits = first.config.word_bits().max(*MOTION_WORD_BITS.start());
     let plain = ShaperConfig::new(bits, first.config.table().clone()).map_err(Failure::because)?;

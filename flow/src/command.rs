@@ -73,7 +73,7 @@ pub(crate) fn on_the_ports(machine: &Machine, words: &Words) -> Words {
 }
 
 fn axis_failure(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
-    Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
+    Failure::input(format!("command of axis `{}`: {error}", axis.name))
 }
 
 /// The points of a command file.
@@ -188,14 +188,11 @@ fn check_columns(
 /// either `position` for all axes or one per axis.
 fn read(machine: &Machine, path: &Path, observer: &dyn Observer) -> Result<Points, Failure> {
     let refused = |found: String| {
-        Failure::from(miette::miette!(
-            help = "give a CSV file with the heading `time_s,position`, or `time_s` and one column per axis",
-            "command file `{}`: {found}",
-            path.display()
-        ))
+        Failure::input(format!("command file `{}`: {found}", path.display()))
+            .with_help("give a CSV file with the heading `time_s,position`, or `time_s` and one column per axis")
     };
-    let file = File::open(path)
-        .map_err(|error| Failure::from(miette::miette!("command file `{}`: {error}", path.display())))?;
+    let file =
+        File::open(path).map_err(|error| Failure::input(format!("command file `{}`: {error}", path.display())))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(Allowance::new(file, LINE_BYTES));

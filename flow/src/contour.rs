@@ -109,10 +109,10 @@ impl PathOptions {
             ("--stop-angle", self.corners.stop_angle_deg.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {
-            Some((option, _)) if self.contour.is_none() => Err(Failure::from(miette::miette!(
-                help = format!("leave out {option}, or give a path with --contour"),
-                "{option}: this option belongs to --contour"
-            ))),
+            Some((option, _)) if self.contour.is_none() => {
+                Err(Failure::input(format!("{option}: this option belongs to --contour"))
+                    .with_help(format!("leave out {option}, or give a path with --contour")))
+            }
             _ => Ok(()),
         }
     }
@@ -360,13 +360,13 @@ fn in_file(path: &Path, error: &ContourError) -> Failure {
         other => format!("{}: {other}", path.display()),
     };
     match error.remedy() {
-        Some(remedy) => Failure::from(miette::miette!(help = remedy.to_owned(), "{place}")),
-        None => Failure::from(miette::miette!("{place}")),
+        Some(remedy) => Failure::input(place).with_help(remedy),
+        None => Failure::input(place),
     }
 }
 
 fn refused(option: &str, found: &str, remedy: &str) -> Failure {
-    Failure::from(miette::miette!(help = remedy.to_owned(), "{option}: {found}"))
+    Failure::input(format!("{option}: {found}")).with_help(remedy)
 }
 
 /// Drives the path with each kind of shaper, and reports the distances.

@@ -175,10 +175,8 @@ impl<'a> Selection<'a> {
             .find(|name| machine.axes.iter().all(|axis| axis.name != **name))
         {
             let known: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
-            return Err(Failure::from(miette::miette!(
-                help = format!("the machine file has: {}", known.join(", ")),
-                "--axis {missing}: there is no such axis"
-            )));
+            return Err(Failure::input(format!("--axis {missing}: there is no such axis"))
+                .with_help(format!("the machine file has: {}", known.join(", "))));
         }
         let axes = machine.axes.iter().zip(&design.axes);
         let wanted = axes.filter(|(axis, _)| names.is_empty() || names.contains(&axis.name));

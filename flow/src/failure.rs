@@ -1,29 +1,95 @@
 //! Why a step did not end well.
 
-use miette::Diagnostic;
+use posicast_machine::machine_file::SpecError;
 use std::fmt;
+use std::ops::Range;
 use std::path::Path;
 
 /// Why a step stopped. The kind of failure determines the exit status of a command.
-#[derive(Debug)]
+#[derive(Debug, Clone, thiserror::Error)]
 pub enum Failure {
     /// A check failed: exit status 1. This is the closing line; the result has the details.
+    #[error("{0}")]
     Check(String),
     /// Bad usage or input: exit status 2.
-    Input(miette::Report),
+    #[error("{0}")]
+    Input(Problem),
     /// A required tool is missing: exit status 3.
-    MissingTool(miette::Report),
+    #[error("{0}")]
+    MissingTool(Problem),
+}
+
+/// What is wrong, and what to do about it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Problem {
+    /// What was found, and what is allowed.
+    pub message: String,
+    /// Its causes, the deepest last. Some repeat a part of the message.
+    pub causes: Vec<String>,
+    /// The remedy, in one line or several.
+    pub help: Option<String>,
+    /// The places of a text that the message is about.
+    pub excerpt: Option<Box<Excerpt>>,
+}
+
+/// Places of a text, to be shown in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excerpt {
+    /// Name of the file with the text.
+    pub file: String,
+    /// The whole text.
+    pub text: String,
+    /// Bytes of the text, and what is wrong there in two or three words.
+    pub places: Vec<(Range<usize>, &'static str)>,
+}
+
+/// The message with its causes, in one line.
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = self.message.clone();
+        for cause in &self.causes {
+            // Some error texts already contain their causes, which must not be repeated.
+            if !line.contains(cause) {
+                line.push_str(": ");
+                line.push_str(cause);
+            }
+        }
+        f.write_str(&line)
+    }
+}
+
+impl Problem {
+    /// A problem that its message describes.
+    fn new(message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            ..Self::default()
+        }
+    }
+
+    /// The same problem with another line of help; message and causes become one message.
+    fn with_help(self, line: &str) -> Self {
+        let help = self.help.as_ref().map_or_else(String::new, |help| format!("{help}\n"));
+        Self {
+            help: Some(help + line),
+            ..Self::new(self.to_string())
+        }
+    }
 }
 
 impl Failure {
-    /// Bad input, described by any error.
-    pub fn input(error: impl Diagnostic + Send + Sync + 'static) -> Self {
-        Self::Input(miette::Report::new(error))
+    /// Bad input, described by this message.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input(Problem::new(message))
     }
 
-    /// Bad input, described by a library's error without diagnostics.
-    pub fn because(error: impl std::error::Error + Send + Sync + 'static) -> Self {
-        Self::Input(miette::Report::from_err(error))
+    /// Bad input, described by any error and its causes.
+    pub fn because(error: impl std::error::Error) -> Self {
+        let causes = std::iter::successors(error.source(), |cause| cause.source());
+        Self::Input(Problem {
+            causes: causes.map(ToString::to_string).collect(),
+            ..Problem::new(error.to_string())
+        })
     }
 
     /// An error of the system while `doing` something with a file or folder. The error itself does not name the file.
@@ -32,77 +98,67 @@ impl Failure {
         move |error| {
             let error = error.to_string();
             if error.contains(&path) {
-                Self::from(miette::miette!("{error}"))
+                Self::input(error)
             } else {
-                Self::from(miette::miette!("{path}: cannot {doing}: {error}"))
+                Self::input(format!("{path}: cannot {doing}: {error}"))
             }
         }
     }
 
-    /// Puts the name of the file before the message of the failure.
+    /// A missing tool.
+    pub fn missing_tool(message: impl fmt::Display) -> Self {
+        Self::MissingTool(Problem::new(message.to_string()))
+    }
+
+    /// Puts the name of the file before the message of bad input.
     #[must_use]
     pub fn in_file(self, path: &Path) -> Self {
         match self {
-            Self::Input(report) => {
-                let help = report.help().map(|help| help.to_string());
-                let message = format!("{}: {}", path.display(), with_causes(&report));
-                Self::Input(match help {
-                    Some(help) => miette::miette!(help = help, "{message}"),
-                    None => miette::miette!("{message}"),
+            Self::Input(problem) => {
+                let message = format!("{}: {problem}", path.display());
+                Self::Input(Problem {
+                    help: problem.help,
+                    ..Problem::new(message)
                 })
             }
             other => other,
         }
     }
 
-    /// The failure with a help text, if it has none.
+    /// The failure with a help text, if it is bad input without one.
     #[must_use]
     pub fn or_help(self, help: &str) -> Self {
         match self {
-            Self::Input(report) if report.help().is_none() => {
-                Self::Input(miette::miette!(help = help, "{}", with_causes(&report)))
-            }
+            Self::Input(problem) if problem.help.is_none() => Self::Input(problem.with_help(help)),
             other => other,
         }
     }
 
-    /// The failure with another line of help.
+    /// The failure with another line of help. A failed check has none.
     #[must_use]
-    pub fn with_help(self, line: &str) -> Self {
-        let add = |report: miette::Report| {
-            let help = report.help().map_or_else(String::new, |help| format!("{help}\n"));
-            miette::miette!(help = help + line, "{}", with_causes(&report))
-        };
+    pub fn with_help(self, line: impl AsRef<str>) -> Self {
         match self {
-            Self::Input(report) => Self::Input(add(report)),
-            Self::MissingTool(report) => Self::MissingTool(add(report)),
+            Self::Input(problem) => Self::Input(problem.with_help(line.as_ref())),
+            Self::MissingTool(problem) => Self::MissingTool(problem.with_help(line.as_ref())),
             check @ Self::Check(_) => check,
         }
     }
-
-    /// A missing tool.
-    pub fn missing_tool(message: impl fmt::Display) -> Self {
-        Self::MissingTool(miette::miette!("{message}"))
-    }
 }
 
-/// Returns a message with those of its causes.
-#[must_use]
-pub fn with_causes(report: &miette::Report) -> String {
-    let mut message = report.to_string();
-    for cause in report.chain().skip(1) {
-        let cause = cause.to_string();
-        // Some error texts already contain their causes, which must not be repeated.
-        if !message.contains(&cause) {
-            message.push_str(": ");
-            message.push_str(&cause);
-        }
-    }
-    message
-}
-
-impl From<miette::Report> for Failure {
-    fn from(report: miette::Report) -> Self {
-        Self::Input(report)
+/// A machine file that was refused, with the places of its problems.
+impl From<SpecError> for Failure {
+    fn from(error: SpecError) -> Self {
+        let places = error.problems().iter();
+        Self::Input(Problem {
+            help: Some(error.help()),
+            excerpt: Some(Box::new(Excerpt {
+                file: error.file_name().to_owned(),
+                text: error.text().to_owned(),
+                places: places
+                    .map(|problem| (problem.span.clone(), problem.cause.label()))
+                    .collect(),
+            })),
+            ..Problem::new(error.to_string())
+        })
     }
 }

@@ -16,10 +16,10 @@ pub enum ResultForm {
 /// Refuses a document if a file that the step writes is the standard output.
 pub(crate) fn one_document(outputs: &OutputFiles, form: ResultForm) -> Result<(), Failure> {
     if form == ResultForm::Document && outputs.take_standard_output() {
-        Err(Failure::from(miette::miette!(
-            help = "name a file for it, or leave out --json",
-            "--json: standard output takes one document, and a file is written there already"
-        )))
+        Err(
+            Failure::input("--json: standard output takes one document, and a file is written there already")
+                .with_help("name a file for it, or leave out --json"),
+        )
     } else {
         Ok(())
     }

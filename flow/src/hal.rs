@@ -26,13 +26,13 @@ pub(crate) fn add(
         observer.say("note: without a stage, hal/ has the tap tables of posicast_shaper only");
     }
     if !(servo_hz.is_finite() && servo_hz > 0.0) {
-        return Err(Failure::from(miette::miette!(
-            help = "give a rate in Hz, such as 1000",
-            "--servo-hz: found {servo_hz}; allowed: above 0"
-        )));
+        return Err(
+            Failure::input(format!("--servo-hz: found {servo_hz}; allowed: above 0"))
+                .with_help("give a rate in Hz, such as 1000"),
+        );
     }
     let of_machine = HalMachine::of(machine, design, servo_hz, has_stage)
-        .map_err(|error| Failure::from(miette::miette!("--servo-hz: {error}")))?;
+        .map_err(|error| Failure::input(format!("--servo-hz: {error}")))?;
     let files = hal::files(&of_machine).map_err(|error| at_key(path, error.axis, NAME_KEY, &error))?;
     for file in files {
         package

@@ -23,7 +23,6 @@ pub(crate) fn in_folder(path: &Path) -> PathBuf {
 /// Name and contents of the copy of a file; `None` if there is none.
 pub(crate) fn copy(path: &Path) -> Option<Result<(String, Vec<u8>), Failure>> {
     let name = name(path)?;
-    let unreadable =
-        |error: std::io::Error| Failure::from(miette::miette!("cannot read `{}`: {error}", path.display()));
+    let unreadable = |error: std::io::Error| Failure::input(format!("cannot read `{}`: {error}", path.display()));
     Some(std::fs::read(path).map(|bytes| (name, bytes)).map_err(unreadable))
 }

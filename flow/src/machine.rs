@@ -29,18 +29,16 @@ pub struct MachineFile {
 pub fn read(path: &Path) -> Result<MachineFile, Failure> {
     let name = path.display().to_string();
     let unreadable = |found: &dyn std::fmt::Display| {
-        Failure::from(miette::miette!(
-            help = "name a machine file, such as examples/xy-stage.toml; `posicast new FILE` writes one",
-            "cannot read the machine file `{name}`: {found}"
-        ))
+        Failure::input(format!("cannot read the machine file `{name}`: {found}"))
+            .with_help("name a machine file, such as examples/xy-stage.toml; `posicast new FILE` writes one")
     };
     let text = match text_of(path) {
         Ok(text) => text,
         Err(Unreadable::Encoding { line, found }) => {
-            return Err(Failure::from(miette::miette!(
-                help = "save the file as UTF-8: in the editor's menu, or `iconv -f LATIN1 -t UTF-8 OLD > NEW`",
-                "{name}:{line}: found {found}; allowed: text in UTF-8"
-            )));
+            return Err(
+                Failure::input(format!("{name}:{line}: found {found}; allowed: text in UTF-8"))
+                    .with_help("save the file as UTF-8: in the editor's menu, or `iconv -f LATIN1 -t UTF-8 OLD > NEW`"),
+            );
         }
         Err(found) => return Err(unreadable(&found)),
     };
@@ -139,7 +137,7 @@ fn parse_beside(path: &Path, text: &str, read: &RefCell<Vec<(String, String)>>) 
         }
         Ok(text)
     };
-    machine_file::parse_beside(&path.display().to_string(), text, &beside).map_err(Failure::input)
+    machine_file::parse_beside(&path.display().to_string(), text, &beside).map_err(Failure::from)
 }
 
 /// The device family of the machine file's target.
@@ -153,7 +151,7 @@ pub fn family(machine: &Machine) -> Result<Family, Failure> {
 /// Bad input at a key of the machine file at `path`, or of the machine file in the folder `path`; `axis` counts from
 /// 0.
 pub fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Display) -> Failure {
-    Failure::from(miette::miette!("{}", place(path, axis, key, reason)))
+    Failure::input(place(path, axis, key, reason))
 }
 
 /// `:LINE` of a key, to follow the file's name.
@@ -182,7 +180,7 @@ pub fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> Failure
         remedy,
     }) = blame(machine, error)
     else {
-        return Failure::from(miette::miette!("{}: {error}", file.display()));
+        return Failure::input(format!("{}: {error}", file.display()));
     };
     let indexed = mode.map_or_else(
         || key.clone(),
@@ -195,19 +193,19 @@ pub fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> Failure
     let reason = reason.strip_prefix(&format!("axis {name}: ")).unwrap_or(&reason);
     let line = line_of(&file, axis, &indexed);
     let message = format!("{}{line}: {key} of axis {name}{mode}: {reason}", file.display());
-    Failure::from(match remedy {
-        Some(remedy) => miette::miette!(help = remedy, "{message}"),
-        None => miette::miette!("{message}"),
-    })
+    match remedy {
+        Some(remedy) => Failure::input(message).with_help(remedy),
+        None => Failure::input(message),
+    }
 }
 
 /// The failure of hardware of the machine file at `path`, or of that in the folder `path`.
 pub fn of_hardware(error: &HardwareError, path: &Path) -> Failure {
     let message = place(path, error.axis, &error.key, error);
-    Failure::from(match &error.help {
-        Some(help) => miette::miette!(help = help.clone(), "{message}"),
-        None => miette::miette!("{message}"),
-    })
+    match &error.help {
+        Some(help) => Failure::input(message).with_help(help),
+        None => Failure::input(message),
+    }
 }
 
 /// A message with the file, the line and the key of the machine file that it is about.

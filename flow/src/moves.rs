@@ -24,7 +24,7 @@ impl Motion {
     /// The speed along a contour, in the unit of the first axis per second.
     pub(crate) fn along_contour(&self) -> Result<Option<f64>, Failure> {
         let refused =
-            |option: &str, found: &str| Failure::from(miette::miette!(help = "leave it out", "{option}: {found}"));
+            |option: &str, found: &str| Failure::input(format!("{option}: {found}")).with_help("leave it out");
         match (&self.distance, &self.speed) {
             (Some(_), _) => Err(refused("--move", "the contour defines where the axes go")),
             (None, Some(PerAxis::Named(_))) => Err(refused(
@@ -54,10 +54,10 @@ impl Motion {
                 continue;
             };
             if self.command.is_some() && !closed_loop {
-                return Err(Failure::from(miette::miette!(
-                    help = format!("leave out {option}, or --command"),
-                    "{option}: the command file defines how the axes move"
-                )));
+                return Err(
+                    Failure::input(format!("{option}: the command file defines how the axes move"))
+                        .with_help(format!("leave out {option}, or --command")),
+                );
             }
             figures.only_for(machine, option)?;
         }
@@ -70,7 +70,7 @@ impl Motion {
                     AxisMoveError::Still { .. } | AxisMoveError::TooFast { .. } => "--speed",
                     _ => "--move",
                 };
-                Failure::from(miette::miette!("{option}, axis `{}`: {error}", axis.name))
+                Failure::input(format!("{option}, axis `{}`: {error}", axis.name))
             })
         })
         .collect()
@@ -127,10 +127,8 @@ impl PerAxis {
         let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
         match figures.iter().find(|(name, _)| !names.contains(&name.as_str())) {
             None => Ok(()),
-            Some((name, _)) => Err(Failure::from(miette::miette!(
-                help = format!("the axes are {}", names.join(", ")),
-                "{option}: no axis `{name}`"
-            ))),
+            Some((name, _)) => Err(Failure::input(format!("{option}: no axis `{name}`"))
+                .with_help(format!("the axes are {}", names.join(", ")))),
         }
     }
 }

@@ -212,13 +212,13 @@ pub fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
         .extension()
         .map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {
-        Some(other) if OTHER_FORMATS.contains(&other) => Err(Failure::from(miette::miette!(
-            help = format!(
-                "name it `{}`; `rsvg-convert` and any browser make other formats of it",
-                path.with_extension("svg").display()
-            ),
+        Some(other) if OTHER_FORMATS.contains(&other) => Err(Failure::input(format!(
             "{option} `{}`: pictures are written as SVG, not as {other}",
             path.display()
+        ))
+        .with_help(format!(
+            "name it `{}`; `rsvg-convert` and any browser make other formats of it",
+            path.with_extension("svg").display()
         ))),
         _ => Ok(()),
     }
@@ -227,7 +227,7 @@ pub fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
 /// Draws the panels below each other as one SVG document.
 pub fn svg(panels: &[Panel]) -> Result<String, Failure> {
     let mut text = String::new();
-    draw(panels, &mut text).map_err(|error| Failure::from(miette::miette!("cannot draw the plot: {error}")))?;
+    draw(panels, &mut text).map_err(|error| Failure::input(format!("cannot draw the plot: {error}")))?;
     Ok(text)
 }
 

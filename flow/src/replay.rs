@@ -158,13 +158,13 @@ pub(crate) fn run(
     let extent = replay.extent(most_clocks).map_err(bench::failure)?;
     let Extent { clocks, compared, .. } = extent;
     if compared == 0 {
-        return Err(Failure::from(miette::miette!(
-            help = "--clock NAME names another clock, --reset none compares from the first edge",
+        return Err(Failure::input(format!(
             "`{}` has {}, but no edge after the release of its reset: there is nothing to compare ({})",
             file.display(),
             counted(clocks, "clock edge"),
             replay.notes().join(", ")
-        )));
+        ))
+        .with_help("--clock NAME names another clock, --reset none compares from the first edge"));
     }
     let needs: Vec<Needs<'_>> = simulators
         .iter()
@@ -226,16 +226,16 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
     };
     let inputs = replay.missing_inputs().into_iter().chain(replay.missing_outputs());
     let some = inputs.take(6).collect::<Vec<_>>().join(", ");
-    Err(Failure::from(miette::miette!(
-        help = format!(
-            "match the signals of the file with those of the block, by --map SCOPE=TOP or --map SIGNAL=TOP.PORT, or choose another block \
-             with --block; its top is `{}`",
-            block.top()
-        ),
+    let lacking = format!(
         "`{}` has {what} of {} {}: its replay would compare nothing. Not found: {some}, …",
         file.display(),
         block.name(),
         block.instance()
+    );
+    Err(Failure::input(lacking).with_help(format!(
+        "say with --map SCOPE=TOP or --map SIGNAL=TOP.PORT which signals of the file are the block's, or choose another \
+         block with --block; its top is `{}`",
+        block.top()
     )))
 }
 
@@ -271,20 +271,24 @@ fn choose<'a>(
         let names = best
             .iter()
             .map(|(block, ..)| format!("{} {} (top {})", block.name(), block.instance(), block.top()));
-        return Err(Failure::from(miette::miette!(
-            help = "choose with --block NAME, or map the recorded scope to a top: --map SCOPE=TOP",
+        return Err(Failure::input(format!(
             "`{}` fits several blocks equally well: {}",
             file.display(),
             names.collect::<Vec<_>>().join("; ")
-        )));
+        ))
+        .with_help("choose with --block NAME, or map the recorded scope to a top: --map SCOPE=TOP"));
     }
     match (best.pop(), refused) {
         (Some(chosen), _) => Ok(chosen),
         (None, Some(error)) => Err(bench::failure(error)),
-        (None, None) => Err(Failure::from(miette::miette!(
-            help = "match a scope or signal A of the file with B of the block by --map A=B, or choose the block with --block",
-            "`{}` has no signal in common with the ports of any block",
-            file.display()
-        ))),
+        (None, None) => {
+            let strange = format!(
+                "`{}` has no signal in common with the ports of any block",
+                file.display()
+            );
+            Err(Failure::input(strange).with_help(
+                "match a scope or signal A of the file with B of the block by --map A=B, or choose the block with --block",
+            ))
+        }
     }
 }

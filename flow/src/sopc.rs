@@ -35,11 +35,11 @@ pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Fai
         let device = board.family().device().name;
         let allowed = board.family();
         let message = format!("{board} has an {device}, of family {allowed}, and target.family is {family}");
-        return Err(Failure::from(miette::miette!(
-            help = format!("write `family = \"{allowed}\"`, or leave out `board` if the device is on another"),
-            "{}",
-            machine::place(path, 0, BOARD_KEY, message)
-        )));
+        return Err(
+            Failure::input(machine::place(path, 0, BOARD_KEY, message)).with_help(format!(
+                "write `family = \"{allowed}\"`, or leave out `board` if the device is on another"
+            )),
+        );
     }
     Ok(Some(board))
 }

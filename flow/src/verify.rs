@@ -56,11 +56,11 @@ pub const DEFAULT_SEED: u64 = 1;
 pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Document>, Failure> {
     let mut job = Job::new(&options.source, &options.blocks, options.edited, observer)?;
     if job.folder.is_some() && options.simulator == Some(Simulator::Rusthdl) {
-        return Err(Failure::from(miette::miette!(
-            help = "use --simulator verilator or icarus, or verify the machine file",
+        return Err(Failure::input(format!(
             "`--simulator rusthdl` runs the RustHDL description: it cannot run the Verilog in `{}`",
             options.source.display()
-        )));
+        ))
+        .with_help("use --simulator verilator or icarus, or verify the machine file"));
     }
     let simulator = if job.folder.is_some() {
         options.simulator.unwrap_or(Simulator::Verilator)
@@ -241,10 +241,10 @@ impl Job {
             .map(|(block, _)| format!("{} {}", block.name(), block.instance()));
         let names = names.collect::<Vec<_>>().join("; ");
         if kept.is_empty() {
-            return Err(Failure::from(miette::miette!(
-                help = "use --simulator verilator or icarus",
+            return Err(Failure::input(format!(
                 "`--simulator rusthdl` runs RustHDL descriptions, and these are written from register maps: {names}"
-            )));
+            ))
+            .with_help("use --simulator verilator or icarus"));
         }
         if !left_out.is_empty() {
             observer.say(&format!(
@@ -345,11 +345,11 @@ fn choose(blocks: Vec<Box<dyn Block>>, names: &[String], source: &Path) -> Resul
     if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
         let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
-        return Err(Failure::from(miette::miette!(
-            help = format!("{near}choose from: {}", known.join(", ")),
+        return Err(Failure::input(format!(
             "--block {unknown}: `{}` has no block of this name",
             source.display()
-        )));
+        ))
+        .with_help(format!("{near}choose from: {}", known.join(", "))));
     }
     let wanted = |name: &str| names.is_empty() || names.iter().any(|chosen| chosen == name);
     Ok(blocks.into_iter().filter(|block| wanted(block.name())).collect())

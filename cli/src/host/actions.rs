@@ -35,12 +35,11 @@ pub(super) fn move_axes<'m>(
     let moves: Vec<HostMove> = moves.collect();
     let nothing = moves.iter().find(|of| !of.distance.is_finite() || of.distance == 0.0);
     if let Some(nothing) = nothing {
-        return Err(Failure::from(miette::miette!(
-            help = "give a distance other than 0, or leave the axis out",
+        return Err(Failure::input(format!(
             "move: {} for axis {} is not a distance",
-            nothing.distance,
-            machine.axes[nothing.axis].name
-        )));
+            nothing.distance, machine.axes[nothing.axis].name
+        ))
+        .with_help("give a distance other than 0, or leave the axis out"));
     }
     let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
     let mut stage = open()?;
@@ -73,11 +72,10 @@ fn is_vcd(path: &Path) -> Result<bool, Failure> {
     match path.extension().and_then(|end| end.to_str()) {
         Some("csv") => Ok(false),
         Some("vcd") => Ok(true),
-        _ => Err(Failure::from(miette::miette!(
-            help = "give it a name that ends in .csv or .vcd",
-            "-o {}: a trace is written as CSV or VCD",
-            path.display()
-        ))),
+        _ => Err(
+            Failure::input(format!("-o {}: a trace is written as CSV or VCD", path.display()))
+                .with_help("give it a name that ends in .csv or .vcd"),
+        ),
     }
 }
 
@@ -90,12 +88,10 @@ pub(super) fn trace<'m>(
     let axis = axis_of(machine, &args.axis, path)?;
     let section = &machine.axes[axis];
     if section.trace.is_none() {
-        return Err(Failure::from(miette::miette!(
-            help = "add [axis.trace] to the axis, and generate and build the stage anew",
-            "{}: axis {} has no trace memory",
-            path.display(),
-            args.axis
-        )));
+        return Err(
+            Failure::input(format!("{}: axis {} has no trace memory", path.display(), args.axis))
+                .with_help("add [axis.trace] to the axis, and generate and build the stage anew"),
+        );
     }
     let on_scale = section.scale.is_some();
     let names: &[&str] = match (args.shake, on_scale) {
@@ -150,12 +146,12 @@ fn shake(machine: &Machine, axis: usize, (counts, bit_s): (f64, f64), path: &Pat
     }
     let ticks = bit_s * machine.clock.sample_hz;
     if !(0.5..=65_535.0).contains(&ticks) {
-        return Err(Failure::from(miette::miette!(
-            help = "a fifth of the mode's period is a good choice",
+        return Err(Failure::input(format!(
             "--bit: found {bit_s} s; allowed: {} s to {} s",
             1.0 / machine.clock.sample_hz,
             65_535.0 / machine.clock.sample_hz
-        )));
+        ))
+        .with_help("a fifth of the mode's period is a good choice"));
     }
     Ok(Shake {
         amplitude_counts: counts,

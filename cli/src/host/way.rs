@@ -151,5 +151,5 @@ impl std::fmt::Display for Way<'_> {
 
 /// Refuses arguments that do not suit the machine.
 fn refused(help: &str, text: String) -> Failure {
-    Failure::from(miette::miette!(help = help.to_owned(), "{text}"))
+    Failure::input(text).with_help(help)
 }

@@ -45,7 +45,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         draft = self.change(&draft, "Name of the machine", &name, |draft, answer| {
             Ok(draft.with(At::Top, "name", &quoted(answer)))
         })?;
-        let axes = draft.machine().map_err(Failure::input)?.axes;
+        let axes = draft.machine().map_err(Failure::from)?.axes;
         for (index, axis) in axes.iter().enumerate() {
             let units: &[(&str, f64)] = if kind.turns() { &ANGLES } else { &LENGTHS };
             let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
@@ -115,10 +115,10 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         let read = (&mut self.answers).take(ANSWER_BYTES).read_until(b'\n', &mut line);
         if read.map_err(Failure::of_file(Path::new("standard input"), "read it"))? == 0 {
             self.say("\n")?;
-            return Err(Failure::from(miette::miette!(
-                help = "answer all questions (Enter takes the value in brackets), or name the kind: --gantry, --printer, --joint or --crane",
-                "the answers ended before the last question; no file was written"
-            )));
+            let ended = Failure::input("the answers ended before the last question; no file was written");
+            return Err(ended.with_help(
+                "answer all questions (Enter takes the value in brackets), or name the kind: --gantry, --printer, --joint or --crane",
+            ));
         }
         match String::from_utf8_lossy(&line).trim() {
             "" => Ok(default.to_owned()),
@@ -157,7 +157,7 @@ fn fits(draft: &MachineDraft) -> Result<(), String> {
     let path = Path::new("answer");
     let built = DesignReport::new(&machine, path).and_then(|report| report.check_shapers());
     built.map_err(|failure| match failure {
-        Failure::Input(report) | Failure::MissingTool(report) => report.to_string(),
+        Failure::Input(problem) | Failure::MissingTool(problem) => problem.message,
         Failure::Check(line) => line,
     })
 }

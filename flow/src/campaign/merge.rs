@@ -32,10 +32,8 @@ const SHOWN_DIGITS: usize = 12;
 fn merge_failure(error: MergeError) -> Failure {
     match error {
         MergeError::Missing { .. } => Failure::Check(format!("no verdict: {error}; run them, then merge again")),
-        MergeError::Empty(_) => Failure::from(miette::miette!(
-            help = "name the folder into which the shards were written with --json",
-            "{error}"
-        )),
+        MergeError::Empty(_) => Failure::input(error.to_string())
+            .with_help("name the folder into which the shards were written with --json"),
         _ => Failure::because(error),
     }
 }

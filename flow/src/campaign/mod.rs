@@ -152,10 +152,10 @@ fn only_blocks<T>(list: &mut Vec<T>, wanted: &[String], name: impl Fn(&T) -> &st
     names.dedup();
     if let Some(unknown) = wanted.iter().find(|wanted| !names.contains(&wanted.as_str())) {
         let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
-        return Err(Failure::from(miette::miette!(
-            help = format!("{near}choose from: {}", names.join(", ")),
-            "--block {unknown}: this campaign has no block of this name"
-        )));
+        return Err(
+            Failure::input(format!("--block {unknown}: this campaign has no block of this name"))
+                .with_help(format!("{near}choose from: {}", names.join(", "))),
+        );
     }
     list.retain(|of| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name(of)));
     Ok(())
@@ -186,11 +186,10 @@ fn run_part(
     let units = campaign.count();
     if let Some(unit) = part.unit {
         if unit >= units {
-            return Err(Failure::from(miette::miette!(
-                help = "units are counted from 0",
-                "--unit {unit}: this campaign has {}",
-                counted(units, "unit")
-            )));
+            return Err(
+                Failure::input(format!("--unit {unit}: this campaign has {}", counted(units, "unit")))
+                    .with_help("units are counted from 0"),
+            );
         }
         return Ok(finish(&done(campaign, [unit], part.seed, observer)?, part, ""));
     }
@@ -241,11 +240,8 @@ fn finished(head: &CampaignHead, part: &CampaignPart) -> Result<Option<Vec<UnitR
     } else {
         format!("has shard {}", document.shard)
     };
-    Err(Failure::from(miette::miette!(
-        help = "name another file, or another folder for each campaign; nothing was changed",
-        "--json: `{}` {what}",
-        path.display()
-    )))
+    Err(Failure::input(format!("--json: `{}` {what}", path.display()))
+        .with_help("name another file, or another folder for each campaign; nothing was changed"))
 }
 
 /// Runs these units one after the other, because each shard has one core.

@@ -126,11 +126,10 @@ impl Sweep<'_> {
         let mut document = self.document.clone();
         for (path, value) in self.values(unit) {
             set(document.as_item_mut(), path, value).map_err(|what| {
-                Failure::from(miette::miette!(
-                    help = "write the tables' names with points between them; an axis by its name, a mode by its number from 1",
-                    "--set {path}: {what} in `{}`",
-                    self.path.display()
-                ))
+                let found = Failure::input(format!("--set {path}: {what} in `{}`", self.path.display()));
+                found.with_help(
+                    "write the tables' names with points between them; an axis by its name, a mode by its number from 1",
+                )
             })?;
         }
         Ok(document.to_string())
@@ -202,7 +201,7 @@ impl Units for Sweep<'_> {
     fn run(&self, unit: u64, _seed: u64) -> Result<UnitOutcome, Failure> {
         let text = self.text(unit)?;
         let figures = match machine::parse(self.path, &text).and_then(|machine| self.figures(&machine)) {
-            Err(Failure::Input(report)) => Map::from_iter([(REFUSED.to_owned(), Value::from(report.to_string()))]),
+            Err(Failure::Input(problem)) => Map::from_iter([(REFUSED.to_owned(), Value::from(problem.message))]),
             other => other?,
         };
         Ok(UnitOutcome { figures, failure: None })

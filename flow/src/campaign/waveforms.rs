@@ -28,11 +28,8 @@ struct Waveforms {
 pub(super) fn of(options: &WaveformOptions) -> Result<impl Units + use<>, Failure> {
     let read = |path: &PathBuf| {
         std::fs::read(path).map_err(|cause| {
-            Failure::from(miette::miette!(
-                help = "name recordings that exist, VCD or FST",
-                "{}: cannot read it: {cause}",
-                path.display()
-            ))
+            Failure::input(format!("{}: cannot read it: {cause}", path.display()))
+                .with_help("name recordings that exist, VCD or FST")
         })
     };
     Ok(Waveforms {

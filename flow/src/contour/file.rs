@@ -82,9 +82,6 @@ impl Read for Counted {
 }
 
 pub(super) fn unreadable(path: &Path, found: &str) -> Failure {
-    Failure::from(miette::miette!(
-        help = "name `circle`, `square`, a CSV file with rows x,y, or a G-code file (.gcode, .nc, .ngc)",
-        "--contour: cannot read `{}`: {found}",
-        path.display()
-    ))
+    Failure::input(format!("--contour: cannot read `{}`: {found}", path.display()))
+        .with_help("name `circle`, `square`, a CSV file with rows x,y, or a G-code file (.gcode, .nc, .ngc)")
 }

@@ -38,10 +38,10 @@ pub(super) fn of_axes(report: &DesignReport<'_>, observer: &dyn Observer) -> Res
     }
     drop(progress);
     if fronts.is_empty() {
-        return Err(Failure::from(miette::miette!(
-            help = "set kind = \"optimal\" in [axis.shaper]; --compare shows the other kinds side by side",
-            "--front: no axis of the machine has an optimal shaper, whose duration could be chosen"
-        )));
+        return Err(Failure::input(
+            "--front: no axis of the machine has an optimal shaper, whose duration could be chosen",
+        )
+        .with_help("set kind = \"optimal\" in [axis.shaper]; --compare shows the other kinds side by side"));
     }
     Ok(fronts)
 }

@@ -27,14 +27,11 @@ pub(super) fn of_axes<'a>(report: &DesignReport<'a>, distance: &PerAxis) -> Resu
             continue;
         };
         let given = AxisMove::new(axis, &report.machine.fixed_point, Some(figure), None);
-        let given = given.map_err(|error| Failure::from(miette::miette!("--move, axis `{}`: {error}", axis.name)))?;
+        let given = given.map_err(|error| Failure::input(format!("--move, axis `{}`: {error}", axis.name)))?;
         let taps = tap_impulses(&tables.table, report.design.sample_hz);
         let found = compare_move(axis, &taps, given.distance, given.velocity).ok_or_else(|| {
-            Failure::from(miette::miette!(
-                help = "check the axis's limits",
-                "--move, axis `{}`: no move within the limits",
-                axis.name
-            ))
+            Failure::input(format!("--move, axis `{}`: no move within the limits", axis.name))
+                .with_help("check the axis's limits")
         })?;
         moves.push(MoveReport {
             axis,

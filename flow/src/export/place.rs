@@ -113,10 +113,7 @@ fn owned(what: &str, format: ExportFormat) -> Failure {
     } else {
         "name another file, or remove that one yourself".to_owned()
     };
-    Failure::from(miette::miette!(
-        help = remedy,
-        "{what}; an export never replaces such a file"
-    ))
+    Failure::input(format!("{what}; an export never replaces such a file")).with_help(remedy)
 }
 
 /// Refuses to write behind Klipper's own block, if the shell appends the standard output to a configuration.

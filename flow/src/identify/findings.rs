@@ -198,7 +198,7 @@ fn ring_down_failure(error: RingDownError) -> Failure {
         RingDownError::Directions(..) => "--direction names the direction of the sensor along the axis",
         RingDownError::Log(_) => "log from before the stop until the machine is at rest",
     };
-    Failure::from(miette::miette!(help = help, "{error}"))
+    Failure::input(error.to_string()).with_help(help)
 }
 
 fn identify_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findings, Failure> {
@@ -215,7 +215,7 @@ fn identify_sweep(log: &AccelerationLog, given: Option<&Sweep>) -> Result<Findin
             SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",
             SweepError::Short { .. } | SweepError::Empty => "log the whole resonance test, from rest to rest",
         };
-        Failure::from(miette::miette!(help = help, "{error}"))
+        Failure::input(error.to_string()).with_help(help)
     })?;
     let sweep = found.sweep;
     // The sensor's gain is 1 at low frequencies, so the log determines an acceleration that was not described.
@@ -355,7 +355,7 @@ fn identify_motor(log: &DriveLog) -> Result<Findings, Failure> {
 
 fn position_failure(error: PositionError) -> Failure {
     let help = "log longer, from before the command moves until the machine is at rest";
-    Failure::from(miette::miette!(help = help, "{error}"))
+    Failure::input(error.to_string()).with_help(help)
 }
 
 fn remarks(found: &FoundInSweep, swept: &Sweep) -> Vec<String> {

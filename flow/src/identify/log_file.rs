@@ -23,11 +23,8 @@ const LARGEST_LOG_BYTES: u64 = 1 << 31;
 /// Reads the log in a file.
 pub(super) fn read(path: &Path, options: &LogOptions) -> Result<Reading, Failure> {
     let unreadable = |found: &dyn std::fmt::Display| {
-        Failure::from(miette::miette!(
-            help = "name a log in CSV, with a header such as time,accel_x,accel_y,accel_z or time,command,response",
-            "cannot read the log `{}`: {found}",
-            path.display()
-        ))
+        Failure::input(format!("cannot read the log `{}`: {found}", path.display()))
+            .with_help("name a log in CSV, with a header such as time,accel_x,accel_y,accel_z or time,command,response")
     };
     let file = File::open(path).map_err(|error| unreadable(&error))?;
     let mut text = Vec::new();
@@ -50,10 +47,10 @@ pub(super) fn read(path: &Path, options: &LogOptions) -> Result<Reading, Failure
 /// Keeps only one direction of an accelerometer.
 fn only(reading: &mut Reading, direction: &str) -> Result<(), Failure> {
     let Log::Acceleration(log) = &mut reading.log else {
-        return Err(Failure::from(miette::miette!(
-            help = "leave --direction out, or name the columns with --columns",
-            "--direction is for the log of an accelerometer, and this log is not one"
-        )));
+        return Err(
+            Failure::input("--direction is for the log of an accelerometer, and this log is not one")
+                .with_help("leave --direction out, or name the columns with --columns"),
+        );
     };
     let names: Vec<String> = log.directions.iter().map(|(name, _)| name.clone()).collect();
     let wanted = direction.to_lowercase();
@@ -61,10 +58,10 @@ fn only(reading: &mut Reading, direction: &str) -> Result<(), Failure> {
         .retain(|(name, _)| *name == wanted || axis_of(name).as_deref() == Some(&wanted));
     match log.directions.len() {
         1 => Ok(()),
-        _ => Err(Failure::from(miette::miette!(
-            help = format!("the directions of the log are {}", names.join(", ")),
-            "--direction {direction}: the log has no such direction"
-        ))),
+        _ => Err(
+            Failure::input(format!("--direction {direction}: the log has no such direction"))
+                .with_help(format!("the directions of the log are {}", names.join(", "))),
+        ),
     }
 }
 

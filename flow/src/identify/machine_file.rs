@@ -84,10 +84,9 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
         let what = wanted.map_or("the log does not name its axis".into(), |wanted| {
             format!("no axis \"{wanted}\"")
         });
-        return Err(Failure::from(miette::miette!(
-            help = format!("--axis names the axis that the log is of: {}", names.join(", ")),
-            "{}: {what}",
-            path.display()
+        return Err(Failure::input(format!("{}: {what}", path.display())).with_help(format!(
+            "--axis names the axis that the log is of: {}",
+            names.join(", ")
         )));
     };
     fill(target, findings);
@@ -128,17 +127,14 @@ fn without_place(table: &mut Table) {
 
 fn parsed(text: &str, path: &Path) -> Result<DocumentMut, Failure> {
     text.parse()
-        .map_err(|error: toml_edit::TomlError| Failure::from(miette::miette!("{}: {error}", path.display())))
+        .map_err(|error: toml_edit::TomlError| Failure::input(format!("{}: {error}", path.display())))
 }
 
 fn axes<'a>(document: &'a mut DocumentMut, path: &Path) -> Result<&'a mut ArrayOfTables, Failure> {
     let axes = document.get_mut("axis").and_then(Item::as_array_of_tables_mut);
     axes.ok_or_else(|| {
-        Failure::from(miette::miette!(
-            help = "write each axis as a table of its own: [[axis]]",
-            "{}: the axes are not written as tables",
-            path.display()
-        ))
+        Failure::input(format!("{}: the axes are not written as tables", path.display()))
+            .with_help("write each axis as a table of its own: [[axis]]")
     })
 }
 

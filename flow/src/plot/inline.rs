@@ -119,7 +119,7 @@ pub(crate) fn inline(panel: &Panel) -> Picture {
         root.present()?;
         Ok(())
     })();
-    drawn.map_err(|error| Failure::from(miette::miette!("cannot draw the plot: {error}")))?;
+    drawn.map_err(|error| Failure::input(format!("cannot draw the plot: {error}")))?;
     let window = Window {
         edges,
         x: frame.x,

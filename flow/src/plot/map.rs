@@ -109,7 +109,7 @@ pub(crate) fn inline_map(map: &Map) -> Picture {
         root.present()?;
         Ok(())
     })();
-    drawn.map_err(|error| Failure::from(miette::miette!("cannot draw the map: {error}")))?;
+    drawn.map_err(|error| Failure::input(format!("cannot draw the map: {error}")))?;
     Ok(Inline {
         title: map.title.clone(),
         svg: grouped(&svg),

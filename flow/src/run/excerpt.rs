@@ -33,8 +33,7 @@ pub(super) struct Excerpt {
 
 /// Reads the waves of a sample, whose strobe is the one with this number; `None` if the file ends before.
 pub(super) fn read(path: &Path, sample: usize) -> Result<Option<Excerpt>, Failure> {
-    let unreadable =
-        |error: std::io::Error| Failure::from(miette::miette!("cannot read `{}`: {error}", path.display()));
+    let unreadable = |error: std::io::Error| Failure::input(format!("cannot read `{}`: {error}", path.display()));
     let mut parser = Parser::new(BufReader::new(File::open(path).map_err(unreadable)?));
     let header = parser.parse_header().map_err(unreadable)?;
     let mut names: Vec<(IdCode, String, u32)> = Vec::new();

@@ -35,7 +35,7 @@ impl<'a> Clocks<'a> {
         let known = || std::iter::once(machine).chain(components.iter().map(String::as_str));
         if let Some(unknown) = tops.iter().find(|top| !known().any(|known| known == *top)) {
             let list = known().collect::<Vec<_>>().join(", ");
-            return Err(Failure::Input(miette::miette!(
+            return Err(Failure::input(format!(
                 "--clock {unknown}: there is no such top module; there are {list}"
             )));
         }

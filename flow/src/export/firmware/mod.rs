@@ -43,10 +43,11 @@ impl Wish<'_> {
             (None, true) => "--closest",
             (None, false) => return Ok(()),
         };
-        Err(Failure::from(miette::miette!(
-            help = format!("leave out {option}, or take --to klipper, kalico, marlin, marlin-ft or reprapfirmware"),
-            "{option}: this form of the output is not for a firmware"
-        )))
+        Err(
+            Failure::input(format!("{option}: this form of the output is not for a firmware")).with_help(format!(
+                "leave out {option}, or take --to klipper, kalico, marlin, marlin-ft or reprapfirmware"
+            )),
+        )
     }
 }
 
@@ -99,15 +100,16 @@ impl Refusal {
 
     fn failure(&self, axis: &str, more: &[String]) -> Failure {
         let help: Vec<&str> = more.iter().map(String::as_str).chain([self.remedy.as_str()]).collect();
-        Failure::from(miette::miette!(help = help.join("\n"), "axis `{axis}`: {}", self.why))
+        Failure::input(format!("axis `{axis}`: {}", self.why)).with_help(help.join("\n"))
     }
 }
 
 /// Refuses an unknown version, and lists the known ones.
 fn of_version(firmware: Firmware, error: &VersionError) -> Failure {
-    Failure::from(miette::miette!(
-        help = format!("versions of {}: {}", firmware.name(), firmware.versions()),
-        "--firmware-version: {error}"
+    Failure::input(format!("--firmware-version: {error}")).with_help(format!(
+        "versions of {}: {}",
+        firmware.name(),
+        firmware.versions()
     ))
 }
 

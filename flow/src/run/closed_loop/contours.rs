@@ -47,10 +47,10 @@ pub(crate) fn contour(
         return Ok(None);
     };
     if !has_stage {
-        return Err(Failure::from(miette::miette!(
-            help = "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md explains the requirements of a stage",
-            "--contour: the machine has no stage, whose closed loop would drive it"
-        )));
+        let lacking = Failure::input("--contour: the machine has no stage, whose closed loop would drive it");
+        return Err(lacking.with_help(
+            "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md explains the requirements of a stage",
+        ));
     }
     let contour = path.planned(machine, motion.along_contour()?, observer)?;
     Ok(Some(NamedContour {

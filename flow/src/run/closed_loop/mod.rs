@@ -160,12 +160,12 @@ impl<'a> Job<'a> {
                 Done::ContourCompared(result) => contour_compared = Some(result),
             }
         }
-        let lost = || Failure::from(miette::miette!("a run of the closed loop is missing"));
+        let lost = || Failure::input("a run of the closed loop is missing");
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
         let mut contoured = contours.into_iter();
         let contours = match (self.contour, &apart) {
             (None, _) => None,
-            (Some(_), Err(reason)) => return Err(Failure::from(miette::miette!("--contour: {reason}"))),
+            (Some(_), Err(reason)) => return Err(Failure::input(format!("--contour: {reason}"))),
             (Some(path), Ok(_)) => Some(Contours {
                 path,
                 compared: contour_compared,
@@ -283,10 +283,8 @@ pub(crate) fn circle(
     has_stage: bool,
 ) -> Result<Result<Circle, String>, Failure> {
     let refused = |reason: String| {
-        Failure::from(miette::miette!(
-            help = "leave out --radius, or give one that fits",
-            "--radius: no circle is driven: {reason}"
-        ))
+        Failure::input(format!("--radius: no circle is driven: {reason}"))
+            .with_help("leave out --radius, or give one that fits")
     };
     match (radius, machine.axes.first()) {
         (Some(_), _) if !has_stage => Err(refused("the machine has no stage".to_owned())),

@@ -6,14 +6,11 @@
 //! stage.toml:23: axis.mode.damping of axis x, mode 1: found 1.2; allowed: at least 0, below 1
 //! ```
 //!
-//! As a [`miette::Diagnostic`] it adds the source with a mark at each place. The remedies are its help; where there
-//! are several, each begins with its line number. A handler should not wrap lines: the plain text is meant to be
-//! searched.
+//! A front may add the source ([`SpecError::text`]) with a mark at the span of each problem, and the remedies
+//! ([`SpecError::help`]). It should not wrap lines: the plain text is meant to be searched.
 
 use std::fmt;
 use std::ops::Range;
-
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 
 /// Largest number of problems that one error lists; a longer list would not help to mend the file.
 pub const MAX_PROBLEMS: usize = 20;
@@ -22,7 +19,8 @@ pub const MAX_PROBLEMS: usize = 20;
 #[derive(Debug, thiserror::Error)]
 #[error("{}", Listing(self))]
 pub struct SpecError {
-    source_code: NamedSource<String>,
+    file_name: String,
+    text: String,
     problems: Vec<Problem>,
     unlisted: usize,
 }
@@ -118,7 +116,8 @@ pub enum ProblemCause {
 
 impl ProblemCause {
     /// The cause in two or three words, for the mark in a listing of the source.
-    fn label(&self) -> &'static str {
+    #[must_use]
+    pub fn label(&self) -> &'static str {
         match self {
             ProblemCause::Syntax(_) => "no TOML",
             ProblemCause::Empty { .. } => "empty",
@@ -138,7 +137,8 @@ impl SpecError {
     pub(super) fn new(file_name: &str, text: &str, mut problems: Vec<Problem>, unlisted: usize) -> Self {
         problems.sort_by_key(|p| p.span.start);
         Self {
-            source_code: NamedSource::new(file_name, text.to_owned()).with_language("TOML"),
+            file_name: file_name.to_owned(),
+            text: text.to_owned(),
             problems,
             unlisted,
         }
@@ -148,6 +148,40 @@ impl SpecError {
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
+
+    /// Name of the file.
+    #[must_use]
+    pub fn file_name(&self) -> &str {
+        &self.file_name
+    }
+
+    /// Text of the file.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The remedies, one a line; where there are several, each begins with its line numbers.
+    #[must_use]
+    pub fn help(&self) -> String {
+        let mut remedies: Vec<(&str, Vec<String>)> = Vec::new();
+        for problem in &self.problems {
+            let line = problem.line.to_string();
+            match remedies.iter_mut().find(|(remedy, _)| *remedy == problem.remedy) {
+                Some((_, lines)) if lines.contains(&line) => {}
+                Some((_, lines)) => lines.push(line),
+                None => remedies.push((&problem.remedy, vec![line])),
+            }
+        }
+        let with_lines = |(remedy, lines): &(&str, Vec<String>)| match lines.as_slice() {
+            [line] => format!("line {line}: {remedy}"),
+            lines => format!("lines {}: {remedy}", lines.join(", ")),
+        };
+        match remedies.as_slice() {
+            [(remedy, _)] => (*remedy).to_owned(),
+            several => several.iter().map(with_lines).collect::<Vec<_>>().join("\n"),
+        }
+    }
 }
 
 /// Writes the lines of an error's plain text.
@@ -155,7 +189,7 @@ struct Listing<'e>(&'e SpecError);
 
 impl fmt::Display for Listing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let file = self.0.source_code.name();
+        let file = &self.0.file_name;
         for (index, problem) in self.0.problems.iter().enumerate() {
             if index > 0 {
                 writeln!(f)?;
@@ -179,36 +213,5 @@ impl fmt::Display for Problem {
             f.write_str(": ")?;
         }
         write!(f, "{}", self.cause)
-    }
-}
-
-impl Diagnostic for SpecError {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source_code)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = |p: &Problem| LabeledSpan::new_with_span(Some(p.cause.label().to_owned()), p.span.clone());
-        Some(Box::new(self.problems.iter().map(label)))
-    }
-
-    fn help<'e>(&'e self) -> Option<Box<dyn fmt::Display + 'e>> {
-        let mut remedies: Vec<(&str, Vec<String>)> = Vec::new();
-        for problem in &self.problems {
-            let line = problem.line.to_string();
-            match remedies.iter_mut().find(|(remedy, _)| *remedy == problem.remedy) {
-                Some((_, lines)) if lines.contains(&line) => {}
-                Some((_, lines)) => lines.push(line),
-                None => remedies.push((&problem.remedy, vec![line])),
-            }
-        }
-        let with_lines = |(remedy, lines): &(&str, Vec<String>)| match lines.as_slice() {
-            [line] => format!("line {line}: {remedy}"),
-            lines => format!("lines {}: {remedy}", lines.join(", ")),
-        };
-        Some(Box::new(match remedies.as_slice() {
-            [(remedy, _)] => (*remedy).to_owned(),
-            several => several.iter().map(with_lines).collect::<Vec<_>>().join("\n"),
-        }))
     }
 }

@@ -141,11 +141,10 @@ fn what_is_no_toml_is_quoted_and_mended() {
 
 #[test]
 fn each_of_several_remedies_names_its_line() {
-    use miette::Diagnostic;
     let text = SMALL
         .replace("\"zvd\"", "\"zdv\"")
         .replace("damping = 0.1", "damping = 5");
-    let help = wrong(&text).help().unwrap().to_string();
+    let help = wrong(&text).help();
     let expected =
         "line 11: did you mean \"zvd\"?\nline 14: percent? 5 % is 0.05; else give `damping` a value in this range";
     assert_eq!(help, expected);

@@ -1,5 +1,6 @@
 //! No text makes the parser panic, and every error names a place inside the file.
 
+use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use posicast_machine::machine_file;
 use proptest::prelude::*;
 
@@ -64,7 +65,14 @@ fn check(text: &str) -> Result<(), TestCaseError> {
                 prop_assert!(problem.line >= 1 && problem.line <= text.lines().count() + 1);
                 prop_assert!(!problem.remedy.is_empty());
             }
-            let picture = format!("{:?}", miette::Report::new(error));
+            // A front marks the places in the text, whatever the text is.
+            let places = error
+                .problems()
+                .iter()
+                .map(|problem| LabeledSpan::new_with_span(None, problem.span.clone()));
+            let drawn = MietteDiagnostic::new(error.to_string()).with_labels(places);
+            let source = NamedSource::new(error.file_name(), error.text().to_owned());
+            let picture = format!("{:?}", Report::new(drawn).with_source_code(source));
             prop_assert!(picture.contains("m.toml"));
         }
     }
