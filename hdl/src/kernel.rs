@@ -11,6 +11,11 @@
 //!     registers { count_q: Bits<8>, level: Bit = true }       with a reset value that is not 0
 //!     wires { sum: Bits<8> }
 //!     constants { first: Bits<8> = from_u64(config.first()) }
+//!     connect {
+//!         filter: raw, length;                                inputs of a part, from the kernel's inputs and wires
+//!         divider from filter: level;                         ... from outputs of another part
+//!         outputs from divider: quotient;                     outputs of the kernel, from those of a part
+//!     }
 //! }
 //!
 //! impl Logic for Counter {
@@ -26,14 +31,16 @@
 //! | section | field | initial value |
 //! |---|---|---|
 //! | `inputs`, `outputs`, `wires` | `Signal<In, T>`, `Signal<Out, T>`, `Signal<Local, T>` | 0 |
-//! | `parts` | `T`, another kernel or a leaf; the logic wires its inputs, `clk` and `rst` among them | `= T::new(..)`, else `T::default()` |
+//! | `parts` | `T`, another kernel or a leaf, wired to `clk` and `rst`; `connect` and the logic wire its other inputs | `= T::new(..)`, else `T::default()` |
 //! | `registers` | [`Dff<T>`](crate::prim::Dff), clocked by `clk` and reset by `rst`; it keeps its value unless the logic sets `d` | `= reset value`, else 0 |
 //! | `constants` | `Constant<T>` | `= value` |
 //!
 //! `name[N]: T` makes an array of N; constants of an array are a function of the index, `= |index| ..`. Sections are
-//! in the order of the Verilog's declarations, and each may occur several times. A register that the logic wires
-//! itself is a part, `Dff<T>`. The macro also makes the constructor: `new` with the arguments after the name, or
-//! `default` where there are none.
+//! in the order of the Verilog's declarations, and each may occur several times. The macro also makes the
+//! constructor: `new` with the arguments after the name, or `default` where there are none.
+//!
+//! `connect` joins ports of the same name. Each of its lines may list several parts, `line_a, line_b: ready;`. Where
+//! the names differ, or something is computed, the logic assigns the input.
 //!
 //! Conditions on sizes follow the name: `struct Product<const W: usize, const P: usize> where P == W + 18;`.
 //!
@@ -97,7 +104,19 @@ macro_rules! kernel {
             }
         }
     };
+    // The sections with fields come first, then the connections.
+    (@sort $header:tt [$($fields:tt)*] [$($connections:tt)*] connect { $($lines:tt)* } $($sections:tt)*) => {
+        $crate::kernel::kernel! { @sort $header [$($fields)*] [$($connections)* $($lines)*] $($sections)* }
+    };
+    (@sort $header:tt [$($fields:tt)*] $connections:tt $section:ident $entries:tt $($sections:tt)*) => {
+        $crate::kernel::kernel! { @sort $header [$($fields)* $section $entries] $connections $($sections)* }
+    };
+    (@sort { $($header:tt)* } [$($fields:tt)*] $connections:tt) => {
+        $crate::kernel::kernel! { @block $connections $($header)* $($fields)* }
+    };
     (
+        @block
+        [$($connections:tt)*]
         $(#[$about:meta])*
         $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
             $(where $condition:expr)?;
@@ -121,9 +140,19 @@ macro_rules! kernel {
             }
         }
 
+        impl $(<$(const $size: usize),+>)? $crate::prim::Clocked for $name $(<$($size),+>)? {
+            fn clk(&mut self) -> &mut Signal<In, Clock> {
+                &mut self.clk
+            }
+
+            $($($crate::kernel::reset_input!($section $field);)*)*
+        }
+
         impl $(<$(const $size: usize),+>)? Block for $name $(<$($size),+>)? {
             fn connect_all(&mut self) {
                 self.connect();
+                $($($crate::kernel::claim!($section self $field);)*)*
+                $crate::kernel::connections!(claim self $($connections)*);
                 self.clk.connect_all();
                 $($(self.$field.connect_all();)*)*
             }
@@ -131,6 +160,8 @@ macro_rules! kernel {
             fn update_all(&mut self) {
                 $($($crate::kernel::keep!($section self $field);)*)*
                 self.update();
+                $($($crate::kernel::clock!($section self $field);)*)*
+                $crate::kernel::connections!(drive self $($connections)*);
                 self.clk.update_all();
                 $($(self.$field.update_all();)*)*
             }
@@ -143,8 +174,27 @@ macro_rules! kernel {
                 probe.visit_start_scope(name, self);
                 self.clk.accept("clk", probe);
                 $($(self.$field.accept(stringify!($field), probe);)*)*
+                let connections = &mut $crate::prim::Connections::default();
+                $($($crate::kernel::list_part!($section connections $field);)*)*
+                $crate::kernel::connections!(list connections $($connections)*);
+                connections.accept("connections", probe);
                 probe.visit_end_scope(name, self);
             }
+        }
+    };
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
+            $(where $condition:expr)?;
+        $($sections:tt)*
+    ) => {
+        $crate::kernel::kernel! {
+            @sort
+            {
+                $(#[$about])*
+                $seen struct $name $(<$(const $size: usize),+>)? $(($($argument: $of),+))? $(where $condition)?;
+            }
+            [] [] $($sections)*
         }
     };
 }
@@ -169,8 +219,8 @@ macro_rules! initial {
     ($section:ident [$count:expr] $($rest:tt)+) => {
         std::array::from_fn(|_| $crate::kernel::initial!($section $($rest)+))
     };
-    (registers $type:ty) => { $crate::prim::Dff::kept(<$type>::default()) };
-    (registers $type:ty = $initial:expr) => { $crate::prim::Dff::kept($initial) };
+    (registers $type:ty) => { $crate::prim::Dff::new(<$type>::default()) };
+    (registers $type:ty = $initial:expr) => { $crate::prim::Dff::new($initial) };
     (parts $type:ty = $initial:expr) => { $initial };
     (constants $type:ty = $initial:expr) => { Constant::new($initial) };
     ($section:ident $type:ty) => { Default::default() };
@@ -182,6 +232,83 @@ macro_rules! keep {
         $crate::prim::Keep::keep(&mut $kernel.$field, $kernel.clk.val(), $kernel.rst.val())
     };
     ($section:ident $kernel:ident $field:ident) => {};
+}
+
+/// Wires clock and reset of a part; does nothing for other sections.
+macro_rules! clock {
+    (parts $kernel:ident $field:ident) => {
+        $crate::prim::Part::wire(&mut $kernel.$field, $kernel.clk.val(), $kernel.rst.val())
+    };
+    ($section:ident $kernel:ident $field:ident) => {};
+}
+
+/// Tells RustHDL that clock and reset of a part are wired.
+macro_rules! claim {
+    (parts $kernel:ident $field:ident) => {
+        $crate::prim::Part::claim(&mut $kernel.$field)
+    };
+    ($section:ident $kernel:ident $field:ident) => {};
+}
+
+/// The reset input, for `Clocked`.
+macro_rules! reset_input {
+    (inputs rst) => {
+        fn rst(&mut self) -> Option<&mut Signal<In, Bit>> {
+            Some(&mut self.rst)
+        }
+    };
+    ($section:ident $field:ident) => {};
+}
+
+/// Adds a part to the list of connections; does nothing for other sections.
+macro_rules! list_part {
+    (parts $list:ident $field:ident) => {
+        $list.part(stringify!($field))
+    };
+    ($section:ident $list:ident $field:ident) => {};
+}
+
+/// Does `$action` for every connection of a `connect` section.
+macro_rules! connections {
+    ($action:ident $of:ident) => {};
+    ($action:ident $of:ident $($part:ident),+: $($port:ident),+; $($lines:tt)*) => {
+        $crate::kernel::connections!($action $of [$($part)+] [] [$($port),+]);
+        $crate::kernel::connections!($action $of $($lines)*);
+    };
+    ($action:ident $of:ident $($part:ident),+ from $source:ident: $($port:ident),+; $($lines:tt)*) => {
+        $crate::kernel::connections!($action $of [$($part)+] [$source] [$($port),+]);
+        $crate::kernel::connections!($action $of $($lines)*);
+    };
+    ($action:ident $of:ident [] $source:tt $ports:tt) => {};
+    ($action:ident $of:ident [$part:ident $($parts:ident)*] $source:tt [$($port:ident),+]) => {
+        $($crate::kernel::connection!($action $of $part $source $port);)+
+        $crate::kernel::connections!($action $of [$($parts)*] $source [$($port),+]);
+    };
+}
+
+/// One connection: of an output of the kernel, or of an input of a part.
+macro_rules! connection {
+    (drive $kernel:ident outputs [$source:ident] $port:ident) => {
+        $kernel.$port.next = $kernel.$source.$port.val()
+    };
+    (drive $kernel:ident $part:ident [$($source:ident)?] $port:ident) => {
+        $kernel.$part.$port.next = $kernel$(.$source)?.$port.val()
+    };
+    (claim $kernel:ident outputs $source:tt $port:ident) => {
+        $kernel.$port.connect()
+    };
+    (claim $kernel:ident $part:ident $source:tt $port:ident) => {
+        $kernel.$part.$port.connect()
+    };
+    (list $list:ident outputs [$source:ident] $port:ident) => {
+        $list.output(stringify!($port), concat!(stringify!($source), ".", stringify!($port)))
+    };
+    (list $list:ident $part:ident [$($source:ident)?] $port:ident) => {
+        $list.input(
+            concat!(stringify!($part), ".", stringify!($port)),
+            concat!($(stringify!($source), ".",)? stringify!($port)),
+        )
+    };
 }
 
 /// Makes `new`, or `default` where there are no arguments.
@@ -198,4 +325,6 @@ macro_rules! constructor {
     };
 }
 
-pub(crate) use {constructor, field_type, initial, keep, kernel};
+pub(crate) use {
+    claim, clock, connection, connections, constructor, field_type, initial, keep, kernel, list_part, reset_input,
+};

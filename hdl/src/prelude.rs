@@ -6,13 +6,12 @@
 //! | ours | replaces |
 //! |---|---|
 //! | [`signed_bit_cast`] | RustHDL's, which overflows the stack on the most negative value |
-//! | `kernel!` | the struct, the constructor and the wiring of registers that every kernel would repeat |
-//! | [`Dff`] | RustHDL's `DFF` without reset |
+//! | `kernel!` | the struct, the constructor and the wiring that every kernel would repeat; its registers replace RustHDL's `DFF` without reset |
 //! | [`Ram`], [`Rom`] | RustHDL's `RAM` and `ROM` with two clocks, and without arbitrary contents |
 //! | `comment!` | nothing: `#[hdl_gen]` knows the macro, but RustHDL does not define it |
 
 pub(crate) use crate::kernel::kernel;
-pub(crate) use crate::prim::{Dff, FaultLatch, PinRegister, Ram, Rom, RomWord, SMul, Synchroniser};
+pub(crate) use crate::prim::{FaultLatch, PinRegister, Ram, Rom, RomWord, SMul, Synchroniser};
 pub(crate) use rust_hdl_core::prelude::*;
 pub(crate) use rust_hdl_macros::hdl_gen;
 

@@ -33,6 +33,9 @@ kernel! {
         one: Bits<32> = from_u64(1),
         nothing: Bits<32> = from_u64(0),
     }
+    connect {
+        loaded_settings: write_address, read_address;
+    }
 }
 
 fn machine_rom(machine: &Settings, name: &str) -> Rom<32, 4> {
@@ -86,13 +89,9 @@ impl Logic for SettingBanks {
         self.known.d.next = self.in_loaded.val() & self.written.q.val().get_bit(self.read_address.val().index());
         self.from_machine.d.next = self.read_bank.val() == self.bank_machine.val();
 
-        self.machine_settings.clk.next = self.clk.val();
         self.machine_settings.address.next = self.read_row.val();
-        self.loaded_settings.clk.next = self.clk.val();
         self.loaded_settings.write_enable.next = self.taken.val();
-        self.loaded_settings.write_address.next = self.write_address.val();
         self.loaded_settings.write_data.next = self.setting_word.val();
-        self.loaded_settings.read_address.next = self.read_address.val();
 
         self.setting.next = self.nothing.val();
         if self.known.q.val() {

@@ -66,11 +66,18 @@ fn check_kernel(code: &str, body: &str, broken: &mut Vec<String>) {
             ));
         }
     }
+    let connected = connected(code);
+    for port in &connected {
+        if flat.contains(&format!("self.{port}.next=")) {
+            broken.push(format!("`{port}` is connected, and assigned too"));
+        }
+    }
     for (name, kind) in fields(code) {
         if compose(&name, &Header::default(), &[], &[]).is_err() {
             broken.push(format!("`{name}` is no Verilog name"));
         }
         match kind.as_str() {
+            "Out" if connected.contains(&name) => {}
             "Local" | "Out" => match first_assignment(&flat, &name) {
                 None => broken.push(format!("`{name}` is never assigned")),
                 Some(0) => {}
@@ -118,6 +125,30 @@ fn kernel_fields(declaration: &str) -> Vec<(String, String)> {
             .flat_map(listed),
     );
     fields
+}
+
+/// Returns the ports that `kernel!` connects: `part.port`, or the name of an output.
+fn connected(code: &str) -> Vec<String> {
+    let Some((_, lines)) = code.split_once("    connect {") else {
+        return Vec::new();
+    };
+    let mut ports = Vec::new();
+    for line in body(&format!("{{{lines}")).split(';') {
+        let (parts, names) = line.split_once(": ").unwrap_or_default();
+        let parts = parts
+            .split(" from ")
+            .next()
+            .unwrap_or_default()
+            .split(',')
+            .map(str::trim);
+        for (part, name) in parts.flat_map(|part| names.split(',').map(move |name| (part, name.trim()))) {
+            ports.push(match part {
+                "outputs" => name.to_owned(),
+                _ => format!("{part}.{name}"),
+            });
+        }
+    }
+    ports
 }
 
 /// Returns name and kind of the ports of a list in the model.
@@ -299,6 +330,14 @@ fn with_the_macro() -> String {
 fn the_fields_of_a_kernel_macro_are_checked_too() {
     let good = with_the_macro();
     assert_eq!(broken_rules(&good), [""; 0]);
+    let connected = "    wires { wide: Signed<16> }\n    connect { outputs from held: twice; held: number; }";
+    let connected = good.replace("    wires { wide: Signed<16> }", connected);
+    assert!(
+        broken_rules(&connected).contains(&"`twice` is connected, and assigned too".to_owned()),
+        "{connected}"
+    );
+    let connected = connected.replace("self.twice.next = ", "self.wide.next = ");
+    assert_eq!(broken_rules(&connected), [""; 0]);
     let cases = [
         ("self.wide.next = ", "self.twice.next = ", "`wide` is never assigned"),
         (

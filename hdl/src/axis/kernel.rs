@@ -42,6 +42,19 @@ kernel! {
         doubtful_causes: Bits<17> = from_u64(u64::from(DOUBTFUL)),
         kick_value: Bits<32> = from_u64(u64::from(KICK)),
     }
+    connect {
+        emergency_stop_line, limit_plus_line, limit_minus_line, drive_line, home_line: filter_clocks;
+        monitors: tick, soft_limit_plus, soft_limit_minus, following_error_limit, deviation_limit, saturation_ticks,
+            lost_command, lost_ticks, watches_direction, watchdog_ticks, position, deviation, command_velocity,
+            reference_position, reference_velocity, error, command, limited_ticks;
+        monitors from states: on;
+        cause_word from states: forget;
+        cause_word: emergency, segments_failed, off_causes;
+        states: group_stop, tick, enable, start, stop, segments_state, segments_empty, segments_valid,
+            brake_release_ticks, brake_apply_ticks, settle_ticks;
+        states from cause_word: any_cause, fault, cut, had_fault;
+        outputs from states: enabled, started, stopping, halted, disabled, faulted, refused;
+    }
 }
 
 impl Logic for Axis {
@@ -54,63 +67,27 @@ impl Logic for Axis {
         self.primed.d.next = (self.primed.q.val() << 1) | self.first_clock.val();
         self.ready.next = self.primed.q.val().get_bit(3);
         self.filters.next = self.ready.val() & self.filter_clocks.val().any();
-        self.emergency_stop_line.clk.next = self.clk.val();
-        self.emergency_stop_line.rst.next = self.rst.val();
         self.emergency_stop_line.pin.next = self.emergency_stop_n.val();
         self.emergency_stop_line.ready.next = self.filters.val();
-        self.emergency_stop_line.filter_clocks.next = self.filter_clocks.val();
         self.level_emergency_stop_n.next = self.emergency_stop_line.level.val();
-        self.limit_plus_line.clk.next = self.clk.val();
-        self.limit_plus_line.rst.next = self.rst.val();
         self.limit_plus_line.pin.next = self.limit_plus_n.val();
         self.limit_plus_line.ready.next = self.filters.val();
-        self.limit_plus_line.filter_clocks.next = self.filter_clocks.val();
         self.level_limit_plus_n.next = self.limit_plus_line.level.val();
-        self.limit_minus_line.clk.next = self.clk.val();
-        self.limit_minus_line.rst.next = self.rst.val();
         self.limit_minus_line.pin.next = self.limit_minus_n.val();
         self.limit_minus_line.ready.next = self.filters.val();
-        self.limit_minus_line.filter_clocks.next = self.filter_clocks.val();
         self.level_limit_minus_n.next = self.limit_minus_line.level.val();
-        self.drive_line.clk.next = self.clk.val();
-        self.drive_line.rst.next = self.rst.val();
         self.drive_line.pin.next = self.drive_ready.val();
         self.drive_line.ready.next = self.filters.val();
-        self.drive_line.filter_clocks.next = self.filter_clocks.val();
         self.level_drive_ready.next = self.drive_line.level.val();
-        self.home_line.clk.next = self.clk.val();
-        self.home_line.rst.next = self.rst.val();
         self.home_line.pin.next = self.home.val();
         self.home_line.ready.next = self.filters.val();
-        self.home_line.filter_clocks.next = self.filter_clocks.val();
         self.level_home.next = self.home_line.level.val();
 
         comment!("Checks at ticks");
-        self.monitors.clk.next = self.clk.val();
-        self.monitors.rst.next = self.rst.val();
-        self.monitors.tick.next = self.tick.val();
-        self.monitors.on.next = self.states.on.val();
         self.monitors.kicked.next = self.kick.val() & (self.kick_word.val() == self.kick_value.val());
         self.monitors.on_limit_plus.next = !self.limit_plus_line.level.val();
         self.monitors.on_limit_minus.next = !self.limit_minus_line.level.val();
-        self.monitors.soft_limit_plus.next = self.soft_limit_plus.val();
-        self.monitors.soft_limit_minus.next = self.soft_limit_minus.val();
         self.monitors.limits_wait.next = self.limits_after_homing.val() & !self.homed_q.q.val();
-        self.monitors.following_error_limit.next = self.following_error_limit.val();
-        self.monitors.deviation_limit.next = self.deviation_limit.val();
-        self.monitors.saturation_ticks.next = self.saturation_ticks.val();
-        self.monitors.lost_command.next = self.lost_command.val();
-        self.monitors.lost_ticks.next = self.lost_ticks.val();
-        self.monitors.watches_direction.next = self.watches_direction.val();
-        self.monitors.watchdog_ticks.next = self.watchdog_ticks.val();
-        self.monitors.position.next = self.position.val();
-        self.monitors.deviation.next = self.deviation.val();
-        self.monitors.command_velocity.next = self.command_velocity.val();
-        self.monitors.reference_position.next = self.reference_position.val();
-        self.monitors.reference_velocity.next = self.reference_velocity.val();
-        self.monitors.error.next = self.error.val();
-        self.monitors.command.next = self.command.val();
-        self.monitors.limited_ticks.next = self.limited_ticks.val();
 
         comment!("Range of the position word: its last 64th");
         comment!("at either end, and values clamped to their word");
@@ -132,16 +109,11 @@ impl Logic for Axis {
         self.tripping.d.next = self.emergency.val();
         self.encoder.next = self.encoder_illegal.val() | self.encoder_disagreement.val();
         self.scale.next = self.scale_illegal.val() | self.scale_disagreement.val();
-        self.cause_word.clk.next = self.clk.val();
-        self.cause_word.rst.next = self.rst.val();
-        self.cause_word.forget.next = self.states.forget.val();
-        self.cause_word.emergency.next = self.emergency.val();
         self.cause_word.tripped.next = self.pwm_tripped.val();
         self.cause_word.drive_lost.next = self.states.on.val() & !self.drive_line.level.val();
         self.cause_word.encoder_error.next = self.encoder.val() | self.scale.val();
         self.segments_failed.next =
             self.segments_underrun.val() | self.segments_overflow.val() | self.segments_out_of_range.val();
-        self.cause_word.segments_failed.next = self.segments_failed.val();
         self.cause_word.out_of_range.next = self.out_of_range.q.val() & (self.states.on.val() | self.enable.val());
         self.group_stops.next = self.states.on.val() & self.group_stop.val();
         self.cause_word.group_stops.next = self.group_stops.val() & !self.states.wants_group_stop.val();
@@ -151,7 +123,6 @@ impl Logic for Axis {
             | self.shaper_overrun.val()
             | self.controller_overrun.val();
         self.cause_word.watched.next = self.monitors.causes.val();
-        self.cause_word.off_causes.next = self.off_causes.val();
 
         comment!("Homed until the position is in doubt");
         self.doubts.next = self.cause_word.causes.val() & self.doubtful_causes.val();
@@ -172,25 +143,8 @@ impl Logic for Axis {
         }
 
         comment!("States");
-        self.states.clk.next = self.clk.val();
-        self.states.rst.next = self.rst.val();
         self.states.drive_ready.next = self.ready.val() & self.drive_line.level.val();
-        self.states.group_stop.next = self.group_stop.val();
         self.states.clear_due.next = self.clear_due.q.val();
-        self.states.tick.next = self.tick.val();
-        self.states.enable.next = self.enable.val();
-        self.states.start.next = self.start.val();
-        self.states.stop.next = self.stop.val();
-        self.states.segments_state.next = self.segments_state.val();
-        self.states.segments_empty.next = self.segments_empty.val();
-        self.states.segments_valid.next = self.segments_valid.val();
-        self.states.brake_release_ticks.next = self.brake_release_ticks.val();
-        self.states.brake_apply_ticks.next = self.brake_apply_ticks.val();
-        self.states.settle_ticks.next = self.settle_ticks.val();
-        self.states.any_cause.next = self.cause_word.any_cause.val();
-        self.states.fault.next = self.cause_word.fault.val();
-        self.states.cut.next = self.cause_word.cut.val();
-        self.states.had_fault.next = self.cause_word.had_fault.val();
 
         comment!("Outputs");
         self.state.next = self.states.state.val();
@@ -211,12 +165,5 @@ impl Logic for Axis {
         self.captured_position.next = self.monitors.captured_position.val();
         self.can_start.next = self.states.can_start.val();
         self.homed.next = self.homed_q.q.val();
-        self.enabled.next = self.states.enabled.val();
-        self.started.next = self.states.started.val();
-        self.stopping.next = self.states.stopping.val();
-        self.halted.next = self.states.halted.val();
-        self.disabled.next = self.states.disabled.val();
-        self.faulted.next = self.states.faulted.val();
-        self.refused.next = self.states.refused.val();
     }
 }

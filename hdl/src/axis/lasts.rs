@@ -21,15 +21,15 @@ kernel! {
     parts { limit_nibbles: Nibbles }
     registers { fewer: Bit, limited: Bit }
     wires { under: Bits<4>, not_over: Bits<4>, under_0: Bit, under_1: Bit, under_2: Bit, under_3: Bit }
+    connect {
+        limit_nibbles: turn;
+    }
 }
 
 impl Logic for Lasts {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_lasts");
-        self.limit_nibbles.clk.next = self.clk.val();
-        self.limit_nibbles.rst.next = self.rst.val();
-        self.limit_nibbles.turn.next = self.turn.val();
         self.limit_nibbles.word.next = self.limit.val();
         comment!("Bits that are smaller, and bits not larger");
         self.under.next = !self.ticks.val() & self.limit_nibbles.part.val();

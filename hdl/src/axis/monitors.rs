@@ -83,6 +83,10 @@ kernel! {
         of_lost_trip: Bits<17> = from_u64(u64::from(Cause::EncoderLost.bit())),
         of_watchdog_trip: Bits<17> = from_u64(u64::from(Cause::Watchdog.bit())),
     }
+    connect {
+        soft_limits: reference_position, soft_limit_plus, soft_limit_minus;
+        error_limit, deviation_at_tick, deviations, commands, still, unkicked: tick;
+    }
 }
 
 impl Logic for Monitors {
@@ -128,14 +132,9 @@ impl Logic for Monitors {
             self.on_plus.q.val() & (self.forward.q.val() | (!self.was_on_plus.q.val() & self.shaped_forward.q.val()));
         self.limit_minus.next = self.on_minus.q.val()
             & (self.backward.q.val() | (!self.was_on_minus.q.val() & self.shaped_backward.q.val()));
-        self.soft_limits.clk.next = self.clk.val();
-        self.soft_limits.rst.next = self.rst.val();
         self.soft_limits.turn.next = self.turn.q.val();
         self.soft_limits.compares.next = self.compares.q.val();
         self.soft_limits.signs.next = self.last_byte.val();
-        self.soft_limits.reference_position.next = self.reference_position.val();
-        self.soft_limits.soft_limit_plus.next = self.soft_limit_plus.val();
-        self.soft_limits.soft_limit_minus.next = self.soft_limit_minus.val();
         self.soft_limits.waits.next = self.limits_wait.val();
         self.soft_plus.next = self.soft_limits.past_plus.val() & (self.forward.q.val() | !self.was_past_plus.q.val());
         self.soft_minus.next =
@@ -148,9 +147,6 @@ impl Logic for Monitors {
         }
 
         comment!("Magnitudes and times");
-        self.error_limit.clk.next = self.clk.val();
-        self.error_limit.rst.next = self.rst.val();
-        self.error_limit.tick.next = self.tick.val();
         self.error_limit.turn.next = self.turn.q.val();
         self.error_limit.compares.next = self.compares.q.val();
         self.error_limit.number.next = self.error.val();
@@ -158,32 +154,19 @@ impl Logic for Monitors {
         self.error_limit.zero_counts.next = false;
         comment!("Keep the deviation: from the tick on, the scale");
         comment!("computes the next one");
-        self.deviation_at_tick.clk.next = self.clk.val();
-        self.deviation_at_tick.rst.next = self.rst.val();
-        self.deviation_at_tick.tick.next = self.tick.val();
         self.deviation_at_tick.word.next = self.deviation.val();
-        self.deviations.clk.next = self.clk.val();
-        self.deviations.rst.next = self.rst.val();
-        self.deviations.tick.next = self.tick.val();
         self.deviations.turn.next = self.turn.q.val();
         self.deviations.compares.next = self.compares.q.val();
         self.deviations.number.next = self.deviation_at_tick.stands.val();
         self.deviations.limit.next = self.deviation_limit.val();
         self.deviations.zero_counts.next = false;
-        self.commands.clk.next = self.clk.val();
-        self.commands.rst.next = self.rst.val();
-        self.commands.tick.next = self.tick.val();
         self.commands.turn.next = self.turn.q.val();
         self.commands.compares.next = self.compares.q.val();
         self.commands.number.next = self.command.val();
         self.commands.limit.next = self.lost_command.val();
         self.commands.zero_counts.next = true;
-        self.saturating.clk.next = self.clk.val();
-        self.saturating.rst.next = self.rst.val();
         self.saturating.turn.next = self.turn.q.val();
         self.saturating.compares.next = self.compares.q.val();
-        self.limited_nibbles.clk.next = self.clk.val();
-        self.limited_nibbles.rst.next = self.rst.val();
         self.limited_nibbles.turn.next = self.turn.q.val();
         self.limited_nibbles.word.next = self.limited_ticks.val();
         self.saturating.ticks.next = self.limited_nibbles.part.val();
@@ -212,9 +195,6 @@ impl Logic for Monitors {
             self.still_since.d.next = self.captured.q.val();
             self.still_backward.d.next = self.drive_backward.q.val();
         }
-        self.still.clk.next = self.clk.val();
-        self.still.rst.next = self.rst.val();
-        self.still.tick.next = self.tick.val();
         self.still.turn.next = self.turn.q.val();
         self.still.compares.next = self.compares.q.val();
         self.still.limit.next = self.lost_ticks.val();
@@ -222,9 +202,6 @@ impl Logic for Monitors {
         comment!("A kick waits until the count has rotated");
         self.is_kicked.next = self.kicked.val() | self.kick_waits.q.val();
         self.kick_waits.d.next = self.is_kicked.val() & self.compares.q.val();
-        self.unkicked.clk.next = self.clk.val();
-        self.unkicked.rst.next = self.rst.val();
-        self.unkicked.tick.next = self.tick.val();
         self.unkicked.turn.next = self.turn.q.val();
         self.unkicked.compares.next = self.compares.q.val();
         self.unkicked.limit.next = self.watchdog_ticks.val();

@@ -23,6 +23,11 @@ kernel! {
     parts { number_bytes: Bytes, limit_bytes: Bytes, larger: Larger, limited: Nonzero }
     registers { negative: Bit }
     wires { number_bits: Bits<32> }
+    connect {
+        number_bytes, limit_bytes: turn;
+        larger, limited: compares;
+        limited from limit_bytes: part;
+    }
 }
 
 impl Logic for SizeLimit {
@@ -33,25 +38,12 @@ impl Logic for SizeLimit {
         if self.tick.val() {
             self.negative.d.next = self.number_bits.val().get_bit(31);
         }
-        self.number_bytes.clk.next = self.clk.val();
-        self.number_bytes.rst.next = self.rst.val();
-        self.number_bytes.turn.next = self.turn.val();
         self.number_bytes.word.next = self.number_bits.val();
-        self.limit_bytes.clk.next = self.clk.val();
-        self.limit_bytes.rst.next = self.rst.val();
-        self.limit_bytes.turn.next = self.turn.val();
         self.limit_bytes.word.next = self.limit.val();
-        self.larger.clk.next = self.clk.val();
-        self.larger.rst.next = self.rst.val();
-        self.larger.compares.next = self.compares.val();
         self.larger.signs.next = false;
         self.larger.inverts.next = self.negative.q.val();
         self.larger.number.next = self.number_bytes.part.val();
         self.larger.other.next = self.limit_bytes.part.val();
-        self.limited.clk.next = self.clk.val();
-        self.limited.rst.next = self.rst.val();
-        self.limited.compares.next = self.compares.val();
-        self.limited.part.next = self.limit_bytes.part.val();
         self.exceeds.next = self.larger.larger.val() & (self.limited.nonzero.val() | self.zero_counts.val());
     }
 }

@@ -75,6 +75,9 @@ kernel! {
         segments_hold_state: Bits<2> = from_u64(segments::SegmentsState::Hold as u64),
         segments_stopped_state: Bits<2> = from_u64(segments::SegmentsState::Stopped as u64),
     }
+    connect {
+        timer: brake_release_ticks, brake_apply_ticks, settle_ticks;
+    }
 }
 
 impl Logic for States {
@@ -155,8 +158,6 @@ impl Logic for States {
         self.state_q.d.next = self.next_state.val();
 
         comment!("The timer of brake and shaper");
-        self.timer.clk.next = self.clk.val();
-        self.timer.rst.next = self.rst.val();
         self.timer.counts.next = self.tick.val() & (!self.in_stop.val() | self.segments_stopped.val());
         self.begins_apply.next = self.stop_to_fault.val() | (self.closes.val() & !self.fault.val());
         self.timer.clears.next =
@@ -166,9 +167,6 @@ impl Logic for States {
         self.timer.load_settle.next = self.ran.q.val() | self.stopping_q.q.val();
         self.applies.d.next = self.begins_apply.val();
         self.timer.load_apply.next = self.applies.q.val();
-        self.timer.brake_release_ticks.next = self.brake_release_ticks.val();
-        self.timer.brake_apply_ticks.next = self.brake_apply_ticks.val();
-        self.timer.settle_ticks.next = self.settle_ticks.val();
 
         comment!("Outputs and brake");
         self.next_on.next = self.on_q.q.val();

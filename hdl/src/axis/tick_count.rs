@@ -21,6 +21,10 @@ kernel! {
     registers { count: Bits<16>, carry: Bits<1>, endless: Bit }
     wires { nibble: Bits<4>, counted: Bits<5> }
     constants { nothing: Bits<16> = from_u64(0), no_carry: Bits<1> = from_u64(0), one: Bits<1> = from_u64(1) }
+    connect {
+        against: turn, compares, limit;
+        outputs from against: lasts;
+    }
 }
 
 impl Logic for TickCount {
@@ -44,13 +48,7 @@ impl Logic for TickCount {
             self.count.d.next = self.nothing.val();
             self.endless.d.next = false;
         }
-        self.against.clk.next = self.clk.val();
-        self.against.rst.next = self.rst.val();
-        self.against.turn.next = self.turn.val();
-        self.against.compares.next = self.compares.val();
         self.against.ticks.next = self.nibble.val();
         self.against.endless.next = self.endless.q.val();
-        self.against.limit.next = self.limit.val();
-        self.lasts.next = self.against.lasts.val();
     }
 }

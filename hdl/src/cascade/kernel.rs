@@ -65,8 +65,6 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module cascade");
-        self.delays.clk.next = self.clk.val();
-        self.rings.clk.next = self.clk.val();
         self.next_stage.next = self.stage.q.val();
         self.valid_q.d.next = false;
         self.finish.d.next = false;

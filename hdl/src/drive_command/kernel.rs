@@ -135,7 +135,6 @@ impl Logic for DriveCommand {
         }
 
         comment!("Faults: bit 0 the supervisor, bit 1 the drive");
-        self.drive_fault_pin.clk.next = self.clk.val();
         self.drive_fault_pin.pin.next = self.drive_fault_n.val();
         self.axis_trip_n_q.d.next = self.axis_pwm_trip_n.val();
         self.filtered_fault_n.next = self.both_faults.val();

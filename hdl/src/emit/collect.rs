@@ -3,6 +3,7 @@
 
 use super::error::{EmitCause, EmitError};
 use super::types::Type;
+use crate::prim::CONNECTIONS_TAG;
 use rust_hdl_core::prelude::{Atom, AtomKind, Block, Probe, TypeDescriptor, TypeKind, Verilog, VerilogLiteral};
 use std::collections::BTreeMap;
 
@@ -39,8 +40,28 @@ pub(super) struct Node {
     pub(super) signals: Vec<Signal>,
     pub(super) children: Vec<Node>,
     pub(super) code: Verilog,
+    /// Connections that `kernel!` makes without a statement of the kernel.
+    pub(super) connections: Vec<Connection>,
     /// Enum types of its own signals and those of its direct sub-blocks, by type name.
     pub(super) enums: BTreeMap<String, EnumValues>,
+}
+
+/// A connection of `kernel!`, by RustHDL's names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Connection {
+    Output {
+        port: String,
+        source: String,
+    },
+    /// An input of a part.
+    Input {
+        port: String,
+        source: String,
+    },
+    /// Clock and reset of a part, or of an array of them.
+    Clocking {
+        part: String,
+    },
 }
 
 impl Node {
@@ -100,6 +121,7 @@ impl Probe for Collector {
             signals: Vec::new(),
             children: Vec::new(),
             code: block.hdl(),
+            connections: Vec::new(),
             enums: BTreeMap::new(),
         });
     }
@@ -141,12 +163,32 @@ impl Probe for Collector {
         let Some(node) = self.open.pop() else { return };
         match self.open.last_mut() {
             Some(parent) => {
+                if let Verilog::Custom(text) = &node.code
+                    && let Some(lines) = text.strip_prefix(CONNECTIONS_TAG)
+                {
+                    parent.connections = lines.lines().filter_map(connection).collect();
+                    return;
+                }
                 let of_ports = node.enums.iter().map(|(name, values)| (name.clone(), values.clone()));
                 parent.enums.extend(of_ports);
                 parent.children.push(node);
             }
             None => self.root = Some(node),
         }
+    }
+}
+
+/// A line of the list of connections.
+fn connection(line: &str) -> Option<Connection> {
+    let line = line.replace('.', "$");
+    let words: Vec<_> = line.split(' ').map(str::to_owned).collect();
+    match <[String; 3]>::try_from(words) {
+        Ok([kind, port, source]) if kind == "output" => Some(Connection::Output { port, source }),
+        Ok([kind, port, source]) if kind == "input" => Some(Connection::Input { port, source }),
+        Ok(_) => None,
+        Err(words) => Some(Connection::Clocking {
+            part: words.into_iter().nth(1)?,
+        }),
     }
 }
 

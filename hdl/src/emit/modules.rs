@@ -93,7 +93,7 @@ impl Modules<'_> {
 
     fn composite(&mut self, node: &Node, kernel: &[VerilogStatement], notes: &[PortNote]) -> Result<Draft, EmitError> {
         let scope = Scope::new(node)?;
-        let typed = statements(kernel, &node.path, &scope)?;
+        let typed = statements(kernel, node, &scope)?;
         flow::check(&typed, &node.path, &scope)?;
         let drivers = Drivers::new(typed, &node.path, &scope)?;
         let clocking = Clocking::find(node, &scope)?;

@@ -63,6 +63,11 @@ impl Sizes<'_> {
             "list of blocks",
         )
         .map_err(at(""))?;
+        alike(
+            all(&|other| other.connections == node.connections),
+            "list of connections",
+        )
+        .map_err(at(""))?;
         alike(all(&|other| other.enums == node.enums), "list of enumerations").map_err(at(""))?;
 
         let reset = self.register(&node, others).map_err(at(""))?;

@@ -1,7 +1,7 @@
 //! Converts statements: a kernel's tree becomes the typed form of [`ir`](super::ir), with loops unrolled, and the
 //! wiring of registers checked and removed.
 
-use super::collect::literal_value;
+use super::collect::{Connection, Node, literal_value};
 use super::error::{EmitCause, EmitError};
 use super::expressions::{expression, free_expression};
 use super::ir::{Arm, Expression, Statement};
@@ -18,15 +18,16 @@ use std::collections::{BTreeMap, BTreeSet};
 const MAXIMUM_TURNS: i128 = 1024;
 
 /// The typed kernel of the block at `path`.
-pub(super) fn statements(kernel: &[VerilogStatement], path: &str, scope: &Scope) -> Result<Vec<Statement>, EmitError> {
+pub(super) fn statements(kernel: &[VerilogStatement], node: &Node, scope: &Scope) -> Result<Vec<Statement>, EmitError> {
     let mut reader = Reader {
-        path,
+        path: &node.path,
         scope,
         loops: Vec::new(),
         clocked: BTreeSet::new(),
     };
     let mut block = reader.kept_registers()?;
     block.extend(reader.block(kernel)?);
+    block.extend(reader.connections(&node.connections)?);
     for register in &scope.registers {
         if !reader.clocked.contains(&register.clock) {
             let cause = EmitCause::RegisterWiring {
@@ -87,6 +88,28 @@ impl Reader<'_> {
             let value = expression(&Tree::Signal(now.raw.clone()), now.ty, self.scope, &[])
                 .map_err(|cause| self.error(&now.raw, cause))?;
             block.push(Statement::Assign { target, value });
+        }
+        Ok(block)
+    }
+
+    /// What `kernel!` connects, behind everything that the sources depend on. The outputs come first, because a comment
+    /// at the end of the kernel is about them.
+    fn connections(&mut self, connections: &[Connection]) -> Result<Vec<Statement>, EmitError> {
+        let mut block = Vec::new();
+        for connection in connections {
+            if let Connection::Output { port, source } = connection {
+                block.extend(self.assignment(&Tree::Signal(port.clone()), &Tree::Signal(source.clone()))?);
+            }
+        }
+        for connection in connections {
+            let joined = match connection {
+                Connection::Output { .. } => Vec::new(),
+                Connection::Input { port, source } => vec![(port.clone(), source.clone())],
+                Connection::Clocking { part } => clocking(part, self.scope),
+            };
+            for (port, source) in joined {
+                block.extend(self.assignment(&Tree::Signal(port), &Tree::Signal(source))?);
+            }
         }
         Ok(block)
     }
@@ -238,6 +261,18 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// The clock and reset inputs of a part, or of an array of parts, with their sources.
+fn clocking(part: &str, scope: &Scope) -> Vec<(String, String)> {
+    let inputs = scope.iter().filter(|(_, net)| net.role.is_input_below());
+    let found = inputs.filter_map(|(_, net)| {
+        let (owner, port) = net.raw.rsplit_once('$')?;
+        let index = owner.strip_prefix(part)?;
+        let is_part = index.is_empty() || index.strip_prefix('$')?.parse::<usize>().is_ok();
+        (is_part && matches!(port, "clk" | "rst")).then(|| (net.raw.clone(), port.to_owned()))
+    });
+    found.collect()
 }
 
 fn is_signal(tree: &Tree, name: &str) -> bool {

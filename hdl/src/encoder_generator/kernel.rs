@@ -88,12 +88,6 @@ impl Logic for EncoderGenerator {
         self.generated_a.next = self.line_a.q.val() & !self.rst.val();
         self.generated_b.next = self.line_b.q.val() & !self.rst.val();
         self.generated_z.next = self.line_z.q.val() & !self.rst.val();
-        self.shown_a.clk.next = self.clk.val();
-        self.shown_b.clk.next = self.clk.val();
-        self.shown_z.clk.next = self.clk.val();
-        self.shown_a_n.clk.next = self.clk.val();
-        self.shown_b_n.clk.next = self.clk.val();
-        self.shown_z_n.clk.next = self.clk.val();
         self.shown_a.pin.next = self.pin_a.val();
         self.shown_b.pin.next = self.pin_b.val();
         self.shown_z.pin.next = self.pin_z.val();

@@ -46,6 +46,9 @@ kernel! {
         least_step: Signed<20> = from_i64(-i64::from(config.format().most_step())),
         none: Signed<18> = from_i64(0),
     }
+    connect {
+        loaded_errors: read_address;
+    }
 }
 
 /// The machine's table.
@@ -85,7 +88,6 @@ impl Logic for EntryBanks {
             self.loaded.d.next = self.index.val() + self.one_entry.val();
             self.previous.d.next = self.error_entry.val();
         }
-        self.loaded_errors.clk.next = self.clk.val();
         self.loaded_errors.write_enable.next = self.taken.val();
         self.loaded_errors.write_address.next = self.error_index.val();
         self.loaded_errors.write_data.next = unsigned_cast(self.error_entry.val());
@@ -105,9 +107,7 @@ impl Logic for EntryBanks {
         if self.serves.val() {
             self.read_address.next = self.error_index.val();
         }
-        self.machine_errors.clk.next = self.clk.val();
         self.machine_errors.address.next = self.read_address.val();
-        self.loaded_errors.read_address.next = self.read_address.val();
         self.word_loaded.next = self.from_loaded.val();
         if self.served.q.val() {
             self.word_loaded.next = self.served_bank.q.val();

@@ -25,6 +25,12 @@ kernel! {
         largest: Signed<32> = from_i64(i64::from(i32::MAX)),
         smallest: Signed<32> = from_i64(i64::from(i32::MIN)),
     }
+    connect {
+        lookup: valid, fraction;
+        lookup from banks: entry;
+        banks from lookup: busy, address;
+        banks: error_write, error_bank, error_index, error_entry, error_read;
+    }
 }
 
 impl Logic for ErrorTable {
@@ -70,25 +76,11 @@ impl Logic for ErrorTable {
         }
         self.from_first.next = self.position.val() - self.base.q.val();
 
-        self.lookup.clk.next = self.clk.val();
-        self.lookup.rst.next = self.rst.val();
-        self.lookup.valid.next = self.valid.val();
         self.lookup.counts.next = unsigned_cast(self.from_first.val());
-        self.lookup.fraction.next = self.fraction.val();
         self.lookup.weight.next = self.weight.q.val();
-        self.lookup.entry.next = self.banks.entry.val();
 
-        self.banks.clk.next = self.clk.val();
-        self.banks.rst.next = self.rst.val();
         self.banks.in_use.next = self.loaded.q.val() & !self.off.val();
-        self.banks.busy.next = self.lookup.busy.val();
         self.banks.from_loaded.next = self.loaded.q.val();
-        self.banks.address.next = self.lookup.address.val();
-        self.banks.error_write.next = self.error_write.val();
-        self.banks.error_bank.next = self.error_bank.val();
-        self.banks.error_index.next = self.error_index.val();
-        self.banks.error_entry.next = self.error_entry.val();
-        self.banks.error_read.next = self.error_read.val();
 
         comment!("The reference minus the error in use");
         self.fine_error.next = signed_bit_cast::<32, 18>(self.lookup.error.val());

@@ -58,6 +58,9 @@ kernel! {
         no_index: Bits<8> = from_u64(0),
         one_index: Bits<8> = from_u64(1),
     }
+    connect {
+        average: entry;
+    }
 }
 
 /// Bits of a position below the table's index: those of the spacing, and the 8 fraction bits of a count.
@@ -132,9 +135,6 @@ impl Logic for Lookup {
 
         comment!("Average the neighbours, then 0 and the error");
         self.fades.next = self.step.q.val() > self.found_step.val();
-        self.average.clk.next = self.clk.val();
-        self.average.rst.next = self.rst.val();
-        self.average.entry.next = self.entry.val();
         self.average.takes_entry.next = self.weight.val().any() & !self.fades.val();
         self.average.whole.next = self.whole.q.val();
         self.average.takes_whole.next = self.fades.val() & self.leaving.val();

@@ -24,6 +24,9 @@ kernel! {
         no_tick: Bits<24> = from_u64(0),
         one_tick: Bits<24> = from_u64(1),
     }
+    connect {
+        wave: valid, period_ticks, sweep;
+    }
 }
 
 impl Logic for Excitation {
@@ -77,16 +80,11 @@ impl Logic for Excitation {
         if self.amplitude.val() > self.amplitude_limit.val() {
             self.bounded.next = self.amplitude_limit.val();
         }
-        self.wave.clk.next = self.clk.val();
-        self.wave.rst.next = self.rst.val();
         self.wave.run.next = self.runs.val();
         self.wave.start.next = self.starts.val();
-        self.wave.valid.next = self.valid.val();
         self.wave.chirp.next = self.kind.val() == self.chirp_kind.val();
         self.wave.prbs.next = self.kind.val() == self.prbs_kind.val();
         self.wave.amplitude.next = self.bounded.val();
-        self.wave.period_ticks.next = self.period_ticks.val();
-        self.wave.sweep.next = self.sweep.val();
 
         comment!("Outputs");
         self.position_reference.next = self.position_q.q.val();

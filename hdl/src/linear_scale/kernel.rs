@@ -26,6 +26,9 @@ kernel! {
         largest: Bits<32> = from_u64(0x7fff_ffff),
         smallest: Bits<32> = from_u64(0x8000_0000),
     }
+    connect {
+        serial: use_scale, ratio_mantissa, ratio_shift;
+    }
 }
 
 impl Logic for LinearScale {
@@ -44,13 +47,8 @@ impl Logic for LinearScale {
 
         comment!("The computation; of the velocity only with use_scale");
         self.for_position.next = self.of_position.q.val() | !self.use_scale.val();
-        self.serial.clk.next = self.clk.val();
-        self.serial.rst.next = self.rst.val();
         self.serial.runs.next = self.runs.q.val();
         self.serial.of_position.next = self.for_position.val();
-        self.serial.use_scale.next = self.use_scale.val();
-        self.serial.ratio_mantissa.next = self.ratio_mantissa.val();
-        self.serial.ratio_shift.next = self.ratio_shift.val();
         self.serial.operand_bit.next = self.velocity_q.q.val().get_bit(0);
         if self.for_position.val() {
             self.serial.operand_bit.next = self.deviation_q.q.val().get_bit(0);

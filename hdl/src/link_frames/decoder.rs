@@ -57,7 +57,6 @@ impl Logic for FrameDecoder {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module frame_decoder");
-        self.memory.clk.next = self.clk.val();
 
         comment!("Time since the last byte");
         self.expired.next = self.silence.q.val() == self.silence_limit.val();

@@ -21,7 +21,6 @@ impl Logic for Reply {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module reply_frame");
-        self.memory.clk.next = self.clk.val();
         self.codes.next = self.close.val() | !self.data.val().any();
         self.memory.write_enable.next = self.put.val() | self.close.val();
         self.memory.write_address.next = self.put_at.q.val();

@@ -13,7 +13,6 @@ pub(crate) struct Dff<T: Synth> {
     pub(crate) d: Signal<In, T>,
     pub(crate) q: Signal<Out, T>,
     _reset_value: T,
-    _is_kept: bool,
 }
 
 /// Wiring of a register, or of an array of them, by `kernel!`.
@@ -23,7 +22,7 @@ pub(crate) trait Keep {
 }
 
 impl<T: Synth> Dff<T> {
-    /// Makes a register that its kernel wires itself.
+    /// Makes a register with this reset value.
     pub(crate) fn new(reset_value: T) -> Self {
         Self {
             clock: Signal::default(),
@@ -31,22 +30,7 @@ impl<T: Synth> Dff<T> {
             d: Signal::default(),
             q: Signal::new_with_default(reset_value),
             _reset_value: reset_value,
-            _is_kept: false,
         }
-    }
-
-    /// Makes a register that `kernel!` wires.
-    pub(crate) fn kept(reset_value: T) -> Self {
-        Self {
-            _is_kept: true,
-            ..Self::new(reset_value)
-        }
-    }
-}
-
-impl<T: Synth> Default for Dff<T> {
-    fn default() -> Self {
-        Self::new(T::default())
     }
 }
 
@@ -77,18 +61,14 @@ impl<T: Synth> Logic for Dff<T> {
         }
     }
 
-    /// `#[hdl_gen]` leaves `clock` and `d` to `dff_setup!`, but does not know that `rst` is wired there too.
     fn connect(&mut self) {
-        self.q.connect();
+        self.clock.connect();
         self.rst.connect();
-        if self._is_kept {
-            self.clock.connect();
-            self.d.connect();
-        }
+        self.d.connect();
+        self.q.connect();
     }
 
     fn hdl(&self) -> Verilog {
-        let kept = if self._is_kept { " kept" } else { "" };
-        Verilog::Custom(format!("// @dff {}{kept}\n", sized(self._reset_value)))
+        Verilog::Custom(format!("// @dff {} kept\n", sized(self._reset_value)))
     }
 }

@@ -4,6 +4,7 @@
 //! power-up and after reset, which flip-flops of every device can do, and low is the safe side. A pulse on the line
 //! that is too short for the clock is kept. A cycle-based simulation samples the line once per clock.
 
+use super::Clocked;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
@@ -15,6 +16,16 @@ pub(crate) struct FaultLatch {
     pub(crate) trip_n: Signal<In, Bit>,
     pub(crate) clear: Signal<In, Bit>,
     pub(crate) armed: Signal<Out, Bit>,
+}
+
+impl Clocked for FaultLatch {
+    fn clk(&mut self) -> &mut Signal<In, Clock> {
+        &mut self.clk
+    }
+
+    fn rst(&mut self) -> Option<&mut Signal<In, Bit>> {
+        Some(&mut self.rst)
+    }
 }
 
 impl Logic for FaultLatch {

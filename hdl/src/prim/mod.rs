@@ -3,6 +3,7 @@
 //! The first line of a leaf's Verilog is its tag for the emitter: `// @dff INIT` for a flip-flop, which the emitter
 //! writes into the module that owns it, or `// @leaf NAME reg: PORTS` for a module of its own.
 
+mod connections;
 mod dff;
 mod fault_latch;
 mod pin_register;
@@ -11,6 +12,7 @@ mod rom;
 mod smul;
 mod synchroniser;
 
+pub(crate) use connections::{CONNECTIONS_TAG, Clocked, Connections, Part};
 pub(crate) use dff::{Dff, Keep};
 pub(crate) use fault_latch::FaultLatch;
 pub(crate) use pin_register::PinRegister;

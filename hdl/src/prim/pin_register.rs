@@ -4,6 +4,7 @@
 //! through a reset must not look like an edge after it. It needs the same timing constraint as a synchroniser's first
 //! flip-flop: `set_false_path -to [get_registers *|pin_register_q]`.
 
+use super::Clocked;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
@@ -13,6 +14,12 @@ pub(crate) struct PinRegister {
     pub(crate) clk: Signal<In, Clock>,
     pub(crate) pin: Signal<In, Bit>,
     pub(crate) level: Signal<Out, Bit>,
+}
+
+impl Clocked for PinRegister {
+    fn clk(&mut self) -> &mut Signal<In, Clock> {
+        &mut self.clk
+    }
 }
 
 impl Logic for PinRegister {

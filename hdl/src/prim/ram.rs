@@ -4,6 +4,7 @@
 //! it is written is undefined, because devices differ. The simulation returns arbitrary contents for the former and
 //! the complement of the written word for the latter, so that a block that uses either differs from its model.
 
+use super::Clocked;
 use crate::prelude::from_u64;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
@@ -38,6 +39,12 @@ impl<const D: usize, const N: usize> Default for Ram<D, N> {
 /// An arbitrary word (the multiplier is 2^64 over the golden ratio).
 fn arbitrary(address: u64) -> u64 {
     (address + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 13
+}
+
+impl<const D: usize, const N: usize> Clocked for Ram<D, N> {
+    fn clk(&mut self) -> &mut Signal<In, Clock> {
+        &mut self.clk
+    }
 }
 
 impl<const D: usize, const N: usize> Logic for Ram<D, N> {

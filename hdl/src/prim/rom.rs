@@ -3,6 +3,7 @@
 //! It is written as a memory with contents and a registered read, which becomes block RAM; a `case` would become logic.
 //! Words above the last one given are undefined, and a block must not use them.
 
+use super::Clocked;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 use std::fmt::Write as _;
@@ -34,6 +35,12 @@ impl<const D: usize, const N: usize> Rom<D, N> {
             _base_name: base_name.to_owned(),
             _words: words,
         }
+    }
+}
+
+impl<const D: usize, const N: usize> Clocked for Rom<D, N> {
+    fn clk(&mut self) -> &mut Signal<In, Clock> {
+        &mut self.clk
     }
 }
 

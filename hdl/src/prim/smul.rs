@@ -3,6 +3,7 @@
 //! It has no reset, because multiplier blocks do not have a synchronous one: its output is unknown in the first two
 //! clocks.
 
+use super::Clocked;
 use crate::prelude::{from_i64, to_i64};
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
@@ -16,6 +17,12 @@ pub(crate) struct SMul<const A: usize, const B: usize, const P: usize> {
     pub(crate) product: Signal<Out, Signed<P>>,
     _a: i64,
     _b: i64,
+}
+
+impl<const A: usize, const B: usize, const P: usize> Clocked for SMul<A, B, P> {
+    fn clk(&mut self) -> &mut Signal<In, Clock> {
+        &mut self.clk
+    }
 }
 
 impl<const A: usize, const B: usize, const P: usize> Logic for SMul<A, B, P> {

@@ -5,6 +5,7 @@
 //! `set_false_path -to [get_registers *|synchroniser_first]`. In simulation the synchroniser is a delay of two
 //! clocks.
 
+use super::Clocked;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
@@ -16,6 +17,16 @@ pub(crate) struct Synchroniser {
     pub(crate) pin: Signal<In, Bit>,
     pub(crate) level: Signal<Out, Bit>,
     _first: bool,
+}
+
+impl Clocked for Synchroniser {
+    fn clk(&mut self) -> &mut Signal<In, Clock> {
+        &mut self.clk
+    }
+
+    fn rst(&mut self) -> Option<&mut Signal<In, Bit>> {
+        Some(&mut self.rst)
+    }
 }
 
 impl Logic for Synchroniser {

@@ -40,6 +40,14 @@ kernel! {
         no_illegal: Bits<4> = from_u64(0),
         one_illegal: Bits<4> = from_u64(1),
     }
+    connect {
+        line_a, line_b, line_z: differential, ready, filter_clocks;
+        disagreement_filter: ready, filter_clocks;
+        decoder: swap, invert, ready, mode;
+        speed from decoder: step, up;
+        speed: tick, velocity_m, quotient_valid, clear_flags, time_stamp, smoothing, timeout, quotient;
+        outputs from speed: steps, elapsed, velocity_pending, velocity, velocity_valid, velocity_missed;
+    }
 }
 
 impl Logic for PulseCounter {
@@ -60,43 +68,18 @@ impl Logic for PulseCounter {
         self.ready.next = self.ready_q.q.val();
 
         comment!("Lines, all with the same delay");
-        self.line_a.clk.next = self.clk.val();
-        self.line_a.rst.next = self.rst.val();
         self.line_a.pin.next = self.a.val();
         self.line_a.complement.next = self.a_n.val();
-        self.line_a.differential.next = self.differential.val();
-        self.line_a.ready.next = self.ready.val();
-        self.line_a.filter_clocks.next = self.filter_clocks.val();
-        self.line_b.clk.next = self.clk.val();
-        self.line_b.rst.next = self.rst.val();
         self.line_b.pin.next = self.b.val();
         self.line_b.complement.next = self.b_n.val();
-        self.line_b.differential.next = self.differential.val();
-        self.line_b.ready.next = self.ready.val();
-        self.line_b.filter_clocks.next = self.filter_clocks.val();
-        self.line_z.clk.next = self.clk.val();
-        self.line_z.rst.next = self.rst.val();
         self.line_z.pin.next = self.z.val();
         self.line_z.complement.next = self.z_n.val();
-        self.line_z.differential.next = self.differential.val();
-        self.line_z.ready.next = self.ready.val();
-        self.line_z.filter_clocks.next = self.filter_clocks.val();
-        self.disagreement_filter.clk.next = self.clk.val();
-        self.disagreement_filter.rst.next = self.rst.val();
         self.disagreement_filter.input_level.next =
             self.line_a.disagrees.val() | self.line_b.disagrees.val() | self.line_z.disagrees.val();
-        self.disagreement_filter.ready.next = self.ready.val();
-        self.disagreement_filter.filter_clocks.next = self.filter_clocks.val();
 
         comment!("Steps, and the count after them");
-        self.decoder.clk.next = self.clk.val();
-        self.decoder.rst.next = self.rst.val();
         self.decoder.level_a.next = self.line_a.level.val();
         self.decoder.level_b.next = self.line_b.level.val();
-        self.decoder.swap.next = self.swap.val();
-        self.decoder.invert.next = self.invert.val();
-        self.decoder.ready.next = self.ready.val();
-        self.decoder.mode.next = self.mode.val();
         self.change.next = self.no_count.val();
         if self.decoder.step.val() {
             self.change.next = self.count_down.val();
@@ -162,20 +145,8 @@ impl Logic for PulseCounter {
             self.origin_q.d.next = self.count_q.q.val() - self.preset_value.val();
         }
 
-        comment!("Velocity, of the count before the step");
-        self.speed.clk.next = self.clk.val();
-        self.speed.rst.next = self.rst.val();
-        self.speed.step.next = self.decoder.step.val();
-        self.speed.up.next = self.decoder.up.val();
-        self.speed.tick.next = self.tick.val();
-        self.speed.velocity_m.next = self.velocity_m.val();
-        self.speed.quotient_valid.next = self.quotient_valid.val();
-        self.speed.clear_flags.next = self.clear_flags.val();
-        self.speed.time_stamp.next = self.time_stamp.val();
-        self.speed.smoothing.next = self.smoothing.val();
-        self.speed.timeout.next = self.timeout.val();
-        self.speed.quotient.next = self.quotient.val();
         self.count_bits.next = unsigned_cast(self.count_q.q.val());
+        comment!("Velocity, of the count before the step");
         self.speed.count.next = self.count_bits.val().get_bits::<18>(0);
 
         comment!("Outputs");
@@ -192,11 +163,5 @@ impl Logic for PulseCounter {
         self.level_a.next = self.line_a.level.val();
         self.level_b.next = self.line_b.level.val();
         self.level_z.next = self.line_z.level.val();
-        self.steps.next = self.speed.steps.val();
-        self.elapsed.next = self.speed.elapsed.val();
-        self.velocity_pending.next = self.speed.velocity_pending.val();
-        self.velocity.next = self.speed.velocity.val();
-        self.velocity_valid.next = self.speed.velocity_valid.val();
-        self.velocity_missed.next = self.speed.velocity_missed.val();
     }
 }

@@ -11,17 +11,16 @@ kernel! {
     outputs { level: Bit, disagrees: Bit }
     parts { pin_synchroniser: Synchroniser, complement_synchroniser: Synchroniser, filter: GlitchFilter }
     wires { equal: Bit, says: Bit }
+    connect {
+        pin_synchroniser: pin;
+        filter: ready, filter_clocks;
+    }
 }
 
 impl Logic for Line {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module line_receiver");
-        self.pin_synchroniser.clk.next = self.clk.val();
-        self.pin_synchroniser.rst.next = self.rst.val();
-        self.pin_synchroniser.pin.next = self.pin.val();
-        self.complement_synchroniser.clk.next = self.clk.val();
-        self.complement_synchroniser.rst.next = self.rst.val();
         self.complement_synchroniser.pin.next = self.complement.val();
         self.equal.next =
             self.differential.val() & (self.pin_synchroniser.level.val() == self.complement_synchroniser.level.val());
@@ -29,11 +28,7 @@ impl Logic for Line {
         if self.equal.val() {
             self.says.next = self.filter.level.val();
         }
-        self.filter.clk.next = self.clk.val();
-        self.filter.rst.next = self.rst.val();
         self.filter.input_level.next = self.says.val();
-        self.filter.ready.next = self.ready.val();
-        self.filter.filter_clocks.next = self.filter_clocks.val();
         self.level.next = self.filter.level.val();
         self.disagrees.next = self.equal.val();
     }

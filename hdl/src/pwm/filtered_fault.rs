@@ -17,8 +17,6 @@ impl Logic for FilteredFault {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module filtered_fault");
-        self.synchroniser.clk.next = self.clk.val();
-        self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = !self.fault_n.val();
         self.long.next = self.lasted.q.val() >= self.filter_clocks.val();
         if !self.long.val() {

@@ -29,6 +29,20 @@ kernel! {
         settled: Bit, busy_clocks: Bits<16>, no_slack: Bit, may_run: Bit, goes_on: Bit, starts: Bit,
         wanted: Bit, wants_high: Bit, may_turn: Bit, turns: Bit,
     }
+    connect {
+        carrier: period, sync, phase, trigger_phase;
+        carrier from command: valley_next, peak_next;
+        timing: dead_time, minimum_pulse;
+        command: mode, duty, max_duty, update_at_peak;
+        command from carrier: valley_lead, peak_lead, waits;
+        guard: feed, watchdog_periods, filter_clocks, fault_n, pll_locked, filtered_fault_n, clear_trip;
+        leg: wanted, wants_high;
+        pin_gates from guard: armed;
+        pin_gates: mask_pins;
+        pin_gates from leg: awake, high_side, low_side;
+        outputs from timing: dead_time_used, minimum_pulse_used;
+        outputs from pin_gates: gates;
+    }
 }
 
 impl Logic for Pwm {
@@ -36,43 +50,13 @@ impl Logic for Pwm {
     fn update(&mut self) {
         comment!("@module pwm");
 
-        self.carrier.clk.next = self.clk.val();
-        self.carrier.rst.next = self.rst.val();
         self.carrier.running.next = self.running_q.q.val();
-        self.carrier.period.next = self.period.val();
-        self.carrier.sync.next = self.sync.val();
-        self.carrier.phase.next = self.phase.val();
-        self.carrier.trigger_phase.next = self.trigger_phase.val();
-        self.carrier.valley_next.next = self.command.valley_next.val();
-        self.carrier.peak_next.next = self.command.peak_next.val();
-        self.timing.clk.next = self.clk.val();
-        self.timing.rst.next = self.rst.val();
         self.timing.running.next = self.running_q.q.val();
-        self.timing.dead_time.next = self.dead_time.val();
-        self.timing.minimum_pulse.next = self.minimum_pulse.val();
-        self.command.clk.next = self.clk.val();
-        self.command.rst.next = self.rst.val();
-        self.command.mode.next = self.mode.val();
-        self.command.duty.next = self.duty.val();
-        self.command.max_duty.next = self.max_duty.val();
-        self.command.update_at_peak.next = self.update_at_peak.val();
         self.command.period.next = self.carrier.period_used.val();
         self.command.dead_time.next = self.timing.dead_time_used.val();
         self.command.minimum_pulse.next = self.timing.minimum_pulse_used.val();
-        self.command.valley_lead.next = self.carrier.valley_lead.val();
-        self.command.peak_lead.next = self.carrier.peak_lead.val();
-        self.command.waits.next = self.carrier.waits.val();
-        self.guard.clk.next = self.clk.val();
-        self.guard.rst.next = self.rst.val();
         self.guard.running.next = self.running_q.q.val();
         self.guard.valley.next = self.command.valley_next.val();
-        self.guard.feed.next = self.feed.val();
-        self.guard.watchdog_periods.next = self.watchdog_periods.val();
-        self.guard.filter_clocks.next = self.filter_clocks.val();
-        self.guard.fault_n.next = self.fault_n.val();
-        self.guard.pll_locked.next = self.pll_locked.val();
-        self.guard.filtered_fault_n.next = self.filtered_fault_n.val();
-        self.guard.clear_trip.next = self.clear_trip.val();
 
         comment!("Switch off at once, and on at a valley whose");
         comment!("command was computed from unchanged settings");
@@ -98,22 +82,11 @@ impl Logic for Pwm {
         comment!("Command to the leg at this position");
         self.wanted.next = self.goes_on.val() & !self.off_q.q.val();
         self.wants_high.next = self.high_q.q.val() | (self.command.level.val() & !self.low_q.q.val());
-        self.leg.clk.next = self.clk.val();
-        self.leg.rst.next = self.rst.val();
-        self.leg.wanted.next = self.wanted.val();
-        self.leg.wants_high.next = self.wants_high.val();
         self.leg.low_first.next = self.mode_q.q.val() == 0;
         self.leg.dead_time.next = self.timing.dead_time_used.val();
         self.leg.minimum_pulse.next = self.timing.minimum_pulse_used.val();
-        self.pin_gates.clk.next = self.clk.val();
-        self.pin_gates.rst.next = self.rst.val();
-        self.pin_gates.armed.next = self.guard.armed.val();
-        self.pin_gates.mask_pins.next = self.mask_pins.val();
         self.pin_gates.mode.next = self.mode_q.q.val();
         self.pin_gates.negative.next = self.negative_q.q.val();
-        self.pin_gates.awake.next = self.leg.awake.val();
-        self.pin_gates.high_side.next = self.leg.high_side.val();
-        self.pin_gates.low_side.next = self.leg.low_side.val();
 
         comment!("The direction changes with its first pulse");
         self.may_turn.next = !self.leg.awake.val() | self.leg.low_side.val();
@@ -170,8 +143,5 @@ impl Logic for Pwm {
         self.refused.next = self.refused_q.q.val();
         self.below_floor.next = self.below_floor_q.q.val();
         self.unaligned.next = self.unaligned_q.q.val();
-        self.dead_time_used.next = self.timing.dead_time_used.val();
-        self.minimum_pulse_used.next = self.timing.minimum_pulse_used.val();
-        self.gates.next = self.pin_gates.gates.val();
     }
 }

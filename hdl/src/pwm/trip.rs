@@ -32,6 +32,10 @@ kernel! {
         trip_n: Bit, over: Bit, latched: Bit, waits: Bit, starved: Bit, others: Bit, none: Bits<5>,
         with_latch: Bits<5>, with_fault_0: Bits<5>, with_fault_1: Bits<5>, with_pll: Bits<5>,
     }
+    connect {
+        fault_latch: trip_n;
+        fault_0, fault_1: filter_clocks;
+    }
 }
 
 impl Logic for Trip {
@@ -41,20 +45,11 @@ impl Logic for Trip {
 
         comment!("Asynchronous: the pins and the latch");
         self.trip_n.next = self.fault_n.val() & self.pll_locked.val();
-        self.fault_latch.clk.next = self.clk.val();
-        self.fault_latch.rst.next = self.rst.val();
-        self.fault_latch.trip_n.next = self.trip_n.val();
         self.armed.next = self.fault_latch.armed.val() & self.trip_n.val();
 
         comment!("Clear the latch once off and once the cause is over");
-        self.armed_synchroniser.clk.next = self.clk.val();
-        self.armed_synchroniser.rst.next = self.rst.val();
         self.armed_synchroniser.pin.next = self.fault_latch.armed.val();
-        self.fault_synchroniser.clk.next = self.clk.val();
-        self.fault_synchroniser.rst.next = self.rst.val();
         self.fault_synchroniser.pin.next = self.fault_n.val();
-        self.pll_synchroniser.clk.next = self.clk.val();
-        self.pll_synchroniser.rst.next = self.rst.val();
         self.pll_synchroniser.pin.next = !self.pll_locked.val();
         self.latched.next = !self.armed_synchroniser.level.val();
         self.over.next = self.fault_synchroniser.level.val() & !self.pll_synchroniser.level.val();
@@ -62,14 +57,8 @@ impl Logic for Trip {
             self.clear_trip.val() & !self.running.val() & self.latched.val() & self.over.val();
 
         comment!("Filtered faults and PLL; setting wins");
-        self.fault_0.clk.next = self.clk.val();
-        self.fault_0.rst.next = self.rst.val();
         self.fault_0.fault_n.next = self.filtered_fault_n.val().get_bit(0);
-        self.fault_0.filter_clocks.next = self.filter_clocks.val();
-        self.fault_1.clk.next = self.clk.val();
-        self.fault_1.rst.next = self.rst.val();
         self.fault_1.fault_n.next = self.filtered_fault_n.val().get_bit(1);
-        self.fault_1.filter_clocks.next = self.filter_clocks.val();
         self.filtered_0.d.next = self.fault_0.active.val() | (self.filtered_0.q.val() & !self.clear_trip.val());
         self.filtered_1.d.next = self.fault_1.active.val() | (self.filtered_1.q.val() & !self.clear_trip.val());
         self.pll.d.next = self.pll_synchroniser.level.val() | (self.pll.q.val() & !self.clear_trip.val());

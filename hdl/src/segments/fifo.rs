@@ -52,7 +52,6 @@ impl Logic for CommandFifo {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module command_fifo");
-        self.memory.clk.next = self.clk.val();
 
         comment!("A word, unless closed or full");
         self.held.next = self.level_q.q.val() + self.staged.q.val();

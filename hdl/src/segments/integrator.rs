@@ -66,21 +66,16 @@ kernel! {
         no_acceleration: Bits<40> = from_u64(0),
         no_ticks: Bits<24> = from_u64(0),
     }
+    connect {
+        passes: phase, moves, held, points, loads, short_jerk, extrapolates;
+        outputs from passes: decides, reads_flags, ends, read_word;
+    }
 }
 
 impl Logic for Integrator {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module integrator");
-        self.passes.clk.next = self.clk.val();
-        self.passes.rst.next = self.rst.val();
-        self.passes.phase.next = self.phase.val();
-        self.passes.moves.next = self.moves.val();
-        self.passes.held.next = self.held.val();
-        self.passes.points.next = self.points.val();
-        self.passes.loads.next = self.loads.val();
-        self.passes.short_jerk.next = self.short_jerk.val();
-        self.passes.extrapolates.next = self.extrapolates.val();
         self.passes.jerk_failed.next = self.jerk_failed.q.val();
         self.passes.speed_failed.next = self.speed_failed.q.val();
         self.passes.moving.next = self.moving.q.val();
@@ -260,9 +255,5 @@ impl Logic for Integrator {
         self.entry_ends.next = self.carry.q.val();
         comment!("Ticks since the end of the entry");
         self.ticks_after.next = self.ticks.q.val().get_bits::<8>(0);
-        self.decides.next = self.passes.decides.val();
-        self.reads_flags.next = self.passes.reads_flags.val();
-        self.ends.next = self.passes.ends.val();
-        self.read_word.next = self.passes.read_word.val();
     }
 }

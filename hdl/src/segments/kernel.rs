@@ -38,16 +38,18 @@ kernel! {
         no_level: Bits<7> = from_u64(0),
         one_late: Bits<8> = from_u64(1),
     }
+    connect {
+        integrator: takes_tick, modulo, points, preset_position, stop_deceleration;
+        integrator from fifo: read_data;
+        fifo from integrator: read_word;
+        fifo: write, word, data;
+    }
 }
 
 impl Logic for Segments {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module segments");
-        self.fifo.clk.next = self.clk.val();
-        self.fifo.rst.next = self.rst.val();
-        self.integrator.clk.next = self.clk.val();
-        self.integrator.rst.next = self.rst.val();
         self.moves.next = self.state_q.q.val() == self.move_state.val();
         self.stops.next = self.state_q.q.val() == self.stop_state.val();
         self.stopped.next = self.state_q.q.val() == self.stopped_state.val();
@@ -130,21 +132,14 @@ impl Logic for Segments {
         self.plays.next = self.moves.val() & !self.held_now.val();
         self.points.next = self.plays.val() & self.point.q.val() & !self.extrapolates.q.val();
         self.integrator.phase.next = self.phase.q.val();
-        self.integrator.takes_tick.next = self.takes_tick.val();
         self.integrator.preset.next = self.takes_tick.val() & self.preset_now.val();
         self.integrator.brakes.next =
             self.takes_tick.val() & !self.preset_now.val() & (self.stops.val() | self.to_stop.val());
         self.integrator.moves.next = self.plays.val();
         self.integrator.held.next = self.held_now.val();
-        self.integrator.modulo.next = self.modulo.val();
-        self.integrator.points.next = self.points.val();
         self.integrator.loads.next = self.points.val() | (self.plays.val() & self.cubic.q.val() & self.first.q.val());
         self.integrator.short_jerk.next = self.plays.val() & self.cubic.q.val() & !self.first.q.val();
         self.integrator.extrapolates.next = self.plays.val() & self.extrapolates.q.val();
-        self.integrator.preset_position.next = self.preset_position.val();
-        self.integrator.stop_deceleration.next = self.stop_deceleration.val();
-        self.integrator.read_data.next = self.fifo.read_data.val();
-        self.fifo.read_word.next = self.integrator.read_word.val();
 
         comment!("Outputs, and what the next tick does");
         self.reads.next = false;
@@ -223,9 +218,6 @@ impl Logic for Segments {
         }
 
         comment!("Words written by the host");
-        self.fifo.write.next = self.write.val();
-        self.fifo.word.next = self.word.val();
-        self.fifo.data.next = self.data.val();
         self.fifo.closed.next = self.stops.val() | self.stopped.val();
         self.fifo.plays.next = self.moves.val();
         self.fifo.flush.next = self.drops.val();

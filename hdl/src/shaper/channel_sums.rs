@@ -45,12 +45,9 @@ kernel! {
     parts { product: Product<W, P, 1> }
     registers {
         coefficient_read: Signed<18>, coefficient_q: Signed<18>, blank_read: Bit, sample_q: Signed<W>,
-        accumulator: Signed<ACC>, channel: Bits<2>,
+        accumulator: Signed<ACC>, channel: Bits<2>, held[H]: Bits<W>, held_above[H]: Bit, held_below[H]: Bit,
+        clamped: Bit, y_q[C]: Signed<W>, valid_q: Bit, busy_q: Bit, saturated_q: Bit,
     }
-    parts { held[H]: Dff<Bits<W>>, held_above[H]: Dff<Bit>, held_below[H]: Dff<Bit> }
-    registers { clamped: Bit }
-    parts { y_q[C]: Dff<Signed<W>> }
-    registers { valid_q: Bit, busy_q: Bit, saturated_q: Bit }
     wires {
         wide_product: Signed<ACC>, operand: Signed<W>, position: Bits<W>, position_scaled: Bits<ACC>,
         accumulator_bits: Bits<ACC>, sign_bits: Bits<ACC>, before_first: Bit, wraps: Bit, beyond: Bit,
@@ -81,19 +78,11 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
     fn update(&mut self) {
         comment!("@module channel_sums_${width x$0}x${width half}x${count x}_f${value fraction}${if modulo _modulo}");
         for i in 0..H {
-            self.held[i].clock.next = self.clk.val();
-            self.held[i].rst.next = self.rst.val();
             self.held[i].d.next = self.held[i].q.val();
-            self.held_above[i].clock.next = self.clk.val();
-            self.held_above[i].rst.next = self.rst.val();
             self.held_above[i].d.next = self.held_above[i].q.val();
-            self.held_below[i].clock.next = self.clk.val();
-            self.held_below[i].rst.next = self.rst.val();
             self.held_below[i].d.next = self.held_below[i].q.val();
         }
         for i in 0..C {
-            self.y_q[i].clock.next = self.clk.val();
-            self.y_q[i].rst.next = self.rst.val();
             self.y_q[i].d.next = self.y_q[i].q.val();
         }
 
@@ -118,8 +107,6 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
         comment!("Multiply and accumulate, exactly");
         self.coefficient_read.d.next = self.coefficient.val();
         self.coefficient_q.d.next = self.coefficient_read.q.val();
-        self.product.clk.next = self.clk.val();
-        self.product.rst.next = self.rst.val();
         self.product.sample.next = self.operand.val();
         self.product.coefficient.next = self.coefficient_q.q.val();
         self.wide_product.next = signed_bit_cast::<ACC, P>(self.product.product.val());

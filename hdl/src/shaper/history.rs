@@ -61,7 +61,6 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
         }
         self.blank.next = self.before_start.val() & !self.started.q.val();
         for i in 0..C {
-            self.ring[i].clk.next = self.clk.val();
             self.ring[i].write_enable.next = self.writes.val();
             self.ring[i].write_address.next = self.next_head.val();
             self.ring[i].write_data.next = unsigned_cast(self.x[i].val());

@@ -40,6 +40,16 @@ kernel! {
         no_stage: Bits<6> = from_u64(0),
         first_stage: Bits<6> = from_u64(1),
     }
+    connect {
+        banks: strobe, clear_flags, tap_write, tap_bank, tap_index, tap_coefficient, tap_delay, tap_read, swap,
+            swap_bank;
+        history: strobe, start;
+        history from banks: delay;
+        sum from banks: coefficient;
+        sum from history: blank;
+        sum: finish, start, x, clear_flags;
+        outputs from banks: swap_pending, bank, refused, loaded_coefficient, loaded_delay, tap_read_waits;
+    }
 }
 
 impl<
@@ -59,19 +69,7 @@ impl<
         comment!("@module shaper");
 
         comment!("Tables: the word of tap comes two clocks later");
-        self.banks.clk.next = self.clk.val();
-        self.banks.rst.next = self.rst.val();
-        self.banks.strobe.next = self.strobe.val();
-        self.banks.clear_flags.next = self.clear_flags.val();
-        self.banks.tap_write.next = self.tap_write.val();
-        self.banks.tap_bank.next = self.tap_bank.val();
-        self.banks.tap_index.next = self.tap_index.val();
-        self.banks.tap_coefficient.next = self.tap_coefficient.val();
-        self.banks.tap_delay.next = self.tap_delay.val();
-        self.banks.tap_read.next = self.tap_read.val();
         self.banks.busy.next = self.busy_q.q.val();
-        self.banks.swap.next = self.swap.val();
-        self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.tap.next = self.tap.q.val();
 
         comment!("A swap takes effect at the next strobe");
@@ -81,26 +79,13 @@ impl<
         self.banks.old.next = false;
 
         comment!("Samples: the one at delay comes a clock later");
-        self.history.clk.next = self.clk.val();
-        self.history.rst.next = self.rst.val();
-        self.history.strobe.next = self.strobe.val();
-        self.history.start.next = self.start.val();
         self.history.x[0].next = self.x.val();
-        self.history.delay.next = self.banks.delay.val();
 
         comment!("Sum: an abandoned pass leaves y unchanged");
         self.finish.next = self.done.q.val() & !self.start.val() & !self.strobe.val();
-        self.sum.clk.next = self.clk.val();
-        self.sum.rst.next = self.rst.val();
         self.sum.begin_pass.next = self.strobe.val();
-        self.sum.coefficient.next = self.banks.coefficient.val();
         self.sum.sample.next = self.history.sample[0].val();
-        self.sum.blank.next = self.history.blank.val();
         self.sum.add.next = self.stages.q.val().get_bit(5);
-        self.sum.finish.next = self.finish.val();
-        self.sum.start.next = self.start.val();
-        self.sum.x.next = self.x.val();
-        self.sum.clear_flags.next = self.clear_flags.val();
 
         comment!("One tap per clock, up to the last of the table");
         self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
@@ -144,11 +129,5 @@ impl<
         self.saturated.next = self.sum.saturated.val();
         self.busy.next = self.busy_q.q.val();
         self.overrun.next = self.overrun_q.q.val();
-        self.swap_pending.next = self.banks.swap_pending.val();
-        self.bank.next = self.banks.bank.val();
-        self.refused.next = self.banks.refused.val();
-        self.loaded_coefficient.next = self.banks.loaded_coefficient.val();
-        self.loaded_delay.next = self.banks.loaded_delay.val();
-        self.tap_read_waits.next = self.banks.tap_read_waits.val();
     }
 }

@@ -62,6 +62,20 @@ kernel! {
         second_stage: Bits<9> = from_u64(2),
         unknown_how: Bits<2> = from_u64(3),
     }
+    connect {
+        banks: strobe, clear_flags, tap_write, tap_bank, tap_index, tap_coefficient, tap_delay, tap_read, swap,
+            swap_bank, old;
+        banks from sums: busy;
+        banks from handover: take;
+        handover: strobe, start, swap_how, old, of_position;
+        handover from banks: accepted, swap_pending, reach;
+        history: strobe, start;
+        history from handover: delay;
+        sums from handover: coefficient, newest;
+        sums from history: blank;
+        sums: start, clear_flags;
+        outputs from banks: bank, refused, loaded_coefficient, loaded_delay, tap_read_waits;
+    }
 }
 
 impl<
@@ -84,49 +98,19 @@ impl<
         comment!("Tables: the word of tap comes two clocks later");
         self.of_position.next = self.channel.q.val() == self.first_channel.val();
         self.old.next = self.handover.active.val() & !self.second.q.val();
-        self.banks.clk.next = self.clk.val();
-        self.banks.rst.next = self.rst.val();
-        self.banks.strobe.next = self.strobe.val();
-        self.banks.clear_flags.next = self.clear_flags.val();
-        self.banks.tap_write.next = self.tap_write.val();
-        self.banks.tap_bank.next = self.tap_bank.val();
-        self.banks.tap_index.next = self.tap_index.val();
-        self.banks.tap_coefficient.next = self.tap_coefficient.val();
-        self.banks.tap_delay.next = self.tap_delay.val();
-        self.banks.tap_read.next = self.tap_read.val();
-        self.banks.busy.next = self.sums.busy.val();
-        self.banks.swap.next = self.swap.val();
-        self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.known.next = self.swap_how.val() != self.unknown_how.val();
-        self.banks.take.next = self.handover.take.val();
         self.banks.locked.next = self.handover.active.val();
-        self.banks.old.next = self.old.val();
         self.banks.tap.next = self.tap.q.val();
 
         comment!("Time at which a swap takes effect");
-        self.handover.clk.next = self.clk.val();
-        self.handover.rst.next = self.rst.val();
-        self.handover.strobe.next = self.strobe.val();
-        self.handover.start.next = self.start.val();
         self.handover.position.next = self.x[0].val();
-        self.handover.accepted.next = self.banks.accepted.val();
-        self.handover.swap_how.next = self.swap_how.val();
-        self.handover.swap_pending.next = self.banks.swap_pending.val();
-        self.handover.reach.next = self.banks.reach.val();
 
         comment!("Tap during a handover");
-        self.handover.old.next = self.old.val();
         self.handover.correcting.next = self.correcting.q.val();
-        self.handover.of_position.next = self.of_position.val();
         self.handover.tap_coefficient.next = self.banks.coefficient.val();
         self.handover.tap_delay.next = self.banks.delay.val();
 
         comment!("Samples: those at delay come a clock later");
-        self.history.clk.next = self.clk.val();
-        self.history.rst.next = self.rst.val();
-        self.history.strobe.next = self.strobe.val();
-        self.history.start.next = self.start.val();
-        self.history.delay.next = self.handover.delay.val();
         for i in 0..C {
             self.history.x[i].next = self.x[i].val();
             self.sums.sample[i].next = self.history.sample[i].val();
@@ -134,16 +118,9 @@ impl<
         }
 
         comment!("Sums: one ends and the next begins");
-        self.sums.clk.next = self.clk.val();
-        self.sums.rst.next = self.rst.val();
         self.sums.begin_pass.next = self.strobe.val();
-        self.sums.coefficient.next = self.handover.coefficient.val();
-        self.sums.blank.next = self.history.blank.val();
         self.sums.sample_channel.next = self.sample_channel.q.val();
-        self.sums.newest.next = self.handover.newest.val();
         self.sums.boundary.next = self.lasts.q.val().get_bit(8);
-        self.sums.start.next = self.start.val();
-        self.sums.clear_flags.next = self.clear_flags.val();
 
         comment!("One product per clock, and a gap after a channel");
         self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
@@ -209,10 +186,5 @@ impl<
         self.busy.next = self.sums.busy.val();
         self.overrun.next = self.overrun_q.q.val();
         self.swap_pending.next = self.banks.swap_pending.val() | self.handover.active.val();
-        self.bank.next = self.banks.bank.val();
-        self.refused.next = self.banks.refused.val();
-        self.loaded_coefficient.next = self.banks.loaded_coefficient.val();
-        self.loaded_delay.next = self.banks.loaded_delay.val();
-        self.tap_read_waits.next = self.banks.tap_read_waits.val();
     }
 }

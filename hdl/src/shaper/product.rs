@@ -33,7 +33,6 @@ impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> 
         self.word.next = signed_bit_cast::<32, W>(self.sample.val());
         self.word_bits.next = unsigned_cast(self.word.val());
         self.lower_part.next = self.word_bits.val().get_bits::<18>(0) & self.lower_mask.val();
-        self.lower.clk.next = self.clk.val();
         self.lower.a.next = signed_cast(self.lower_part.val());
         self.lower.b.next = self.coefficient.val();
         self.wide_lower.next = signed_bit_cast::<P, 36>(self.lower.product.val());
@@ -41,9 +40,8 @@ impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> 
         comment!("Product of the rest of a long word");
         self.wide_upper.next = self.no_product.val();
         for i in 0..U {
-            self.upper[i].clk.next = self.clk.val();
-            self.upper[i].a.next = signed_cast(self.word_bits.val().get_bits::<15>(17));
             self.upper[i].b.next = self.coefficient.val();
+            self.upper[i].a.next = signed_cast(self.word_bits.val().get_bits::<15>(17));
             self.wide_upper.next = signed_bit_cast::<P, 33>(self.upper[i].product.val());
         }
 

@@ -92,6 +92,9 @@ kernel! {
         no_word: Bits<WORD> = from_u64(0),
         unity: Signed<SUM> = from_i64(1 << config.coefficient_fraction()),
     }
+    connect {
+        loaded_taps: write_address, read_address;
+    }
 }
 
 /// The machine's table as `{delay, coefficient}`.
@@ -117,8 +120,6 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module tap_banks");
-        self.machine_taps.clk.next = self.clk.val();
-        self.loaded_taps.clk.next = self.clk.val();
 
         comment!("Write: number of taps in the addressed bank");
         self.taps_so_far.next = self.taps_1.q.val();
@@ -168,7 +169,6 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         }
         self.coefficient_bits.next = unsigned_cast(self.tap_coefficient.val());
         self.loaded_taps.write_enable.next = self.write_taken.val();
-        self.loaded_taps.write_address.next = self.write_address.val();
         self.loaded_taps.write_data.next =
             (bit_cast::<WORD, A>(self.tap_delay.val()) << 18) | bit_cast::<WORD, 18>(self.coefficient_bits.val());
 
@@ -259,7 +259,6 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.read_tap.next = self.tap_index.val();
         }
         self.machine_taps.address.next = self.read_tap.val();
-        self.loaded_taps.read_address.next = self.read_address.val();
         self.old_q.d.next = self.old.val();
         self.word_bank.next = self.active.q.val();
         if self.old_q.q.val() {

@@ -44,6 +44,9 @@ kernel! {
         y_min: Signed<W> = from_i64(config.word_min()),
         fraction: Bits<5> = from_u64(u64::from(config.coefficient_fraction())),
     }
+    connect {
+        product: sample;
+    }
 }
 
 impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for WeightedSum<W, P, ACC, U> {
@@ -56,9 +59,6 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for
         if self.blank.val() {
             self.coefficient_q.d.next = self.no_coefficient.val();
         }
-        self.product.clk.next = self.clk.val();
-        self.product.rst.next = self.rst.val();
-        self.product.sample.next = self.sample.val();
         self.product.coefficient.next = self.coefficient_q.q.val();
         self.wide_product.next = signed_bit_cast::<ACC, P>(self.product.product.val());
         if self.add.val() {

@@ -71,6 +71,22 @@ kernel! {
         of_command: Bits<7> = flag(Saturation::Command),
         of_duty: Bits<7> = flag(Saturation::Duty),
     }
+    connect {
+        sequencer: start, law, clear_flags;
+        tracking: modulo, position_reference, position;
+        operands from sequencer: step, linear, integrates;
+        operands from tracking: tracking_error;
+        operands from limiter: held;
+        operands: velocity_reference, acceleration_reference, velocity;
+        operands, integral from accumulator: word;
+        scaled_product from operands: operand;
+        accumulator from scaled_product: scaled;
+        limiter from accumulator: word, cut, negative;
+        integral: clear_integral;
+        integral from limiter: limited_high, limited_low;
+        cut_high, cut_low: clear_flags, what;
+        outputs from sequencer: overrun, ends;
+    }
 }
 
 /// Flag bit of a value that can saturate.
@@ -83,11 +99,6 @@ impl Logic for SlidingMode {
     fn update(&mut self) {
         comment!("@module sliding_mode");
 
-        self.sequencer.clk.next = self.clk.val();
-        self.sequencer.rst.next = self.rst.val();
-        self.sequencer.start.next = self.start.val();
-        self.sequencer.law.next = self.law.val();
-        self.sequencer.clear_flags.next = self.clear_flags.val();
         self.reads.next = self.sequencer.reads.val();
         self.settles.next = self.sequencer.settles.val();
         self.takes_fraction.next =
@@ -96,38 +107,19 @@ impl Logic for SlidingMode {
         self.to_integral.next = self.sequencer.step.val() == self.to_sum.val();
         self.to_duty.next = self.sequencer.step.val() == self.duty_step.val();
 
-        self.tracking.clk.next = self.clk.val();
-        self.tracking.rst.next = self.rst.val();
         self.tracking.capture.next = self.sequencer.begins.val();
-        self.tracking.modulo.next = self.modulo.val();
-        self.tracking.position_reference.next = self.position_reference.val();
-        self.tracking.position.next = self.position.val();
         self.error_bits.next = unsigned_cast(self.tracking.tracking_error.val());
 
         comment!("Operand of a step, and its factor");
-        self.operands.clk.next = self.clk.val();
-        self.operands.rst.next = self.rst.val();
-        self.operands.step.next = self.sequencer.step.val();
-        self.operands.linear.next = self.sequencer.linear.val();
-        self.operands.integrates.next = self.sequencer.integrates.val();
-        self.operands.tracking_error.next = self.tracking.tracking_error.val();
         self.operands.sliding.next = self.sliding_q.q.val();
-        self.operands.held.next = self.limiter.held.val();
         self.operands.integral.next = self.integral.value.val();
-        self.operands.velocity_reference.next = self.velocity_reference.val();
-        self.operands.acceleration_reference.next = self.acceleration_reference.val();
-        self.operands.velocity.next = self.velocity.val();
-        self.operands.word.next = self.accumulator.word.val();
         self.as_it_is.next =
             (self.sequencer.step.val() < self.surface.val()) | self.at_limit.val() | self.to_integral.val();
-        self.scaled_product.clk.next = self.clk.val();
-        self.scaled_product.rst.next = self.rst.val();
         self.scaled_product.read.next = self.reads.val();
         self.scaled_product.load.next = self.sequencer.loads.val();
         self.scaled_product.shift.next = self.sequencer.shifts.val();
         self.scaled_product.unit.next = self.as_it_is.val();
         self.scaled_product.minus.next = self.sequencer.step.val() == self.of_velocity.val();
-        self.scaled_product.operand.next = self.operands.operand.val();
         self.scaled_product.gain.next = self.setting.val().get_bits::<23>(0);
 
         self.begins_sum.next = (self.sequencer.step.val() == self.of_reference.val())
@@ -138,27 +130,19 @@ impl Logic for SlidingMode {
             | (self.sequencer.step.val() == self.coulomb.val())
             | (self.sequencer.step.val() == self.limit.val())
             | (self.sequencer.step.val() == self.duty_step.val());
-        self.accumulator.clk.next = self.clk.val();
-        self.accumulator.rst.next = self.rst.val();
         self.accumulator.empty.next = self.sequencer.empties.val() & self.begins_sum.val();
         self.accumulator.add.next = self.sequencer.adds.val();
         self.accumulator.check.next = self.sequencer.checks.val() & !self.at_limit.val();
-        self.accumulator.scaled.next = self.scaled_product.scaled.val();
         self.accumulator.as_fraction.next = self.takes_fraction.val();
         self.accumulator.as_duty.next = self.to_duty.val();
 
         self.keeps.next = (self.sequencer.step.val() == self.of_velocity.val())
             | (self.sequencer.step.val() == self.on_rate.val())
             | (self.sequencer.step.val() == self.on_velocity.val());
-        self.limiter.clk.next = self.clk.val();
-        self.limiter.rst.next = self.rst.val();
         self.limiter.keep.next = self.settles.val() & self.keeps.val();
         self.limiter.take.next = self.reads.val() & self.at_limit.val();
         self.limiter.count.next = self.settles.val() & self.to_integral.val();
         self.limiter.limit.next = self.setting.val().get_bits::<31>(0);
-        self.limiter.word.next = self.accumulator.word.val();
-        self.limiter.cut.next = self.accumulator.cut.val();
-        self.limiter.negative.next = self.accumulator.negative.val();
 
         comment!("The integral's sign is opposite to the feedback's");
         if self.reads.val() & (self.sequencer.step.val() == self.on_rest.val()) {
@@ -167,17 +151,11 @@ impl Logic for SlidingMode {
         if self.reads.val() & (self.sequencer.step.val() == self.on_feedback.val()) {
             self.opposes.d.next = self.opposes.q.val() ^ self.setting.val().get_bit(17);
         }
-        self.integral.clk.next = self.clk.val();
-        self.integral.rst.next = self.rst.val();
-        self.integral.clear_integral.next = self.clear_integral.val();
         self.integral.open.next = self.sequencer.marks.val() & (self.sequencer.step.val() == self.on_velocity.val());
         self.integral.enable.next = self.sequencer.integrates.val() & self.to_integral.val();
         self.integral.settle.next = self.settles.val();
-        self.integral.word.next = self.accumulator.word.val();
         self.integral.falls.next = self.error_bits.val().get_bit(23);
         self.integral.opposes.next = self.opposes.q.val();
-        self.integral.limited_high.next = self.limiter.limited_high.val();
-        self.integral.limited_low.next = self.limiter.limited_low.val();
 
         comment!("Destination of a word, and its saturation flag");
         if self.settles.val() & (self.sequencer.step.val() == self.surface.val()) {
@@ -213,17 +191,9 @@ impl Logic for SlidingMode {
             self.high.next = self.limiter.limited_high.val();
             self.low.next = self.limiter.limited_low.val();
         }
-        self.cut_high.clk.next = self.clk.val();
-        self.cut_high.rst.next = self.rst.val();
-        self.cut_high.clear_flags.next = self.clear_flags.val();
         self.cut_high.tracking_error.next = self.tracking.high.val();
-        self.cut_high.what.next = self.what.val();
         self.cut_high.is_cut.next = self.high.val();
-        self.cut_low.clk.next = self.clk.val();
-        self.cut_low.rst.next = self.rst.val();
-        self.cut_low.clear_flags.next = self.clear_flags.val();
         self.cut_low.tracking_error.next = self.tracking.low.val();
-        self.cut_low.what.next = self.what.val();
         self.cut_low.is_cut.next = self.low.val();
 
         comment!("Outputs");
@@ -239,7 +209,5 @@ impl Logic for SlidingMode {
         self.limited_ticks.next = self.limiter.limited_ticks.val();
         self.saturated_high.next = self.cut_high.flags.val();
         self.saturated_low.next = self.cut_low.flags.val();
-        self.overrun.next = self.sequencer.overrun.val();
-        self.ends.next = self.sequencer.ends.val();
     }
 }

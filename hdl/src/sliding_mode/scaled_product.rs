@@ -71,10 +71,8 @@ impl Logic for ScaledProduct {
         self.operand_bits.next = unsigned_cast(self.operand.val());
         self.lower_part.next = self.operand_bits.val().get_bits::<17>(0);
         self.upper_part.next = self.operand_bits.val().get_bits::<15>(17);
-        self.upper.clk.next = self.clk.val();
         self.upper.a.next = signed_cast(self.upper_part.val());
         self.upper.b.next = signed_cast(self.mantissa.val());
-        self.lower.clk.next = self.clk.val();
         self.lower.a.next = signed_cast(bit_cast::<18, 17>(self.lower_part.val()));
         self.lower.b.next = signed_cast(self.mantissa.val());
         self.lower_bits.next = unsigned_cast(self.lower.product.val());

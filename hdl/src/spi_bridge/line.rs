@@ -30,14 +30,8 @@ impl Logic for SpiLine {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module spi_line");
-        self.sck.clk.next = self.clk.val();
-        self.sck.rst.next = self.rst.val();
         self.sck.pin.next = self.spi_sck.val();
-        self.selected.clk.next = self.clk.val();
-        self.selected.rst.next = self.rst.val();
         self.selected.pin.next = !self.spi_cs_n.val();
-        self.mosi.clk.next = self.clk.val();
-        self.mosi.rst.next = self.rst.val();
         self.mosi.pin.next = self.spi_mosi.val();
 
         comment!("Edges while selected");

@@ -55,6 +55,9 @@ kernel! {
         waiting_state: Bits<2> = from_u64(TraceState::Waiting as u64),
         taking_state: Bits<2> = from_u64(TraceState::Taking as u64),
     }
+    connect {
+        memory: full, read_address;
+    }
 }
 
 /// Words in the memory.
@@ -66,12 +69,6 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module trace");
-        self.selector.clk.next = self.clk.val();
-        self.selector.rst.next = self.rst.val();
-        self.watch.clk.next = self.clk.val();
-        self.watch.rst.next = self.rst.val();
-        self.memory.clk.next = self.clk.val();
-        self.memory.rst.next = self.rst.val();
 
         comment!("Progress of the trace");
         self.last_phase.next = self.fourth_phase.val();
@@ -186,9 +183,7 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
         }
 
         comment!("Reading, and outputs");
-        self.memory.full.next = self.full.val();
         self.memory.hidden.next = self.active.q.val();
-        self.memory.read_address.next = self.read_address.val();
         self.data.next = self.memory.data.val();
         self.state.next = self.idle_state.val();
         if self.active.q.val() {

@@ -38,7 +38,6 @@ impl<const A: usize> Logic for TraceMemory<A> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module trace_memory_${words no_address}");
-        self.ram.clk.next = self.clk.val();
 
         self.ram.write_enable.next = self.write.val();
         self.ram.write_address.next = self.pointer.q.val();

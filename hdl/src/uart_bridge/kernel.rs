@@ -16,24 +16,22 @@ kernel! {
     registers { fraction: Bits<16>, tick: Bit, dropped: Bits<8> }
     wires { sum: Bits<17> }
     constants { one_frame: Bits<8> = from_u64(1) }
+    connect {
+        receiver: uart_rx;
+        decoder from receiver: received, data, bad;
+        decoder from sequencer: busy, read_address;
+        decoder: silence_limit;
+        sequencer from decoder: request, length, sequence_number, command, count;
+        sequencer from crc: crc;
+        sequencer: address_limit;
+        reply from sequencer: renew, put, close, read_address;
+    }
 }
 
 impl Logic for UartBridge {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module uart_bridge");
-        self.receiver.clk.next = self.clk.val();
-        self.receiver.rst.next = self.rst.val();
-        self.decoder.clk.next = self.clk.val();
-        self.decoder.rst.next = self.rst.val();
-        self.crc.clk.next = self.clk.val();
-        self.crc.rst.next = self.rst.val();
-        self.sequencer.clk.next = self.clk.val();
-        self.sequencer.rst.next = self.rst.val();
-        self.reply.clk.next = self.clk.val();
-        self.reply.rst.next = self.rst.val();
-        self.transmitter.clk.next = self.clk.val();
-        self.transmitter.rst.next = self.rst.val();
 
         comment!("A tick in each eighth of a bit");
         self.sum.next = bit_cast::<17, 16>(self.fraction.q.val()) + bit_cast::<17, 16>(self.baud_step.val());
@@ -42,15 +40,8 @@ impl Logic for UartBridge {
 
         comment!("Line to request");
         self.receiver.tick.next = self.tick.q.val();
-        self.receiver.uart_rx.next = self.uart_rx.val();
         self.decoder.tick.next = self.tick.q.val();
-        self.decoder.received.next = self.receiver.received.val();
-        self.decoder.data.next = self.receiver.data.val();
-        self.decoder.bad.next = self.receiver.bad.val();
-        self.decoder.busy.next = self.sequencer.busy.val();
         self.decoder.crc_holds.next = self.crc.holds.val();
-        self.decoder.silence_limit.next = self.silence_limit.val();
-        self.decoder.read_address.next = self.sequencer.read_address.val();
         if self.decoder.dropped.val() {
             self.dropped.d.next = self.dropped.q.val() + self.one_frame.val();
         }
@@ -64,26 +55,15 @@ impl Logic for UartBridge {
         }
 
         comment!("Request to bus and reply");
-        self.sequencer.request.next = self.decoder.request.val();
-        self.sequencer.length.next = self.decoder.length.val();
-        self.sequencer.sequence_number.next = self.decoder.sequence_number.val();
-        self.sequencer.command.next = self.decoder.command.val();
-        self.sequencer.count.next = self.decoder.count.val();
         self.sequencer.request_data.next = self.decoder.read_data.val();
         self.sequencer.reply_data.next = self.reply.read_data.val();
         self.sequencer.reply_bytes.next = self.reply.bytes.val();
-        self.sequencer.crc.next = self.crc.crc.val();
         self.sequencer.crc_idle.next = self.crc.idle.val();
         self.sequencer.dropped_frames.next = self.dropped.q.val();
         self.sequencer.sender_busy.next = self.transmitter.busy.val();
-        self.sequencer.address_limit.next = self.address_limit.val();
         self.sequencer.readdata.next = self.avm_readdata.val();
         self.sequencer.waitrequest.next = self.avm_waitrequest.val();
-        self.reply.renew.next = self.sequencer.renew.val();
-        self.reply.put.next = self.sequencer.put.val();
         self.reply.data.next = self.sequencer.put_data.val();
-        self.reply.close.next = self.sequencer.close.val();
-        self.reply.read_address.next = self.sequencer.read_address.val();
 
         comment!("Reply to line");
         self.transmitter.tick.next = self.tick.q.val();

@@ -33,8 +33,6 @@ impl Logic for Receiver {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module uart_receiver");
-        self.synchroniser.clk.next = self.clk.val();
-        self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = !self.uart_rx.val();
 
         comment!("Majority of the last three samples");
