@@ -233,8 +233,8 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
         block.instance()
     );
     Err(Failure::input(lacking).with_help(format!(
-        "say with --map SCOPE=TOP or --map SIGNAL=TOP.PORT which signals of the file are the block's, or choose another \
-         block with --block; its top is `{}`",
+        "match the signals of the file with those of the block, by --map SCOPE=TOP or --map SIGNAL=TOP.PORT, or choose \
+         another block with --block; its top is `{}`",
         block.top()
     )))
 }
