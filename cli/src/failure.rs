@@ -2,7 +2,7 @@
 
 use anstream::stderr;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
-use posicast_flow::{Failure, Problem, style};
+use posicast_flow::{Failure, Reason, style};
 use std::error::Error;
 use std::fmt;
 use std::io::{IsTerminal, Write};
@@ -15,10 +15,10 @@ pub(crate) fn report(failure: &Failure) -> ExitCode {
     // If standard error cannot be written, nothing sensible is left to do.
     let _ = match failure {
         Failure::Check(line) => writeln!(stderr(), "posicast: {}", style::bad(line)),
-        Failure::Input(problem) | Failure::MissingTool(problem) if err.is_terminal() => {
-            writeln!(err, "{:?}", drawn(problem))
+        Failure::Input(reason) | Failure::MissingTool(reason) if err.is_terminal() => {
+            writeln!(err, "{:?}", drawn(reason))
         }
-        Failure::Input(problem) | Failure::MissingTool(problem) => write_plain(&mut stderr(), problem),
+        Failure::Input(reason) | Failure::MissingTool(reason) => write_plain(&mut stderr(), reason),
     };
     ExitCode::from(match failure {
         Failure::Check(_) => 1,
@@ -31,15 +31,15 @@ pub(crate) fn report(failure: &Failure) -> ExitCode {
 const ERROR: &str = "error:";
 
 /// Writes the error in one line, and each line of its help as a separate line, for which a log can be searched.
-fn write_plain(err: &mut impl Write, problem: &Problem) -> std::io::Result<()> {
-    writeln!(err, "{} {problem}", style::message(ERROR))?;
-    let help = problem.help.as_deref().unwrap_or_default();
+fn write_plain(err: &mut impl Write, reason: &Reason) -> std::io::Result<()> {
+    writeln!(err, "{} {reason}", style::message(ERROR))?;
+    let help = reason.help.as_deref().unwrap_or_default();
     help.lines().try_for_each(|line| writeln!(err, "help: {line}"))
 }
 
-/// The problem as miette draws it for a terminal.
-fn drawn(problem: &Problem) -> miette::Report {
-    let causes = problem.causes.iter().rev();
+/// The reason as miette draws it for a terminal.
+fn drawn(reason: &Reason) -> miette::Report {
+    let causes = reason.causes.iter().rev();
     let cause = causes.fold(None, |below, message| {
         Some(Box::new(Cause {
             message: message.clone(),
@@ -47,19 +47,19 @@ fn drawn(problem: &Problem) -> miette::Report {
         }))
     });
     miette::Report::new(Drawn {
-        text: problem
+        text: reason
             .excerpt
             .as_ref()
             .map(|excerpt| NamedSource::new(&excerpt.file, excerpt.text.clone())),
-        problem: problem.clone(),
+        reason: reason.clone(),
         cause,
     })
 }
 
-/// A problem with what miette asks for.
+/// A reason with what miette asks for.
 #[derive(Debug)]
 struct Drawn {
-    problem: Problem,
+    reason: Reason,
     cause: Option<Box<Cause>>,
     text: Option<NamedSource<String>>,
 }
@@ -73,7 +73,7 @@ struct Cause {
 
 impl fmt::Display for Drawn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.problem.message)
+        f.write_str(&self.reason.message)
     }
 }
 
@@ -97,7 +97,7 @@ impl Error for Cause {
 
 impl Diagnostic for Drawn {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.problem.help.as_ref().map(|help| Box::new(help) as _)
+        self.reason.help.as_ref().map(|help| Box::new(help) as _)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -105,7 +105,7 @@ impl Diagnostic for Drawn {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let places = self.problem.excerpt.as_ref()?.places.iter();
+        let places = self.reason.excerpt.as_ref()?.places.iter();
         let labels = places.map(|(span, what)| LabeledSpan::new_with_span(Some((*what).to_owned()), span.clone()));
         Some(Box::new(labels))
     }
@@ -116,19 +116,19 @@ mod tests {
     use super::*;
     use posicast_flow::Excerpt;
 
-    /// What a terminal without colours and a pipe show of a problem.
-    fn shown(problem: &Problem) -> (String, String) {
+    /// What a terminal without colours and a pipe show of a reason.
+    fn shown(reason: &Reason) -> (String, String) {
         let mut terminal = String::new();
         let handler = miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
-        handler.render_report(&mut terminal, drawn(problem).as_ref()).unwrap();
+        handler.render_report(&mut terminal, drawn(reason).as_ref()).unwrap();
         let mut pipe = Vec::new();
-        write_plain(&mut pipe, problem).unwrap();
+        write_plain(&mut pipe, reason).unwrap();
         (terminal, String::from_utf8(pipe).unwrap())
     }
 
     #[test]
     fn a_terminal_shows_the_place_and_a_pipe_plain_lines() {
-        let problem = Problem {
+        let reason = Reason {
             message: "m.toml:2: damping: found 7".to_owned(),
             help: Some("percent?\nelse below 1".to_owned()),
             excerpt: Some(Box::new(Excerpt {
@@ -136,9 +136,9 @@ mod tests {
                 text: "frequency_hz = 5\ndamping = 7\n".to_owned(),
                 places: vec![(27..28, "out of range")],
             })),
-            ..Problem::default()
+            ..Reason::default()
         };
-        let (terminal, pipe) = shown(&problem);
+        let (terminal, pipe) = shown(&reason);
         for part in ["[m.toml:2:11]", "2 │ damping = 7", "out of range", "help: percent?"] {
             assert!(terminal.contains(part), "{part} in {terminal}");
         }
@@ -148,12 +148,12 @@ mod tests {
 
     #[test]
     fn causes_are_listed_on_a_terminal_and_joined_in_a_pipe() {
-        let problem = Problem {
+        let reason = Reason {
             message: "the log cannot be read: line 3".to_owned(),
             causes: vec!["line 3".to_owned(), "no number".to_owned()],
-            ..Problem::default()
+            ..Reason::default()
         };
-        let (terminal, pipe) = shown(&problem);
+        let (terminal, pipe) = shown(&reason);
         assert!(
             terminal.contains("├─▶ line 3") && terminal.contains("╰─▶ no number"),
             "{terminal}"

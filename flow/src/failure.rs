@@ -13,15 +13,15 @@ pub enum Failure {
     Check(String),
     /// Bad usage or input: exit status 2.
     #[error("{0}")]
-    Input(Problem),
+    Input(Reason),
     /// A required tool is missing: exit status 3.
     #[error("{0}")]
-    MissingTool(Problem),
+    MissingTool(Reason),
 }
 
 /// What is wrong, and what to do about it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Problem {
+pub struct Reason {
     /// What was found, and what is allowed.
     pub message: String,
     /// Its causes, the deepest last. Some repeat a part of the message.
@@ -44,7 +44,7 @@ pub struct Excerpt {
 }
 
 /// The message with its causes, in one line.
-impl fmt::Display for Problem {
+impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = self.message.clone();
         for cause in &self.causes {
@@ -58,8 +58,8 @@ impl fmt::Display for Problem {
     }
 }
 
-impl Problem {
-    /// A problem that its message describes.
+impl Reason {
+    /// A reason that its message describes.
     fn new(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
@@ -67,7 +67,7 @@ impl Problem {
         }
     }
 
-    /// The same problem with another line of help; message and causes become one message.
+    /// The same reason with another line of help; message and causes become one message.
     fn with_help(self, line: &str) -> Self {
         let help = self.help.as_ref().map_or_else(String::new, |help| format!("{help}\n"));
         Self {
@@ -80,15 +80,15 @@ impl Problem {
 impl Failure {
     /// Bad input, described by this message.
     pub fn input(message: impl Into<String>) -> Self {
-        Self::Input(Problem::new(message))
+        Self::Input(Reason::new(message))
     }
 
     /// Bad input, described by any error and its causes.
     pub fn because(error: impl std::error::Error) -> Self {
         let causes = std::iter::successors(error.source(), |cause| cause.source());
-        Self::Input(Problem {
+        Self::Input(Reason {
             causes: causes.map(ToString::to_string).collect(),
-            ..Problem::new(error.to_string())
+            ..Reason::new(error.to_string())
         })
     }
 
@@ -107,18 +107,18 @@ impl Failure {
 
     /// A missing tool.
     pub fn missing_tool(message: impl fmt::Display) -> Self {
-        Self::MissingTool(Problem::new(message.to_string()))
+        Self::MissingTool(Reason::new(message.to_string()))
     }
 
     /// Puts the name of the file before the message of bad input.
     #[must_use]
     pub fn in_file(self, path: &Path) -> Self {
         match self {
-            Self::Input(problem) => {
-                let message = format!("{}: {problem}", path.display());
-                Self::Input(Problem {
-                    help: problem.help,
-                    ..Problem::new(message)
+            Self::Input(reason) => {
+                let message = format!("{}: {reason}", path.display());
+                Self::Input(Reason {
+                    help: reason.help,
+                    ..Reason::new(message)
                 })
             }
             other => other,
@@ -129,7 +129,7 @@ impl Failure {
     #[must_use]
     pub fn or_help(self, help: &str) -> Self {
         match self {
-            Self::Input(problem) if problem.help.is_none() => Self::Input(problem.with_help(help)),
+            Self::Input(reason) if reason.help.is_none() => Self::Input(reason.with_help(help)),
             other => other,
         }
     }
@@ -138,8 +138,8 @@ impl Failure {
     #[must_use]
     pub fn with_help(self, line: impl AsRef<str>) -> Self {
         match self {
-            Self::Input(problem) => Self::Input(problem.with_help(line.as_ref())),
-            Self::MissingTool(problem) => Self::MissingTool(problem.with_help(line.as_ref())),
+            Self::Input(reason) => Self::Input(reason.with_help(line.as_ref())),
+            Self::MissingTool(reason) => Self::MissingTool(reason.with_help(line.as_ref())),
             check @ Self::Check(_) => check,
         }
     }
@@ -149,7 +149,7 @@ impl Failure {
 impl From<SpecError> for Failure {
     fn from(error: SpecError) -> Self {
         let places = error.problems().iter();
-        Self::Input(Problem {
+        Self::Input(Reason {
             help: Some(error.help()),
             excerpt: Some(Box::new(Excerpt {
                 file: error.file_name().to_owned(),
@@ -158,7 +158,7 @@ impl From<SpecError> for Failure {
                     .map(|problem| (problem.span.clone(), problem.cause.label()))
                     .collect(),
             })),
-            ..Problem::new(error.to_string())
+            ..Reason::new(error.to_string())
         })
     }
 }

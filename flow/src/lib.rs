@@ -42,7 +42,7 @@ mod verilog;
 mod warning;
 
 pub use bench::{Simulator, clocks};
-pub use failure::{Excerpt, Failure, Problem};
+pub use failure::{Excerpt, Failure, Reason};
 pub use files::ResultForm;
 pub use observer::{Late, Observer, Silent, WorkProgress};
 
