@@ -70,7 +70,7 @@ pub use error::{BlockError, Error, MissingTool};
 pub use wavecmp::wording;
 
 /// Every kind of block, in the order of `posicast verify`.
-pub(crate) const REGISTRY: [RegistryRow; 25] = [
+pub(crate) const REGISTRY: &[RegistryRow] = &[
     pulse_counter::ROW,
     divider::ROW,
     pwm::ROW,

@@ -43,7 +43,7 @@ pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, port_n
 pub(crate) use ports::{clocked_block, ports};
 
 /// The blocks with a datasheet, and their ports, which the table in `docs/NAME.md` shows.
-pub const PORT_LISTS: [(&str, PortList); 14] = [
+pub const PORT_LISTS: &[(&str, PortList)] = &[
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
@@ -61,7 +61,7 @@ pub const PORT_LISTS: [(&str, PortList); 14] = [
 ];
 
 /// As [`PORT_LISTS`], for lists with sizes.
-pub const SIZED_PORT_LISTS: [(&str, &[SizedPortRow]); 3] = [
+pub const SIZED_PORT_LISTS: &[(&str, &[SizedPortRow])] = &[
     ("cascade", cascade::PORTS),
     ("shaper", shaper::plain::PORTS),
     ("shaper", shaper::moving::PORTS),

@@ -337,7 +337,7 @@ mod tests {
     #[test]
     fn each_property_file_is_of_one_row() {
         let mut seen: Vec<&str> = Vec::new();
-        for row in &REGISTRY {
+        for row in REGISTRY {
             let mut names: Vec<&str> = (row.proofs)().unwrap().iter().map(|task| task.name).collect();
             names.sort_unstable();
             names.dedup();
