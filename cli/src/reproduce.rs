@@ -208,7 +208,7 @@ fn difference_text(difference: f64) -> String {
 /// `reproduce --json`: the command line's contract.
 #[derive(Serialize, JsonSchema)]
 pub(crate) struct Document<'a> {
-    papers: Vec<PaperDocument<'a>>,
+    papers: Vec<ReproducedPaper<'a>>,
     reproduced: usize,
     errata: usize,
     not_comparable: usize,
@@ -216,29 +216,29 @@ pub(crate) struct Document<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct PaperDocument<'a> {
+struct ReproducedPaper<'a> {
     name: &'static str,
-    rows: Vec<RowDocument<'a>>,
+    rows: Vec<Row<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct RowDocument<'a> {
+struct Row<'a> {
     item: &'a str,
-    paper: ValueDocument<'a>,
-    ours: Option<ValueDocument<'a>>,
+    paper: PrintedValue<'a>,
+    ours: Option<PrintedValue<'a>>,
     verdict: String,
     reason: &'a str,
 }
 
 #[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
-enum ValueDocument<'a> {
+enum PrintedValue<'a> {
     Number(f64),
     Numbers(&'a [f64]),
     Text(&'a str),
 }
 
-impl<'a> From<&'a Value> for ValueDocument<'a> {
+impl<'a> From<&'a Value> for PrintedValue<'a> {
     fn from(value: &'a Value) -> Self {
         match value {
             Value::Number(number) => Self::Number(*number),
@@ -250,14 +250,14 @@ impl<'a> From<&'a Value> for ValueDocument<'a> {
 
 impl<'a> Document<'a> {
     fn new(tables: &'a Tables, counts: Counts) -> Self {
-        let row = |row: &'a PaperRow| RowDocument {
+        let row = |row: &'a PaperRow| Row {
             item: &row.item,
             paper: (&row.paper).into(),
-            ours: row.ours.as_ref().map(ValueDocument::from),
+            ours: row.ours.as_ref().map(PrintedValue::from),
             verdict: row.verdict.to_string(),
             reason: &row.reason,
         };
-        let papers = tables.iter().map(|(paper, rows)| PaperDocument {
+        let papers = tables.iter().map(|(paper, rows)| ReproducedPaper {
             name: paper.name(),
             rows: rows.iter().map(row).collect(),
         });

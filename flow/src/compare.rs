@@ -103,21 +103,20 @@ fn remark(candidate: &Candidate) -> &'static str {
 pub struct Document {
     name: String,
     band_percent: f64,
-    axes: Vec<AxisDocument>,
+    axes: Vec<KindsOfAxis>,
 }
 
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "KindsOfAxis")]
-struct AxisDocument {
+struct KindsOfAxis {
     name: String,
     /// Of each mode, in the order of the file.
     tolerances: Vec<f64>,
-    kinds: Vec<KindDocument>,
-    missing: Vec<MissingDocument>,
+    kinds: Vec<Kind>,
+    missing: Vec<MissingKind>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct KindDocument {
+struct Kind {
     kind: String,
     in_file: bool,
     /// No other kind is as good in duration, worst residual and taps, and better in one of them.
@@ -139,20 +138,20 @@ struct KindDocument {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct MissingDocument {
+struct MissingKind {
     kind: String,
     reason: String,
 }
 
 impl Document {
     pub(crate) fn new(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) -> Self {
-        let axes = comparisons.iter().map(|comparison| AxisDocument {
+        let axes = comparisons.iter().map(|comparison| KindsOfAxis {
             name: comparison.axis.clone(),
             tolerances: comparison.tolerances.clone(),
             kinds: comparison
                 .candidates
                 .iter()
-                .map(|c| KindDocument {
+                .map(|c| Kind {
                     kind: c.kind.clone(),
                     in_file: c.in_file,
                     pareto: c.pareto,
@@ -170,7 +169,7 @@ impl Document {
             missing: comparison
                 .missing
                 .iter()
-                .map(|m| MissingDocument {
+                .map(|m| MissingKind {
                     kind: m.kind.clone(),
                     reason: m.reason.clone(),
                 })

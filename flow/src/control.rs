@@ -144,15 +144,15 @@ impl AxisControl {
     }
 
     /// The document for programs.
-    pub(crate) fn json(&self) -> ControlDocument {
-        ControlDocument {
+    pub(crate) fn json(&self) -> Control {
+        Control {
             law: self.law(),
             lag_s: self.of_axis.lag_s,
             steady_error: self.of_axis.derived.steady_error,
-            margins: MarginsDocument::new(&self.of_axis.derived.margins),
+            margins: StabilityMargins::new(&self.of_axis.derived.margins),
             settings: SettingRow::ALL
                 .into_iter()
-                .map(|row| SettingDocument {
+                .map(|row| Setting {
                     row: format!("{row:?}").to_lowercase(),
                     value: self.of_axis.derived.gains.get(row),
                     word: self.of_axis.derived.settings.word(row as usize),
@@ -174,16 +174,16 @@ impl AxisControl {
 
 /// `control` of an axis in `design --json` and `report.json`.
 #[derive(Serialize, JsonSchema)]
-pub(crate) struct ControlDocument {
+pub(crate) struct Control {
     law: &'static str,
     /// Lag from the position to the drive's response, in s.
     lag_s: f64,
     /// Error in m or rad that Coulomb friction leaves.
     steady_error: f64,
     /// Margins of the sampled loop on the machine of the file.
-    margins: MarginsDocument,
+    margins: StabilityMargins,
     /// Contents of the controller's memory after reset, by address.
-    settings: Vec<SettingDocument>,
+    settings: Vec<Setting>,
     /// Initial words of the axis's supervisor, by name.
     supervision: BTreeMap<&'static str, i64>,
     warnings: Vec<String>,
@@ -191,7 +191,7 @@ pub(crate) struct ControlDocument {
 
 /// Stability margins; null where there is no limit.
 #[derive(Serialize, JsonSchema)]
-struct MarginsDocument {
+struct StabilityMargins {
     gain_margin_db: Option<f64>,
     /// Reduction of the gains, in dB, that makes the loop unstable.
     gain_reduction_db: Option<f64>,
@@ -201,7 +201,7 @@ struct MarginsDocument {
     crossover_hz: Option<f64>,
 }
 
-impl MarginsDocument {
+impl StabilityMargins {
     fn new(margins: &Margins) -> Self {
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         Self {
@@ -216,7 +216,7 @@ impl MarginsDocument {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct SettingDocument {
+struct Setting {
     row: String,
     /// Value in counts, ticks and command units.
     value: f64,

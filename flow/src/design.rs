@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 
 use axis::AxisReport;
 use certificate::CertificateReport;
-use delay::StageDocument;
+use delay::EqualDelays;
 pub use document::Document;
 use error_table::ErrorTableReport;
 use family::FamilyReport;
@@ -210,7 +210,7 @@ impl<'a> DesignReport<'a> {
                 .design
                 .stage
                 .as_ref()
-                .map(|stage| StageDocument::new(stage, &self.design)),
+                .map(|stage| EqualDelays::new(stage, &self.design)),
         }
     }
 

@@ -1,9 +1,10 @@
 //! Files that accompany the Verilog in its folder: the C driver, documents of the registers, the FuseSoC core.
 
 use crate::failure::Failure;
-use crate::hardware::Stage;
+use crate::hardware::{COMPONENT_SUFFIX, Stage};
 use crate::verilog;
 use posicast_blocks::component::Component;
+use posicast_blocks::registers::RegisterMap;
 use posicast_hdl::emit::Module;
 use posicast_machine::machine_file::Machine;
 use posicast_machine::motion::TickLimits;
@@ -31,8 +32,8 @@ pub(crate) fn add(
     for file in stage.into_iter().flat_map(|stage| stage_driver_files(machine, stage)) {
         add(&file.path, &file.text)?;
     }
-    for block in components.iter().chain(stage.map(|stage| &stage.block)) {
-        for (path, text) in register_documents::files(&block.top(), block.component().map()) {
+    for (name, tops, map) in documents(&machine.name, components, stage) {
+        for (path, text) in register_documents::files(&name, &tops, map) {
             add(&path, &text)?;
         }
     }
@@ -40,6 +41,32 @@ pub(crate) fn add(
         add(&path, &text)?;
     }
     Ok(())
+}
+
+/// Name, top modules and map of each document of registers. Components with the same map share one; it has the name
+/// of their block, or of the first component where the axes differ in that block.
+fn documents<'a>(
+    machine: &str,
+    components: &'a [ComponentBlock],
+    stage: Option<&'a Stage>,
+) -> Vec<(String, Vec<String>, &'a RegisterMap)> {
+    let mut documents: Vec<(String, Vec<String>, &RegisterMap)> = Vec::new();
+    for block in components {
+        let map = block.component().map();
+        match documents.iter_mut().find(|(_, _, known)| *known == map) {
+            Some((_, tops, _)) => tops.push(block.top()),
+            None => documents.push((block.top(), vec![block.top()], map)),
+        }
+    }
+    for at in 0..documents.len() {
+        let block = documents[at].2.name();
+        if documents.iter().filter(|(_, _, map)| map.name() == block).count() == 1 {
+            documents[at].0 = format!("{machine}_{block}{COMPONENT_SUFFIX}");
+        }
+    }
+    let stage = stage.map(|stage| &stage.block);
+    documents.extend(stage.map(|block| (block.top(), vec![block.top()], block.component().map())));
+    documents
 }
 
 fn core_files(

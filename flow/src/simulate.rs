@@ -182,12 +182,12 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
 pub struct Document {
     name: String,
     samples: usize,
-    axes: Vec<AxisDocument>,
+    axes: Vec<SimulatedAxis>,
     wave: String,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct AxisDocument {
+struct SimulatedAxis {
     name: String,
     #[serde(flatten)]
     unit: UnitDocument,
@@ -201,7 +201,7 @@ impl Document {
     fn new(machine: &Machine, axes: &[AxisSimulation], path: &Path) -> Self {
         let document = |(axis, run): (&AxisSection, &AxisSimulation)| {
             let scale = si_per_lsb(machine, axis);
-            AxisDocument {
+            SimulatedAxis {
                 name: axis.name.clone(),
                 unit: UnitDocument::new(axis.unit),
                 largest_difference_lsb: run.largest_difference_lsb(),

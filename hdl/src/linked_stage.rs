@@ -36,6 +36,7 @@ pub fn emit(
         ),
         ports: ports(stage, config),
         clocked: true,
+        notes: Vec::new(),
     };
     add(&mut modules, vec![top])?;
     Ok(modules)

@@ -79,6 +79,7 @@ pub fn simulate(
             text: text.to_owned(),
             ports: Vec::new(),
             clocked: true,
+            notes: Vec::new(),
         });
     }
     let sources = Sources::of_modules(&modules)?;

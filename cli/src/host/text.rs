@@ -14,11 +14,11 @@ use serde::Serialize;
 #[derive(Serialize, JsonSchema)]
 pub(crate) struct Document {
     machine: String,
-    axes: Vec<AxisDocument>,
+    axes: Vec<Axis>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct AxisDocument {
+struct Axis {
     name: String,
     #[serde(flatten)]
     unit: UnitDocument,
@@ -52,7 +52,7 @@ fn state(status: &AxisStatus) -> &'static str {
 fn document(machine: &Machine, all: &[AxisStatus]) -> Document {
     let axis = |(status, axis): (&AxisStatus, &AxisSection)| {
         let si = |counts: f64| counts / axis.loop_counts_per_unit();
-        AxisDocument {
+        Axis {
             name: axis.name.clone(),
             unit: UnitDocument::new(axis.unit),
             state: state(status),

@@ -20,7 +20,7 @@ pub(super) fn run(json: bool) -> Result<(), Failure> {
     let rows = beyond().map_err(|error| Failure::Check(format!("an example cannot be designed: {error}")))?;
     drop(progress);
     if json {
-        let rows = rows.iter().map(RowDocument::new).collect();
+        let rows = rows.iter().map(Row::new).collect();
         output::print_json(&Document { beyond: rows })?;
     } else {
         output::print(&text(&rows))?;
@@ -70,14 +70,14 @@ fn text(rows: &[BeyondRow]) -> String {
 /// `reproduce --beyond --json`.
 #[derive(Serialize, JsonSchema)]
 pub(crate) struct Document<'a> {
-    beyond: Vec<RowDocument<'a>>,
+    beyond: Vec<Row<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct RowDocument<'a> {
+struct Row<'a> {
     item: &'a str,
-    paper: Option<DurationDocument<'a>>,
-    closed_form: Option<DurationDocument<'a>>,
+    paper: Option<Duration<'a>>,
+    closed_form: Option<Duration<'a>>,
     optimal_s: f64,
     taps: usize,
     sample_s: f64,
@@ -85,15 +85,15 @@ struct RowDocument<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct DurationDocument<'a> {
+struct Duration<'a> {
     duration_s: f64,
     name: &'a str,
 }
 
-impl<'a> RowDocument<'a> {
+impl<'a> Row<'a> {
     fn new(row: &'a BeyondRow) -> Self {
         let duration = |found: &'a Option<(f64, String)>| {
-            found.as_ref().map(|(duration_s, name)| DurationDocument {
+            found.as_ref().map(|(duration_s, name)| Duration {
                 duration_s: *duration_s,
                 name,
             })

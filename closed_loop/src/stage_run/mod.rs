@@ -30,6 +30,8 @@ use posicast_machine::machine_file::Machine;
 use posicast_machine::motion::{AxisMove, PlanError};
 use posicast_machine::plan::{MachineDesign, TableFamily, design_machine};
 use posicast_machine::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::stage_bench::{AxisSample, StageBench};
 use posicast_testbench::Error;
@@ -80,7 +82,7 @@ pub enum StageRunError {
 }
 
 /// Comparison of model and RTL over a move.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Compared {
     /// Number of clocks compared, including the reset.
     pub clocks: u64,
@@ -91,6 +93,7 @@ pub struct Compared {
     /// The first differing output.
     pub first: Option<Mismatch>,
     /// Set if the stage did not do what it should.
+    #[serde(skip)]
     pub trouble: Option<Trouble>,
 }
 

@@ -36,11 +36,11 @@ pub struct Document {
     corner_tolerance: f64,
     stop_angle_deg: f64,
     frequency_factors: [f64; 5],
-    shapers: Vec<RowDocument>,
+    shapers: Vec<ShaperOnPath>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct RowDocument {
+struct ShaperOnPath {
     kind: String,
     in_file: bool,
     equal_delays: bool,
@@ -68,7 +68,7 @@ impl Report<'_> {
     pub(super) fn json(&self) -> Document {
         let rows = self.rows.iter().map(|row| {
             let figures = |of: fn(&FollowedContour) -> Option<f64>| figures(row, of);
-            RowDocument {
+            ShaperOnPath {
                 kind: row.kind.clone(),
                 in_file: row.in_file,
                 equal_delays: row.matched,

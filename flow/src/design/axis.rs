@@ -1,11 +1,8 @@
 //! The design of one axis, for people and for programs.
 
 use super::certificate::CertificateReport;
-use super::delay::DelayDocument;
-use super::document::{
-    AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, MechanicsDocument, ModeDocument,
-    QuantisedDocument, ResidualDocument, SolutionDocument, TapDocument,
-};
+use super::delay::Delay;
+use super::document;
 use super::error_table::ErrorTableReport;
 use super::family::FamilyReport;
 use crate::control::AxisControl;
@@ -48,20 +45,20 @@ pub(super) struct AxisReport<'a> {
 
 impl AxisReport<'_> {
     /// The document of the axis.
-    pub(super) fn json(&self, sample_hz: f64, coefficient_fraction: u32) -> AxisDocument {
+    pub(super) fn json(&self, sample_hz: f64, coefficient_fraction: u32) -> document::Axis {
         let impulses = &self.tables.design.impulses;
         let sums = impulses.partial_sums();
         let findings = &self.tables.design.findings;
-        AxisDocument {
+        document::Axis {
             name: self.axis.name.clone(),
             unit: UnitDocument::new(self.axis.unit),
             kind: self.tables.design.kind.clone(),
             solutions: match findings {
-                Findings::Periodic(found) => Some(found.solutions.iter().map(SolutionDocument::new).collect()),
+                Findings::Periodic(found) => Some(found.solutions.iter().map(document::Solution::new).collect()),
                 _ => None,
             },
             classes: match findings {
-                Findings::Antisymmetric(found) => Some(found.classes.iter().map(ClassDocument::new).collect()),
+                Findings::Antisymmetric(found) => Some(found.classes.iter().map(document::Class::new).collect()),
                 _ => None,
             },
             time_optimal: match findings {
@@ -71,7 +68,7 @@ impl AxisReport<'_> {
             impulses: impulses
                 .impulses()
                 .iter()
-                .map(|i| ImpulseDocument {
+                .map(|i| document::Impulse {
                     time_s: i.time_s,
                     amplitude: i.amplitude,
                 })
@@ -85,7 +82,7 @@ impl AxisReport<'_> {
                 .convolution
                 .cross_gains
                 .iter()
-                .map(|g| CrossGainDocument {
+                .map(|g| document::CrossGain {
                     kind: g.kind.name(),
                     shaper_hz: self.modes[g.shaper].mode.frequency_hz,
                     at_hz: self.modes[g.at].mode.frequency_hz,
@@ -97,14 +94,14 @@ impl AxisReport<'_> {
                 .modes
                 .iter()
                 .zip(&self.axis.modes)
-                .map(|(m, of_file)| ModeDocument {
+                .map(|(m, of_file)| document::Mode {
                     frequency_hz: m.mode.frequency_hz,
                     damping: m.mode.damping,
                     mechanics: self
                         .axis
                         .mechanics
-                        .map(|screw| MechanicsDocument::new(&screw, self.is_motor_free())),
-                    free: of_file.free.map(|free| FreeDocument {
+                        .map(|screw| document::Mechanics::new(&screw, self.is_motor_free())),
+                    free: of_file.free.map(|free| document::FreeMode {
                         frequency_hz: free.frequency_hz,
                         damping: free.damping,
                     }),
@@ -112,17 +109,17 @@ impl AxisReport<'_> {
                     insensitivity: m.insensitivity.map(|i| (i.low, i.high)),
                 })
                 .collect(),
-            quantised: QuantisedDocument {
+            quantised: document::Quantised {
                 sample_hz,
                 coefficient_fraction,
                 digitise: self.tables.digitised.method_used.to_string(),
                 fits: self.misfit.is_none(),
-                taps: TapDocument::of(&self.tables.table),
+                taps: document::Tap::of(&self.tables.table),
                 modes: self
                     .modes
                     .iter()
                     .enumerate()
-                    .map(|(index, m)| ResidualDocument {
+                    .map(|(index, m)| document::Residual {
                         residual: m.residual_quantised,
                         certified_residual: self.certificate.as_ref().and_then(|c| c.residual(index)),
                     })
@@ -131,7 +128,7 @@ impl AxisReport<'_> {
             certificate: self.certificate.as_ref().map(CertificateReport::json),
             family: self.family.as_ref().map(FamilyReport::json),
             error_table: self.error_table.as_ref().map(ErrorTableReport::json),
-            delay: self.in_stage.then(|| DelayDocument::new(&self.tables.delay)),
+            delay: self.in_stage.then(|| Delay::new(&self.tables.delay)),
             control: self.control.map(AxisControl::json),
         }
     }

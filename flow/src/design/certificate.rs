@@ -115,14 +115,14 @@ impl<'a> CertificateReport<'a> {
         }
     }
 
-    pub(super) fn json(&self) -> CertificateDocument {
-        CertificateDocument {
-            modes: self.certificate.modes.iter().map(ModeDocument::new).collect(),
+    pub(super) fn json(&self) -> Certificate {
+        Certificate {
+            modes: self.certificate.modes.iter().map(CertifiedMode::new).collect(),
             shorter: self.optimal.map(|optimal| self.shorter_json(optimal)),
         }
     }
 
-    fn shorter_json(&self, optimal: &Optimal) -> ShorterDocument {
+    fn shorter_json(&self, optimal: &Optimal) -> LeastDuration {
         let checked = self
             .certificate
             .shorter
@@ -130,14 +130,14 @@ impl<'a> CertificateReport<'a> {
             .and_then(|checked| checked.as_ref().ok());
         let proof = optimal.shorter.as_ref().filter(|_| checked.is_some());
         let points = proof.map_or(&[][..], |proof| &proof.points).iter();
-        ShorterDocument {
+        LeastDuration {
             least_samples: optimal.least_samples,
             least_duration_s: f64::from(optimal.least_samples) / self.sample_hz,
             proven: checked.is_some(),
             excluded_samples: checked.map(|bound| bound.samples),
             excluded_ratio: checked.map(|bound| bound.ratio).filter(|ratio| ratio.is_finite()),
             points: points
-                .map(|point| PointDocument {
+                .map(|point| ProofPoint {
                     mode: point.band + 1,
                     frequency_hz: point.frequency_hz,
                     damping: point.damping,
@@ -165,30 +165,30 @@ fn row(mode: &ModeCertificate) -> [String; 9] {
 
 /// What is certified of an axis.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct CertificateDocument {
-    modes: Vec<ModeDocument>,
+pub(super) struct Certificate {
+    modes: Vec<CertifiedMode>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    shorter: Option<ShorterDocument>,
+    shorter: Option<LeastDuration>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct ModeDocument {
+struct CertifiedMode {
     frequency_hz: [f64; 2],
     damping: [f64; 2],
     tolerance: f64,
     certified_residual: f64,
     found_residual: f64,
-    found_at: FoundDocument,
+    found_at: WorstPoint,
     holds: bool,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct FoundDocument {
+struct WorstPoint {
     frequency_hz: f64,
     damping: f64,
 }
 
-impl ModeDocument {
+impl CertifiedMode {
     fn new(mode: &ModeCertificate) -> Self {
         Self {
             frequency_hz: mode.band.frequency_hz,
@@ -196,7 +196,7 @@ impl ModeDocument {
             tolerance: mode.tolerance,
             certified_residual: mode.residual.bound,
             found_residual: mode.residual.found,
-            found_at: FoundDocument {
+            found_at: WorstPoint {
                 frequency_hz: mode.residual.at.frequency_hz,
                 damping: mode.residual.at.damping,
             },
@@ -207,17 +207,17 @@ impl ModeDocument {
 
 /// That no shorter shaper exists, with the points and weights that prove it; modes are counted from 1.
 #[derive(Serialize, JsonSchema)]
-struct ShorterDocument {
+struct LeastDuration {
     least_samples: u32,
     least_duration_s: f64,
     proven: bool,
     excluded_samples: Option<u32>,
     excluded_ratio: Option<f64>,
-    points: Vec<PointDocument>,
+    points: Vec<ProofPoint>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct PointDocument {
+struct ProofPoint {
     mode: usize,
     frequency_hz: f64,
     damping: f64,

@@ -1,6 +1,6 @@
 //! The delays of a stage's axes, for people and for programs.
 
-use super::together::{TogetherDocument, TogetherReport};
+use super::together::{Together, TogetherReport};
 use crate::text::Table;
 use posicast_machine::machine_file::Machine;
 use posicast_machine::plan::{AxisDelay, MachineDesign, StageDelay};
@@ -56,8 +56,7 @@ pub(super) fn text(machine: &Machine, design: &MachineDesign) -> String {
 
 /// `stage` in `design --json` and `report.json`.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "EqualDelays")]
-pub(super) struct StageDocument {
+pub(super) struct EqualDelays {
     /// Total delay of every axis, before the coefficients are rounded.
     total_delay_s: f64,
     /// Largest difference between two axes, after rounding.
@@ -67,10 +66,10 @@ pub(super) struct StageDocument {
     #[serde(skip_serializing_if = "Option::is_none")]
     mismatch_um: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    together: Option<TogetherDocument>,
+    together: Option<Together>,
 }
 
-impl StageDocument {
+impl EqualDelays {
     pub(super) fn new(stage: &StageDelay, design: &MachineDesign) -> Self {
         Self {
             total_delay_s: stage.total_s,
@@ -84,7 +83,7 @@ impl StageDocument {
 
 /// `delay` of an axis there: its parts and their sum.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct DelayDocument {
+pub(super) struct Delay {
     shaper_s: f64,
     mode_lag_s: f64,
     added_samples: f64,
@@ -92,7 +91,7 @@ pub(super) struct DelayDocument {
     total_s: f64,
 }
 
-impl DelayDocument {
+impl Delay {
     pub(super) fn new(delay: &AxisDelay) -> Self {
         Self {
             shaper_s: delay.shaper_s,

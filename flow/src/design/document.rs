@@ -1,16 +1,15 @@
 //! `design --json`: the document of the command line's contract.
 
-use super::certificate::CertificateDocument;
-use super::delay::{DelayDocument, StageDocument};
-use super::error_table::ErrorTableDocument;
-use super::family::FamilyDocument;
-use super::front::FrontDocument;
-use super::given_move::MoveDocument;
-use crate::control::ControlDocument;
+use super::certificate::Certificate;
+use super::delay::{Delay, EqualDelays};
+use super::error_table::ErrorTable;
+use super::family::Family;
+use super::front::Front;
+use super::given_move::ComparedMove;
+use crate::control::Control;
 use crate::text::UnitDocument;
 use posicast_machine::mechanics::ScrewDrive;
-use posicast_shaper::design::periodic::Solution;
-use posicast_shaper::design::ratios::Class;
+use posicast_shaper::design::{periodic, ratios};
 use posicast_taps::TapTable;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -20,60 +19,60 @@ use serde::Serialize;
 #[schemars(rename = "Design")]
 pub struct Document {
     pub(super) name: String,
-    pub(super) axes: Vec<AxisDocument>,
+    pub(super) axes: Vec<Axis>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) fronts: Vec<FrontDocument>,
+    pub(super) fronts: Vec<Front>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) moves: Vec<MoveDocument>,
+    pub(super) moves: Vec<ComparedMove>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) stage: Option<StageDocument>,
+    pub(super) stage: Option<EqualDelays>,
 }
 
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "DesignAxis")]
-pub(super) struct AxisDocument {
+pub(super) struct Axis {
     pub(super) name: String,
     #[serde(flatten)]
     pub(super) unit: UnitDocument,
     pub(super) kind: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) solutions: Option<Vec<SolutionDocument>>,
+    pub(super) solutions: Option<Vec<Solution>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) classes: Option<Vec<ClassDocument>>,
+    pub(super) classes: Option<Vec<Class>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) time_optimal: Option<bool>,
-    pub(super) impulses: Vec<ImpulseDocument>,
+    pub(super) impulses: Vec<Impulse>,
     pub(super) duration_s: f64,
     pub(super) delay_s: f64,
     pub(super) partial_sum_min: f64,
     pub(super) partial_sum_max: f64,
     pub(super) peak_command: f64,
-    pub(super) cross_gains: Vec<CrossGainDocument>,
+    pub(super) cross_gains: Vec<CrossGain>,
     pub(super) warnings: Vec<String>,
-    pub(super) modes: Vec<ModeDocument>,
-    pub(super) quantised: QuantisedDocument,
+    pub(super) modes: Vec<Mode>,
+    pub(super) quantised: Quantised,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) certificate: Option<CertificateDocument>,
+    pub(super) certificate: Option<Certificate>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) family: Option<FamilyDocument>,
+    pub(super) family: Option<Family>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) error_table: Option<ErrorTableDocument>,
+    pub(super) error_table: Option<ErrorTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) delay: Option<DelayDocument>,
+    pub(super) delay: Option<Delay>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) control: Option<ControlDocument>,
+    pub(super) control: Option<Control>,
 }
 
 /// An interval of frequencies that `periodic` may take.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct SolutionDocument {
+pub(super) struct Solution {
     pub(super) low_hz: f64,
     pub(super) high_hz: f64,
     pub(super) n: Vec<u32>,
 }
 
-impl SolutionDocument {
-    pub(super) fn new(solution: &Solution) -> Self {
+impl Solution {
+    pub(super) fn new(solution: &periodic::Solution) -> Self {
         Self {
             low_hz: solution.low_hz,
             high_hz: solution.high_hz,
@@ -84,15 +83,15 @@ impl SolutionDocument {
 
 /// Modes of `antisymmetric` that share an antiperiod; modes are counted from 1.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ClassDocument {
+pub(super) struct Class {
     pub(super) modes: Vec<usize>,
     pub(super) divisor_hz: f64,
     pub(super) multiples: Vec<u64>,
     pub(super) ratio_error: f64,
 }
 
-impl ClassDocument {
-    pub(super) fn new(class: &Class) -> Self {
+impl Class {
+    pub(super) fn new(class: &ratios::Class) -> Self {
         Self {
             modes: class.members.iter().map(|index| index + 1).collect(),
             divisor_hz: class.multiples.divisor,
@@ -103,14 +102,14 @@ impl ClassDocument {
 }
 
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ImpulseDocument {
+pub(super) struct Impulse {
     pub(super) time_s: f64,
     pub(super) amplitude: f64,
 }
 
 /// Residual of the shaper for one mode at another mode.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct CrossGainDocument {
+pub(super) struct CrossGain {
     pub(super) kind: &'static str,
     pub(super) shaper_hz: f64,
     pub(super) at_hz: f64,
@@ -119,22 +118,22 @@ pub(super) struct CrossGainDocument {
 
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "DesignMode")]
-pub(super) struct ModeDocument {
+pub(super) struct Mode {
     pub(super) frequency_hz: f64,
     pub(super) damping: f64,
     /// The mode as it was measured with the motor free.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) free: Option<FreeDocument>,
+    pub(super) free: Option<FreeMode>,
     /// What `[axis.mechanics]` makes it from.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) mechanics: Option<MechanicsDocument>,
+    pub(super) mechanics: Option<Mechanics>,
     pub(super) residual: f64,
     pub(super) insensitivity: Option<(f64, Option<f64>)>,
 }
 
 /// A mode from data sheets.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct MechanicsDocument {
+pub(super) struct Mechanics {
     /// Whether the motor is `held` or `free` in this mode.
     motor: &'static str,
     stiffness_n_per_m: f64,
@@ -143,7 +142,7 @@ pub(super) struct MechanicsDocument {
     motor_mass_kg: f64,
 }
 
-impl MechanicsDocument {
+impl Mechanics {
     pub(super) fn new(screw: &ScrewDrive, is_motor_free: bool) -> Self {
         Self {
             motor: if is_motor_free { "free" } else { "held" },
@@ -156,28 +155,28 @@ impl MechanicsDocument {
 }
 
 #[derive(Serialize, JsonSchema)]
-pub(super) struct FreeDocument {
+pub(super) struct FreeMode {
     pub(super) frequency_hz: f64,
     pub(super) damping: f64,
 }
 
 #[derive(Serialize, JsonSchema)]
-pub(super) struct QuantisedDocument {
+pub(super) struct Quantised {
     pub(super) sample_hz: f64,
     pub(super) coefficient_fraction: u32,
     pub(super) digitise: String,
     pub(super) fits: bool,
-    pub(super) taps: Vec<TapDocument>,
-    pub(super) modes: Vec<ResidualDocument>,
+    pub(super) taps: Vec<Tap>,
+    pub(super) modes: Vec<Residual>,
 }
 
 #[derive(Serialize, JsonSchema)]
-pub(super) struct TapDocument {
+pub(super) struct Tap {
     delay_samples: u32,
     coefficient: i32,
 }
 
-impl TapDocument {
+impl Tap {
     /// The taps of a table.
     pub(super) fn of(table: &TapTable) -> Vec<Self> {
         let taps = table.taps().iter();
@@ -190,7 +189,7 @@ impl TapDocument {
 }
 
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ResidualDocument {
+pub(super) struct Residual {
     pub(super) residual: f64,
     /// Upper bound over the whole band of the mode.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -16,7 +16,7 @@ pub(super) struct ErrorTableReport<'a> {
 
 /// The same in JSON.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ErrorTableDocument {
+pub(super) struct ErrorTable {
     apply: &'static str,
     points: usize,
     entries: usize,
@@ -35,7 +35,7 @@ impl<'a> ErrorTableReport<'a> {
         Some(Self { axis, built })
     }
 
-    pub(super) fn json(&self) -> ErrorTableDocument {
+    pub(super) fn json(&self) -> ErrorTable {
         let (table, counts) = (&self.built.table, self.axis.loop_counts_per_unit());
         let points = self
             .axis
@@ -45,7 +45,7 @@ impl<'a> ErrorTableReport<'a> {
         let largest = points
             .iter()
             .fold(0.0, |largest: f64, (_, error)| largest.max(error.abs()));
-        ErrorTableDocument {
+        ErrorTable {
             apply: if self.built.on_measured {
                 "feedback"
             } else {

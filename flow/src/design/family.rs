@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
 
-use super::document::TapDocument;
+use super::document::Tap;
 
 /// Number of values at which the residual is drawn.
 const POINTS: u32 = 601;
@@ -24,7 +24,7 @@ const SHOWN: f64 = 3.0;
 
 /// `family` of an axis in `design --json`. Values of a position are in m or rad.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct FamilyDocument {
+pub(super) struct Family {
     variable: String,
     range: [f64; 2],
     /// Index of the table in the ROM, from 0.
@@ -34,11 +34,11 @@ pub(super) struct FamilyDocument {
     /// Largest rate of change of the variable, per second; absent for a single table.
     #[serde(skip_serializing_if = "Option::is_none")]
     fastest_per_s: Option<f64>,
-    tables: Vec<MemberDocument>,
+    tables: Vec<Member>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct MemberDocument {
+struct Member {
     value: f64,
     modes: Vec<MemberMode>,
     /// Range in which every mode's residual is within its tolerance.
@@ -49,7 +49,7 @@ struct MemberDocument {
     /// Threshold above which the table after is chosen; absent for the last.
     #[serde(skip_serializing_if = "Option::is_none")]
     up: Option<f64>,
-    taps: Vec<TapDocument>,
+    taps: Vec<Tap>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -86,17 +86,17 @@ impl<'a> FamilyReport<'a> {
         })
     }
 
-    pub(super) fn json(&self) -> FamilyDocument {
+    pub(super) fn json(&self) -> Family {
         let finite = |value: f64| value.is_finite().then_some(value);
-        let members = self.tables.members.iter().map(|member| MemberDocument {
+        let members = self.tables.members.iter().map(|member| Member {
             value: member.value,
             modes: self.modes(member).collect(),
             covers: member.covers,
             down: finite(member.down),
             up: finite(member.up),
-            taps: TapDocument::of(&member.tables.table),
+            taps: Tap::of(&member.tables.table),
         });
-        FamilyDocument {
+        Family {
             variable: self.family.variable.clone(),
             range: self.family.range,
             nominal: self.tables.nominal,

@@ -123,13 +123,13 @@ impl FrontReport {
         panels
     }
 
-    pub(super) fn json(&self) -> FrontDocument {
-        FrontDocument {
+    pub(super) fn json(&self) -> Front {
+        Front {
             axis: self.axis.clone(),
             durations: self
                 .figures
                 .iter()
-                .map(|figures| DurationDocument {
+                .map(|figures| FrontDuration {
                     duration_s: figures.duration_s,
                     taps: figures.taps,
                     peak_command: figures.peak_command,
@@ -143,13 +143,13 @@ impl FrontReport {
 
 /// What the durations of an axis's shaper buy.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct FrontDocument {
+pub(super) struct Front {
     axis: String,
-    durations: Vec<DurationDocument>,
+    durations: Vec<FrontDuration>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct DurationDocument {
+struct FrontDuration {
     duration_s: f64,
     taps: usize,
     peak_command: f64,

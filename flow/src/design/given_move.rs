@@ -82,23 +82,23 @@ impl MoveReport<'_> {
         text
     }
 
-    pub(super) fn json(&self) -> MoveDocument {
+    pub(super) fn json(&self) -> ComparedMove {
         let better = self.found.better();
-        MoveDocument {
+        ComparedMove {
             axis: self.axis.name.clone(),
             distance: self.distance,
-            shaped: WayDocument::new(&self.found.shaped),
+            shaped: Way::new(&self.found.shaped),
             by_period: self
                 .found
                 .by_period
                 .iter()
-                .map(|found| PeriodDocument {
+                .map(|found| Period {
                     mode: found.mode + 1,
                     jerk_s: found.jerk_s,
                     velocity: found.peaks[0],
                     acceleration: found.peaks[1],
                     jerk: found.peaks[2],
-                    way: WayDocument::new(&found.figures),
+                    way: Way::new(&found.figures),
                 })
                 .collect(),
             tolerated_residual: Some(self.found.tolerated).filter(|tolerated| tolerated.is_finite()),
@@ -112,36 +112,36 @@ impl MoveReport<'_> {
 
 /// A move in `design --json`, in m or rad; modes are counted from 1.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct MoveDocument {
+pub(super) struct ComparedMove {
     axis: String,
     distance: f64,
-    shaped: WayDocument,
-    by_period: Vec<PeriodDocument>,
+    shaped: Way,
+    by_period: Vec<Period>,
     tolerated_residual: Option<f64>,
     /// `shaper`, `period`, or null where both leave more than is tolerated.
     better: Option<&'static str>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct PeriodDocument {
+struct Period {
     mode: usize,
     jerk_s: f64,
     velocity: f64,
     acceleration: f64,
     jerk: f64,
     #[serde(flatten)]
-    way: WayDocument,
+    way: Way,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct WayDocument {
+struct Way {
     command_s: f64,
     shaper_s: f64,
     total_s: f64,
     residual: f64,
 }
 
-impl WayDocument {
+impl Way {
     fn new(figures: &MoveFigures) -> Self {
         Self {
             command_s: figures.command_s,

@@ -80,12 +80,12 @@ impl<'a> TogetherReport<'a> {
         text
     }
 
-    pub(super) fn json(&self) -> TogetherDocument {
+    pub(super) fn json(&self) -> Together {
         let found = &self.together.found;
         let shorter = self.checked.shorter.as_ref().and_then(|checked| checked.as_ref().ok());
         let least = self.checked.least_delay_samples.as_ref();
         let least = least.and_then(|checked| checked.as_ref().ok());
-        TogetherDocument {
+        Together {
             samples: found.samples,
             duration_s: f64::from(found.samples) / self.design.sample_hz,
             delay_s: found.delay_samples / self.design.sample_hz,
@@ -102,7 +102,7 @@ impl<'a> TogetherReport<'a> {
 
 /// `together` in `stage` of `design --json`.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct TogetherDocument {
+pub(super) struct Together {
     /// Least common duration.
     samples: u32,
     duration_s: f64,

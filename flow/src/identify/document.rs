@@ -9,8 +9,8 @@ use serde::Serialize;
 /// The modes of a log, and shapers for them.
 #[derive(Serialize, JsonSchema)]
 pub struct Document {
-    modes: Vec<ModeDocument>,
-    recommended: Vec<RecommendedDocument>,
+    modes: Vec<Mode>,
+    recommended: Vec<Recommended>,
     /// `m` or `rad`: the unit of the displacements and of the smoothing, whatever their names end with.
     si_unit: &'static str,
     method: &'static str,
@@ -21,7 +21,7 @@ pub struct Document {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct ModeDocument {
+struct Mode {
     frequency_hz: f64,
     damping: f64,
     participation: f64,
@@ -35,7 +35,7 @@ struct ModeDocument {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct RecommendedDocument {
+struct Recommended {
     kind: &'static str,
     duration_s: f64,
     residual_displacement_m: f64,
@@ -70,11 +70,11 @@ impl Document {
     }
 }
 
-fn mode(found: &FoundMode, findings: &Findings) -> ModeDocument {
+fn mode(found: &FoundMode, findings: &Findings) -> Mode {
     let ringing = |found: &FoundMode| found.ringing(findings.judgement.acceleration);
     let whole: f64 = findings.modes.iter().map(ringing).sum();
     let ends = |interval: Interval| [interval.low, interval.high];
-    ModeDocument {
+    Mode {
         frequency_hz: found.mode.frequency_hz,
         damping: found.mode.damping,
         participation: found.participation,
@@ -87,9 +87,9 @@ fn mode(found: &FoundMode, findings: &Findings) -> ModeDocument {
     }
 }
 
-fn recommended(recommendation: &Recommendation, findings: &Findings) -> RecommendedDocument {
+fn recommended(recommendation: &Recommendation, findings: &Findings) -> Recommended {
     let of_printer = (findings.unit.si_name() == "m").then_some(recommendation);
-    RecommendedDocument {
+    Recommended {
         kind: recommendation.kind.name(),
         duration_s: recommendation.impulses.duration_s(),
         residual_displacement_m: recommendation.residual_displacement,

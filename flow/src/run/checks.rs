@@ -25,7 +25,7 @@ const MEASURED_ROUNDING: f64 = 1e-9;
 
 /// One check and how it went.
 #[derive(Debug, Clone, JsonSchema)]
-#[schemars(with = "CheckDocument<'static>")]
+#[schemars(with = "NamedCheck<'static>")]
 pub(crate) struct Check {
     /// Description of the check in a few words.
     pub(crate) name: &'static str,
@@ -39,7 +39,7 @@ pub(crate) struct Check {
 
 /// A check in `report.json`.
 #[derive(Serialize, JsonSchema)]
-struct CheckDocument<'a> {
+struct NamedCheck<'a> {
     /// What was checked, in a few words.
     name: &'a str,
     passed: bool,
@@ -52,7 +52,7 @@ struct CheckDocument<'a> {
 
 impl Serialize for Check {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let document = CheckDocument {
+        let document = NamedCheck {
             name: self.name,
             passed: self.passed,
             verdict: self.verdict().trim().to_lowercase(),

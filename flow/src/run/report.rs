@@ -1,7 +1,7 @@
 //! The report of `run`: tables for people, a document for programs, plots for both.
 
 use super::checks::Check;
-use super::closed_loop::{ClosedLoop, StageDocument};
+use super::closed_loop::{ClosedLoop, StageFigures};
 use super::gain::Gain;
 use super::summary;
 use super::waves::Waves;
@@ -219,10 +219,10 @@ impl RunReport<'_> {
         let axes = self.rows().map(|(index, axis, _)| {
             let plant = &self.plants[index];
             let per_lsb = si_per_lsb(self.machine, axis);
-            AxisDocument {
+            RunAxis {
                 name: axis.name.clone(),
                 unit: UnitDocument::new(axis.unit),
-                plant: PlantDocument::new(plant),
+                plant: StepOnPlant::new(plant),
                 residual_displacement_unshaped: self.axes[index].vibration_unshaped * per_lsb,
                 residual_displacement: self.axes[index].vibration * per_lsb,
                 samples: self.waves.samples[index],
@@ -284,7 +284,7 @@ pub struct Document {
     seed: u64,
     /// As `design --json`.
     design: design::Document,
-    axes: Vec<AxisDocument>,
+    axes: Vec<RunAxis>,
     /// As `verify --json`: the shapers, with random stimuli.
     verify: LockstepReport,
     /// As `diff --json`.
@@ -295,7 +295,7 @@ pub struct Document {
     synth: Option<Estimate>,
     /// The closed loop; absent where the machine file describes no stage.
     #[serde(skip_serializing_if = "Option::is_none")]
-    stage: Option<StageDocument>,
+    stage: Option<StageFigures>,
     /// As `design --compare --json`.
     kinds: compare::Document,
     checks: Vec<Check>,
@@ -303,12 +303,11 @@ pub struct Document {
 
 /// The move of an axis.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "RunAxis")]
-struct AxisDocument {
+struct RunAxis {
     name: String,
     #[serde(flatten)]
     unit: UnitDocument,
-    plant: PlantDocument,
+    plant: StepOnPlant,
     /// Ringing after the move without the shaper, in `si_unit`.
     residual_displacement_unshaped: f64,
     /// Ringing after the move with it, in `si_unit`.
@@ -324,25 +323,25 @@ struct AxisDocument {
 
 /// A step on the simulated machine, and on machines whose frequencies are 10 % off.
 #[derive(Serialize, JsonSchema)]
-struct PlantDocument {
-    unshaped: StepDocument,
-    nominal: StepDocument,
-    minus_10_percent: StepDocument,
-    plus_10_percent: StepDocument,
+struct StepOnPlant {
+    unshaped: Step,
+    nominal: Step,
+    minus_10_percent: Step,
+    plus_10_percent: Step,
 }
 
 /// A step.
 #[derive(Serialize, JsonSchema)]
-struct StepDocument {
+struct Step {
     /// Residual vibration of each mode, as a fraction of that of an unshaped step.
     residual: Vec<f64>,
     /// As a fraction of the step.
     overshoot: f64,
 }
 
-impl PlantDocument {
+impl StepOnPlant {
     fn new(plant: &OnPlant) -> Self {
-        let step = |figures: &StepFigures| StepDocument {
+        let step = |figures: &StepFigures| Step {
             residual: figures.residual.clone(),
             overshoot: figures.overshoot,
         };

@@ -85,6 +85,7 @@ pub fn compose(
         text,
         ports,
         clocked,
+        notes: Vec::new(),
     })
 }
 

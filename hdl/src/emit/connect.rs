@@ -6,7 +6,7 @@ use super::print::{self, Lines};
 use super::types::{BIT, Type};
 use super::{Header, Module};
 use posicast_blocks::composition::{Composition, Connection};
-use posicast_blocks::{Direction, Port};
+use posicast_blocks::{Direction, Port, PortNote};
 
 /// Writes the module `top`: one instance per part of `composition`, of the module with the same index in `modules`.
 ///
@@ -32,17 +32,55 @@ pub fn connect(
         }
     }
     let clocked = modules.iter().any(|module| module.clocked);
+    let notes = notes(composition, modules);
     let text = print::file(
         top,
         &print::data_header(top, header, "composition"),
-        &body(composition, clocked, modules),
+        &body(composition, clocked, modules, &notes),
     );
     Ok(Module {
         name: top.to_owned(),
         text,
         ports: composition.ports().to_vec(),
         clocked,
+        notes,
     })
+}
+
+/// What the ports are for: an output is that of the part that drives it, an input that of the first part that has it.
+fn notes(composition: &Composition, modules: &[&Module]) -> Vec<PortNote> {
+    let mut notes: Vec<PortNote> = Vec::new();
+    for ((part, connections), module) in composition.parts().iter().zip(composition.connections()).zip(modules) {
+        let on_nets = part.ports().iter().zip(connections).filter_map(|(port, connection)| {
+            if let Connection::Net(net) = connection {
+                Some((port, composition.nets()[*net].port.name.as_str()))
+            } else {
+                None
+            }
+        });
+        let on_nets: Vec<_> = on_nets.collect();
+        for (port, net) in &on_nets {
+            let is_port = |outer: &Port| outer.name == *net && outer.direction == port.direction;
+            let is_known = notes.iter().any(|note| note.port == *net);
+            let note = module.notes.iter().find(|note| note.port == port.name);
+            if let Some(note) = note.filter(|_| !is_known && composition.ports().iter().any(is_port)) {
+                notes.push(PortNote {
+                    port: (*net).to_owned(),
+                    text: renamed(&note.text, &on_nets),
+                });
+            }
+        }
+    }
+    notes
+}
+
+/// The text with its ports, which stand between backticks, by the names of their nets.
+fn renamed(text: &str, on_nets: &[(&Port, &str)]) -> String {
+    let words = text.split('`').enumerate().map(|(at, word)| {
+        let net = on_nets.iter().find(|(port, _)| at % 2 == 1 && port.name == word);
+        net.map_or(word, |(_, net)| *net)
+    });
+    words.collect::<Vec<_>>().join("`")
 }
 
 fn check_names(top: &str, composition: &Composition) -> Result<(), (String, EmitCause)> {
@@ -75,7 +113,7 @@ fn port_type(port: &Port) -> Type {
     }
 }
 
-fn body(composition: &Composition, clocked: bool, modules: &[&Module]) -> String {
+fn body(composition: &Composition, clocked: bool, modules: &[&Module], notes: &[PortNote]) -> String {
     let clock = clocked.then(|| ("input  wire", BIT, "clk".to_owned()));
     let ports = composition.ports().iter().map(|port| {
         let keyword = match port.direction {
@@ -84,7 +122,7 @@ fn body(composition: &Composition, clocked: bool, modules: &[&Module]) -> String
         };
         (keyword, port_type(port), port.name.clone())
     });
-    let list = print::port_list(&clock.into_iter().chain(ports).collect::<Vec<_>>());
+    let list = print::noted_port_list(&clock.into_iter().chain(ports).collect::<Vec<_>>(), notes);
     let inside = || {
         composition
             .nets()

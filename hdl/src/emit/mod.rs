@@ -84,6 +84,8 @@ pub struct Module {
     pub ports: Vec<Port>,
     /// Whether it has an input `clk`.
     pub clocked: bool,
+    /// What the ports are for, where that is known: a composition that has the same ports writes it beside them.
+    pub notes: Vec<PortNote>,
 }
 
 impl Module {

@@ -54,6 +54,9 @@ pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, 
     let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
     let header = print::top_header(&top_name, &about, &options.header);
     modules.push(top, top_name, &header, &draft.body);
+    if let Some(top) = modules.written.last_mut() {
+        top.notes.clone_from(&options.header.ports);
+    }
     Ok(modules.written)
 }
 
@@ -179,6 +182,7 @@ impl Modules<'_> {
             text,
             ports,
             clocked,
+            notes: Vec::new(),
         });
     }
 }

@@ -41,6 +41,7 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
         name,
         ports: map.ports().to_vec(),
         clocked: true,
+        notes: verilog::notes(map),
     })
 }
 

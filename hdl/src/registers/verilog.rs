@@ -45,7 +45,7 @@ pub(super) fn body(map: &RegisterMap) -> String {
 }
 
 /// Purposes of the ports: the meanings of the fields with their units, and the events that strobes report.
-fn notes(map: &RegisterMap) -> Vec<PortNote> {
+pub(super) fn notes(map: &RegisterMap) -> Vec<PortNote> {
     let note = |port: &str, text: String| PortNote {
         port: port.to_owned(),
         text,

@@ -435,6 +435,7 @@ fn compose_refuses_what_does_not_fit() {
         text: String::new(),
         ports,
         clocked: true,
+        notes: Vec::new(),
     };
     let wide = module(vec![port("rst", Direction::Input, 2), port("b", Direction::Output, 1)]);
     let narrow = module(vec![

@@ -2,9 +2,9 @@
 //!
 //! | file | format | for |
 //! |---|---|---|
-//! | `docs/TOP.md` | Markdown | people |
-//! | `docs/TOP.rdl` | SystemRDL 2.0 | PeakRDL and similar tools: HTML, UVM, IP-XACT |
-//! | `docs/TOP.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
+//! | `docs/NAME.md` | Markdown | people |
+//! | `docs/NAME.rdl` | SystemRDL 2.0 | PeakRDL and similar tools: HTML, UVM, IP-XACT |
+//! | `docs/NAME.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
 //!
 //! All three come from the one [`RegisterMap`]. IP-XACT is not written, because PeakRDL makes it from the SystemRDL,
 //! and it would contain nothing that the other two do not.
@@ -20,14 +20,27 @@ use posicast_blocks::registers::{Access, Field, Register, RegisterMap, markdown}
 /// Bytes per word.
 const WORD_BYTES: u32 = 4;
 
-/// The documents of a component's registers, as path in the output folder and text. `top` is its top module.
-pub fn files(top: &str, map: &RegisterMap) -> [(String, String); 3] {
-    let path = |ending: &str| format!("{FOLDER}/{top}.{ending}");
+/// The documents `name` of the registers that all components `tops` have, as path in the output folder and text.
+pub fn files(name: &str, tops: &[String], map: &RegisterMap) -> [(String, String); 3] {
+    let path = |ending: &str| format!("{FOLDER}/{name}.{ending}");
+    let components = match tops {
+        [top] if top == name => String::new(),
+        tops => format!("Components with these registers: {}.", tops.join(", ")),
+    };
+    let table = match components.as_str() {
+        "" => markdown(map),
+        components => format!("{components}\n\n{}", markdown(map)),
+    };
     [
-        (path("md"), format!("# Registers of {top}\n\n{}", markdown(map))),
-        (path("rdl"), systemrdl::document(top, map)),
-        (path("svd"), svd::document(top, map)),
+        (path("md"), format!("# Registers of {name}\n\n{table}")),
+        (path("rdl"), systemrdl::document(name, &components, map)),
+        (path("svd"), svd::document(name, &components, map)),
     ]
+}
+
+/// The descriptive text of a map, and the components that have it.
+fn about(components: &str, map: &RegisterMap) -> String {
+    format!("{} {components}", map.about()).trim_end().to_owned()
 }
 
 /// Access of software to a register.

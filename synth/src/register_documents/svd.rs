@@ -2,18 +2,18 @@
 //!
 //! The peripheral is at address 0, because the system determines its address: add the component's base.
 
-use super::{Software, WORD_BYTES, fields, has_reset, meaning, software};
+use super::{Software, WORD_BYTES, about, fields, has_reset, meaning, software};
 use posicast_blocks::registers::{Field, Format, Register, RegisterMap};
 use std::fmt::Write;
 
-/// Writes the map as a device.
-pub(super) fn document(top: &str, map: &RegisterMap) -> String {
-    let about = escaped(map.about());
+/// Writes the map of these components as the device `name`.
+pub(super) fn document(name: &str, components: &str, map: &RegisterMap) -> String {
+    let about = escaped(&about(components, map));
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"utf-8\"?>
 <device schemaVersion=\"1.3\" xmlns:xs=\"http://www.w3.org/2001/XMLSchema-instance\" xs:noNamespaceSchemaLocation=\"CMSIS-SVD.xsd\">
   <vendor>posicast</vendor>
-  <name>{top}</name>
+  <name>{name}</name>
   <version>1.0</version>
   <description>{about}</description>
   <addressUnitBits>8</addressUnitBits>
@@ -23,7 +23,7 @@ pub(super) fn document(top: &str, map: &RegisterMap) -> String {
   <resetMask>0xffffffff</resetMask>
   <peripherals>
     <peripheral>
-      <name>{top}</name>
+      <name>{name}</name>
       <description>{about}</description>
       <baseAddress>0x0</baseAddress>
       <addressBlock>

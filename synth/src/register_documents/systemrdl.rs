@@ -15,13 +15,13 @@ wr wset wuser wzc wzs wzt xored activehigh activelow anded ored bigendian single
 width threshold saturate rsvdset rsvdsetX reset sharedextbus paritycheck onread onwrite nonrsvd incr decr
 ";
 
-/// Writes the map as one `addrmap`.
-pub(super) fn document(top: &str, map: &RegisterMap) -> String {
+/// Writes the map of these components as one `addrmap` with this name.
+pub(super) fn document(name: &str, components: &str, map: &RegisterMap) -> String {
     let mut text = format!(
-        "// Registers of {top}. Written by posicast.\naddrmap {top} {{\n    name = {};\n    desc = {};\n    \
+        "// Registers of {name}. Written by posicast.\naddrmap {name} {{\n    name = {};\n    desc = {};\n    \
          default regwidth = 32;\n    default accesswidth = 32;\n    littleendian;\n",
-        quoted(top),
-        quoted(map.about()),
+        quoted(name),
+        quoted(&super::about(components, map)),
     );
     for register in map.registers() {
         write_register(&mut text, map, register);

@@ -68,7 +68,8 @@ fn write(folder: &Path, path: &str, text: &str) -> PathBuf {
 
 /// Writes the documents of a component into a folder; returns the paths of SystemRDL and SVD.
 fn documents(folder: &TempDir, top: &str, map: &RegisterMap) -> [PathBuf; 2] {
-    let [_, rdl, svd] = register_documents::files(top, map).map(|(path, text)| write(folder.path(), &path, &text));
+    let [_, rdl, svd] =
+        register_documents::files(top, &[top.to_owned()], map).map(|(path, text)| write(folder.path(), &path, &text));
     [rdl, svd]
 }
 

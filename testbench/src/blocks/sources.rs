@@ -96,6 +96,7 @@ impl Sources {
                 name,
                 ports: Vec::new(),
                 clocked: true,
+                notes: Vec::new(),
             })
         };
         Self::of_modules(&self.files.iter().map(module).collect::<Result<Vec<_>, Error>>()?)

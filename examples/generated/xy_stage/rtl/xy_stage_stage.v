@@ -25,49 +25,53 @@
 
 module xy_stage_stage (
     input  wire        clk,
-    input  wire        rst,
+    input  wire        rst,               // Synchronous reset
     input  wire [9:0]  avs_address,
     input  wire        avs_read,
     input  wire        avs_write,
     input  wire [3:0]  avs_byteenable,
     input  wire [31:0] avs_writedata,
-    input  wire        emergency_stop_n,
-    input  wire        pll_locked,
-    input  wire        x_a,
-    input  wire        x_b,
-    input  wire        x_z,
-    input  wire        x_limit_plus_n,
-    input  wire        x_limit_minus_n,
-    input  wire        x_home,
-    input  wire        x_drive_ready,
-    input  wire        x_drive_fault_n,
-    input  wire        x_fault_n,
-    input  wire        y_a,
-    input  wire        y_b,
-    input  wire        y_z,
-    input  wire        y_limit_plus_n,
-    input  wire        y_limit_minus_n,
-    input  wire        y_home,
-    input  wire        y_drive_ready,
-    input  wire        y_drive_fault_n,
-    input  wire        y_fault_n,
+    input  wire        emergency_stop_n,  // Asynchronous line
+    input  wire        pll_locked,        // Asynchronous; low trips as `x_fault_n` does
+    input  wire        x_a,               // Line A, or step, or up; asynchronous
+    input  wire        x_b,               // Line B, or direction (high is up), or down
+    input  wire        x_z,               // Index line; asynchronous
+    input  wire        x_limit_plus_n,    // Asynchronous line
+    input  wire        x_limit_minus_n,   // Asynchronous line
+    input  wire        x_home,            // Asynchronous line of the home switch, which is only
+                                          // filtered
+    input  wire        x_drive_ready,     // Asynchronous line
+    input  wire        x_drive_fault_n,   // Asynchronous pin
+    input  wire        x_fault_n,         // Raw fault, asynchronous
+    input  wire        y_a,               // Line A, or step, or up; asynchronous
+    input  wire        y_b,               // Line B, or direction (high is up), or down
+    input  wire        y_z,               // Index line; asynchronous
+    input  wire        y_limit_plus_n,    // Asynchronous line
+    input  wire        y_limit_minus_n,   // Asynchronous line
+    input  wire        y_home,            // Asynchronous line of the home switch, which is only
+                                          // filtered
+    input  wire        y_drive_ready,     // Asynchronous line
+    input  wire        y_drive_fault_n,   // Asynchronous pin
+    input  wire        y_fault_n,         // Raw fault, asynchronous
     output wire [31:0] avs_readdata,
     output wire        irq,
-    output wire        tick,
-    output wire        x_a_high,
-    output wire        x_a_low,
-    output wire        x_b_high,
-    output wire        x_b_low,
-    output wire        x_pwm_trigger,
-    output wire        x_drive_enable,
-    output wire        x_brake_release,
-    output wire        y_a_high,
-    output wire        y_a_low,
-    output wire        y_b_high,
-    output wire        y_b_low,
-    output wire        y_pwm_trigger,
-    output wire        y_drive_enable,
-    output wire        y_brake_release
+    output wire        tick,              // One clock: the tick
+    output wire        x_a_high,          // Level of the pin for the high side of leg A
+    output wire        x_a_low,           // Level of the pin for the low side of leg A
+    output wire        x_b_high,          // Level of the pin for the high side of leg B
+    output wire        x_b_low,           // Level of the pin for the low side of leg B
+    output wire        x_pwm_trigger,     // One clock: the pins are `x_trigger_phase` clocks after
+                                          // the valley
+    output wire        x_drive_enable,    // To the drive: high enables it
+    output wire        x_brake_release,   // To the brake: high opens it
+    output wire        y_a_high,          // Level of the pin for the high side of leg A
+    output wire        y_a_low,           // Level of the pin for the low side of leg A
+    output wire        y_b_high,          // Level of the pin for the high side of leg B
+    output wire        y_b_low,           // Level of the pin for the low side of leg B
+    output wire        y_pwm_trigger,     // One clock: the pins are `y_trigger_phase` clocks after
+                                          // the valley
+    output wire        y_drive_enable,    // To the drive: high enables it
+    output wire        y_brake_release    // To the brake: high opens it
 );
     wire               start;
     wire [3:0]         start_axes;

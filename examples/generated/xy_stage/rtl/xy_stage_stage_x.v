@@ -7,161 +7,256 @@
 
 module xy_stage_stage_x (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               tick,
-    input  wire               control,
-    input  wire [23:0]        edge_stamp,
-    input  wire signed [31:0] quotient,
-    input  wire               group_emergency_stop,
-    input  wire               emergency_stop_n,
-    input  wire               pll_locked,
-    input  wire               quotient_valid,
-    input  wire               axis_start,
-    input  wire               group_stop,
-    input  wire               hold_feed,
-    input  wire               a,
-    input  wire               b,
-    input  wire               z,
-    input  wire               limit_plus_n,
-    input  wire               limit_minus_n,
-    input  wire               home,
-    input  wire               drive_ready,
-    input  wire               drive_fault_n,
-    input  wire               fault_n,
-    input  wire               enable,
-    input  wire               direct_enable,
-    input  wire               self_test,
-    input  wire               stop,
-    input  wire               clear_faults,
-    input  wire               flush,
-    input  wire               kick,
-    input  wire [31:0]        kick_word,
-    input  wire               write_homed,
-    input  wire               homed_value,
-    input  wire               direct_kick,
-    input  wire signed [16:0] direct_duty,
-    input  wire [5:0]         low_water,
-    input  wire [7:0]         extrapolation,
-    input  wire               segment_write,
-    input  wire [1:0]         segment_word,
-    input  wire [31:0]        segment_data,
-    input  wire [5:0]         tap_index,
-    input  wire [1:0]         tap_bank,
-    input  wire               tap_write,
-    input  wire signed [17:0] tap_coefficient,
-    input  wire [6:0]         tap_delay,
-    input  wire               swap,
-    input  wire [1:0]         swap_bank,
-    input  wire [1:0]         swap_how,
-    input  wire               tap_read,
-    input  wire [3:0]         setting_row,
-    input  wire [1:0]         setting_bank,
-    input  wire               setting_write,
-    input  wire [31:0]        setting_word,
-    input  wire               setting_read,
-    input  wire [1:0]         law,
-    input  wire [1:0]         law_bank,
-    input  wire signed [31:0] soft_limit_plus,
-    input  wire signed [31:0] soft_limit_minus,
-    input  wire [31:0]        following_error_limit,
-    input  wire [15:0]        watchdog_ticks,
-    input  wire [15:0]        off_causes,
-    input  wire [30:0]        stop_deceleration,
-    input  wire [15:0]        settle_ticks,
-    input  wire               encoder_invert,
-    input  wire [15:0]        trigger_phase,
-    input  wire               index_always,
-    input  wire               index_presets,
-    input  wire [3:0]         index_gate,
-    input  wire [1:0]         smoothing,
-    input  wire               velocity_m,
-    input  wire               index_arm,
-    input  wire               preset,
-    input  wire signed [31:0] preset_value,
-    output wire signed [17:0] steps,
-    output wire [23:0]        elapsed,
-    output wire               can_start,
-    output wire               wants_group_stop,
-    output wire               emergency_stop,
-    output wire               rests,
-    output wire               a_high,
-    output wire               a_low,
-    output wire               b_high,
-    output wire               b_low,
-    output wire               pwm_trigger,
-    output wire               drive_enable,
-    output wire               brake_release,
-    output wire [2:0]         state,
-    output wire [1:0]         segments_state,
-    output wire               direct_active,
-    output wire               pwm_running,
-    output wire               level_emergency_stop_n,
-    output wire               level_limit_plus_n,
-    output wire               level_limit_minus_n,
-    output wire               level_drive_ready,
-    output wire               level_home,
-    output wire               level_a,
-    output wire               level_b,
-    output wire               level_z,
-    output wire               swap_pending,
-    output wire [1:0]         table_bank,
-    output wire               index_armed,
-    output wire [4:0]         trip_causes,
-    output wire               homed,
-    output wire               setting_read_waits,
-    output wire               tap_read_waits,
-    output wire [16:0]        causes,
-    output wire               segments_underrun,
-    output wire               segments_overflow,
-    output wire               segments_tick_missed,
-    output wire               segment_refused,
-    output wire               segment_malformed,
-    output wire               shaper_saturated,
-    output wire               shaper_overrun,
-    output wire               table_refused,
-    output wire               encoder_illegal,
-    output wire               encoder_disagreement,
-    output wire               velocity_missed,
-    output wire               controller_overrun,
-    output wire               limited_high,
-    output wire               limited_low,
-    output wire               pwm_saturated,
-    output wire               pwm_unaligned,
-    output wire [7:0]         illegal_count,
-    output wire               segments_out_of_range,
-    output wire               refused,
-    output wire               setting_refused,
-    output wire               direct_expired,
-    output wire [6:0]         controller_saturated_high,
-    output wire [6:0]         controller_saturated_low,
-    output wire [15:0]        limited_ticks,
-    output wire [6:0]         fifo_level,
-    output wire               fifo_low,
-    output wire               segments_empty,
-    output wire               feed_held,
-    output wire [7:0]         late_ticks,
-    output wire [15:0]        self_test_high,
-    output wire [15:0]        self_test_low,
-    output wire [31:0]        setting_loaded,
-    output wire signed [17:0] loaded_coefficient,
-    output wire [6:0]         loaded_delay,
-    output wire signed [31:0] user_position,
-    output wire signed [31:0] count,
-    output wire signed [31:0] velocity,
-    output wire signed [31:0] origin,
-    output wire signed [31:0] index_count,
-    output wire signed [31:0] command_position,
-    output wire signed [31:0] shaped_position,
+    input  wire               rst,                        // Synchronous reset
+    input  wire               tick,                       // One clock: the tick
+    input  wire               control,                    // One clock: computes a tick
+    input  wire [23:0]        edge_stamp,                 // Lowest 24 bits of the stage's clock
+                                                          // counter [clocks]
+    input  wire signed [31:0] quotient,                   // Quotient of the divider, Q16.16 counts
+                                                          // per tick [counts per tick, Q16.16]
+    input  wire               group_emergency_stop,       // Another axis has its emergency stop
+    input  wire               emergency_stop_n,           // Asynchronous line
+    input  wire               pll_locked,                 // Asynchronous
+    input  wire               quotient_valid,             // One clock: `quotient` is that of
+                                                          // `steps` and `elapsed`
+    input  wire               axis_start,                 // One clock: go from HOLD to RUN at the
+                                                          // next tick
+    input  wire               group_stop,                 // Another axis wants all axes to stop
+    input  wire               hold_feed,                  // At a tick: a command at rest stays
+                                                          // where it is, and the entry being played
+                                                          // keeps its ticks
+    input  wire               a,                          // Line A, or step, or up; asynchronous
+    input  wire               b,                          // Line B, or direction (high is up), or
+                                                          // down
+    input  wire               z,                          // Index line; asynchronous
+    input  wire               limit_plus_n,               // Asynchronous line
+    input  wire               limit_minus_n,              // Asynchronous line
+    input  wire               home,                       // Asynchronous line of the home switch,
+                                                          // which is only filtered
+    input  wire               drive_ready,                // Asynchronous line
+    input  wire               drive_fault_n,              // Asynchronous pin
+    input  wire               fault_n,                    // Raw fault, asynchronous
+    input  wire               enable,                     // High: outputs on
+    input  wire               direct_enable,              // Requests direct mode
+    input  wire               self_test,                  // Direct mode is a self-test
+    input  wire               stop,                       // One clock: quick stop, then HOLD
+    input  wire               clear_faults,               // One clock: clear the causes that are
+                                                          // over, eight clocks later
+    input  wire               flush,                      // One clock: at the next tick all waiting
+                                                          // entries are dropped
+    input  wire               kick,                       // One clock: `kick_word` is written to
+                                                          // the watchdog
+    input  wire [31:0]        kick_word,                  // Word for the watchdog
+    input  wire               write_homed,                // One clock: write `homed_value` to
+                                                          // `homed`
+    input  wire               homed_value,                // Value for `homed`: whether the
+                                                          // position's origin, to which the soft
+                                                          // limits refer, is known
+    input  wire               direct_kick,                // One clock: direct mode lasts
+                                                          // `direct_hold_ticks` from now on
+    input  wire signed [16:0] direct_duty,                // Manual duty [clocks]
+    input  wire [5:0]         low_water,                  // `fifo_low` is high while at most this
+                                                          // many entries wait
+    input  wire [7:0]         extrapolation,              // Longest time at the last velocity if
+                                                          // entries are missing, before the quick
+                                                          // stop [ticks]
+    input  wire               segment_write,              // One clock: writes `segment_data` as
+                                                          // `segment_word` of an entry
+    input  wire [1:0]         segment_word,               // Index of the word, 0 to 3
+    input  wire [31:0]        segment_data,               // The word to write
+    input  wire [5:0]         tap_index,                  // Index of the tap: 0 begins a table,
+                                                          // then one after the other
+    input  wire [1:0]         tap_bank,                   // Bank of the tap: 1 or 2 for a write
+    input  wire               tap_write,                  // For one clock: writes one tap to a
+                                                          // loadable bank
+    input  wire signed [17:0] tap_coefficient,            // Coefficient of the tap [2^-F]
+    input  wire [6:0]         tap_delay,                  // Delay of the tap, 0 ... 2^A - 2
+                                                          // [samples]
+    input  wire               swap,                       // For one clock: make `swap_bank` active
+    input  wire [1:0]         swap_bank,                  // The bank to make active, 0 to 2
+    input  wire [1:0]         swap_how,                   // When the swap takes effect: 0 at once,
+                                                          // 1 by handover, 2 when settled
+    input  wire               tap_read,                   // For one clock: read back the tap at
+                                                          // `tap_index` of `tap_bank`, which may be
+                                                          // any bank
+    input  wire [3:0]         setting_row,                // Row to write or to read back
+    input  wire [1:0]         setting_bank,               // Bank to write, 1 or 2, or to read back
+    input  wire               setting_write,              // One clock: writes `setting_word` to
+                                                          // `setting_row` of `setting_bank`
+    input  wire [31:0]        setting_word,               // Word to write
+    input  wire               setting_read,               // One clock: read back the word at
+                                                          // `setting_row` of `setting_bank`
+    input  wire [1:0]         law,                        // Law: 0 sliding mode, 1 PD, 2 PID, 3 as
+                                                          // 1
+    input  wire [1:0]         law_bank,                   // Bank that the controller reads: 0 is
+                                                          // the machine's, 1 and 2 are the loaded
+                                                          // ones
+    input  wire signed [31:0] soft_limit_plus,            // Upper soft limit [counts, Q24.8]
+    input  wire signed [31:0] soft_limit_minus,           // Lower soft limit [counts, Q24.8]
+    input  wire [31:0]        following_error_limit,      // Largest following error [counts,
+                                                          // Q16.16]
+    input  wire [15:0]        watchdog_ticks,             // Longest time without a kick [ticks]
+    input  wire [15:0]        off_causes,                 // One bit per cause: 1 switches the
+                                                          // outputs off, 0 leads to a quick stop
+    input  wire [30:0]        stop_deceleration,          // Deceleration of a quick stop [counts
+                                                          // per tick², Q7.24]
+    input  wire [15:0]        settle_ticks,               // Time from the command's standstill to
+                                                          // that of the shaped command: the
+                                                          // shaper's longest delay [ticks]
+    input  wire               encoder_invert,             // Reverses the direction
+    input  wire [15:0]        trigger_phase,              // Phase at which `pwm_trigger` comes,
+                                                          // counted from the valley [clocks]
+    input  wire               index_always,               // Latches every index
+    input  wire               index_presets,              // A latched index also presets the
+                                                          // position
+    input  wire [3:0]         index_gate,                 // Bit 0: an index counts only while A
+                                                          // equals bit 1
+    input  wire [1:0]         smoothing,                  // Exponent k of the one-pole filter with
+                                                          // coefficient 2^-k, 0 to 3
+    input  wire               velocity_m,                 // Velocity by method M alone: counts per
+                                                          // tick
+    input  wire               index_arm,                  // One clock: latches the next index
+    input  wire               preset,                     // One clock: the position becomes
+                                                          // `preset_value`, visible 2 clocks later
+    input  wire signed [31:0] preset_value,               // Position after a preset [counts]
+    output wire signed [17:0] steps,                      // Dividend for the divider [counts]
+    output wire [23:0]        elapsed,                    // Divisor for the divider [clocks]
+    output wire               can_start,                  // In the clock before, a `axis_start`
+                                                          // would have led to RUN at the next tick
+    output wire               wants_group_stop,           // To the stage: a fault, or a quick stop
+                                                          // because of one
+    output wire               emergency_stop,             // To the stage: the emergency stop line
+                                                          // of this axis
+    output wire               rests,                      // Velocity and acceleration have been
+                                                          // exactly 0 since the last
+                                                          // `segments_valid`
+    output wire               a_high,                     // Level of the pin for the high side of
+                                                          // leg A
+    output wire               a_low,                      // Level of the pin for the low side of
+                                                          // leg A
+    output wire               b_high,                     // Level of the pin for the high side of
+                                                          // leg B
+    output wire               b_low,                      // Level of the pin for the low side of
+                                                          // leg B
+    output wire               pwm_trigger,                // One clock: the pins are `trigger_phase`
+                                                          // clocks after the valley
+    output wire               drive_enable,               // To the drive: high enables it
+    output wire               brake_release,              // To the brake: high opens it
+    output wire [2:0]         state,                      // State of the axis: 0 OFF, 1 READY, 2
+                                                          // HOLD, 3 RUN, 4 QUICK_STOP, 5 FAULT
+    output wire [1:0]         segments_state,             // State: 0 hold, 1 move, 2 stop, 3
+                                                          // stopped
+    output wire               direct_active,              // The outputs are on by direct mode
+    output wire               pwm_running,                // The outputs are on
+    output wire               level_emergency_stop_n,     // Filtered line `emergency_stop_n`
+    output wire               level_limit_plus_n,         // Filtered line `limit_plus_n`
+    output wire               level_limit_minus_n,        // Filtered line `limit_minus_n`
+    output wire               level_drive_ready,          // Filtered line `drive_ready`
+    output wire               level_home,                 // Filtered line `home`
+    output wire               level_a,                    // Filtered level of A
+    output wire               level_b,                    // Filtered level of B
+    output wire               level_z,                    // Filtered level of Z
+    output wire               swap_pending,               // A swap waits, or hands over
+    output wire [1:0]         table_bank,                 // The active bank
+    output wire               index_armed,                // The next index will be latched
+    output wire [4:0]         trip_causes,                // Causes of a trip: 0 fault latch, 1 and
+                                                          // 2 filtered faults, 3 PLL, 4 watchdog
+    output wire               homed,                      // The host has homed the axis, and its
+                                                          // position has not been in doubt since
+                                                          // then
+    output wire               setting_read_waits,         // A host's read waits to be served
+    output wire               tap_read_waits,             // A read waits to be served
+    output wire [16:0]        causes,                     // Sticky: the causes of a fault
+    output wire               segments_underrun,          // Sticky: no entry was there while
+                                                          // moving, and the extrapolation, if any,
+                                                          // was over
+    output wire               segments_overflow,          // Sticky: an acceleration or velocity did
+                                                          // not fit its word
+    output wire               segments_tick_missed,       // Sticky: a tick came while another was
+                                                          // being processed, and was left out
+    output wire               segment_refused,            // Sticky: a word was written while the
+                                                          // FIFO held 64 entries, including the one
+                                                          // being played, or in a quick stop
+    output wire               segment_malformed,          // Sticky: an entry was dropped: words
+                                                          // missing, no ticks, reserved flags, a
+                                                          // jerk of more than 40 bits, or another
+                                                          // entry of its batch was
+    output wire               shaper_saturated,           // Sticky: an output was clamped
+    output wire               shaper_overrun,             // Sticky: a strobe came while a pass was
+                                                          // running
+    output wire               table_refused,              // Sticky: a write or a swap was refused
+    output wire               encoder_illegal,            // Sticky: there was such a transition
+    output wire               encoder_disagreement,       // Sticky: the lines of a differential
+                                                          // pair were equal for longer than the
+                                                          // filter
+    output wire               velocity_missed,            // Sticky: a tick came while another one
+                                                          // waited for its quotient
+    output wire               controller_overrun,         // Sticky: a `control` came while
+                                                          // `controller_busy` and was ignored
+    output wire               limited_high,               // The last command was clamped at +limit
+    output wire               limited_low,                // The last command was clamped at -limit
+    output wire               pwm_saturated,              // Sticky: a duty was limited by
+                                                          // `max_duty`, by the period, or by the
+                                                          // half bridge at 0
+    output wire               pwm_unaligned,              // Sticky: a `tick` came at another phase
+                                                          // while running
+    output wire [7:0]         illegal_count,              // Number of transitions in which A and B
+                                                          // changed together
+    output wire               segments_out_of_range,      // Sticky: the command came near an end of
+                                                          // the position word and stopped
+    output wire               refused,                    // One clock: a `axis_start` was refused
+    output wire               setting_refused,            // One clock: a write was refused
+    output wire               direct_expired,             // One clock: direct mode ended because
+                                                          // its time ran out
+    output wire [6:0]         controller_saturated_high,  // Sticky: values that were clamped at
+                                                          // their upper end: bit 0 e, 1 de, 2 s, 3
+                                                          // a, 4 sum ofe, 5 command, 6 duty
+    output wire [6:0]         controller_saturated_low,   // Sticky: values that were clamped at
+                                                          // their lower end
+    output wire [15:0]        limited_ticks,              // Time since which the command has been
+                                                          // clamped [ticks]
+    output wire [6:0]         fifo_level,                 // Number of waiting entries, 0 to 64
+    output wire               fifo_low,                   // At most `low_water` entries wait
+    output wire               segments_empty,             // No entry waits
+    output wire               feed_held,                  // The last tick was not played, because
+                                                          // of a feed hold
+    output wire [7:0]         late_ticks,                 // Ticks since reset that were
+                                                          // extrapolated, modulo 2^8
+    output wire [15:0]        self_test_high,             // Clocks in which `a_high` was on in the
+                                                          // last whole period of a self-test
+    output wire [15:0]        self_test_low,              // Clocks in which `a_low` was on in the
+                                                          // last whole period of a self-test
+    output wire [31:0]        setting_loaded,             // Last word that the host read back
+    output wire signed [17:0] loaded_coefficient,         // Coefficient of the tap that was read
+                                                          // back last [2^-F]
+    output wire [6:0]         loaded_delay,               // Delay of that tap [samples]
+    output wire signed [31:0] user_position,              // Position, `count - origin` [counts]
+    output wire signed [31:0] count,                      // Steps since reset, modulo 2^32 [counts]
+    output wire signed [31:0] velocity,                   // Measured velocity [counts per tick,
+                                                          // Q16.16]
+    output wire signed [31:0] origin,                     // Count at which the position is 0
+                                                          // [counts]
+    output wire signed [31:0] index_count,                // Count at the last latched index
+                                                          // [counts]
+    output wire signed [31:0] command_position,           // Position of the command [counts, Q24.8]
+    output wire signed [31:0] shaped_position,            // Shaped commands
     output wire signed [31:0] shaped_velocity,
-    output wire signed [31:0] error,
-    output wire signed [31:0] command,
-    output wire signed [16:0] duty,
-    output wire               notify,
-    output wire               move_done,
-    output wire               halted,
-    output wire               stopping,
-    output wire               faulted,
-    output wire               index_seen
+    output wire signed [31:0] error,                      // Position error e: new in the clock
+                                                          // after `control` [counts, Q16.16]
+    output wire signed [31:0] command,                    // The command, within +/-limit [command
+                                                          // units, Q20.12]
+    output wire signed [16:0] duty,                       // Duty, to the PWM [clocks]
+    output wire               notify,                     // One clock: an entry with this flag has
+                                                          // ended
+    output wire               move_done,                  // One clock: a move has ended at rest
+                                                          // with no entry left, or a quick stop has
+                                                          // come to rest
+    output wire               halted,                     // One clock: the axis went from RUN or
+                                                          // QUICK_STOP to HOLD
+    output wire               stopping,                   // One clock: the axis went to QUICK_STOP
+    output wire               faulted,                    // One clock: the axis went to FAULT
+    output wire               index_seen                  // One clock, in which `index_count` is
+                                                          // new: an index was latched
 );
     wire signed [31:0] command_velocity;
     wire signed [31:0] command_acceleration;

@@ -17,23 +17,23 @@
 
 module xy_stage_x_shaper_avalon (
     input  wire               clk,
-    input  wire               rst,
+    input  wire               rst,             // Synchronous reset
     input  wire [7:0]         avs_address,
     input  wire               avs_read,
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    input  wire               strobe,
-    input  wire               start,
-    input  wire signed [31:0] x_0,
+    input  wire               strobe,          // `host_strobe` from a pin
+    input  wire               start,           // `host_start` from a pin
+    input  wire signed [31:0] x_0,             // `host_x` from pins
     input  wire signed [31:0] x_1,
     input  wire signed [31:0] x_2,
     output wire [31:0]        avs_readdata,
     output wire               irq,
-    output wire signed [31:0] y_0,
+    output wire signed [31:0] y_0,             // Shaped commands; they hold between samples
     output wire signed [31:0] y_1,
     output wire signed [31:0] y_2,
-    output wire               valid
+    output wire               valid            // For one clock: the shaped command is new
 );
     wire               from_pins;
     wire signed [31:0] host_x_0;

@@ -8,23 +8,26 @@
 
 module xy_stage_x_sliding_mode_avalon (
     input  wire               clk,
-    input  wire               rst,
+    input  wire               rst,                     // Synchronous reset
     input  wire [7:0]         avs_address,
     input  wire               avs_read,
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    input  wire               start,
-    input  wire signed [31:0] position_reference,
+    input  wire               start,                   // `host_strobe` from a pin
+    input  wire signed [31:0] position_reference,      // `host_x` from pins
     input  wire signed [31:0] velocity_reference,
     input  wire signed [31:0] acceleration_reference,
     input  wire signed [31:0] position,
     input  wire signed [31:0] velocity,
     output wire [31:0]        avs_readdata,
     output wire               irq,
-    output wire signed [31:0] command,
-    output wire signed [17:0] duty,
-    output wire               valid
+    output wire signed [31:0] command,                 // The command, within +/-limit [command
+                                                       // units, Q20.12]
+    output wire signed [17:0] duty,                    // The command as high time of the PWM
+                                                       // [clocks]
+    output wire               valid                    // One clock: all outputs belong to the last
+                                                       // `selected_start`
 );
     wire               from_pins;
     wire [1:0]         law;

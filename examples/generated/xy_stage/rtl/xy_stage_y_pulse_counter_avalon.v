@@ -11,24 +11,24 @@
 
 module xy_stage_y_pulse_counter_avalon (
     input  wire               clk,
-    input  wire               rst,
+    input  wire               rst,             // Synchronous reset
     input  wire [7:0]         avs_address,
     input  wire               avs_read,
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    input  wire               a,
-    input  wire               b,
-    input  wire               z,
-    input  wire               a_n,
-    input  wire               b_n,
-    input  wire               z_n,
+    input  wire               a,               // Line A, or step, or up; asynchronous
+    input  wire               b,               // Line B, or direction (high is up), or down
+    input  wire               z,               // Index line; asynchronous
+    input  wire               a_n,             // Complement of A, used if `differential`
+    input  wire               b_n,             // Complement of B, used if `differential`
+    input  wire               z_n,             // Complement of Z, used if `differential`
     output wire [31:0]        avs_readdata,
     output wire               irq,
-    output wire               tick,
-    output wire signed [31:0] position,
-    output wire signed [31:0] velocity,
-    output wire               velocity_valid
+    output wire               tick,            // One clock: the tick
+    output wire signed [31:0] position,        // Position, `count - origin` [counts]
+    output wire signed [31:0] velocity,        // Measured velocity [counts per tick, Q16.16]
+    output wire               velocity_valid   // One clock: `velocity` is that of the last tick
 );
     wire [5:0]         filter_clocks;
     wire [2:0]         mode;

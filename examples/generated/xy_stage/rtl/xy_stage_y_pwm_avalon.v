@@ -13,29 +13,34 @@
 
 module xy_stage_y_pwm_avalon (
     input  wire               clk,
-    input  wire               rst,
+    input  wire               rst,               // Synchronous reset
     input  wire [7:0]         avs_address,
     input  wire               avs_read,
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    input  wire               feed,
-    input  wire signed [16:0] duty,
-    input  wire               sync,
-    input  wire               fault_n,
-    input  wire               pll_locked,
-    input  wire [1:0]         filtered_fault_n,
+    input  wire               feed,              // `host_strobe` from a pin
+    input  wire signed [16:0] duty,              // `host_x` from pins
+    input  wire               sync,              // One clock: the synchronisation pulse of the time
+                                                 // base
+    input  wire               fault_n,           // Raw fault, asynchronous
+    input  wire               pll_locked,        // Asynchronous; low trips as `fault_n` does
+    input  wire [1:0]         filtered_fault_n,  // Two faults with synchroniser and filter,
+                                                 // asynchronous
     output wire [31:0]        avs_readdata,
     output wire               irq,
-    output wire               a_high,
-    output wire               a_low,
-    output wire               b_high,
-    output wire               b_low,
-    output wire               running,
-    output wire               tripped,
-    output wire               valley,
-    output wire               peak,
-    output wire               trigger
+    output wire               a_high,            // Level of the pin for the high side of leg A
+    output wire               a_low,             // Level of the pin for the low side of leg A
+    output wire               b_high,            // Level of the pin for the high side of leg B
+    output wire               b_low,             // Level of the pin for the low side of leg B
+    output wire               running,           // The outputs are on
+    output wire               tripped,           // The outputs are off because of a cause
+    output wire               valley,            // One clock: the pins are at the first clock of a
+                                                 // period
+    output wire               peak,              // One clock: the pins are in the middle of a
+                                                 // period
+    output wire               trigger            // One clock: the pins are `trigger_phase` clocks
+                                                 // after the valley
 );
     wire               enable;
     wire               from_pins;

@@ -61,7 +61,7 @@ pub(crate) fn contour(
 
 /// `contour` of `stage` in `report.json`. Lengths are in m.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ContourDocument {
+pub(super) struct FollowedPath {
     path: String,
     length: f64,
     /// Part of it that is rapids: at least the way to its beginning.
@@ -69,12 +69,12 @@ pub(super) struct ContourDocument {
     duration_s: f64,
     stops: usize,
     compared_clocks: Option<u64>,
-    own_delays: Option<DistanceDocument>,
-    equal_delays: Option<DistanceDocument>,
+    own_delays: Option<PathDistance>,
+    equal_delays: Option<PathDistance>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct DistanceDocument {
+struct PathDistance {
     peak: f64,
     rms: f64,
     /// Largest distance on the rapids, which the other figures do not count.
@@ -82,7 +82,7 @@ struct DistanceDocument {
     rapid_peak: Option<f64>,
 }
 
-impl DistanceDocument {
+impl PathDistance {
     fn new(followed: &FollowedContour) -> Option<Self> {
         let error = followed.error?;
         Some(Self {
@@ -156,10 +156,10 @@ impl Contours<'_> {
         text
     }
 
-    pub(super) fn json(&self) -> ContourDocument {
-        let of = |contoured: &Contoured| DistanceDocument::new(contoured.followed.as_ref()?);
+    pub(super) fn json(&self) -> FollowedPath {
+        let of = |contoured: &Contoured| PathDistance::new(contoured.followed.as_ref()?);
         let survey = self.path.contour.survey();
-        ContourDocument {
+        FollowedPath {
             path: self.path.name.clone(),
             length: survey.length,
             rapid_length: survey.rapid_length,

@@ -22,7 +22,7 @@ use std::sync::Mutex;
 use std::thread;
 
 pub(crate) use contours::{NamedContour, contour};
-pub(crate) use report::StageDocument;
+pub(crate) use report::StageFigures;
 
 use contours::Contours;
 

@@ -1,6 +1,6 @@
 //! The report of the closed loop, for people and for programs.
 
-use super::contours::{ContourDocument, Contours};
+use super::contours::{Contours, FollowedPath};
 use super::{Circles, ClosedLoop};
 use crate::machine::plane_name;
 use crate::run::gain::{Gain, GainSource, Track};
@@ -9,7 +9,6 @@ use crate::text::{Table, UnitDocument};
 use posicast_closed_loop::stage_run::{Circled, Compared, Moved};
 use posicast_machine::plant::axis::ErrorFigures;
 use posicast_machine::unit::AxisUnit;
-use posicast_testbench::lockstep::report::Mismatch;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
@@ -166,16 +165,16 @@ impl ClosedLoop<'_> {
     }
 
     /// `stage` in `run --json` and `report.json`.
-    pub(crate) fn json(&self) -> StageDocument {
+    pub(crate) fn json(&self) -> StageFigures {
         let axes = self.machine.axes.iter().enumerate();
         let residual = |moved: &Moved, index: usize| moved.axes.get(index).map(|axis| axis.residual.peak);
         let config = &self.stage.of_machine.config;
-        StageDocument {
-            side_by_side: self.compared.as_ref().map(SideBySideDocument::new),
+        StageFigures {
+            side_by_side: self.compared.clone(),
             axes: axes
                 .map(|(index, axis)| {
                     let figures = self.shaped.axes.get(index);
-                    AxisDocument {
+                    StageAxis {
                         name: axis.name.clone(),
                         unit: UnitDocument::new(axis.unit),
                         tracking: figures.map(|figures| figures.tracking.into()),
@@ -185,7 +184,7 @@ impl ClosedLoop<'_> {
                         residual_minus_10_percent: residual(&self.slower, index),
                         residual_plus_10_percent: residual(&self.faster, index),
                         error_table: self.compensated().find(|(place, _)| *place == index).map(|(_, of)| {
-                            CompensatedDocument {
+                            Compensation {
                                 offset_without: of.without,
                                 offset_with: of.with,
                                 offset_allowed: of.allowed,
@@ -194,7 +193,7 @@ impl ClosedLoop<'_> {
                     }
                 })
                 .collect(),
-            circle: self.circles.as_ref().ok().map(|circles| CircleDocument {
+            circle: self.circles.as_ref().ok().map(|circles| Circle {
                 axes: self.machine.axes.iter().take(2).map(|axis| axis.name.clone()).collect(),
                 radius: circles.circle.radius,
                 speed: circles.circle.speed,
@@ -202,7 +201,7 @@ impl ClosedLoop<'_> {
                 equal_delays: circles.matched.as_ref().ok().map(|circled| circled.error.into()),
             }),
             contour: self.contours.as_ref().map(Contours::json),
-            schedule: ScheduleDocument {
+            schedule: Schedule {
                 tick_clocks: config.tick.tick_clocks(),
                 control_clocks: config.timing().control_clocks(),
                 duty_clocks: config.timing().duty_clocks(),
@@ -214,77 +213,56 @@ impl ClosedLoop<'_> {
 /// The closed loop: the stage on its simulated machine. Lengths are in m or rad.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "ClosedLoop")]
-pub(crate) struct StageDocument {
+pub(crate) struct StageFigures {
     /// The Verilog beside its model; null without Verilator.
-    side_by_side: Option<SideBySideDocument>,
-    axes: Vec<AxisDocument>,
-    circle: Option<CircleDocument>,
+    side_by_side: Option<Compared>,
+    axes: Vec<StageAxis>,
+    circle: Option<Circle>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    contour: Option<ContourDocument>,
-    schedule: ScheduleDocument,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct SideBySideDocument {
-    clocks: u64,
-    /// Whether the run was not given up before its end.
-    whole: bool,
-    mismatches: u64,
-    first: Option<Mismatch>,
-}
-
-impl SideBySideDocument {
-    fn new(compared: &Compared) -> Self {
-        Self {
-            clocks: compared.clocks,
-            whole: compared.whole,
-            mismatches: compared.mismatches,
-            first: compared.first.clone(),
-        }
-    }
+    contour: Option<FollowedPath>,
+    schedule: Schedule,
 }
 
 /// The move of an axis of the stage.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "StageAxis")]
-struct AxisDocument {
+struct StageAxis {
     name: String,
     #[serde(flatten)]
     unit: UnitDocument,
-    tracking: Option<ErrorDocument>,
+    tracking: Option<PathError>,
     offset: Option<f64>,
     residual_unshaped: Option<f64>,
     residual: Option<f64>,
     residual_minus_10_percent: Option<f64>,
     residual_plus_10_percent: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_table: Option<CompensatedDocument>,
+    error_table: Option<Compensation>,
 }
 
 /// Distance of the load's rest position from its target, with the axis's error table and without it.
 #[derive(Serialize, JsonSchema)]
-struct CompensatedDocument {
+struct Compensation {
     offset_without: f64,
     offset_with: f64,
     offset_allowed: f64,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct CircleDocument {
+struct Circle {
     axes: Vec<String>,
     radius: f64,
     speed: f64,
-    own_delays: ErrorDocument,
-    equal_delays: Option<ErrorDocument>,
+    own_delays: PathError,
+    equal_delays: Option<PathError>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct ErrorDocument {
+struct PathError {
     peak: f64,
     rms: f64,
 }
 
-impl From<ErrorFigures> for ErrorDocument {
+impl From<ErrorFigures> for PathError {
     fn from(figures: ErrorFigures) -> Self {
         Self {
             peak: figures.peak,
@@ -295,7 +273,7 @@ impl From<ErrorFigures> for ErrorDocument {
 
 /// When in a tick the stage does what.
 #[derive(Serialize, JsonSchema)]
-struct ScheduleDocument {
+struct Schedule {
     tick_clocks: u32,
     control_clocks: u32,
     duty_clocks: u32,
