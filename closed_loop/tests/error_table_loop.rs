@@ -8,16 +8,13 @@
 
 use std::f64::consts::TAU;
 
-use posicast_blocks::component::Component;
 use posicast_blocks::error_table::FULL_WEIGHT;
 use posicast_closed_loop::stage_bench::StageBench;
-use posicast_machine::hardware;
 use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
-use posicast_testbench::blocks::Sources;
-use posicast_testbench::component::ComponentBlock;
+use posicast_machine::plant::axis::PlantOptions;
+
+use crate::support::{XY, bench, stage, verilated};
 
 /// Counts per metre of the example.
 const COUNTS_PER_M: f64 = 1e6;
@@ -38,9 +35,8 @@ fn measured() -> String {
 }
 
 fn machine(apply: &str) -> Machine {
-    let text = include_str!("../../examples/xy-stage.toml");
     let table = format!("[axis.error_table]\nfile = \"errors.csv\"\napply = \"{apply}\"\n\n[axis.limits]");
-    let text = text.replacen("[axis.limits]", &table, 1);
+    let text = XY.replacen("[axis.limits]", &table, 1);
     let beside = |name: &str| match name {
         "errors.csv" => Ok(measured()),
         _ => Err("not there".to_owned()),
@@ -58,16 +54,9 @@ impl Bed {
     /// Switches on the machine of X and Y; with `with_verilog` the RTL runs beside the model.
     fn new(apply: &str, with_verilog: bool) -> Self {
         let machine = machine(apply);
-        let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
-        let stage = stage.unwrap().unwrap();
-        let component = Component::stage(&stage.config).unwrap();
-        let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");
-        let device = with_verilog.then(|| -> Box<dyn posicast_testbench::lockstep::Device> {
-            Box::new(Sources::write(&block).unwrap().verilated(&block, 1).unwrap())
-        });
-        let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-        let plants = machine.axes.iter().map(plant).collect();
-        let mut bench = StageBench::new(&stage.config, &component, plants, device, 1).unwrap();
+        let stage = stage(&machine);
+        let device = with_verilog.then(|| verilated(&stage));
+        let mut bench = bench(&machine, &stage, &PlantOptions::default(), device, 1);
         assert!(bench.switch_on(20_000_000).unwrap());
         Self {
             bench,

@@ -9,16 +9,16 @@ use posicast_blocks::axis::Cause;
 use posicast_blocks::component::Component;
 use posicast_blocks::stage::Supervision;
 use posicast_closed_loop::fault_campaign::{Bed, FaultKind, FaultReport, TABLE, run, run_with_rtl};
-use posicast_closed_loop::stage_bench::{StageBench, Wire, state};
-use posicast_machine::hardware;
+use posicast_closed_loop::stage_bench::{Wire, state};
 use posicast_machine::machine_file::{self, Machine, PwmMode};
 use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_machine::plant::axis::PlantOptions;
 use posicast_testbench::Error;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::lockstep::Device;
+
+use crate::support::{bench, stage};
 
 /// Number of cases of every kind.
 const ROUNDS: u64 = 2;
@@ -120,15 +120,11 @@ fn a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
 
 /// Each line sticks, at each level, at full speed.
 fn stuck_lines_stop(machine: &Machine) {
-    let design = design_machine(machine).unwrap();
-    let stage = hardware::stage(machine, &design).unwrap().unwrap();
+    let stage = stage(machine);
     let watched = stage.config.axes[0].supervision;
     assert_eq!((watched.following_error_limit, watched.lost_ticks), (0, 100));
-    let component = Component::stage(&stage.config).unwrap();
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
     for stuck in 0..4 {
-        let plants = machine.axes.iter().map(plant).collect();
-        let mut bench = StageBench::new(&stage.config, &component, plants, None, SEED).unwrap();
+        let mut bench = bench(machine, &stage, &PlantOptions::default(), None, SEED);
         assert!(bench.switch_on(200_000).unwrap());
         let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
         for entry in plan_move(0, 200_000 << 8, &limits).unwrap() {

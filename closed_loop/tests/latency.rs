@@ -1,25 +1,18 @@
 //! Measures the clocks from a host's write to a change at the pins of a stage, the figures of `docs/hosts.md`.
 
-use posicast_blocks::component::Component;
 use posicast_blocks::segments::{CubicEntry, Entry, EntryMotion};
 use posicast_closed_loop::stage_bench::StageBench;
-use posicast_machine::hardware;
-use posicast_machine::machine_file;
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, DrivePins, PlantOptions};
+use posicast_machine::plant::axis::{DrivePins, PlantOptions};
+
+use crate::support::{XY, bench, machine, stage};
 
 const TICK_CLOCKS: u64 = 5000;
 const PWM_CLOCKS: u64 = 2500;
 
 /// The example's stage in HOLD, with an entry of a steady velocity in X's FIFO, this many clocks after a tick.
 fn ready(clocks: u64) -> StageBench {
-    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
-    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
-    let stage = stage.unwrap().unwrap();
-    let component = Component::stage(&stage.config).unwrap();
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    let mut bench = StageBench::new(&stage.config, &component, plants, None, 1).unwrap();
+    let machine = machine(XY);
+    let mut bench = bench(&machine, &stage(&machine), &PlantOptions::default(), None, 1);
     assert!(bench.switch_on(100_000).unwrap());
     let motion = EntryMotion::Cubic(CubicEntry {
         velocity: 10 << 16,

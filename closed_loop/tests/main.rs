@@ -11,4 +11,5 @@ mod stage_guards;
 mod stage_hold;
 mod stage_range;
 mod stage_run;
+mod support;
 mod wrong_sign;

@@ -1,26 +1,22 @@
 //! An arm whose mode depends on its position, in the closed loop; it gives the figures of `docs/moving-modes.md`.
 
 use posicast_closed_loop::stage_run::{Moved, Shaping, StageRun};
-use posicast_machine::hardware;
-use posicast_machine::machine_file::{self, Machine};
+use posicast_machine::machine_file::Machine;
 use posicast_machine::motion::AxisMove;
 use posicast_machine::plan::{TableFamily, design_machine};
+
+use crate::support::{machine, stage};
 
 const ARM: &str = include_str!("../../examples/telescope-arm.toml");
 /// In m.
 const DISTANCE: f64 = 0.3;
 
-fn machine(text: &str) -> Machine {
-    machine_file::parse("telescope-arm.toml", text).unwrap_or_else(|error| panic!("{error:?}"))
-}
-
 fn run(machine: &Machine) -> StageRun<'_> {
-    let stage = hardware::stage(machine, &design_machine(machine).unwrap());
     let of = AxisMove {
         distance: DISTANCE,
         ..AxisMove::of_axis(&machine.axes[0], &machine.fixed_point)
     };
-    StageRun::with_moves(machine, &stage.unwrap().unwrap().config, 1, &[of]).unwrap()
+    StageRun::with_moves(machine, &stage(machine).config, 1, &[of]).unwrap()
 }
 
 fn ringing_um(moved: &Moved) -> f64 {

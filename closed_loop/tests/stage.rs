@@ -5,52 +5,18 @@ use posicast_blocks::Direction;
 use posicast_blocks::component::Component;
 use posicast_blocks::segments::{self, Entry, NOTIFY};
 use posicast_closed_loop::stage_bench::{StageBench, state};
-use posicast_machine::hardware::{self, MachineStage};
-use posicast_machine::machine_file::{self, Machine};
-use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
-use posicast_testbench::blocks::Sources;
-use posicast_testbench::component::ComponentBlock;
-use posicast_testbench::lockstep::Device;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plant::axis::PlantOptions;
 
-fn machine() -> Machine {
-    let text = include_str!("../../examples/xy-stage.toml");
-    machine_file::parse("xy-stage.toml", text).unwrap()
-}
-
-fn stage(machine: &Machine) -> MachineStage {
-    hardware::stage(machine, &design_machine(machine).unwrap())
-        .unwrap()
-        .unwrap()
-}
-
-fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
-    let stage = stage(machine);
-    let component = Component::stage(&stage.config).unwrap();
-    let device = with_rtl.then(|| {
-        let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");
-        let sources = Sources::write(&block).unwrap();
-        assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
-        Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
-    });
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    StageBench::new(&stage.config, &component, plants, device, 1).unwrap()
-}
+use crate::support::{XY, bench, machine, queue_move, stage, verilated};
 
 /// Switches on, moves both axes by this many counts, and returns how long that took.
-fn move_both(machine: &Machine, bench: &mut StageBench, counts: i64) -> u64 {
+fn move_both(machine: &Machine, bench: &mut StageBench, counts: i32) -> u64 {
     assert!(bench.switch_on(20_000_000).unwrap());
     bench.record();
     let start = bench.now();
-    for (axis, of_axis) in ["x", "y"].into_iter().zip(&machine.axes) {
-        let at = i64::from(bench.read(&format!("{axis}_command_position")).unwrap() as i32) << 24;
-        let limits = TickLimits::of_axis(of_axis, &machine.clock);
-        let end = ((at >> 24) + 256 * counts) as i32;
-        for entry in plan_move(at, end, &limits).unwrap() {
-            bench.segment(axis, &entry).unwrap();
-        }
+    for axis in 0..2 {
+        queue_move(bench, machine, axis, counts);
     }
     bench.write("start", 3).unwrap();
     bench.clocks(20_000).unwrap();
@@ -66,8 +32,8 @@ fn move_both(machine: &Machine, bench: &mut StageBench, counts: i64) -> u64 {
 
 #[test]
 fn a_few_segments_and_one_bit_move_the_stage() {
-    let machine = machine();
-    let mut bench = bench(&machine, false);
+    let machine = machine(XY);
+    let mut bench = bench(&machine, &stage(&machine), &PlantOptions::default(), None, 1);
     move_both(&machine, &mut bench, 5000);
     for axis in 0..2 {
         let at = bench.plant(axis).count();
@@ -77,8 +43,9 @@ fn a_few_segments_and_one_bit_move_the_stage() {
 
 #[test]
 fn lockstep_a_move_from_reset_to_standstill() {
-    let machine = machine();
-    let mut bench = bench(&machine, true);
+    let machine = machine(XY);
+    let stage = stage(&machine);
+    let mut bench = bench(&machine, &stage, &PlantOptions::default(), Some(verilated(&stage)), 1);
     move_both(&machine, &mut bench, 200);
     assert_eq!(bench.mismatches(), (0, None));
 }
@@ -113,8 +80,8 @@ fn look(bench: &mut StageBench, name: &str) -> u32 {
 
 #[test]
 fn the_first_move_of_the_datasheet_is_what_it_says() {
-    let machine = machine();
-    let mut bench = bench(&machine, false);
+    let machine = machine(XY);
+    let mut bench = bench(&machine, &stage(&machine), &PlantOptions::default(), None, 1);
     let rows = rows("| do | register or field | word | what it does |");
     assert!(rows.len() > 20, "{rows:?}");
     for row in rows {
@@ -155,7 +122,7 @@ fn the_first_move_of_the_datasheet_is_what_it_says() {
 
 #[test]
 fn the_datasheet_has_the_pins() {
-    let component = Component::stage(&stage(&machine()).config).unwrap();
+    let component = Component::stage(&stage(&machine(XY)).config).unwrap();
     let rows = rows("## Pins\n\n").len();
     assert_eq!(rows, 0, "the table has moved");
     let table = self::rows("| port | | width | meaning |");

@@ -1,15 +1,10 @@
 //! A stage with linear scales and the aids for bringing it up: Verilog beside model, on the simulated machine.
 
-use posicast_blocks::component::Component;
 use posicast_closed_loop::stage_bench::{StageBench, state};
-use posicast_machine::hardware;
-use posicast_machine::machine_file::{self, Machine};
-use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
-use posicast_testbench::blocks::Sources;
-use posicast_testbench::component::ComponentBlock;
-use posicast_testbench::lockstep::Device;
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plant::axis::PlantOptions;
+
+use crate::support::{self, XY, queue_move};
 
 /// Returns a machine on which the loop of X uses its scale and that of Y is supervised by one; both have a trace
 /// memory.
@@ -17,8 +12,7 @@ fn machine() -> Machine {
     let bring_up = |usage: &str| {
         format!("[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"{usage}\"\n[axis.trace]\nsamples = 256\n[axis.pwm]")
     };
-    let text = include_str!("../../examples/xy-stage.toml");
-    let text = text.replacen("[axis.pwm]", &bring_up("position"), 1);
+    let text = XY.replacen("[axis.pwm]", &bring_up("position"), 1);
     // Its mode is inside the loop on the scale, and allows a gain of 130/s.
     let text = text.replacen("kind = \"pd\"", "kind = \"pd\"\nproportional = 60.0", 1);
     let second = text.rfind("[axis.pwm]").unwrap();
@@ -28,36 +22,21 @@ fn machine() -> Machine {
         bring_up("monitor"),
         &text[second + "[axis.pwm]".len()..]
     );
-    machine_file::parse("xy-stage.toml", &text).unwrap()
+    support::machine(&text)
 }
 
 fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
-    let stage = hardware::stage(machine, &design_machine(machine).unwrap());
-    let stage = stage.unwrap().unwrap();
-    let component = Component::stage(&stage.config).unwrap();
-    let device = with_rtl.then(|| {
-        let block = ComponentBlock::new(component.clone(), "scaled", "xy");
-        let sources = Sources::write(&block).unwrap();
-        assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
-        Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
-    });
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    StageBench::new(&stage.config, &component, plants, device, 1).unwrap()
+    let stage = support::stage(machine);
+    let device = with_rtl.then(|| support::verilated(&stage));
+    support::bench(machine, &stage, &PlantOptions::default(), device, 1)
 }
 
 /// Moves one axis by this many counts of its loop.
-fn move_by(machine: &Machine, bench: &mut StageBench, axis: usize, counts: i64) {
-    let name = machine.axes[axis].name.clone();
-    let at = i64::from(bench.read(&format!("{name}_command_position")).unwrap() as i32) << 24;
-    let limits = TickLimits::of_axis(&machine.axes[axis], &machine.clock);
-    let end = ((at >> 24) + 256 * counts) as i32;
-    for entry in plan_move(at, end, &limits).unwrap() {
-        bench.segment(&name, &entry).unwrap();
-    }
+fn move_by(machine: &Machine, bench: &mut StageBench, axis: usize, counts: i32) {
+    queue_move(bench, machine, axis, counts);
     bench.write("start", 1 << axis).unwrap();
     bench.clocks(20_000).unwrap();
-    assert!(bench.wait(&name, state::HOLD, 20_000_000).unwrap());
+    assert!(bench.wait(&machine.axes[axis].name, state::HOLD, 20_000_000).unwrap());
     bench.clocks(250_000).unwrap();
 }
 
@@ -178,11 +157,7 @@ fn a_watched_scale_stops_what_leaves_it() {
     // A scale that stands still while the motor moves means a broken coupling.
     let stands = bench.plant(1).scale();
     bench.force_scale(1, Some(stands));
-    let at = bench.read("y_command_position").unwrap() as i32;
-    let limits = TickLimits::of_axis(&machine.axes[1], &machine.clock);
-    for entry in plan_move(i64::from(at) << 24, at + 256 * 500, &limits).unwrap() {
-        bench.segment("y", &entry).unwrap();
-    }
+    queue_move(&mut bench, &machine, 1, 500);
     bench.write("start", 2).unwrap();
     assert!(bench.wait("y", state::FAULT, 20_000_000).unwrap());
     assert_eq!(bench.read("y_causes").unwrap() & 1 << 8, 1 << 8);

@@ -2,13 +2,11 @@
 //! that is out of step, every interrupt can be cleared, and soft limits may wait for homing.
 
 use posicast_blocks::axis::Cause;
-use posicast_blocks::component::Component;
 use posicast_closed_loop::stage_bench::{StageBench, state};
-use posicast_machine::hardware;
-use posicast_machine::machine_file;
 use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, EncoderPins, PlantOptions};
+use posicast_machine::plant::axis::{EncoderPins, PlantOptions};
+
+use crate::support::{self, XY, machine, queue_move, stage};
 
 /// Returns the example's stage with a linear scale and an encoder generator at X, on its simulated machine. With
 /// `invert`, encoder and scale of X are wired backwards and the file sets `invert`.
@@ -18,21 +16,15 @@ fn bench(invert: bool) -> StageBench {
 
 /// The same with more keys in `[axis.limits]` of X.
 fn bench_of(invert: bool, limits: &str) -> StageBench {
-    let text = include_str!("../../examples/xy-stage.toml");
     let more = format!(
         "[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"monitor\"\ninvert = {invert}\n[axis.trace]\nsamples = 256\n[axis.pwm]"
     );
-    let text = text.replacen("[axis.pwm]", &more, 1);
+    let text = XY.replacen("[axis.pwm]", &more, 1);
     let encoder = format!("[axis.encoder]\ninvert = {invert}");
     let text = text.replacen("[axis.encoder]", &encoder, 1);
     let text = text.replacen("[axis.limits]", &format!("[axis.limits]\n{limits}"), 1);
-    let machine = machine_file::parse("xy-stage.toml", &text).unwrap();
-    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
-    let stage = stage.unwrap().unwrap();
-    let component = Component::stage(&stage.config).unwrap();
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    StageBench::new(&stage.config, &component, plants, None, 1).unwrap()
+    let machine = machine(&text);
+    support::bench(&machine, &stage(&machine), &PlantOptions::default(), None, 1)
 }
 
 /// Goes from reset to HOLD with the words of the documented bring-up, and the brake released.
@@ -92,7 +84,7 @@ fn a_machine_wired_backwards_moves_by_its_file() {
         (bench.read("x_encoder").unwrap(), bench.read("x_scale_control").unwrap()),
         (1, 1)
     );
-    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
+    let machine = machine(XY);
     let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
     for entry in plan_move(0, 1000 * 256, &limits).unwrap() {
         bench.segment("x", &entry).unwrap();
@@ -191,12 +183,7 @@ fn the_trigger_comes_at_its_phase() {
 
 /// Moves X by this many counts, and returns its causes at the end.
 fn moved(bench: &mut StageBench, counts: i32) -> u32 {
-    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
-    let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
-    let at = bench.read("x_command_position").unwrap() as i32;
-    for entry in plan_move(i64::from(at) << 24, at + (counts << 8), &limits).unwrap() {
-        bench.segment("x", &entry).unwrap();
-    }
+    queue_move(bench, &machine(XY), 0, counts);
     bench.write("start", 1).unwrap();
     bench.clocks(20_000).unwrap();
     let _ = bench.wait("x", state::HOLD, 3_000_000).unwrap();

@@ -2,16 +2,12 @@
 //! continue from there.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_blocks::component::Component;
 use posicast_blocks::segments::{Entry, EntryMotion};
 use posicast_closed_loop::stage_bench::{StageBench, state};
-use posicast_machine::hardware;
-use posicast_machine::machine_file;
 use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
-use posicast_testbench::blocks::Sources;
-use posicast_testbench::component::ComponentBlock;
+use posicast_machine::plant::axis::PlantOptions;
+
+use crate::support::{XY, bench, machine, stage, verilated};
 
 /// Corner of the path in counts: along X, then X and Y together.
 const CORNER: i64 = 20;
@@ -23,16 +19,9 @@ struct Bed {
 }
 
 fn bed() -> Bed {
-    let text = include_str!("../../examples/xy-stage.toml");
-    let machine = machine_file::parse("xy-stage.toml", text).unwrap();
-    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
-    let stage = stage.unwrap().unwrap();
-    let component = Component::stage(&stage.config).unwrap();
-    let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");
-    let device = Sources::write(&block).unwrap().verilated(&block, 1).unwrap();
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    let mut bench = StageBench::new(&stage.config, &component, plants, Some(Box::new(device)), 1).unwrap();
+    let machine = machine(XY);
+    let stage = stage(&machine);
+    let mut bench = bench(&machine, &stage, &PlantOptions::default(), Some(verilated(&stage)), 1);
     assert!(bench.switch_on(20_000_000).unwrap());
     Bed {
         bench,

@@ -10,9 +10,8 @@ use posicast_blocks::composition::Composed;
 use posicast_blocks::segments::{Entry, EntryMotion, REACH_COUNTS, STAND_COUNTS};
 use posicast_blocks::{ClockedBlock, Direction};
 use posicast_closed_loop::stage_bench::state;
-use posicast_machine::hardware;
-use posicast_machine::machine_file;
-use posicast_machine::plan::design_machine;
+
+use crate::support::{XY, machine, stage};
 
 /// One axis of the example, whose encoder is not filtered.
 struct Bed {
@@ -29,12 +28,7 @@ struct Bed {
 
 impl Bed {
     fn new() -> Self {
-        let text = include_str!("../../examples/xy-stage.toml");
-        let machine = machine_file::parse("xy-stage.toml", text).unwrap();
-        let mut config = hardware::stage(&machine, &design_machine(&machine).unwrap())
-            .unwrap()
-            .unwrap()
-            .config;
+        let mut config = stage(&machine(XY)).config;
         config.axes.truncate(1);
         let axis = &mut config.axes[0];
         axis.encoder_filter_clocks = 0;

@@ -4,26 +4,15 @@ use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
 use posicast_blocks::sliding_mode::SettingRow;
 use posicast_closed_loop::stage_run::{Compensated, Expected, Moved, Shaping, StageRun};
 use posicast_machine::contour::{Contour, ContourLimits, CornerRules, shapes};
-use posicast_machine::hardware::{self, MachineStage};
 use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::motion::AxisMove;
-use posicast_machine::plan::design_machine;
 use posicast_taps::{Tap, TapTable};
 
-const XY: &str = include_str!("../../examples/xy-stage.toml");
+use crate::support::{XY, machine, stage};
+
 const TORQUE: &str = include_str!("../../examples/xy-stage-torque.toml");
 const GANTRY: &str = include_str!("fixtures/machines/ei-gantry.toml");
 const WRIST: &str = include_str!("fixtures/machines/wrist.toml");
-
-fn machine(text: &str) -> Machine {
-    machine_file::parse("machine.toml", text).unwrap_or_else(|error| panic!("{error:?}"))
-}
-
-fn stage(machine: &Machine) -> MachineStage {
-    hardware::stage(machine, &design_machine(machine).unwrap())
-        .unwrap()
-        .unwrap()
-}
 
 /// Runs the move of a machine; returns it with its expectations.
 fn moved(machine: &Machine, shaping: Shaping, factor: f64) -> (Moved, Vec<Expected>) {

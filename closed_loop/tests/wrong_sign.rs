@@ -2,16 +2,13 @@
 //! ticks and counts; a healthy machine must not trip, however it stops.
 
 use posicast_blocks::axis::Cause;
-use posicast_blocks::component::Component;
 use posicast_closed_loop::stage_bench::{StageBench, Wire, state};
 use posicast_machine::control::{LostSign, lost_sign};
-use posicast_machine::hardware;
-use posicast_machine::machine_file::{self, AxisSection, Machine};
-use posicast_machine::motion::{TickLimits, plan_move};
-use posicast_machine::plan::design_machine;
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_machine::plant::axis::PlantOptions;
 
-const VELOCITY: &str = include_str!("../../examples/xy-stage.toml");
+use crate::support::{self, XY, queue_move, stage};
+
 const TORQUE: &str = include_str!("../../examples/xy-stage-torque.toml");
 const SEED: u64 = 11;
 /// Time of the supervision: 300 ticks.
@@ -32,23 +29,18 @@ const REST_CLOCKS: u64 = 300_000;
 
 /// Returns the machine with changed axes.
 fn machine(text: &str, change: impl Fn(&mut AxisSection)) -> Machine {
-    let mut machine = machine_file::parse("stage.toml", text).unwrap();
+    let mut machine = support::machine(text);
     machine.axes.iter_mut().for_each(change);
     machine
 }
 
 /// Returns a bench of the machine, whose modes are at other frequencies.
 fn bench(machine: &Machine, frequency_factor: f64) -> StageBench {
-    let design = design_machine(machine).unwrap();
-    let stage = hardware::stage(machine, &design).unwrap().unwrap();
-    let component = Component::stage(&stage.config).unwrap();
     let options = PlantOptions {
         frequency_factor,
         ..PlantOptions::default()
     };
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &options).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    StageBench::new(&stage.config, &component, plants, None, SEED).unwrap()
+    support::bench(machine, &stage(machine), &options, None, SEED)
 }
 
 fn tick_clocks(machine: &Machine) -> u64 {
@@ -57,11 +49,7 @@ fn tick_clocks(machine: &Machine) -> u64 {
 
 /// Starts a move of X by this many counts.
 fn start(bench: &mut StageBench, machine: &Machine, counts: i32) {
-    let at = i64::from(bench.read("x_command_position").unwrap() as i32);
-    let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
-    for entry in plan_move(at << 24, at as i32 + (counts << 8), &limits).unwrap() {
-        bench.segment("x", &entry).unwrap();
-    }
+    queue_move(bench, machine, 0, counts);
     bench.write("start", 1).unwrap();
 }
 
@@ -139,7 +127,7 @@ fn run_with_wrong_sign(text: &str, following_error: bool, lost_s: f64, when: Whe
 
 #[test]
 fn a_wrong_sign_trips_in_hold_and_in_a_move() {
-    for (drive, text) in [("velocity", VELOCITY), ("torque", TORQUE)] {
+    for (drive, text) in [("velocity", XY), ("torque", TORQUE)] {
         for when in [When::Hold, When::Move, When::InMotion] {
             for following_error in [true, false] {
                 let found = run_with_wrong_sign(text, following_error, LOST_S, when);
@@ -158,7 +146,7 @@ fn a_wrong_sign_trips_in_hold_and_in_a_move() {
 
 #[test]
 fn without_both_watches_a_wrong_sign_goes_on_to_the_end_of_the_errors_word() {
-    for text in [VELOCITY, TORQUE] {
+    for text in [XY, TORQUE] {
         let found = run_with_wrong_sign(text, false, 0.0, When::Hold);
         assert_ne!(found.causes & Cause::Range.bit(), 0, "{found:?}");
         assert!(found.counts > 30_000, "{found:?}");
