@@ -359,10 +359,7 @@ fn in_file(path: &Path, error: &ContourError) -> Failure {
         ContourError::Line { line, found, .. } => format!("{}:{line}: {found}", path.display()),
         other => format!("{}: {other}", path.display()),
     };
-    match error.remedy() {
-        Some(remedy) => Failure::input(place).with_help(remedy),
-        None => Failure::input(place),
-    }
+    Failure::input(place).with_any_help(error.remedy())
 }
 
 fn refused(option: &str, found: &str, remedy: &str) -> Failure {

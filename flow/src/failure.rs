@@ -143,6 +143,15 @@ impl Failure {
             check @ Self::Check(_) => check,
         }
     }
+
+    /// As [`with_help`](Self::with_help), if there is a line.
+    #[must_use]
+    pub fn with_any_help(self, line: Option<impl AsRef<str>>) -> Self {
+        match line {
+            Some(line) => self.with_help(line),
+            None => self,
+        }
+    }
 }
 
 /// A machine file that was refused, with the places of its problems.

@@ -193,19 +193,13 @@ pub fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> Failure
     let reason = reason.strip_prefix(&format!("axis {name}: ")).unwrap_or(&reason);
     let line = line_of(&file, axis, &indexed);
     let message = format!("{}{line}: {key} of axis {name}{mode}: {reason}", file.display());
-    match remedy {
-        Some(remedy) => Failure::input(message).with_help(remedy),
-        None => Failure::input(message),
-    }
+    Failure::input(message).with_any_help(remedy)
 }
 
 /// The failure of hardware of the machine file at `path`, or of that in the folder `path`.
 pub fn of_hardware(error: &HardwareError, path: &Path) -> Failure {
     let message = place(path, error.axis, &error.key, error);
-    match &error.help {
-        Some(help) => Failure::input(message).with_help(help),
-        None => Failure::input(message),
-    }
+    Failure::input(message).with_any_help(error.help.as_ref())
 }
 
 /// A message with the file, the line and the key of the machine file that it is about.

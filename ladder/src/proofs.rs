@@ -25,7 +25,6 @@ pub fn markdown() -> Result<String, Error> {
 }
 
 fn row(block: &str, task: &Task) -> String {
-    let block = if block.is_empty() { "parts of a stage" } else { block };
     format!(
         "| {block} | `{}` | {} | {} | {} |\n",
         task.name,

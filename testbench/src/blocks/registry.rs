@@ -267,7 +267,7 @@ pub fn proofs() -> Result<Vec<Task>, Error> {
     joined(|row| (row.proofs)())
 }
 
-/// Returns all proofs with the name of the block whose row has them; that of a component or stage is empty.
+/// Returns all proofs, each with the name of the row that has it.
 ///
 /// # Errors
 /// As [`proofs`].
@@ -280,7 +280,7 @@ pub fn proofs_by_block() -> Result<Vec<(&'static str, Task)>, Error> {
 /// # Errors
 /// As [`proofs`], and [`Error::Option`] if there are none.
 pub fn proofs_named(name: &str) -> Result<Vec<Task>, Error> {
-    let is_likely = |row: &&RegistryRow| !row.name.is_empty() && name.starts_with(row.name);
+    let is_likely = |row: &&RegistryRow| name.starts_with(row.name);
     let (likely, others): (Vec<_>, Vec<_>) = REGISTRY.iter().partition(is_likely);
     let mut names = Vec::new();
     // Writing the Verilog of all blocks takes longer than most of what is done with the proofs of one.
