@@ -12,7 +12,16 @@ const OF_EVERY_STEP: [&str; 2] = ["Options", "Document"];
 #[test]
 fn a_public_type_name_has_one_meaning() {
     let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
-    let others = ["system", "identify", "hdl", "waves", "testbench", "synth", "flow"];
+    let others = [
+        "system",
+        "identify",
+        "hdl",
+        "waves",
+        "testbench",
+        "synth",
+        "bitstream",
+        "flow",
+    ];
     for file in rust_sources(&[&MODEL[..], &others].concat()) {
         let text = std::fs::read_to_string(&file).unwrap();
         for line in text.lines() {

@@ -1,0 +1,158 @@
+//! Single faults in the bits: whether the comparisons find them.
+//!
+//! A fault is one bit of the bitstream. It is flipped, packed again with the right checksum, read back from the packed file, and compared
+//! as the bitstream itself was. A flip that leaves the netlist of the bits unchanged, such as an entry of a table that its inputs cannot
+//! select, can be found in the tiles alone.
+
+use crate::BitstreamError;
+use crate::asc::{AscBit, FlipKind, candidates, compare_tiles, flipped};
+use crate::behaviour;
+use crate::error::at;
+use crate::netlist::BitsNetlist;
+use crate::random::Random;
+use crate::structure::compare_cells;
+use crate::tools::{Ice40Tools, Routed};
+use crate::top::BoardTop;
+use serde::Serialize;
+use std::fs;
+use std::path::Path;
+use std::thread;
+
+/// Flips of each kind.
+pub const PER_KIND: usize = 2;
+/// Flips at a time: decoding one takes up to ten seconds.
+const AT_ONCE: usize = 2;
+/// Seed of the choice of the bits.
+const SEED: u64 = 1;
+
+/// What a bitstream is that faults are made in.
+#[derive(Debug, Clone, Copy)]
+pub struct FaultFree<'a> {
+    /// The router's result.
+    pub routed: &'a Routed,
+    /// The packed file.
+    pub packed: &'a [u8],
+    /// Its text, read back from the packed file.
+    pub asc: &'a str,
+    /// The Verilog of its netlist.
+    pub verilog: &'a str,
+    /// Its netlist.
+    pub netlist: &'a BitsNetlist,
+    /// The top.
+    pub top: &'a BoardTop,
+}
+
+/// A flip, and what found it.
+#[derive(Debug, Clone, Serialize)]
+pub struct FlipReport {
+    /// Kind of the bit.
+    pub kind: FlipKind,
+    /// Its place.
+    pub place: String,
+    /// Bytes of the packed file that differ, those of its checksum included.
+    pub bytes: u64,
+    /// Tiles that differ from the router's result.
+    pub tiles: u64,
+    /// Whether the netlist of the bits is another one.
+    pub changes_netlist: bool,
+    /// Differences between that netlist and the router's; 1 if it cannot be read.
+    pub cells: u64,
+    /// Clock at which the lock step ended with a difference.
+    pub lock_step_clock: Option<u64>,
+}
+
+impl FlipReport {
+    /// Whether the netlist changed, and neither cells nor lock step show it; or no tile differs.
+    #[must_use]
+    pub fn is_missed(&self) -> bool {
+        let unseen = self.cells == 0 && self.lock_step_clock.is_none();
+        self.tiles == 0 || (self.changes_netlist && unseen)
+    }
+}
+
+/// Makes [`PER_KIND`] flips of each kind that the bitstream has, some at a time, and compares each; the lock step takes at most `clocks`.
+/// `begin` is called before each.
+///
+/// # Errors
+/// The errors of the programs.
+pub fn flips(
+    fault_free: &FaultFree<'_>,
+    (tools, folder): (&Ice40Tools, &Path),
+    clocks: u64,
+    begin: &(dyn Fn(FlipKind) + Sync),
+) -> Result<Vec<FlipReport>, BitstreamError> {
+    let mut random = Random::new(SEED);
+    let mut chosen = Vec::new();
+    for kind in FlipKind::ALL {
+        let bits = candidates(fault_free.asc, kind, &fault_free.netlist.memories);
+        if !bits.is_empty() {
+            chosen.extend((0..PER_KIND).map(|_| (kind, bits[random.below(bits.len() as u64) as usize])));
+        }
+    }
+    let worker = |chosen: &[(FlipKind, AscBit)], folder: &Path| {
+        fs::create_dir(folder).map_err(at(folder))?;
+        let flip = |(kind, bit): &(FlipKind, AscBit)| {
+            begin(*kind);
+            let (asc, place) = flipped(fault_free.asc, *bit);
+            flip(fault_free, (tools, folder), clocks, (*kind, place, &asc))
+        };
+        chosen.iter().map(flip).collect::<Result<Vec<_>, BitstreamError>>()
+    };
+    let share = chosen.len().div_ceil(AT_ONCE).max(1);
+    thread::scope(|scope| {
+        let start = |(index, chosen): (usize, &'_ [(FlipKind, AscBit)])| {
+            let (folder, chosen) = (folder.join(format!("flips_{index}")), chosen.to_vec());
+            let worker = &worker;
+            scope.spawn(move || worker(&chosen, &folder))
+        };
+        let running: Vec<_> = chosen.chunks(share).enumerate().map(start).collect();
+        let mut reports = Vec::new();
+        for worker in running {
+            reports.extend(worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+        }
+        Ok(reports)
+    })
+}
+
+fn flip(
+    fault_free: &FaultFree<'_>,
+    (tools, folder): (&Ice40Tools, &Path),
+    clocks: u64,
+    (kind, place, asc): (FlipKind, String, &str),
+) -> Result<FlipReport, BitstreamError> {
+    let top = fault_free.top;
+    let packed = tools.pack(asc, folder)?;
+    let asc = tools.unpack(&packed, folder)?;
+    let verilog = tools.netlist(top.board(), &asc, folder)?;
+    let bytes = packed
+        .iter()
+        .zip(fault_free.packed)
+        .filter(|(new, old)| new != old)
+        .count();
+    let mut report = FlipReport {
+        kind,
+        place,
+        bytes: (bytes + packed.len().abs_diff(fault_free.packed.len())) as u64,
+        tiles: compare_tiles(&fault_free.routed.asc, &asc).differences.len() as u64,
+        changes_netlist: verilog != fault_free.verilog,
+        cells: 0,
+        lock_step_clock: None,
+    };
+    if !report.changes_netlist {
+        return Ok(report);
+    }
+    match BitsNetlist::read(&verilog) {
+        Ok(netlist) => {
+            report.cells = compare_cells(&netlist, &fault_free.routed.netlist, top.board())?.differences;
+            report.lock_step_clock = match behaviour::compare(&netlist, top, (clocks, SEED), &mut |_| {}) {
+                Ok(compared) => compared.first.map(|first| first.clock),
+                // A netlist that cannot be simulated, such as one with a loop, is a difference from its first clock on.
+                Err(BitstreamError::UnknownCell(_)) => Some(0),
+                Err(other) => return Err(other),
+            };
+        }
+        Err(BitstreamError::UnknownCell(_)) => report.cells = 1,
+        Err(other) => return Err(other),
+    }
+    Ok(report)
+}

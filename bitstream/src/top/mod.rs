@@ -1,0 +1,217 @@
+//! The board's top module: power-on reset, and the machine's shapers behind a serial line.
+//!
+//! ```text
+//! host ─► board   A5, then a word of each axis   the commands of all axes; those of the last whole frame count
+//! board ─► host   5A, then a word of each axis   the shaped commands of every sample
+//! ```
+//!
+//! A word has as many bytes as hold a command word, the lowest first. A byte is 8 data bits after a start bit, lowest bit first, with one
+//! stop bit and no parity. A pause of [`PAUSE_BITS`] bits before a byte begins a new frame. The LED is lit while a shaper has clamped an
+//! output or lost a sample.
+//!
+//! The registers power up as 0, so that a counter can make the reset. It is long, because block RAMs of iCE40 cannot be read in the first
+//! microseconds after configuration.
+
+mod verilog;
+
+use crate::BitstreamError;
+use crate::boards::FpgaBoard;
+use posicast_blocks::shaper::ShaperConfig;
+use std::fmt::Write;
+
+/// Speed of the serial line in bits per second.
+pub const BAUD: u32 = 1_000_000;
+/// Length of the pause that begins a new frame, in bits of the line.
+pub const PAUSE_BITS: u32 = 40;
+/// Clocks of the power-on reset.
+pub const RESET_CLOCKS: u32 = 255;
+/// First byte of a frame from the host.
+pub const COMMAND_MARK: u8 = 0xA5;
+/// First byte of a frame to the host.
+pub const RESULT_MARK: u8 = 0x5A;
+/// Bits of a byte on the line.
+const BYTE_BITS: u32 = 10;
+
+/// A board's top module.
+#[derive(Debug, Clone)]
+pub struct BoardTop {
+    machine: String,
+    board: FpgaBoard,
+    sample_clocks: u32,
+    axes: Vec<TopAxis>,
+}
+
+/// An axis of the top.
+#[derive(Debug, Clone)]
+pub struct TopAxis {
+    /// Its name.
+    pub name: String,
+    /// Its shaper.
+    pub config: ShaperConfig,
+}
+
+impl BoardTop {
+    /// The top of a machine with these axes, all of the same word width, whose samples are `sample_clocks` clocks of the board's
+    /// oscillator apart.
+    ///
+    /// # Errors
+    /// [`BitstreamError::LineTooSlow`] if the line does not carry the results of a sample before the next.
+    pub fn new(
+        machine: &str,
+        board: FpgaBoard,
+        sample_clocks: u32,
+        axes: Vec<TopAxis>,
+    ) -> Result<Self, BitstreamError> {
+        let top = Self {
+            machine: machine.to_owned(),
+            board,
+            sample_clocks,
+            axes,
+        };
+        let frame_clocks = BYTE_BITS * (1 + top.frame_bytes()) * top.bit_clocks();
+        if frame_clocks > sample_clocks {
+            return Err(BitstreamError::LineTooSlow {
+                board: board.name,
+                frame_clocks,
+                sample_clocks,
+                highest_hz: board.oscillator_hz / frame_clocks,
+                axes: top.axes.len(),
+                word_bits: top.word_bits(),
+            });
+        }
+        Ok(top)
+    }
+
+    /// Name of the module.
+    #[must_use]
+    pub fn module(&self) -> String {
+        format!("{}_{}", self.machine, self.board.name.replace('-', "_"))
+    }
+
+    /// The board.
+    #[must_use]
+    pub fn board(&self) -> &FpgaBoard {
+        &self.board
+    }
+
+    /// The axes.
+    #[must_use]
+    pub fn axes(&self) -> &[TopAxis] {
+        &self.axes
+    }
+
+    /// Clocks between two samples.
+    #[must_use]
+    pub fn sample_clocks(&self) -> u32 {
+        self.sample_clocks
+    }
+
+    /// Clocks per bit of the line.
+    #[must_use]
+    pub fn bit_clocks(&self) -> u32 {
+        self.board.oscillator_hz / BAUD
+    }
+
+    /// Width of a command word.
+    #[must_use]
+    pub fn word_bits(&self) -> u32 {
+        self.axes.first().map_or(0, |axis| axis.config.word_bits())
+    }
+
+    /// Bytes of a word on the line.
+    #[must_use]
+    pub fn word_bytes(&self) -> u32 {
+        self.word_bits().div_ceil(8)
+    }
+
+    /// Bytes of a frame after its first.
+    #[must_use]
+    pub fn frame_bytes(&self) -> u32 {
+        self.word_bytes() * self.axes.len() as u32
+    }
+
+    /// Index of the axis whose result comes last; at its `valid` all results stand.
+    #[must_use]
+    pub fn slowest_axis(&self) -> usize {
+        let clocks = |axis: &TopAxis| axis.config.pass_clocks(axis.config.table().taps().len() as u32);
+        let indexed = self.axes.iter().enumerate();
+        indexed
+            .max_by_key(|(_, axis)| clocks(axis))
+            .map_or(0, |(index, _)| index)
+    }
+
+    /// The constraints: a line for every pin, none of which is left to the tool.
+    #[must_use]
+    pub fn constraints(&self) -> String {
+        let pins = self.board.pins();
+        let mut text = format!(
+            "# Pins of {} for {}.v; each line names two sources of its pin.\n",
+            self.board.title,
+            self.module()
+        );
+        for (port, pin) in pins {
+            let _ = writeln!(
+                text,
+                "set_io {port} {:<4} # {}; {}",
+                pin.pin, pin.sources[0], pin.sources[1]
+            );
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boards::board;
+    use posicast_taps::{Tap, TapTable};
+
+    fn axis(name: &str, word_bits: u32) -> TopAxis {
+        let half = |delay_samples| Tap {
+            delay_samples,
+            coefficient: 1 << 15,
+        };
+        let table = TapTable::new(16, vec![half(0), half(3)]).unwrap();
+        TopAxis {
+            name: name.to_owned(),
+            config: ShaperConfig::new(word_bits, table).unwrap(),
+        }
+    }
+
+    #[test]
+    fn a_line_that_cannot_carry_every_sample_names_the_highest_rate() {
+        let board = board("icebreaker").unwrap();
+        let axes = || ["x", "y", "z"].map(|name| axis(name, 32)).to_vec();
+        let message = BoardTop::new("m", board, 1200, axes()).unwrap_err().to_string();
+        assert!(
+            message.contains("a frame takes 1560 clocks") && message.contains("at most 7692 Hz"),
+            "{message}"
+        );
+        assert!(BoardTop::new("m", board, 1560, axes()).is_ok());
+    }
+
+    #[test]
+    fn every_port_has_a_pin() {
+        for board in crate::boards::BOARDS {
+            let top = BoardTop::new("m", board, 12_000, vec![axis("x", 32)]).unwrap();
+            let (verilog, constraints) = (top.verilog(), top.constraints());
+            let header = verilog
+                .split_once("module ")
+                .unwrap()
+                .1
+                .split_once(");")
+                .unwrap()
+                .0
+                .to_owned();
+            let ports = header
+                .lines()
+                .filter(|line| line.contains("wire"))
+                .map(|line| line.trim_end_matches(','));
+            let ports: Vec<&str> = ports.map(|line| line.rsplit(' ').next().unwrap()).collect();
+            assert_eq!(ports.len(), 4);
+            for port in ports {
+                assert_eq!(constraints.matches(&format!("set_io {port} ")).count(), 1, "{port}");
+            }
+        }
+    }
+}
