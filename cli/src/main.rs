@@ -4,6 +4,7 @@
 //! Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a required tool is missing; 130 and 143 after
 //! SIGINT and SIGTERM, with nothing left behind.
 
+mod bitstream;
 mod campaign;
 mod choice;
 mod completions;
@@ -68,6 +69,7 @@ enum Command {
     Diff(Box<diff::Args>),
     Campaign(campaign::Args),
     Synth(synth::Args),
+    Bitstream(bitstream::Args),
     Identify(identify::Args),
     Host(host::Args),
     Reproduce(reproduce::Args),
@@ -103,6 +105,7 @@ fn main() -> ExitCode {
         Command::Diff(args) => diff::run(&args),
         Command::Campaign(args) => campaign::run(&args),
         Command::Synth(args) => synth::run(&args),
+        Command::Bitstream(args) => bitstream::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Host(args) => host::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),

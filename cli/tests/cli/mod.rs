@@ -10,6 +10,7 @@ mod verdict;
 mod verify;
 
 mod bad_input;
+mod bitstream;
 mod campaign;
 mod command;
 mod completions;

@@ -1,0 +1,164 @@
+//! `posicast bitstream`: a shaper from its machine file to checked bits, and what is refused.
+
+#![cfg(test)] // lets clippy see that this is test code
+
+use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use posicast_testbench::verilator;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+fn bitstream(machine: &Path, board: &str, output: &Path, more: &[&str]) -> Output {
+    let mut command = posicast();
+    command
+        .arg("bitstream")
+        .arg(machine)
+        .args(["--board", board, "-o"])
+        .arg(output);
+    command.args(more).output().unwrap()
+}
+
+/// Two axes with short shapers, words that are no whole bytes, and negative impulses, which can saturate.
+const TWO_AXES: &str = "\
+name = \"two\"
+[clock]
+frequency_hz = 50_000_000
+sample_hz = 5_000
+[fixed_point]
+command_bits = 20
+command_fraction = 4
+[[axis]]
+name = \"x\"
+counts_per_unit = 1_000_000
+[axis.shaper]
+kind = \"zv\"
+[[axis.mode]]
+frequency_hz = 300.0
+damping = 0.1
+[[axis]]
+name = \"y\"
+counts_per_unit = 1_000_000
+[axis.shaper]
+kind = \"ps-zv\"
+[[axis.mode]]
+frequency_hz = 200.0
+damping = 0.05
+";
+
+/// A machine with one short shaper.
+fn short_machine(sample_hz: u32) -> String {
+    let machine = one_axis("kind = \"zv\"", "frequency_hz = 500.0\ndamping = 0.1");
+    machine.replace("sample_hz = 10_000", &format!("sample_hz = {sample_hz}"))
+}
+
+/// Requires exit status 2, and these words on standard error.
+#[track_caller]
+fn refused(output: &Output, folder: &Path, words: &[&str]) {
+    let said = String::from_utf8_lossy(&output.stderr)
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ");
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(output.stdout.is_empty() && !folder.exists());
+    for word in words {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+}
+
+#[test]
+fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
+    let (scratch, machine) = scratch(TWO_AXES);
+    let folder = scratch.path().join("out");
+    let output = bitstream(&machine, "icebreaker", &folder, &["--json", "--clocks", "1000000"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let document = json(&output.stdout);
+    let checks = document["checks"].as_array().unwrap();
+    assert_eq!(checks.len(), 5);
+    assert!(checks.iter().all(|check| check["ok"] == true), "{checks:#?}");
+    let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
+    assert_eq!(number("/lock_step/clocks"), 1_000_000);
+    assert!(number("/lock_step/samples") > 400 && number("/lock_step/frames") > 300);
+    assert_eq!(number("/lock_step/taps_exercised"), number("/lock_step/taps"));
+    // A clamped output lights the LED.
+    assert!(number("/lock_step/led_changes") > 0);
+    assert!(number("/cells/tables") > 500 && number("/cells/memories") > 0 && number("/tiles/bits_set") > 10_000);
+    let flips = document["flips"].as_array().unwrap();
+    assert_eq!(flips.len(), 6);
+    assert!(
+        flips
+            .iter()
+            .all(|flip| flip["tiles"].as_u64() > Some(0) && flip["bytes"].as_u64() > Some(0))
+    );
+    assert!(flips.iter().any(|flip| flip["lock_step_clock"].is_u64()));
+    assert!(
+        document["not_covered"][0]
+            .as_str()
+            .unwrap()
+            .contains("nobody has run it yet")
+    );
+
+    // Everything is there, and what the user reads is clean.
+    let file = |name: &str| folder.join("bitstream").join(name);
+    assert!(std::fs::metadata(file("two_icebreaker.bin")).unwrap().len() > 100_000);
+    let kit = ["strobe", "example"].map(|part| folder.join(format!("kit/two_{part}.v")));
+    let rtl = std::fs::read_dir(folder.join("rtl"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let files: Vec<PathBuf> = rtl.chain(kit).chain([file("two_icebreaker.v")]).collect();
+    assert_eq!(verilator::lint(&files, "two_icebreaker").unwrap(), [""; 0]);
+    let text = std::fs::read_to_string(folder.join("machine.toml")).unwrap();
+    assert!(text.contains("frequency_hz = 12000000"), "{text}");
+}
+
+#[test]
+fn cli_a_bitstream_refuses_what_it_cannot_build() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out");
+    let joint = example("robot-joint.toml");
+    refused(
+        &bitstream(&joint, "ulx3s", &output, &[]),
+        &output,
+        &["ulx3s", "icebreaker, ice40-hx8k"],
+    );
+    refused(
+        &bitstream(&example("xy-stage.toml"), "icebreaker", &output, &[]),
+        &output,
+        &[
+            "xy-stage.toml:",
+            "axis.encoder",
+            "only machines with shapers alone so far",
+        ],
+    );
+    let (_scratch, machine) = scratch(
+        &short_machine(8_000)
+            .replace("50_000_000", "48_000_000")
+            .replace("8000", "7_680"),
+    );
+    refused(
+        &bitstream(&machine, "icebreaker", &output, &[]),
+        &output,
+        &[
+            "clock.sample_hz",
+            "7680 Hz does not divide",
+            "7500 Hz and 8000 Hz",
+            "a board with 24, 48 MHz",
+        ],
+    );
+    let (_scratch, machine) = scratch(&short_machine(25_000));
+    refused(
+        &bitstream(&machine, "icebreaker", &output, &[]),
+        &output,
+        &["a frame takes 600 clocks", "480 clocks apart", "at most 20000 Hz"],
+    );
+}
+
+#[test]
+fn cli_a_bitstream_does_not_touch_a_folder_of_somebody_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let note = folder.path().join("note.txt");
+    std::fs::write(&note, "mine").unwrap();
+    let output = bitstream(&example("robot-joint.toml"), "icebreaker", folder.path(), &[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(std::fs::read_to_string(&note).unwrap(), "mine");
+}

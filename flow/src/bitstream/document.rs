@@ -1,0 +1,281 @@
+//! The result of a bitstream: the checks, each with what it covers, and what none of them covers.
+
+use crate::generate::entries;
+use crate::style;
+use crate::text::Table;
+use posicast_bitstream::asc::{FlipKind, TilesReport};
+use posicast_bitstream::behaviour::BehaviourReport;
+use posicast_bitstream::flips::FlipReport;
+use posicast_bitstream::structure::CellsReport;
+use posicast_bitstream::top::BoardTop;
+use posicast_machine::machine_file::Machine;
+use posicast_testbench::wording::counted;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What was built and found.
+pub(super) struct Evidence {
+    pub(super) versions: [String; 2],
+    pub(super) highest_mhz: f64,
+    pub(super) tiles: TilesReport,
+    pub(super) cells: CellsReport,
+    pub(super) lock_step: BehaviourReport,
+    pub(super) flips: Vec<FlipReport>,
+    /// The bitstream itself.
+    pub(super) packed: Vec<u8>,
+    /// Verilog of the netlist of its bits.
+    pub(super) verilog: String,
+    pub(super) seed: u64,
+}
+
+/// A bitstream, and the checks of its bits.
+#[derive(Serialize)]
+pub struct Document {
+    name: String,
+    board: &'static str,
+    device: &'static str,
+    package: &'static str,
+    oscillator_hz: u32,
+    sample_hz: f64,
+    /// Versions of the programs.
+    tools: [String; 2],
+    seed: u64,
+    checks: Vec<CheckDocument>,
+    /// Highest frequency of the clock, by nextpnr's timing model.
+    highest_mhz: f64,
+    tiles: TilesReport,
+    cells: CellsReport,
+    lock_step: BehaviourReport,
+    flips: Vec<FlipReport>,
+    /// What none of the checks covers.
+    not_covered: Vec<String>,
+    /// Output folder; `None` if a check failed.
+    folder: Option<String>,
+    files: Vec<String>,
+    #[serde(skip)]
+    title: String,
+    #[serde(skip)]
+    bitstream: String,
+}
+
+/// A check.
+#[derive(Serialize)]
+struct CheckDocument {
+    name: &'static str,
+    ok: bool,
+    /// What was compared, and how much of it; or what is wrong.
+    what: String,
+}
+
+impl Document {
+    pub(super) fn new(top: &BoardTop, machine: &Machine, evidence: &Evidence) -> Self {
+        let board = top.board();
+        let needed_mhz = f64::from(board.oscillator_hz) / 1e6;
+        let flips = &evidence.flips;
+        Self {
+            name: machine.name.clone(),
+            board: board.name,
+            device: board.device.name(),
+            package: board.package,
+            oscillator_hz: board.oscillator_hz,
+            sample_hz: machine.clock.sample_hz,
+            tools: evidence.versions.clone(),
+            seed: evidence.seed,
+            checks: vec![
+                clock_check(evidence.highest_mhz, needed_mhz),
+                tiles_check(&evidence.tiles),
+                cells_check(&evidence.cells),
+                lock_step_check(&evidence.lock_step),
+                flips_check(flips),
+            ],
+            highest_mhz: evidence.highest_mhz,
+            tiles: evidence.tiles.clone(),
+            cells: evidence.cells.clone(),
+            lock_step: evidence.lock_step.clone(),
+            flips: flips.clone(),
+            not_covered: not_covered(&evidence.lock_step, flips),
+            folder: None,
+            files: Vec::new(),
+            title: board.title.to_owned(),
+            bitstream: format!("{}.bin", top.module()),
+        }
+    }
+
+    /// Why the command fails; `None` if every check holds.
+    pub(super) fn failed(&self) -> Option<String> {
+        let failed: Vec<&str> = self
+            .checks
+            .iter()
+            .filter(|check| !check.ok)
+            .map(|check| check.name)
+            .collect();
+        (!failed.is_empty()).then(|| format!("failed: {}; no bitstream was written", failed.join(", ")))
+    }
+
+    /// The files were written.
+    pub(super) fn written(&mut self, root: &Path, folder: &str, files: &[PathBuf]) {
+        self.bitstream = root.join(folder).join(&self.bitstream).display().to_string();
+        self.folder = Some(root.display().to_string());
+        self.files = files
+            .iter()
+            .map(|file| file.strip_prefix(root).unwrap_or(file).display().to_string())
+            .collect();
+    }
+
+    pub(super) fn text(&self) -> String {
+        let mhz = f64::from(self.oscillator_hz) / 1e6;
+        let mut text = format!(
+            "{} on {} ({}, {}): {mhz} MHz oscillator, {} Hz samples\n{}, {}\n",
+            self.name, self.title, self.device, self.package, self.sample_hz, self.tools[0], self.tools[1]
+        );
+        let mut table = Table::new(&["check", "", "what it covers"]);
+        for check in &self.checks {
+            let verdict = if check.ok {
+                style::good("ok")
+            } else {
+                style::bad("FAILED")
+            };
+            table.row([check.name.to_owned(), verdict, check.what.clone()]);
+        }
+        text += &table.text("  ");
+        text += "not covered by these checks:\n";
+        for what in &self.not_covered {
+            text += &format!("  {what}\n");
+        }
+        let Some(folder) = &self.folder else {
+            return text + &style::message("FAIL: no bitstream was written") + "\n";
+        };
+        let root = Path::new(folder);
+        let files: Vec<PathBuf> = self.files.iter().map(|file| root.join(file)).collect();
+        text += &format!(
+            "{} in {folder}: {}\n",
+            counted(files.len() as u64, "file"),
+            entries(root, &files).join(", ")
+        );
+        let verdict = format!(
+            "PASS: the bits of {} compute the model. Nobody has run it on hardware yet.",
+            self.bitstream
+        );
+        text + &style::message(&verdict) + "\n"
+    }
+}
+
+fn clock_check(highest_mhz: f64, needed_mhz: f64) -> CheckDocument {
+    CheckDocument {
+        name: "clock",
+        ok: highest_mhz >= needed_mhz,
+        what: format!("{highest_mhz:.1} MHz reached by nextpnr's timing model, {needed_mhz} MHz needed"),
+    }
+}
+
+fn tiles_check(tiles: &TilesReport) -> CheckDocument {
+    let differences = tiles.differences.len() as u64;
+    let what = match differences {
+        0 => format!(
+            "{} with {} set bits, read back from the packed file, equal to what nextpnr wrote",
+            counted(tiles.tiles, "tile"),
+            tiles.bits_set
+        ),
+        _ => format!(
+            "{} from what nextpnr wrote, first {}",
+            counted(differences, "tile differs"),
+            tiles.differences[0]
+        ),
+    };
+    CheckDocument {
+        name: "structure, tiles",
+        ok: differences == 0 && tiles.bits_set > 0,
+        what,
+    }
+}
+
+fn cells_check(cells: &CellsReport) -> CheckDocument {
+    let compared = format!(
+        "{} look-up tables, {} flip-flops, {} carries, {} memories with contents, {} connections",
+        cells.tables, cells.flip_flops, cells.carries, cells.memories, cells.connections
+    );
+    let what = match cells.first.first() {
+        None => format!("{compared}: the netlist of the bits is nextpnr's"),
+        Some(first) => format!(
+            "{} of {compared}; first: {first}",
+            counted(cells.differences, "difference")
+        ),
+    };
+    CheckDocument {
+        name: "structure, cells",
+        ok: cells.differences == 0 && cells.tables > 0,
+        what,
+    }
+}
+
+fn lock_step_check(lock_step: &BehaviourReport) -> CheckDocument {
+    let BehaviourReport {
+        clocks,
+        samples,
+        frames,
+        taps_exercised,
+        taps,
+        ..
+    } = lock_step;
+    let covered = format!("{clocks} clocks, {frames} commands, {samples} samples, {taps_exercised} of {taps} taps");
+    let what = match &lock_step.first {
+        None if lock_step.holds() => format!("{covered}: every pin in every clock equal to the model's"),
+        None => format!("{covered}: equal, but too little was exercised; compare more with --clocks"),
+        Some(first) => format!(
+            "clock {}, {}: {} in the bits, {} in the model",
+            first.clock,
+            first.port,
+            u8::from(first.actual),
+            u8::from(first.expected)
+        ),
+    };
+    CheckDocument {
+        name: "behaviour",
+        ok: lock_step.holds(),
+        what,
+    }
+}
+
+fn flips_check(flips: &[FlipReport]) -> CheckDocument {
+    let count = |holds: &dyn Fn(&FlipReport) -> bool| flips.iter().filter(|flip| holds(flip)).count();
+    let missed = count(&FlipReport::is_missed);
+    let kinds = FlipKind::ALL
+        .map(|kind| format!("{} {}", count(&|flip| flip.kind == kind), kind.word()))
+        .join(", ");
+    CheckDocument {
+        name: "it can fail",
+        ok: missed == 0 && !flips.is_empty(),
+        what: format!(
+            "{} flips in the packed file ({kinds}): {} found in the tiles; {} change the netlist, of them {} found in the cells, {} in lock \
+             step{}",
+            flips.len(),
+            count(&|flip| flip.tiles > 0),
+            count(&|flip| flip.changes_netlist),
+            count(&|flip| flip.cells > 0),
+            count(&|flip| flip.lock_step_clock.is_some()),
+            if missed > 0 {
+                format!("; {missed} missed")
+            } else {
+                String::new()
+            }
+        ),
+    }
+}
+
+fn not_covered(lock_step: &BehaviourReport, flips: &[FlipReport]) -> Vec<String> {
+    let mut list = vec![
+        "hardware: nobody has run it yet; voltages, the oscillator and the wiring of the board are not simulated"
+            .to_owned(),
+        "the tap tables that a design of your own can load: the top does not connect their ports".to_owned(),
+        "an error that the databases of nextpnr and IceStorm share: nextpnr's was made from IceStorm's".to_owned(),
+    ];
+    if lock_step.led_changes == 0 {
+        list.push(
+            "the LED's flags: no shaper clamped an output or lost a sample, so lock step never lit it".to_owned(),
+        );
+    }
+    if flips.iter().all(|flip| flip.kind != FlipKind::Memory) {
+        list.push("flips in a memory: the bitstream has none".to_owned());
+    }
+    list
+}

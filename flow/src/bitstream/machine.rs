@@ -1,0 +1,113 @@
+//! The machine at a board's oscillator.
+
+use crate::failure::Failure;
+use crate::machine::{self, MachineFile, at_key};
+use posicast_bitstream::boards::FpgaBoard;
+use posicast_machine::machine_file::{AxisSection, Machine};
+use std::path::Path;
+use toml_edit::{DocumentMut, Value};
+
+/// The key of the sample rate.
+const SAMPLE_KEY: &str = "clock.sample_hz";
+/// Usual oscillators of boards, in MHz.
+const OSCILLATORS_MHZ: [u32; 9] = [12, 16, 24, 25, 26, 27, 48, 50, 100];
+
+/// Reads the machine file at `path` with the board's oscillator as its clock.
+pub(super) fn on_board(path: &Path, board: &FpgaBoard) -> Result<MachineFile, Failure> {
+    let file = machine::read(path)?;
+    only_shapers(&file.machine, path)?;
+    sample_rate(&file.machine, path, board)?;
+    let text = with_clock(&file.text, board.oscillator_hz).map_err(Failure::because)?;
+    // Files that it names are read beside it.
+    let machine = machine::parse(path, &text)?;
+    Ok(MachineFile {
+        text,
+        machine,
+        beside: file.beside,
+    })
+}
+
+fn only_shapers(machine: &Machine, path: &Path) -> Result<(), Failure> {
+    let loops = |axis: &AxisSection| match (&axis.encoder, &axis.pwm) {
+        (Some(_), _) => Some("axis.encoder"),
+        (None, Some(_)) => Some("axis.pwm"),
+        (None, None) => axis.has_loop().then_some("axis.controller"),
+    };
+    let mut axes = machine.axes.iter().enumerate();
+    let found = axes.find_map(|(index, axis)| loops(axis).map(|key| (index, key)));
+    match found {
+        Some((index, key)) => {
+            let name = &machine.axes[index].name;
+            let reason = format!(
+                "axis {name} has more than a shaper; a bitstream takes only machines with shapers alone so far"
+            );
+            let help = "take the stage to your own project: docs/sopc.md; or leave out the other blocks of the axis";
+            Err(at_key(path, index, key, reason).or_help(help))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The sample rate divides the oscillator, or the error names what would.
+fn sample_rate(machine: &Machine, path: &Path, board: &FpgaBoard) -> Result<(), Failure> {
+    let sample_hz = machine.clock.sample_hz;
+    let divides = |oscillator: u32| f64::from(oscillator) % sample_hz == 0.0;
+    if divides(board.oscillator_hz) {
+        return Ok(());
+    }
+    let oscillators: Vec<String> = OSCILLATORS_MHZ
+        .into_iter()
+        .filter(|mhz| divides(mhz * 1_000_000))
+        .map(|mhz| mhz.to_string())
+        .collect();
+    let works = match oscillators.as_slice() {
+        [] => "no usual oscillator".to_owned(),
+        some => format!("a board with {} MHz", some.join(", ")),
+    };
+    let [below, above] = nearest_rates(board.oscillator_hz, sample_hz);
+    let reason = format!(
+        "{sample_hz} Hz does not divide the oscillator of {}, {} Hz; the nearest that do: {below} Hz and {above} Hz; with {sample_hz} Hz \
+         works {works}",
+        board.name, board.oscillator_hz
+    );
+    Err(at_key(path, 0, SAMPLE_KEY, reason))
+}
+
+/// The nearest whole rates below and above that divide the oscillator.
+fn nearest_rates(oscillator_hz: u32, sample_hz: f64) -> [u32; 2] {
+    let divides = |rate: &u32| oscillator_hz.is_multiple_of(*rate);
+    let floor = (sample_hz.floor() as u32).clamp(1, oscillator_hz);
+    let below = (1..=floor).rev().find(divides).unwrap_or(1);
+    let above = (floor + 1..=oscillator_hz).find(divides).unwrap_or(oscillator_hz);
+    [below, above]
+}
+
+/// The text of the machine file with this clock.
+fn with_clock(text: &str, frequency_hz: u32) -> Result<String, toml_edit::TomlError> {
+    let mut document: DocumentMut = text.parse()?;
+    if let Some(value) = document["clock"]["frequency_hz"].as_value_mut() {
+        let decor = value.decor().clone();
+        *value = Value::from(i64::from(frequency_hz));
+        *value.decor_mut() = decor;
+    }
+    Ok(document.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_clock_changes_and_its_comment_stays() {
+        let text = "# a machine\n[clock]\nfrequency_hz = 50_000_000   # fabric\nsample_hz = 10_000\n";
+        let changed = with_clock(text, 12_000_000).unwrap();
+        assert_eq!(changed, text.replace("50_000_000", "12000000"));
+    }
+
+    #[test]
+    fn the_nearest_rates_divide_the_oscillator() {
+        assert_eq!(nearest_rates(12_000_000, 7_000.0), [6_400, 7_500]);
+        assert_eq!(nearest_rates(12_000_000, 0.5), [1, 2]);
+        assert_eq!(nearest_rates(12_000_000, 1e9), [12_000_000, 12_000_000]);
+    }
+}
