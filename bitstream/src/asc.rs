@@ -1,6 +1,7 @@
 //! A bitstream as text (`.asc`): its tiles, their comparison, and single flips.
 
 use crate::netlist::MemoryCell;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -16,7 +17,7 @@ const CELLS: usize = 8;
 const DIGIT_BITS: usize = 4;
 
 /// Comparison of two bitstreams, tile by tile.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct TilesReport {
     /// Tiles compared, contents of memories and single bits outside tiles included.
     pub tiles: u64,
@@ -27,7 +28,7 @@ pub struct TilesReport {
 }
 
 /// Kind of a bit that is flipped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum FlipKind {
     /// An entry of the table of a logic cell that is in use.

@@ -5,7 +5,9 @@ use crate::BitstreamError;
 use crate::model::BoardModel;
 use crate::netlist::{BitsNetlist, NetlistSimulation};
 use crate::random::Random;
+use crate::top::crc::checksum;
 use crate::top::{BoardTop, COMMAND_MARK, PAUSE_BITS};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::VecDeque;
 
@@ -13,7 +15,7 @@ use std::collections::VecDeque;
 const STEP_CLOCKS: u64 = 1 << 14;
 
 /// Result of a lock step.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct BehaviourReport {
     /// Clocks compared.
     pub clocks: u64,
@@ -34,7 +36,7 @@ pub struct BehaviourReport {
 }
 
 /// A difference between the bits and the model.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct PinDifference {
     /// Clock after power-up.
     pub clock: u64,
@@ -136,7 +138,7 @@ pub fn compare(
     Ok(report)
 }
 
-/// A host that sends random frames: mostly whole ones, some with a wrong mark, some that break off, with pauses and spikes between.
+/// A host that sends random frames: mostly whole ones, some with a wrong mark or checksum, some that break off, with pauses and spikes between.
 struct Host {
     random: Random,
     bit_clocks: u64,
@@ -194,6 +196,9 @@ impl Host {
             let word = self.word();
             bytes.extend(word.to_le_bytes().into_iter().take(self.word_bytes));
         }
+        let crc = checksum(bytes.iter().copied());
+        let is_wrong = self.random.once_in(16);
+        bytes.push(if is_wrong { crc ^ 1 << self.random.below(8) } else { crc });
         if self.random.once_in(24) {
             bytes.truncate(1 + self.random.below(bytes.len() as u64) as usize);
         }

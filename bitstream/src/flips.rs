@@ -13,6 +13,7 @@ use crate::random::Random;
 use crate::structure::compare_cells;
 use crate::tools::{Ice40Tools, Routed};
 use crate::top::BoardTop;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fs;
 use std::path::Path;
@@ -43,7 +44,7 @@ pub struct FaultFree<'a> {
 }
 
 /// A flip, and what found it.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct FlipReport {
     /// Kind of the bit.
     pub kind: FlipKind,

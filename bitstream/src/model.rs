@@ -2,6 +2,7 @@
 //!
 //! It is written from the description of [`top`](crate::top), not from the Verilog; the shapers are those of `posicast-blocks`.
 
+use crate::top::crc::checksum;
 use crate::top::{BoardTop, COMMAND_MARK, PAUSE_BITS, RESET_CLOCKS, RESULT_MARK};
 use posicast_blocks::shaper::{Inputs, Shaper, wrap};
 
@@ -24,7 +25,7 @@ pub struct BoardModel {
     slowest: usize,
     resets: u32,
     receiver: Receiver,
-    /// Bytes of the frame that are there; `None` before its mark.
+    /// Bytes of the frame's words that are there; `None` before its mark.
     frame: Option<Vec<u8>>,
     idle: u32,
     commands: Vec<i64>,
@@ -176,15 +177,19 @@ impl BoardModel {
             self.frame = (self.receiver.byte == COMMAND_MARK).then(Vec::new);
             return;
         };
-        bytes.push(self.receiver.byte);
-        if bytes.len() == self.word_bytes * self.commands.len() {
+        let words = self.word_bytes * self.commands.len();
+        if bytes.len() < words {
+            bytes.push(self.receiver.byte);
+            return;
+        }
+        if self.receiver.byte == checksum([COMMAND_MARK].into_iter().chain(bytes.iter().copied())) {
             for (command, word) in self.commands.iter_mut().zip(bytes.chunks(self.word_bytes)) {
                 let value = word.iter().rev().fold(0, |value, byte| value << 8 | i64::from(*byte));
                 *command = wrap(value, self.word_bits);
             }
             self.frames += 1;
-            self.frame = None;
         }
+        self.frame = None;
     }
 
     fn send(&mut self, rst: bool, words: Option<Vec<i64>>) {
@@ -198,8 +203,9 @@ impl BoardModel {
             let bytes = words
                 .iter()
                 .flat_map(|word| word.to_le_bytes().into_iter().take(self.word_bytes));
-            let bytes = std::iter::once(RESULT_MARK).chain(bytes);
-            let framed = bytes.flat_map(|byte| {
+            let bytes: Vec<u8> = std::iter::once(RESULT_MARK).chain(bytes).collect();
+            let crc = checksum(bytes.iter().copied());
+            let framed = bytes.into_iter().chain([crc]).flat_map(|byte| {
                 let data = (0..8).map(move |bit| byte >> bit & 1 == 1);
                 std::iter::once(false).chain(data).chain([true])
             });

@@ -4,7 +4,7 @@ use crate::output;
 use crate::{doctor, host, reproduce};
 use clap::ValueEnum;
 use posicast_flow::text::{json_schema, json_text, shell_word, write_text};
-use posicast_flow::{Failure, compare, design, generate, identify, run, simulate, synth, verify};
+use posicast_flow::{Failure, bitstream, compare, design, generate, identify, run, simulate, synth, verify};
 use posicast_machine::machine_file;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::shard::Merged;
@@ -59,6 +59,8 @@ enum Name {
     Campaign,
     /// `synth --json`
     Synth,
+    /// `bitstream --json`
+    Bitstream,
     /// `identify --json`
     Identify,
     /// `host status --json`
@@ -85,6 +87,7 @@ impl Name {
             Self::Verify => json_schema::<verify::Document>(),
             Self::Campaign => json_schema::<Merged>(),
             Self::Synth => json_schema::<synth::Document>(),
+            Self::Bitstream => json_schema::<bitstream::Document>(),
             Self::Identify => json_schema::<identify::Document>(),
             Self::HostStatus => json_schema::<host::StatusDocument>(),
             Self::Reproduce => json_schema::<reproduce::Document<'_>>(),

@@ -10,6 +10,7 @@ use crate::BitstreamError;
 use crate::boards::FpgaBoard;
 use crate::netlist::{BitsNetlist, CellPlace, LutCell, MEMORY_WORDS};
 use netlists::{Driver, ReadBack, RoutedNetlist, is_set, parameter};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -30,7 +31,7 @@ const MEMORY_INPUTS: [(&str, usize, bool); 10] = [
 ];
 
 /// Result of the comparison.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 pub struct CellsReport {
     /// Look-up tables compared.
     pub tables: u64,

@@ -1,17 +1,18 @@
 //! The board's top module: power-on reset, and the machine's shapers behind a serial line.
 //!
 //! ```text
-//! host ─► board   A5, then a word of each axis   the commands of all axes; those of the last whole frame count
-//! board ─► host   5A, then a word of each axis   the shaped commands of every sample
+//! host ─► board   A5, a word of each axis, checksum   the commands of all axes; those of the last frame with a right checksum count
+//! board ─► host   5A, a word of each axis, checksum   the shaped commands of every sample
 //! ```
 //!
-//! A word has as many bytes as hold a command word, the lowest first. A byte is 8 data bits after a start bit, lowest bit first, with one
+//! The checksum of all bytes before it is a [`crc`]. A word has as many bytes as hold a command word, the lowest first. A byte is 8 data bits after a start bit, lowest bit first, with one
 //! stop bit and no parity. A pause of [`PAUSE_BITS`] bits before a byte begins a new frame. The LED is lit while a shaper has clamped an
 //! output or lost a sample.
 //!
 //! The registers power up as 0, so that a counter can make the reset. It is long, because block RAMs of iCE40 cannot be read in the first
 //! microseconds after configuration.
 
+pub mod crc;
 mod verilog;
 
 use crate::BitstreamError;
@@ -68,7 +69,7 @@ impl BoardTop {
             sample_clocks,
             axes,
         };
-        let frame_clocks = BYTE_BITS * (1 + top.frame_bytes()) * top.bit_clocks();
+        let frame_clocks = BYTE_BITS * top.frame_bytes() * top.bit_clocks();
         if frame_clocks > sample_clocks {
             return Err(BitstreamError::LineTooSlow {
                 board: board.name,
@@ -124,10 +125,16 @@ impl BoardTop {
         self.word_bits().div_ceil(8)
     }
 
-    /// Bytes of a frame after its first.
+    /// Bytes of the words of all axes.
+    #[must_use]
+    pub fn words_bytes(&self) -> u32 {
+        self.word_bytes() * self.axes.len() as u32
+    }
+
+    /// Bytes of a frame, with its mark and its checksum.
     #[must_use]
     pub fn frame_bytes(&self) -> u32 {
-        self.word_bytes() * self.axes.len() as u32
+        self.words_bytes() + 2
     }
 
     /// Index of the axis whose result comes last; at its `valid` all results stand.
@@ -184,10 +191,10 @@ mod tests {
         let axes = || ["x", "y", "z"].map(|name| axis(name, 32)).to_vec();
         let message = BoardTop::new("m", board, 1200, axes()).unwrap_err().to_string();
         assert!(
-            message.contains("a frame takes 1560 clocks") && message.contains("at most 7692 Hz"),
+            message.contains("a frame takes 1680 clocks") && message.contains("at most 7142 Hz"),
             "{message}"
         );
-        assert!(BoardTop::new("m", board, 1560, axes()).is_ok());
+        assert!(BoardTop::new("m", board, 1680, axes()).is_ok());
     }
 
     #[test]

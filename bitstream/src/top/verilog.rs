@@ -1,5 +1,6 @@
 //! The Verilog of the top.
 
+use super::crc::{checksum, followed_by};
 use super::{BAUD, BYTE_BITS, BoardTop, COMMAND_MARK, PAUSE_BITS, RESET_CLOCKS, RESULT_MARK};
 use std::fmt::Write;
 
@@ -23,10 +24,10 @@ impl BoardTop {
             "\
 // The shapers of {machine} on {title} ({device}), behind its serial line.
 //
-//   host -> board   {mark:02X}, then the command words of all axes: {axes}
-//   board -> host   {result:02X}, then the shaped words of the same axes, at every sample
+//   host -> board   {mark:02X}, the command words of all axes ({axes}), checksum
+//   board -> host   {result:02X}, the shaped words of the same axes, checksum, at every sample
 //
-// A word has {word_bytes} bytes, the lowest first, with {word_bits} bits, two's complement. The line has {baud} baud, 8 data bits, no parity,
+// The checksum of all bytes before it is a CRC-8 (polynomial 07, start value 0, highest bit first). A word has {word_bytes} bytes, the lowest first, with {word_bits} bits, two's complement. The line has {baud} baud, 8 data bits, no parity,
 // one stop bit. A pause of {PAUSE_BITS} bits begins a new frame. {led} is lit while a shaper has clamped an output or lost a sample.
 //
 // Written by posicast {version} for the machine {machine}, for an oscillator of {mhz} MHz. Nobody has run it on hardware yet.
@@ -110,45 +111,36 @@ module {module} (
 
     /// The collector of command words.
     fn frame(&self) -> String {
-        let bytes = self.frame_bytes();
-        let place = bits_for(bytes);
+        let (bytes, word_bits) = (self.words_bytes(), self.word_bits());
+        let (place, bits) = (bits_for(bytes + 1), 8 * bytes);
         let pause = PAUSE_BITS * self.bit_clocks();
         let idle = bits_for(pause);
-        let bits = 8 * bytes;
-        let word_bits = self.word_bits();
         let mut text = format!(
-            "    // A frame: its mark at place 0, then the bytes of the words. The words are taken together, with the last byte.
-    reg  {place_range} place   = {place}'d0;
-    reg  {idle_range} idle    = {idle}'d0;
+            "    // A frame: its mark at place 0, then the bytes of the words, then the checksum. The words are taken together, if it is right.
+    reg  {place_range} place = {place}'d0;
+    reg  {idle_range} idle  = {idle}'d0;
+    reg  {words_range} words = {bits}'d0;
+    reg  [7:0] crc   = 8'd0;
+    wire [7:0] crc_in = crc ^ rx_byte;
+    wire [7:0] crc_next = {crc_next};
 ",
             place_range = range(place),
             idle_range = range(idle),
+            words_range = range(bits),
+            crc_next = parities("crc_in", &[0, 1, 2, 3, 4, 5, 6, 7].map(|bit| followed_by(0, 1 << bit))),
         );
-        // A frame of one byte has nothing to collect.
-        let collects = bits > 8;
-        if collects {
-            let _ = writeln!(text, "    reg  [{}:0] partial = {}'d0;", bits - 9, bits - 8);
-        }
-        for axis in &self.axes {
-            let _ = writeln!(
-                text,
-                "    reg  signed [{}:0] {}_command = {word_bits}'sd0;",
-                word_bits - 1,
-                axis.name
-            );
-        }
-        let words = if collects { "{rx_byte, partial}" } else { "rx_byte" };
-        let _ = writeln!(text, "    wire [{}:0] words = {words};", bits - 1);
         let mut taken = String::new();
         let mut spare = Vec::new();
         for (index, axis) in self.axes.iter().enumerate() {
             let low = index as u32 * 8 * self.word_bytes();
             let high = low + word_bits - 1;
+            let axis = &axis.name;
             let _ = writeln!(
-                taken,
-                "                    {}_command <= words[{high}:{low}];",
-                axis.name
+                text,
+                "    reg  signed {} {axis}_command = {word_bits}'sd0;",
+                range(word_bits)
             );
+            let _ = writeln!(taken, "                    {axis}_command <= words[{high}:{low}];");
             let end = low + 8 * self.word_bytes() - 1;
             if end > high {
                 spare.push(format!("words[{end}:{}]", high + 1));
@@ -167,12 +159,15 @@ module {module} (
             idle <= {idle}'d0;
             if (place == {place}'d0) begin
                 place <= (rx_byte == 8'h{COMMAND_MARK:02x}) ? {place}'d1 : {place}'d0;
+                crc   <= 8'h{first_crc:02x};
+            end else if (place == {place}'d{last}) begin
+                place <= {place}'d0;
+                if (rx_byte == crc) begin
+{taken}                end
             end else begin
-{collect}                if (place == {place}'d{bytes}) begin
-                    place <= {place}'d0;
-{taken}                end else begin
-                    place <= place + {place}'d1;
-                end
+                place <= place + {place}'d1;
+                crc   <= crc_next;
+                words <= {shifted};
             end
         end else if (idle == {idle}'d{pause}) begin
             place <= {place}'d0;
@@ -181,10 +176,11 @@ module {module} (
         end
     end
 ",
-            collect = if collects {
-                format!("                partial <= words[{}:8];\n", bits - 1)
-            } else {
-                String::new()
+            first_crc = checksum([COMMAND_MARK]),
+            last = bytes + 1,
+            shifted = match bytes {
+                1 => "rx_byte".to_owned(),
+                _ => format!("{{rx_byte, words[{}:8]}}", bits - 1),
             },
         );
         text
@@ -235,10 +231,11 @@ module {module} (
 
     /// The sender of results.
     fn sender(&self) -> String {
-        let bits = BYTE_BITS * (1 + self.frame_bytes());
+        let bits = BYTE_BITS * self.frame_bytes();
         let width = bits_for(self.bit_clocks() - 1);
         let (word_bits, padded) = (self.word_bits(), 8 * self.word_bytes());
         let mut words = String::new();
+        let mut names = Vec::new();
         let mut frame = vec![format!("1'b1, 8'h{RESULT_MARK:02x}, 1'b0")];
         for axis in &self.axes {
             let axis = &axis.name;
@@ -250,12 +247,28 @@ module {module} (
             for byte in 0..self.word_bytes() {
                 frame.push(format!("1'b1, {axis}_word[{}:{}], 1'b0", 8 * byte + 7, 8 * byte));
             }
+            names.push(format!("{axis}_word"));
         }
+        frame.push("1'b1, result_crc, 1'b0".to_owned());
         frame.reverse();
+        names.reverse();
+        // What a bit of the words changes does not depend on the other bits.
+        let zeros = vec![0; self.words_bytes() as usize];
+        let crc_of = |words: Vec<u8>| checksum([RESULT_MARK].into_iter().chain(words));
+        let of_zeros = crc_of(zeros.clone());
+        let changed_by = |bit: usize| {
+            let mut words = zeros.clone();
+            words[bit / 8] |= 1 << (bit % 8);
+            crc_of(words) ^ of_zeros
+        };
+        let changes: Vec<u8> = (0..8 * zeros.len()).map(changed_by).collect();
         let valid = self.axes.get(self.slowest_axis()).map_or("", |axis| axis.name.as_str());
         format!(
-            "    // Serial output: the frame with the start and stop bits of its bytes, lowest bit first.
-{words}    reg  [{last_bit}:0] tx_bits   = {bits}'d0;
+            "    // Serial output: the frame with the start and stop bits of its bytes, lowest bit first. Each bit of the checksum is the parity of
+    // some bits of the words.
+{words}    wire {words_range} result_words = {{{names}}};
+    wire [7:0] result_crc = 8'h{of_zeros:02x} ^ {parities};
+    reg  [{last_bit}:0] tx_bits   = {bits}'d0;
     reg  {range} tx_clocks = {width}'d0;
 
     assign serial_tx = tx_bits[0];
@@ -279,10 +292,30 @@ module {module} (
 ",
             last_bit = bits - 1,
             range = range(width),
+            words_range = range(8 * self.words_bytes()),
+            names = names.join(", "),
+            parities = parities("result_words", &changes),
             frame = frame.join(",\n                "),
             last = self.bit_clocks() - 1,
         )
     }
+}
+
+/// The eight bits of a checksum, each the parity of those bits of the net `name` that change it: bit `i` of the net changes the bits of
+/// `changes[i]`.
+fn parities(name: &str, changes: &[u8]) -> String {
+    let parity = |place: u32| {
+        let digits = changes.chunks(4).rev().map(|four| {
+            let bits = four
+                .iter()
+                .enumerate()
+                .map(|(bit, change)| (change >> place & 1) << bit);
+            format!("{:x}", bits.sum::<u8>())
+        });
+        format!("^({name} & {}'h{})", changes.len(), digits.collect::<String>())
+    };
+    let rows: Vec<String> = (0..u8::BITS).rev().map(parity).collect();
+    format!("{{\n        {}\n    }}", rows.join(",\n        "))
 }
 
 /// Number of bits that hold `largest`.

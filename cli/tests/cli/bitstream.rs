@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{assert_fits_schema, example, json, one_axis, posicast, scratch};
 use posicast_testbench::verilator;
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -72,6 +72,7 @@ fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{said}");
     let document = json(&output.stdout);
+    assert_fits_schema("bitstream", &document);
     let checks = document["checks"].as_array().unwrap();
     assert_eq!(checks.len(), 5);
     assert!(checks.iter().all(|check| check["ok"] == true), "{checks:#?}");
@@ -148,7 +149,7 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
     refused(
         &bitstream(&machine, "icebreaker", &output, &[]),
         &output,
-        &["a frame takes 600 clocks", "480 clocks apart", "at most 20000 Hz"],
+        &["a frame takes 720 clocks", "480 clocks apart", "at most 16666 Hz"],
     );
 }
 

@@ -10,6 +10,7 @@ use posicast_bitstream::structure::CellsReport;
 use posicast_bitstream::top::BoardTop;
 use posicast_machine::machine_file::Machine;
 use posicast_testbench::wording::counted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +30,7 @@ pub(super) struct Evidence {
 }
 
 /// A bitstream, and the checks of its bits.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct Document {
     name: String,
     board: &'static str,
@@ -59,7 +60,7 @@ pub struct Document {
 }
 
 /// A check.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct CheckDocument {
     name: &'static str,
     ok: bool,
