@@ -1,7 +1,7 @@
 //! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
 
-use crate::output;
 use crate::terminal::Terminal;
+use crate::{output, render};
 use posicast_flow::Failure;
 use posicast_flow::compare::{band, compare};
 use posicast_flow::design::{Options, design};
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.compare {
-        return output::show(compare(&args.machine, args.band)?, args.json);
+        return output::show_rendered(compare(&args.machine, args.band)?, args.json, render::compare);
     }
     let options = Options {
         machine: args.machine.clone(),

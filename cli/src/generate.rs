@@ -1,10 +1,10 @@
 //! `posicast generate`: writes the Verilog of a machine, and the files that Quartus needs with it, into a folder.
 
-use crate::output;
 use crate::terminal::Terminal;
+use crate::{output, render};
+use posicast_flow::Failure;
 use posicast_flow::generate::{Options, generate};
 use posicast_flow::hal::SERVO_HZ;
-use posicast_flow::{Failure, Outcome};
 use std::path::PathBuf;
 
 /// Write the machine's Verilog, its components and its Quartus projects into a folder
@@ -41,10 +41,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         servo_hz: args.hal.then_some(args.servo_hz),
     };
     let generated = generate(&options, &Terminal)?;
-    let text = if args.verbose {
-        generated.document.list()
-    } else {
-        generated.text
-    };
-    output::show(Outcome { text, ..generated }, args.json)
+    let text = if args.verbose { render::list } else { render::generate };
+    output::show_rendered(generated, args.json, text)
 }

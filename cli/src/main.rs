@@ -21,6 +21,7 @@ mod man;
 mod moves;
 mod new;
 mod output;
+mod render;
 mod reproduce;
 mod run;
 mod schema;

@@ -52,6 +52,17 @@ pub(crate) fn show<D: Serialize>(outcome: Outcome<D>, json: bool) -> Result<(), 
     }
 }
 
+/// Prints the result of a step, as its document or as the text that `render` makes of it; a failed check is the command's
+/// failure.
+pub(crate) fn show_rendered<D: Serialize>(
+    outcome: Outcome<D>,
+    json: bool,
+    render: impl FnOnce(&D) -> String,
+) -> Result<(), Failure> {
+    let text = if json { String::new() } else { render(&outcome.document) };
+    show(Outcome { text, ..outcome }, json)
+}
+
 /// How the document of a step is shown.
 pub(crate) fn form(json: bool) -> ResultForm {
     if json { ResultForm::Document } else { ResultForm::Text }

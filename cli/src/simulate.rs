@@ -2,8 +2,8 @@
 
 use crate::contour::ContourArgs;
 use crate::moves::MotionArgs;
-use crate::output;
 use crate::terminal::Terminal;
+use crate::{output, render};
 use posicast_flow::Failure;
 use posicast_flow::simulate::{Options, simulate};
 use std::path::PathBuf;
@@ -47,5 +47,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         form: output::form(args.json),
     };
-    output::show(simulate(&options, &Terminal)?, args.json)
+    output::show_rendered(simulate(&options, &Terminal)?, args.json, render::simulate)
 }

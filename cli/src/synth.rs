@@ -1,7 +1,7 @@
 //! `posicast synth`: estimates the resources that a machine's Verilog needs on a device.
 
-use crate::output;
 use crate::terminal::Terminal;
+use crate::{output, render};
 use posicast_flow::Failure;
 use posicast_flow::synth::{Options, synth};
 use posicast_synth::yosys::Family;
@@ -31,5 +31,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         family: args.family,
         clock: args.clock.clone(),
     };
-    output::show(synth(&options, &Terminal)?, args.json)
+    output::show_rendered(synth(&options, &Terminal)?, args.json, render::synth)
 }

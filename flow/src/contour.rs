@@ -372,7 +372,7 @@ pub(crate) fn simulate(
     machine: &Machine,
     speed: Option<f64>,
     observer: &dyn Observer,
-) -> Result<(Document, String), Failure> {
+) -> Result<Document, Failure> {
     let path = options.read(machine, speed)?;
     let survey = path.survey(machine, observer)?;
     let samples = survey.duration_s * machine.clock.sample_hz;
@@ -393,5 +393,5 @@ pub(crate) fn simulate(
     if let Some(path) = &options.plot {
         write_text(path, &plot::svg(&[report.panel()])?).map_err(Failure::because)?;
     }
-    Ok((report.json(), report.text()))
+    Ok(report.json())
 }

@@ -9,13 +9,12 @@ use crate::hardware::{Built, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::observer::Observer;
-use crate::text::{json_text, shell_word};
+use crate::text::json_text;
 use crate::{sopc, verilog};
 use posicast_machine::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
 use posicast_testbench::linked_stage::LinkedStageBlock;
-use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -57,8 +56,7 @@ pub fn generate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Do
     tell(&committed, observer);
     let of_stage = (has_stage, built.link.as_ref());
     let document = Document::new(&file.machine, of_stage, &folder, &committed.files);
-    let text = document.text();
-    Ok(Outcome::passed(document, text))
+    Ok(Outcome::passed(document, String::new()))
 }
 
 /// Adds the machine's Verilog, and its descriptions for tools, systems and drivers. Returns the paths of the Verilog.
@@ -82,13 +80,17 @@ pub(crate) fn add(
 /// The files that were generated, and their folder.
 #[derive(Serialize, JsonSchema)]
 pub struct Document {
-    name: String,
-    folder: String,
-    top: Vec<String>,
-    files: Vec<String>,
+    /// Name of the machine.
+    pub name: String,
+    /// The output folder.
+    pub folder: String,
+    /// The top modules: the shapers, then the stage and the stage with its line, where the machine has them.
+    pub top: Vec<String>,
+    /// Paths in the folder.
+    pub files: Vec<String>,
     /// Name of the stage's line, if it has one.
     #[serde(skip)]
-    line: Option<&'static str>,
+    pub line: Option<&'static str>,
 }
 
 impl Document {
@@ -110,40 +112,6 @@ impl Document {
             files: files.iter().map(relative).collect(),
             line: link.map(|link| link.config().line()),
         }
-    }
-
-    /// Every file, one a line.
-    #[must_use]
-    pub fn list(&self) -> String {
-        let folder = Path::new(&self.folder);
-        let files = self
-            .files
-            .iter()
-            .map(|file| format!("{}\n", folder.join(file).display()));
-        files.collect()
-    }
-
-    /// Number of files by folder, the top modules, and the next step.
-    fn text(&self) -> String {
-        let folder = Path::new(&self.folder);
-        let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
-        let top = match (self.top.as_slice(), self.line) {
-            ([shapers, stage], _) => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
-            ([shapers, stage, link], Some(line)) => {
-                format!(
-                    "top modules: {shapers} (the shapers), {stage} (the whole stage), {link} (the stage with its {line})"
-                )
-            }
-            _ => format!("top module: {} (the shapers)", self.top.join(", ")),
-        };
-        format!(
-            "{} in {}: {}\n{top}\nnext: read {}; `posicast verify {}` compares this Verilog with its model\n",
-            counted(files.len() as u64, "file"),
-            folder.display(),
-            entries(folder, &files).join(", "),
-            folder.join("README.md").display(),
-            shell_word(folder),
-        )
     }
 }
 

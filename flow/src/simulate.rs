@@ -11,7 +11,7 @@ use crate::machine;
 use crate::moves::Motion;
 use crate::observer::Observer;
 use crate::plot;
-use crate::text::{Table, UnitDocument};
+use crate::text::UnitDocument;
 use posicast_hdl::machine::AxisShaper;
 use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_machine::plan::MachineDesign;
@@ -19,7 +19,6 @@ use posicast_machine::plant::Plant;
 use posicast_machine::simulation::{AxisSimulation, simulate_axis};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::{Heading, Recorder, Signal};
-use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -82,10 +81,9 @@ pub fn simulate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Si
     let document = Document::new(&machine, &axes, path);
     let beyond = document.axes.iter().find(|a| a.largest_difference_lsb > a.bound_lsb);
     let failed = beyond.map(|axis| format!("axis {}: the model leaves the float design's bound", axis.name));
-    let text = document.text();
     Ok(Outcome {
         failed,
-        ..Outcome::passed(Simulated::Command(document), text).beside(&outputs)
+        ..Outcome::passed(Simulated::Command(document), String::new()).beside(&outputs)
     })
 }
 
@@ -102,8 +100,8 @@ fn along_contour(options: &Options, machine: &Machine, observer: &dyn Observer) 
     }
     one_document(&outputs, options.form)?;
     let speed = options.motion.along_contour()?;
-    let (document, text) = contour::simulate(&options.path, machine, speed, observer)?;
-    Ok(Outcome::passed(Simulated::Contour(document), text).beside(&outputs))
+    let document = contour::simulate(&options.path, machine, speed, observer)?;
+    Ok(Outcome::passed(Simulated::Contour(document), String::new()).beside(&outputs))
 }
 
 /// Simulates all axes of a machine with their command words.
@@ -180,21 +178,32 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
 /// `simulate --json`.
 #[derive(Serialize, JsonSchema)]
 pub struct Document {
-    name: String,
-    samples: usize,
-    axes: Vec<SimulatedAxis>,
-    wave: String,
+    /// Name of the machine.
+    pub name: String,
+    /// Number of samples of the command.
+    pub samples: usize,
+    /// The axes of the machine, in the order of the file.
+    pub axes: Vec<SimulatedAxis>,
+    /// The waveform that was written.
+    pub wave: String,
 }
 
+/// An axis that followed its command.
 #[derive(Serialize, JsonSchema)]
-struct SimulatedAxis {
-    name: String,
+pub struct SimulatedAxis {
+    /// Name of the axis.
+    pub name: String,
+    /// Its unit.
     #[serde(flatten)]
-    unit: UnitDocument,
-    largest_difference_lsb: f64,
-    bound_lsb: f64,
-    residual_displacement_unshaped: f64,
-    residual_displacement: f64,
+    pub unit: UnitDocument,
+    /// Largest difference of the model and the float design.
+    pub largest_difference_lsb: f64,
+    /// The largest that rounding explains.
+    pub bound_lsb: f64,
+    /// Ringing after the command's end without the shaper, in `si_unit`.
+    pub residual_displacement_unshaped: f64,
+    /// Ringing after the command's end with it, in `si_unit`.
+    pub residual_displacement: f64,
 }
 
 impl Document {
@@ -216,34 +225,5 @@ impl Document {
             axes: machine.axes.iter().zip(axes).map(document).collect(),
             wave: path.display().to_string(),
         }
-    }
-
-    fn text(&self) -> String {
-        let headings = [
-            "axis",
-            ">ringing unshaped",
-            ">ringing shaped",
-            ">largest difference from float",
-            ">bound",
-        ];
-        let mut table = Table::new(&headings);
-        for axis in &self.axes {
-            let ringing = [axis.residual_displacement_unshaped, axis.residual_displacement];
-            let [unshaped, shaped] = axis.unit.of_axis().show_all(ringing);
-            table.row([
-                axis.name.clone(),
-                unshaped,
-                shaped,
-                format!("{:.3} LSB", axis.largest_difference_lsb),
-                format!("{:.3} LSB", axis.bound_lsb),
-            ]);
-        }
-        format!(
-            "{}: {}; ringing after the command's end\n{}{}\n",
-            self.name,
-            counted(self.samples as u64, "sample"),
-            table.text(""),
-            self.wave
-        )
     }
 }

@@ -2,7 +2,8 @@
 
 mod clock;
 
-use self::clock::{ClockEstimates, Clocks};
+use self::clock::Clocks;
+pub use self::clock::{ClockEstimate, ClockEstimates};
 
 use crate::Outcome;
 use crate::design::DesignReport;
@@ -63,8 +64,6 @@ pub fn synth(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docum
     let of_top = clocks.iter().flat_map(|clocks| &clocks.tops);
     let of_top = of_top.filter(|clock| clock.name == machine.name);
     estimate.clock_mhz_estimate = of_top.map(|clock| clock.mhz).next();
-    let of_clocks = clocks.as_ref().map_or_else(String::new, ClockEstimates::text);
-    let text = text(&estimate) + &components_text(&components) + &of_clocks;
     let document = Document {
         estimate,
         components,
@@ -73,7 +72,7 @@ pub fn synth(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docum
     let failed = (!lacks.is_empty()).then(|| format!("does not fit the device: {}", lacks.join("; ")));
     Ok(Outcome {
         failed,
-        ..Outcome::passed(document, text)
+        ..Outcome::passed(document, String::new())
     })
 }
 
@@ -107,12 +106,15 @@ fn lacks(estimate: &Estimate) -> Vec<String> {
 /// The estimate of the top, and of each component, which is not included in a sum.
 #[derive(Serialize, JsonSchema)]
 pub struct Document {
+    /// The top module, block by block.
     #[serde(flatten)]
-    estimate: Estimate,
+    pub estimate: Estimate,
+    /// The stage, alone and with its line to a host, and the blocks that stand alone.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    components: Vec<BlockEstimate>,
+    pub components: Vec<BlockEstimate>,
+    /// The tops whose clock was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    clocks: Option<ClockEstimates>,
+    pub clocks: Option<ClockEstimates>,
 }
 
 /// The top modules of the components among these files: the stage, alone and with its line to a host, and the blocks that stand alone.
@@ -125,17 +127,6 @@ fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
         .collect();
     names.sort_unstable();
     names
-}
-
-fn components_text(components: &[BlockEstimate]) -> String {
-    if components.is_empty() {
-        return String::new();
-    }
-    let mut table = Table::new(&["component", ">cells", ">registers", ">memory bits", ">multipliers"]);
-    for component in components {
-        table.row(cells(&component.name, &component.resources));
-    }
-    format!("\nBeside the top, each by itself:\n{}", table.text(""))
 }
 
 fn cells(name: &str, r: &Resources) -> impl Iterator<Item = String> {

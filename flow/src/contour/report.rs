@@ -1,16 +1,13 @@
-//! The distances of a path by kind of shaper: text, JSON and picture.
+//! The distances of a path by kind of shaper: document and picture.
 
 use crate::machine::plane_name;
 use crate::plot::{Curve, Panel, label, time_axis};
-use crate::text::{Table, UnitDocument};
+use crate::text::UnitDocument;
 use posicast_machine::contour::{ContourRow, CornerRules, FREQUENCY_FACTORS, FollowedContour, Survey};
 use posicast_machine::machine_file::Machine;
 use posicast_machine::unit::AxisUnit;
-use posicast_shaper::unit::show_seconds;
-use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// The distances of each kind of shaper.
 pub(super) struct Report<'a> {
@@ -24,40 +21,61 @@ pub(super) struct Report<'a> {
 /// `simulate --contour --json`. Lengths are in m.
 #[derive(Serialize, JsonSchema)]
 pub struct Document {
-    name: String,
+    /// Name of the machine.
+    pub name: String,
+    /// Unit of the first axis.
     #[serde(flatten)]
-    unit: UnitDocument,
-    contour: String,
-    length: f64,
+    pub unit: UnitDocument,
+    /// Names of the axes of the path's plane, such as `x and y`.
+    #[serde(skip)]
+    pub plane: String,
+    /// The path: `circle`, `square`, or a file.
+    pub contour: String,
+    /// Length of the path.
+    pub length: f64,
     /// Part of it that is rapids, or travels of a print.
-    rapid_length: f64,
-    duration_s: f64,
-    stops: usize,
-    corner_tolerance: f64,
-    stop_angle_deg: f64,
-    frequency_factors: [f64; 5],
-    shapers: Vec<ShaperOnPath>,
+    pub rapid_length: f64,
+    /// Time of the path.
+    pub duration_s: f64,
+    /// Number of bends at which the path stops.
+    pub stops: usize,
+    /// Junction deviation at bends.
+    pub corner_tolerance: f64,
+    /// Angle of a bend above which the path stops.
+    pub stop_angle_deg: f64,
+    /// Frequencies of the modes, relative to those of the file, for which there are distances.
+    pub frequency_factors: [f64; 5],
+    /// The kinds of shaper.
+    pub shapers: Vec<ShaperOnPath>,
 }
 
+/// A kind of shaper that drives the path.
 #[derive(Serialize, JsonSchema)]
-struct ShaperOnPath {
-    kind: String,
-    in_file: bool,
-    equal_delays: bool,
+pub struct ShaperOnPath {
+    /// Name of the kind.
+    pub kind: String,
+    /// Whether the machine file has this kind.
+    pub in_file: bool,
+    /// Whether the delays of the axes are made equal.
+    pub equal_delays: bool,
     /// Largest distance from the path for each of `frequency_factors`, on the feeds.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_peak: Option<[f64; 5]>,
+    pub error_peak: Option<[f64; 5]>,
+    /// Root mean square of the distance for each of `frequency_factors`, on the feeds.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_rms: Option<[f64; 5]>,
+    pub error_rms: Option<[f64; 5]>,
     /// Largest distance on the rapids for each of `frequency_factors`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_rapid: Option<[f64; 5]>,
+    pub error_rapid: Option<[f64; 5]>,
     /// Largest distance while a feed is driven at full speed, with the modes as in the file.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_steady: Option<f64>,
+    pub error_steady: Option<f64>,
     /// Why there are no figures.
     #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
+    pub reason: Option<String>,
+    /// Largest distance on the rapids, with the modes as in the file.
+    #[serde(skip)]
+    pub nominal_rapid: Option<f64>,
 }
 
 impl Report<'_> {
@@ -77,11 +95,13 @@ impl Report<'_> {
                 error_rapid: figures(|followed| Some(followed.rapid?.peak)),
                 error_steady: row.nominal().and_then(|nominal| Some(nominal.steady?.peak)),
                 reason: row.followed.as_ref().err().cloned(),
+                nominal_rapid: row.nominal().and_then(|nominal| Some(nominal.rapid?.peak)),
             }
         });
         Document {
             name: self.machine.name.clone(),
             unit: UnitDocument::new(self.unit()),
+            plane: plane_name(self.machine),
             contour: self.name.to_owned(),
             length: self.survey.length,
             rapid_length: self.survey.rapid_length,
@@ -92,66 +112,6 @@ impl Report<'_> {
             frequency_factors: FREQUENCY_FACTORS,
             shapers: rows.collect(),
         }
-    }
-
-    pub(super) fn text(&self) -> String {
-        let rapids = if self.survey.rapid_length > 0.0 {
-            format!(
-                " ({} of it rapids)",
-                self.unit().show_round(self.survey.rapid_length, "")
-            )
-        } else {
-            String::new()
-        };
-        let mut text = format!(
-            "{}: {} of axes {}, {}{rapids} in {}, {}\nlargest distance of the load from the path{}, its modes at\n",
-            self.machine.name,
-            self.name,
-            plane_name(self.machine),
-            self.unit().show_round(self.survey.length, ""),
-            show_seconds(self.survey.duration_s, 3),
-            counted(self.survey.stops as u64, "stop"),
-            if rapids.is_empty() { "" } else { " while feeding" },
-        );
-        let factors = FREQUENCY_FACTORS.map(|factor| format!(">{:.0} %", 100.0 * factor));
-        let mut headings = vec!["shaper", "delays"];
-        headings.extend(factors.iter().map(String::as_str));
-        headings.push(">at speed");
-        if !rapids.is_empty() {
-            headings.push(">in rapids");
-        }
-        let mut table = Table::new(&headings);
-        let mut reasons = Vec::new();
-        for row in self.rows {
-            let kind = if row.in_file {
-                format!("{}, of the file", row.kind)
-            } else {
-                row.kind.clone()
-            };
-            let delays = if row.matched { "equal" } else { "own" };
-            // A smaller distance is due to rounding and the end of the settling.
-            let show = |error: Option<f64>| match error {
-                None => "–".to_owned(),
-                Some(error) if error < 1e-10 => "0".to_owned(),
-                Some(error) => self.unit().show(error, 3),
-            };
-            let mut cells = vec![kind.clone(), delays.to_owned()];
-            let errors = figures(row, |followed| Some(followed.error?.peak));
-            cells.extend((0..FREQUENCY_FACTORS.len()).map(|factor| show(errors.map(|errors| errors[factor]))));
-            if let Err(reason) = &row.followed {
-                reasons.push(format!("  {kind}, {delays} delays: {reason}"));
-            }
-            cells.push(show(row.nominal().and_then(|nominal| Some(nominal.steady?.peak))));
-            if !rapids.is_empty() {
-                cells.push(show(row.nominal().and_then(|nominal| Some(nominal.rapid?.peak))));
-            }
-            table.row(cells);
-        }
-        text += &table.text("  ");
-        for reason in reasons {
-            let _ = writeln!(text, "{reason}");
-        }
-        text
     }
 
     /// The distance over time, without a shaper and with the machine's own.

@@ -2,7 +2,6 @@
 
 use crate::failure::Failure;
 use crate::observer::Observer;
-use crate::text::Table;
 use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::yosys::{Yosys, YosysError};
 use schemars::JsonSchema;
@@ -17,16 +16,20 @@ pub(super) struct Clocks<'a> {
 
 /// The highest clock frequency of a top.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ClockEstimate {
-    pub(super) name: String,
-    pub(super) mhz: f64,
+pub struct ClockEstimate {
+    /// Name of the top.
+    pub name: String,
+    /// The frequency.
+    pub mhz: f64,
 }
 
 /// `clocks` of `synth --json`.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ClockEstimates {
-    pub(super) tops: Vec<ClockEstimate>,
-    method: String,
+pub struct ClockEstimates {
+    /// The tops, in the order of the request.
+    pub tops: Vec<ClockEstimate>,
+    /// Tools, device and what the figures are worth.
+    pub method: String,
 }
 
 impl<'a> Clocks<'a> {
@@ -64,17 +67,6 @@ impl<'a> Clocks<'a> {
             tops: self.tops.iter().map(estimate).collect::<Result<_, Failure>>()?,
             method: self.tool.method(),
         })
-    }
-}
-
-impl ClockEstimates {
-    /// A table, and the method of the estimate.
-    pub(super) fn text(&self) -> String {
-        let mut table = Table::new(&["top", ">clock, MHz"]);
-        for clock in &self.tops {
-            table.row([clock.name.clone(), format!("{:.1}", clock.mhz)]);
-        }
-        format!("\n{}Clock: {}\n", table.text(""), self.method)
     }
 }
 

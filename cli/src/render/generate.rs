@@ -1,0 +1,36 @@
+//! What `generate` wrote, and what to do next.
+
+use super::files::entries;
+use posicast_flow::generate::Document;
+use posicast_flow::text::shell_word;
+use posicast_testbench::wording::counted;
+use std::path::Path;
+
+/// Number of files by folder, the top modules, and the next step.
+pub(crate) fn generate(document: &Document) -> String {
+    let folder = Path::new(&document.folder);
+    let top = match (document.top.as_slice(), document.line) {
+        ([shapers, stage], _) => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
+        ([shapers, stage, link], Some(line)) => {
+            format!(
+                "top modules: {shapers} (the shapers), {stage} (the whole stage), {link} (the stage with its {line})"
+            )
+        }
+        _ => format!("top module: {} (the shapers)", document.top.join(", ")),
+    };
+    format!(
+        "{} in {}: {}\n{top}\nnext: read {}; `posicast verify {}` compares this Verilog with its model\n",
+        counted(document.files.len() as u64, "file"),
+        folder.display(),
+        entries(document.files.iter().map(Path::new)).join(", "),
+        folder.join("README.md").display(),
+        shell_word(folder),
+    )
+}
+
+/// Every file, one a line.
+pub(crate) fn list(document: &Document) -> String {
+    let folder = Path::new(&document.folder);
+    let files = document.files.iter();
+    files.map(|file| format!("{}\n", folder.join(file).display())).collect()
+}
