@@ -1,7 +1,7 @@
 //! `posicast campaign`: long checks in parts, for many cores or many machines.
 
-use crate::output;
 use crate::terminal::Terminal;
+use crate::{output, render};
 use posicast_flow::campaign::{
     self, CampaignPart, CoverageOptions, FaultOptions, LockStepOptions, MutantOptions, NetlistOptions, Place,
     ProofOptions, SweepOptions, TrialOptions, WaveformOptions, place,
@@ -210,7 +210,9 @@ impl PartArgs {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let started = Instant::now();
     let (kind, part) = match &args.kind {
-        Kind::Merge(args) => return output::show(campaign::merge(&args.folder)?, args.json),
+        Kind::Merge(args) => {
+            return output::show_rendered(campaign::merge(&args.folder)?, args.json, render::campaign::merged);
+        }
         Kind::LockStep(args) => {
             let options = LockStepOptions {
                 source: args.source.clone(),
@@ -220,7 +222,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
                 edited: args.edited,
             };
             if args.prepare {
-                return output::show(campaign::prepare(&options, &Terminal)?, false);
+                return output::show_rendered(
+                    campaign::prepare(&options, &Terminal)?,
+                    false,
+                    render::campaign::prepared,
+                );
             }
             (campaign::CampaignKind::LockStep(options), &args.part)
         }
@@ -271,7 +277,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             (campaign::CampaignKind::Sweep(options), &args.part)
         }
     };
-    output::show(campaign::run(&kind, &part.part(), started, &Terminal)?, false)
+    let done = campaign::run(&kind, &part.part(), started, &Terminal)?;
+    output::show_rendered(done, false, render::campaign::part)
 }
 
 /// This command without the options that choose a part of the campaign.

@@ -1,7 +1,7 @@
 //! `posicast identify`: finds modes in a measured log, and writes a machine file with them.
 
 use crate::new::KindFlags;
-use crate::output;
+use crate::{output, render};
 use posicast_flow::Failure;
 use posicast_flow::compare::band;
 use posicast_flow::identify::{LogExcitation, LogOptions, Options, identify, positive, sweep};
@@ -107,5 +107,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         form: output::form(args.json),
     };
-    output::show(identify(&options)?, args.json)
+    output::show_rendered(identify(&options)?, args.json, render::identify)
 }

@@ -5,8 +5,7 @@
 
 mod questions;
 
-use crate::output;
-use crate::schema;
+use crate::{output, render, schema};
 use posicast_flow::Failure;
 use posicast_flow::identify::new_machine;
 use posicast_flow::template::{MachineDraft, MachineKind, to_measure};
@@ -75,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = claim(&args.file, args.force)?;
     if let Some(log) = &args.from_log {
         outputs.input("--from-log", log);
-        let said = new_machine(log, &args.file, args.kind.kind())?;
+        let said = render::identify(&new_machine(log, &args.file, args.kind.kind())?);
         return output::print_beside(&outputs, &format!("{said}{}\n", schema::hint(&args.file)));
     }
     let asks = stdin().is_terminal() && stderr().is_terminal();

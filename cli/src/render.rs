@@ -3,13 +3,18 @@
 //! There is one file per step, with a function from its document to lines; colours are escape sequences, which
 //! [`output`](crate::output) removes if nobody would see them.
 
+pub(crate) mod campaign;
 mod compare;
 mod files;
 mod generate;
+mod identify;
 mod simulate;
 mod synth;
+mod verify;
 
 pub(crate) use compare::compare;
 pub(crate) use generate::{generate, list};
+pub(crate) use identify::identify;
 pub(crate) use simulate::simulate;
 pub(crate) use synth::synth;
+pub(crate) use verify::{verify, verify_with_reached};

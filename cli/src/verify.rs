@@ -1,7 +1,7 @@
 //! `posicast verify`: compares the RTL with the bit-exact model, clock by clock, block by block.
 
 use crate::terminal::Terminal;
-use crate::{choice, output};
+use crate::{choice, output, render};
 use posicast_flow::replay::Recording;
 use posicast_flow::verify::{DEFAULT_SEED, Options, verify};
 use posicast_flow::{Failure, Simulator, clocks};
@@ -76,7 +76,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         cycles: args.cycles,
         seed: args.seed,
         edited: args.edited,
-        with_reached: args.verbose,
         recording: Recording {
             stimulus: recording.stimulus.clone(),
             map: recording.map.clone(),
@@ -85,5 +84,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             reset: recording.reset.clone(),
         },
     };
-    output::show(verify(&options, &Terminal)?, args.json)
+    let text = if args.verbose {
+        render::verify_with_reached
+    } else {
+        render::verify
+    };
+    output::show_rendered(verify(&options, &Terminal)?, args.json, text)
 }

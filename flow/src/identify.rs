@@ -6,7 +6,6 @@ mod findings;
 mod log_file;
 mod machine_file;
 mod pictures;
-mod text;
 
 use crate::Outcome;
 use crate::failure::Failure;
@@ -22,7 +21,7 @@ use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use std::path::{Path, PathBuf};
 
-pub use document::Document;
+pub use document::{Background, Document, IdentifiedMode, RecommendedShaper, WrittenMachine};
 pub use excitation::{LogExcitation, positive, sweep};
 pub use log_file::LogOptions;
 
@@ -95,23 +94,22 @@ pub fn identify(options: &Options) -> Result<Outcome<Document>, Failure> {
     if let Some((path, machine)) = &machine {
         write_sealed(path, machine.text.as_str())?;
     }
-    let written = machine.as_ref().map(|(path, machine)| (*path, machine));
-    let text = text::text(&options.log, &findings, written);
+    let written = machine.map(|(path, machine)| machine.at(path));
     let failed = findings
         .modes
         .is_empty()
         .then(|| none_found(&options.log, options.output.is_some()));
     Ok(Outcome {
         failed,
-        ..Outcome::passed(Document::new(&findings), text).beside(&outputs)
+        ..Outcome::passed(Document::new(&options.log, &findings, written), String::new()).beside(&outputs)
     })
 }
 
-/// Writes a machine file with the modes of a log, found with default settings, and returns the report.
+/// Writes a machine file with the modes of a log, found with default settings.
 ///
 /// # Errors
 /// [`Failure`] for files that cannot be read, understood or written, and for a log without a mode.
-pub fn new_machine(log: &Path, file: &Path, kind: Option<MachineKind>) -> Result<String, Failure> {
+pub fn new_machine(log: &Path, file: &Path, kind: Option<MachineKind>) -> Result<Document, Failure> {
     const OPTIONS: &str = "`posicast identify LOG -o FILE` has the options --columns, --rate and --direction";
     let reading = read(log, &LogOptions::default()).map_err(|failure| failure.or_help(OPTIONS))?;
     let mut findings =
@@ -122,7 +120,7 @@ pub fn new_machine(log: &Path, file: &Path, kind: Option<MachineKind>) -> Result
     let machine = machine_file::from_template(kind.unwrap_or(findings.kind()), file, None, &findings)?;
     findings.unit = machine.unit;
     write_sealed(file, machine.text.as_str())?;
-    Ok(text::text(log, &findings, Some((file, &machine))))
+    Ok(Document::new(log, &findings, Some(machine.at(file))))
 }
 
 fn none_found(log: &Path, wanted: bool) -> String {

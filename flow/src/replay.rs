@@ -3,7 +3,6 @@
 use crate::bench::{self, Needs, Simulator};
 use crate::failure::Failure;
 use crate::observer::Observer;
-use crate::text::few;
 use posicast_blocks::{Direction, Port};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, Sources};
@@ -50,96 +49,34 @@ impl Recording {
 
 /// Result of a replay, beside the rows of the report.
 #[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Replayed {
-    file: PathBuf,
-    /// Number of clocks that were replayed, and of clocks in which recorded outputs were compared.
-    clocks: u64,
-    compared: u64,
+pub struct Replayed {
+    /// The recording.
+    pub file: PathBuf,
+    /// Number of clocks that were replayed.
+    pub clocks: u64,
+    /// Number of clocks in which recorded outputs were compared.
+    pub compared: u64,
     /// Inputs that are not in the file and were held at 0.
-    missing_inputs: Vec<String>,
+    pub missing_inputs: Vec<String>,
     /// Outputs that are not in the file, which were compared between RTL and model only.
-    missing_outputs: Vec<String>,
+    pub missing_outputs: Vec<String>,
     /// Number of outputs of the block.
     #[serde(skip)]
-    outputs: usize,
-    /// Inputs in the file, and outputs of the model, that never changed in the clocks that were compared.
-    unchanged_inputs: Vec<String>,
-    unchanged_outputs: Vec<String>,
+    pub outputs: usize,
+    /// Inputs in the file that never changed in the clocks that were compared.
+    pub unchanged_inputs: Vec<String>,
+    /// Outputs of the model that never changed in the clocks that were compared.
+    pub unchanged_outputs: Vec<String>,
     /// Other things that a verdict on the block covers and that the recording does not exercise.
-    not_exercised: Vec<String>,
-    /// Number of clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
-    unknown_input_clocks: u64,
-    unknown_output_clocks: u64,
+    pub not_exercised: Vec<String>,
+    /// Number of clocks in which recorded bits of inputs were `x` or `z`, and were taken as 0.
+    pub unknown_input_clocks: u64,
+    /// Number of clocks in which recorded bits of outputs were `x` or `z`, and were not compared.
+    pub unknown_output_clocks: u64,
     /// Number of signals of the file that are not ports.
-    other_signals: usize,
-    notes: Vec<String>,
-}
-
-impl Replayed {
-    /// Inputs that are not in the file.
-    pub(crate) fn missing_inputs(&self) -> &[String] {
-        &self.missing_inputs
-    }
-
-    /// Taps, banks and levels of flags that the recording does not exercise.
-    pub(crate) fn not_exercised(&self) -> &[String] {
-        &self.not_exercised
-    }
-
-    /// How many of the block's outputs the recording changes, for the line of the verdict.
-    pub(crate) fn summary(&self) -> String {
-        let changed = self.outputs - self.unchanged_outputs.len();
-        let mut text = format!(
-            "{changed} of {} change in the recording",
-            counted(self.outputs as u64, "output")
-        );
-        if !self.not_exercised.is_empty() {
-            text += &format!(
-                ", {} not exercised by it (see above)",
-                counted(self.not_exercised.len() as u64, "thing")
-            );
-        }
-        text
-    }
-
-    /// The result in words, in lines.
-    pub(crate) fn text(&self) -> String {
-        let mut text = format!(
-            "replayed {}: {}, recorded outputs compared in {} of them\n",
-            self.file.display(),
-            counted(self.clocks, "clock"),
-            self.compared
-        );
-        let mut line = |names: &[String], what: &str| {
-            if !names.is_empty() {
-                text += &format!("  {what}: {}\n", few(names));
-            }
-        };
-        line(&self.notes, "time");
-        line(&self.missing_inputs, "inputs not in the file, held at 0");
-        line(
-            &self.missing_outputs,
-            "outputs not in the file, compared between RTL and model only",
-        );
-        line(&self.unchanged_inputs, "inputs that never change");
-        line(&self.unchanged_outputs, "outputs that never change");
-        line(&self.not_exercised, "not exercised");
-        for (clocks, what) in [
-            (self.unknown_input_clocks, "with x or z in inputs, taken as 0"),
-            (
-                self.unknown_output_clocks,
-                "with x or z in outputs, whose bits were not compared",
-            ),
-        ] {
-            if clocks > 0 {
-                text += &format!("  clocks {what}: {clocks}\n");
-            }
-        }
-        if self.other_signals > 0 {
-            text += &format!("  signals of the file that are not ports: {}\n", self.other_signals);
-        }
-        text
-    }
+    pub other_signals: usize,
+    /// Where the comparison begins, and by which clock.
+    pub notes: Vec<String>,
 }
 
 /// Replays the recording, for at most `most_clocks` clocks, into the block that has most ports in it, in each of these simulators, and

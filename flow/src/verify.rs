@@ -3,10 +3,9 @@
 mod dependence;
 mod document;
 mod folder;
-mod reached;
 
-pub use self::document::Document;
-use self::folder::Folder;
+pub use self::document::{Document, FilesVerdict};
+pub use self::folder::ComparedFolder;
 use crate::Outcome;
 use crate::bench::{self, Bench, Needs, Simulator};
 use crate::design::DesignReport;
@@ -39,8 +38,6 @@ pub struct Options {
     pub seed: u64,
     /// Whether both simulators judge edited Verilog of the folder; otherwise it is no match.
     pub edited: bool,
-    /// Whether the text also shows what the clocks of each row reached.
-    pub with_reached: bool,
     /// Recorded stimuli.
     pub recording: Recording,
 }
@@ -109,7 +106,7 @@ pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
         observer.say("warning: no output sample was among these clocks: compare more with --cycles");
     }
     let mut not_exercised = report.not_exercised_names();
-    not_exercised.extend(replayed.iter().flat_map(|replayed| replayed.not_exercised()).cloned());
+    not_exercised.extend(replayed.iter().flat_map(|replayed| &replayed.not_exercised).cloned());
     let mut document = Document {
         reason: None,
         least_clocks: job.least_clocks(),
@@ -122,15 +119,9 @@ pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
         report,
     };
     document.reason = document.failed();
-    let reached = if options.with_reached {
-        reached::text(&document.report) + "\n"
-    } else {
-        String::new()
-    };
-    let text = reached + &document.text();
     Ok(Outcome {
         failed: document.reason.clone(),
-        ..Outcome::passed(document, text)
+        ..Outcome::passed(document, String::new())
     })
 }
 
@@ -148,12 +139,12 @@ pub(crate) struct Job {
     pub(crate) machine: String,
     pub(crate) blocks: Vec<(Box<dyn Block>, Sources)>,
     /// The differences between the files of the folder and those that posicast generates, if the source is a folder.
-    folder: Option<Folder>,
+    folder: Option<ComparedFolder>,
 }
 
 impl Job {
     /// Returns the blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` is that of
-    /// [`Folder`].
+    /// [`ComparedFolder`].
     pub(crate) fn new(
         source: &Path,
         names: &[String],
@@ -175,7 +166,7 @@ impl Job {
         let compared = match &folder {
             Some(contents) => {
                 let modules = built.modules(&path)?;
-                Some(Folder::compare(source, contents, &modules, edits_accepted)?)
+                Some(ComparedFolder::compare(source, contents, &modules, edits_accepted)?)
             }
             None => None,
         };
@@ -229,7 +220,7 @@ impl Job {
     /// Why the folder's files are no match whatever a simulation shows; `None` if they may be one.
     pub(crate) fn folder_fails(&self) -> Option<String> {
         let folder = self.folder.as_ref().filter(|folder| folder.fails());
-        folder.map(Folder::text)
+        folder.map(ComparedFolder::text)
     }
 
     /// Removes blocks that RustHDL's simulator cannot run, with a note; returns an error if nothing is left.
@@ -292,7 +283,7 @@ impl Job {
 
     /// The blocks whose Verilog has a file that was edited.
     fn edited_blocks(&self) -> impl Iterator<Item = &(Box<dyn Block>, Sources)> {
-        let edited = self.folder.as_ref().map_or_else(Vec::new, Folder::accepted);
+        let edited = self.folder.as_ref().map_or_else(Vec::new, ComparedFolder::accepted);
         self.blocks.iter().filter(move |(_, sources)| {
             let names = sources.files().iter().filter_map(|file| file.file_name()?.to_str());
             names.into_iter().any(|name| edited.contains(&name))

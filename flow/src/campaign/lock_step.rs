@@ -1,5 +1,6 @@
 //! `posicast campaign lock-step`: the lock step of `verify` over many clocks, each unit with a seed of its own.
 
+use super::document::PreparedSimulations;
 use super::{UnitOutcome, Units, figures, hash_of, row_name};
 use crate::Outcome;
 use crate::bench::{self, Simulator};
@@ -31,7 +32,7 @@ pub struct LockStepOptions {
 ///
 /// # Errors
 /// [`Failure`] for files that cannot be read or built, and for a missing tool.
-pub fn prepare(options: &LockStepOptions, observer: &dyn Observer) -> Result<Outcome<()>, Failure> {
+pub fn prepare(options: &LockStepOptions, observer: &dyn Observer) -> Result<Outcome<PreparedSimulations>, Failure> {
     LockStep::new(options, observer)?.prepare(observer)
 }
 
@@ -79,7 +80,7 @@ impl LockStep {
         ((unit % rows) as usize, unit / rows)
     }
 
-    fn prepare(&self, observer: &dyn Observer) -> Result<Outcome<()>, Failure> {
+    fn prepare(&self, observer: &dyn Observer) -> Result<Outcome<PreparedSimulations>, Failure> {
         self.require_tools()?;
         let bar = observer.begin("building", Some(self.rows.len() as u64));
         for ((block, sources), name) in self.rows.iter().zip(&self.names) {
@@ -89,11 +90,11 @@ impl LockStep {
                 .map_err(bench::failure)?;
             bar.advance(1);
         }
-        let built = counted(self.rows.len() as u64, "simulation");
-        Ok(Outcome::passed(
-            (),
-            format!("{built} are built, for {} units\n", self.count()),
-        ))
+        let prepared = PreparedSimulations {
+            simulations: self.rows.len(),
+            units: self.count(),
+        };
+        Ok(Outcome::passed(prepared, String::new()))
     }
 }
 

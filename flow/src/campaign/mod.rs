@@ -1,9 +1,10 @@
 //! `posicast campaign`: long checks in parts, for many cores or many machines.
 //!
-//! A file per kind of campaign has the list of units and the work of a unit. This file runs the units of a shard, writes its file, and
-//! prints its table; `merge` joins the files.
+//! A file per kind of campaign has the list of units and the work of a unit. This file runs the units of a shard, and writes its file;
+//! `merge` joins the files.
 
 mod coverage;
+mod document;
 mod faults;
 mod identify;
 mod lock_step;
@@ -17,12 +18,9 @@ mod waveforms;
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::observer::Observer;
-use crate::text::{Table, shell_word};
 use posicast_machine::spelling::did_you_mean;
 use posicast_testbench::blocks::Block;
-use posicast_testbench::shard::{
-    self, CampaignHead, FORMAT, MachineFileHash, MergedRow, Shard, ShardDocument, UnitResult,
-};
+use posicast_testbench::shard::{CampaignHead, FORMAT, MachineFileHash, Shard, ShardDocument, UnitResult};
 use posicast_testbench::wording::counted;
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
@@ -30,6 +28,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 pub use coverage::CoverageOptions;
+use document::problem;
+pub use document::{Document, MergedShards, PartFile, PreparedSimulations, ShardCosts, UnitCounts};
 pub use faults::FaultOptions;
 pub use identify::TrialOptions;
 pub use lock_step::{LockStepOptions, prepare};
@@ -118,7 +118,7 @@ pub fn run(
     part: &CampaignPart,
     started: Instant,
     observer: &dyn Observer,
-) -> Result<Outcome<()>, Failure> {
+) -> Result<Outcome<Document>, Failure> {
     let run = |campaign: &dyn Units| run_part(campaign, part, started, observer);
     match kind {
         CampaignKind::LockStep(options) => run(&lock_step::LockStep::new(options, observer)?),
@@ -182,7 +182,7 @@ fn run_part(
     part: &CampaignPart,
     started: Instant,
     observer: &dyn Observer,
-) -> Result<Outcome<()>, Failure> {
+) -> Result<Outcome<Document>, Failure> {
     let units = campaign.count();
     if let Some(unit) = part.unit {
         if unit >= units {
@@ -191,7 +191,11 @@ fn run_part(
                     .with_help("units are counted from 0"),
             );
         }
-        return Ok(finish(&done(campaign, [unit], part.seed, observer)?, part, ""));
+        return Ok(finish(
+            &done(campaign, [unit], part.seed, observer)?,
+            part,
+            PartFile::None,
+        ));
     }
     let head = CampaignHead {
         posicast_campaign: FORMAT,
@@ -203,13 +207,12 @@ fn run_part(
         units,
     };
     if let Some(results) = finished(&head, part)? {
-        let beside = "; this shard was finished already and was not run again";
-        return Ok(finish(&results, part, beside));
+        return Ok(finish(&results, part, PartFile::Finished));
     }
     let prepared = Instant::now();
     let results = done(campaign, part.shard.units(units), part.seed, observer)?;
     let Some(path) = &part.json else {
-        return Ok(finish(&results, part, ""));
+        return Ok(finish(&results, part, PartFile::None));
     };
     let document = ShardDocument {
         head,
@@ -220,8 +223,7 @@ fn run_part(
         results,
     };
     document.write(path).map_err(Failure::because)?;
-    let beside = format!("; written to {}", shell_word(path));
-    Ok(finish(&document.results, part, &beside))
+    Ok(finish(&document.results, part, PartFile::Written(path.clone())))
 }
 
 /// Returns the results in the file of this shard; `None` if there is no file.
@@ -270,92 +272,13 @@ fn done(
     Ok(results)
 }
 
-/// Returns the table of these results; failed if one of them failed.
-fn finish(results: &[UnitResult], part: &CampaignPart, beside: &str) -> Outcome<()> {
-    let failed: Vec<&UnitResult> = results.iter().filter(|result| result.failure.is_some()).collect();
-    let mut text = table(&shard::rows(results));
-    for result in failed.iter().take(MOST_SHOWN) {
-        text += &of_failure(result);
-    }
-    text += &format!("{}{beside}\n", counts(results));
+/// Returns the document of these results; failed if one of them failed.
+fn finish(results: &[UnitResult], part: &CampaignPart, file: PartFile) -> Outcome<Document> {
     Outcome {
         failed: problem(results, part.unit.is_none() && part.shard == Shard::WHOLE),
-        ..Outcome::passed((), text)
+        ..Outcome::passed(Document::new(results, file), String::new())
     }
 }
 
-/// Returns the numbers of units, of failed and of refused ones.
-fn counts(results: &[UnitResult]) -> String {
-    let failed = results.iter().filter(|result| result.failure.is_some()).count();
-    let refused = match results.iter().filter(|result| is_refused(result)).count() {
-        0 => String::new(),
-        count => format!(", {count} refused"),
-    };
-    format!("{}, {failed} failed{refused}", counted(results.len() as u64, "unit"))
-}
-
-fn is_refused(result: &UnitResult) -> bool {
-    result.figures.contains_key(REFUSED)
-}
-
-/// Number of failures that are shown in words.
-const MOST_SHOWN: usize = 5;
-
-fn of_failure(result: &UnitResult) -> String {
-    let why = result.failure.as_deref().unwrap_or_default();
-    format!("unit {}, {}: {why}\n", result.unit, result.name)
-}
-
-/// Returns why a part of a campaign, or all of it, fails. A part without a unit has checked nothing, nor has a campaign whose units were
-/// all refused.
-fn problem(results: &[UnitResult], are_all: bool) -> Option<String> {
-    let failed = results.iter().filter(|result| result.failure.is_some()).count();
-    if results.is_empty() {
-        Some("no unit was done: this part of the campaign is empty".to_owned())
-    } else if are_all && results.iter().all(is_refused) {
-        Some("no unit was done: all were refused".to_owned())
-    } else {
-        (failed > 0).then(|| format!("{failed} of {} failed", counted(results.len() as u64, "unit")))
-    }
-}
-
-/// A table with a row for each name, and a column for each figure.
-fn table(rows: &[MergedRow]) -> String {
-    let mut columns: Vec<&str> = Vec::new();
-    for row in rows {
-        for name in row.figures.keys().filter(|name| *name != REFUSED) {
-            if !columns.contains(&name.as_str()) {
-                columns.push(name);
-            }
-        }
-    }
-    let headings: Vec<String> = columns.iter().map(|column| format!(">{column}")).collect();
-    let headings = ["name", ">units"]
-        .into_iter()
-        .chain(headings.iter().map(String::as_str));
-    let mut table = Table::new(&headings.collect::<Vec<_>>());
-    for row in rows {
-        let cell = |column: &&str| match row.figures.get(*column) {
-            None | Some(Value::Null) => "–".to_owned(),
-            Some(Value::String(text)) => text.clone(),
-            Some(other) => other.to_string(),
-        };
-        let cells = columns.iter().map(cell);
-        table.row([row.name.clone(), row.units.to_string()].into_iter().chain(cells));
-    }
-    let refused = rows
-        .iter()
-        .filter_map(|row| Some((&row.name, row.figures.get(REFUSED)?.as_str()?)));
-    table.text("")
-        + &refused
-            .map(|(name, why)| {
-                format!(
-                    "{name}: {}\n",
-                    why.lines().map(str::trim).collect::<Vec<_>>().join("; ")
-                )
-            })
-            .collect::<String>()
-}
-
-/// Name of the figure that gives the reason for a unit without others; it becomes a line below the table.
-const REFUSED: &str = "refused";
+/// Name of the figure that gives the reason for a unit without others.
+pub const REFUSED: &str = "refused";

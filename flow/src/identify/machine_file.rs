@@ -1,5 +1,6 @@
 //! Writes a machine file with the modes that were found.
 
+use super::document::WrittenMachine;
 use super::findings::Findings;
 use crate::failure::Failure;
 use crate::machine;
@@ -19,6 +20,17 @@ pub(super) struct Written {
     pub(super) unit: AxisUnit,
     /// The axis from which the other values were copied, if the axis was added.
     pub(super) copied_from: Option<String>,
+}
+
+impl Written {
+    /// The same in the document, as the file at `path`.
+    pub(super) fn at(self, path: &Path) -> WrittenMachine {
+        WrittenMachine {
+            path: path.to_owned(),
+            text: self.text,
+            copied_from: self.copied_from,
+        }
+    }
 }
 
 /// The template, with only the axis that was measured.

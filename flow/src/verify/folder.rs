@@ -63,9 +63,10 @@ impl Kind {
 
 /// The findings about a folder.
 #[derive(Debug, Default, Serialize, JsonSchema)]
-pub(super) struct Folder {
+#[schemars(rename = "Folder")]
+pub struct ComparedFolder {
     /// Number of Verilog files that are, byte for byte, what posicast generates.
-    identical: usize,
+    pub identical: usize,
     differences: Vec<Difference>,
     /// Whether the user asked that the simulation alone judges edited Verilog.
     edits_accepted: bool,
@@ -73,7 +74,7 @@ pub(super) struct Folder {
     path: PathBuf,
 }
 
-impl Folder {
+impl ComparedFolder {
     /// Compares the folder `root` with these modules, which were generated from the machine file in it. With
     /// `edits_accepted`, edited Verilog is reported and does not fail.
     pub(super) fn compare(
@@ -200,13 +201,15 @@ impl Folder {
         names.filter(|_| self.edits_accepted && !self.fails()).collect()
     }
 
-    /// Number of edited lines of Verilog, without tables.
-    fn edited(&self) -> usize {
+    /// Number of edited files of Verilog, without tables.
+    #[must_use]
+    pub fn edited(&self) -> usize {
         self.differences.iter().filter(|d| d.kind == Kind::Verilog).count()
     }
 
-    /// A line per difference, then the remedy.
-    pub(super) fn text(&self) -> String {
+    /// A line per difference, then the remedy: a message of the step, and a part of its result.
+    #[must_use]
+    pub fn text(&self) -> String {
         let mut text = String::new();
         for difference in self.differences.iter().take(SHOWN) {
             let line = difference.line.map_or_else(String::new, |line| format!(":{line}"));
@@ -231,15 +234,6 @@ impl Folder {
             };
         }
         text
-    }
-
-    /// Summary of the comparison, for the line of the verdict.
-    pub(super) fn summary(&self) -> String {
-        let same = format!("{} files are what posicast generates", self.identical);
-        match self.edited() {
-            0 => same,
-            edited => format!("{same}, {edited} edited (see above)"),
-        }
     }
 }
 
@@ -337,8 +331,8 @@ mod tests {
     const ROM: &str =
         "module m_machine_taps;\n    words[0] = 25'h000634c; // 0.38\n    words[1] = 25'h0982e5e;\nendmodule\n";
 
-    fn compared(text: &str) -> Folder {
-        let mut folder = Folder::default();
+    fn compared(text: &str) -> ComparedFolder {
+        let mut folder = ComparedFolder::default();
         folder.file("rtl/m_machine_taps.v", "m_machine_taps", ROM, text);
         folder
     }
