@@ -62,5 +62,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         distance: args.distance.clone(),
         form: output::form(args.json),
     };
-    output::show(design(&options, &Terminal)?, args.json)
+    output::show_rendered(design(&options, &Terminal)?, args.json, render::design)
 }

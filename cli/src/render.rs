@@ -5,6 +5,7 @@
 
 pub(crate) mod campaign;
 mod compare;
+mod design;
 mod files;
 mod generate;
 mod identify;
@@ -13,6 +14,7 @@ mod synth;
 mod verify;
 
 pub(crate) use compare::compare;
+pub(crate) use design::design;
 pub(crate) use generate::{generate, list};
 pub(crate) use identify::identify;
 pub(crate) use simulate::simulate;

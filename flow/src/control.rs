@@ -7,8 +7,6 @@ use posicast_machine::control::DEFAULT_MARGIN;
 use posicast_machine::control::sampled::Margins;
 use posicast_machine::hardware::{AxisLoop, Hardware};
 use posicast_machine::machine_file::Machine;
-use posicast_machine::unit::AxisUnit;
-use posicast_shaper::unit::show_seconds;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -16,7 +14,6 @@ use std::collections::BTreeMap;
 /// The controller of one axis, prepared for output.
 pub(crate) struct AxisControl {
     pub(crate) axis: String,
-    pub(crate) unit: AxisUnit,
     pub(crate) of_axis: AxisLoop,
 }
 
@@ -35,7 +32,6 @@ pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Opti
     let controls = axes.map(|(axis, built)| {
         built.control.clone().map(|of_axis| AxisControl {
             axis: axis.name.clone(),
-            unit: axis.unit,
             of_axis,
         })
     });
@@ -66,37 +62,6 @@ impl AxisControl {
         let range = self.of_axis.no_travel.iter();
         let range = range.map(|warning| ("axis.limits.travel", warning.to_string()));
         of_law.chain(hardware).chain(range).collect()
-    }
-
-    /// A line of text for people.
-    pub(crate) fn text(&self) -> String {
-        format!(
-            "  controller {}: loop lag {}, friction leaves {} of error\n  {}\n",
-            self.law(),
-            show_seconds(self.of_axis.lag_s, 4),
-            self.unit.show(self.of_axis.derived.steady_error, 3),
-            self.margins_text()
-        )
-    }
-
-    fn margins_text(&self) -> String {
-        let margins = &self.of_axis.derived.margins;
-        let figure = |value: Option<f64>, digits: usize, unit: &str| match value {
-            Some(value) if value.is_finite() => format!("{value:.digits$} {unit}"),
-            _ => "without limit".to_owned(),
-        };
-        format!(
-            "stability of the sampled loop on this machine: gain margin {}, phase margin {}, delay margin {}, modulus margin {:.2}, \
-             crossover at {}",
-            figure(margins.gain_margin_db(), 1, "dB"),
-            figure(margins.phase_margin_deg, 0, "degrees"),
-            match margins.delay_margin_s.filter(|time_s| time_s.is_finite()) {
-                Some(time_s) => show_seconds(time_s, 3),
-                None => "without limit".to_owned(),
-            },
-            margins.modulus_margin,
-            figure(margins.crossover_hz, 2, "Hz"),
-        )
     }
 
     /// The Nyquist curve round −1, with the circle that the default gains avoid.
@@ -152,7 +117,7 @@ impl AxisControl {
             margins: StabilityMargins::new(&self.of_axis.derived.margins),
             settings: SettingRow::ALL
                 .into_iter()
-                .map(|row| Setting {
+                .map(|row| ControlSetting {
                     row: format!("{row:?}").to_lowercase(),
                     value: self.of_axis.derived.gains.get(row),
                     word: self.of_axis.derived.settings.word(row as usize),
@@ -174,31 +139,38 @@ impl AxisControl {
 
 /// `control` of an axis in `design --json` and `report.json`.
 #[derive(Serialize, JsonSchema)]
-pub(crate) struct Control {
-    law: &'static str,
+pub struct Control {
+    /// The law: `sliding-mode`, `pd` or `pid`.
+    pub law: &'static str,
     /// Lag from the position to the drive's response, in s.
-    lag_s: f64,
+    pub lag_s: f64,
     /// Error in m or rad that Coulomb friction leaves.
-    steady_error: f64,
+    pub steady_error: f64,
     /// Margins of the sampled loop on the machine of the file.
-    margins: StabilityMargins,
+    pub margins: StabilityMargins,
     /// Contents of the controller's memory after reset, by address.
-    settings: Vec<Setting>,
+    pub settings: Vec<ControlSetting>,
     /// Initial words of the axis's supervisor, by name.
-    supervision: BTreeMap<&'static str, i64>,
-    warnings: Vec<String>,
+    pub supervision: BTreeMap<&'static str, i64>,
+    /// What is doubtful about the controller.
+    pub warnings: Vec<String>,
 }
 
 /// Stability margins; null where there is no limit.
 #[derive(Serialize, JsonSchema)]
-struct StabilityMargins {
-    gain_margin_db: Option<f64>,
+pub struct StabilityMargins {
+    /// Increase of the gains, in dB, that makes the loop unstable.
+    pub gain_margin_db: Option<f64>,
     /// Reduction of the gains, in dB, that makes the loop unstable.
-    gain_reduction_db: Option<f64>,
-    phase_margin_deg: Option<f64>,
-    delay_margin_s: Option<f64>,
-    modulus_margin: f64,
-    crossover_hz: Option<f64>,
+    pub gain_reduction_db: Option<f64>,
+    /// Smallest distance of the phase from −180° where the gain is 1.
+    pub phase_margin_deg: Option<f64>,
+    /// Additional delay that makes the loop unstable.
+    pub delay_margin_s: Option<f64>,
+    /// Smallest distance of the open loop from −1.
+    pub modulus_margin: f64,
+    /// Highest frequency at which the gain of the open loop is 1.
+    pub crossover_hz: Option<f64>,
 }
 
 impl StabilityMargins {
@@ -215,10 +187,14 @@ impl StabilityMargins {
     }
 }
 
+/// A word of the controller's memory.
 #[derive(Serialize, JsonSchema)]
-struct Setting {
-    row: String,
+#[schemars(rename = "Setting")]
+pub struct ControlSetting {
+    /// Name of the row.
+    pub row: String,
     /// Value in counts, ticks and command units.
-    value: f64,
-    word: u32,
+    pub value: f64,
+    /// The word.
+    pub word: u32,
 }

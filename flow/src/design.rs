@@ -29,19 +29,28 @@ use posicast_machine::plan::{MachineDesign, design_machine};
 use posicast_shaper::design::convolution_figures;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
-use posicast_testbench::wording::counted;
 use std::path::{Path, PathBuf};
 
 use axis::AxisReport;
 use certificate::CertificateReport;
-use delay::EqualDelays;
-pub use document::Document;
 use error_table::ErrorTableReport;
 use family::FamilyReport;
 use front::FrontReport;
 use given_move::MoveReport;
+
+pub use crate::control::{Control, ControlSetting, StabilityMargins};
+pub use certificate::{Certificate, CertifiedMode, LeastDuration, ProofPoint, WorstPoint};
+pub use delay::{DelayParts, EqualDelays};
+pub use document::{
+    Clocking, DesignAxis, DesignImpulse, DesignMode, Document, FreeMode, Mechanics, ModeClass, PeriodicSolution,
+    Quantised, Residual, ShaperCrossGain, TableTap,
+};
+pub use error_table::DesignErrorTable;
+pub use family::{DesignFamily, FamilyMode, FamilyTable};
+pub use front::{Front, FrontDuration};
+pub use given_move::{ComparedMove, MoveByPeriod, MoveTimes};
 pub(crate) use sensitivity::sensitivity_panels;
-use together::TogetherReport;
+pub use together::Together;
 
 /// Options of a design and its output.
 #[derive(Debug, Clone)]
@@ -99,9 +108,7 @@ pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
     let mut document = report.json();
     document.fronts = fronts.iter().map(FrontReport::json).collect();
     document.moves = moves.iter().map(MoveReport::json).collect();
-    let fronts: String = fronts.iter().map(FrontReport::text).collect();
-    let moves: String = moves.iter().map(MoveReport::text).collect();
-    Ok(Outcome::passed(document, report.text() + &fronts + &moves).beside(&outputs))
+    Ok(Outcome::passed(document, String::new()).beside(&outputs))
 }
 
 /// The design of a machine with its figures at every mode.
@@ -203,6 +210,11 @@ impl<'a> DesignReport<'a> {
         let axes = self.axes().map(|a| a.json(self.design.sample_hz, fraction)).collect();
         Document {
             name: self.machine.name.clone(),
+            clocking: Clocking {
+                clock_hz: self.machine.clock.frequency_hz,
+                sample_hz: self.machine.clock.sample_hz,
+                coefficient_fraction: fraction,
+            },
             axes,
             fronts: Vec::new(),
             moves: Vec::new(),
@@ -212,23 +224,5 @@ impl<'a> DesignReport<'a> {
                 .as_ref()
                 .map(|stage| EqualDelays::new(stage, &self.design)),
         }
-    }
-
-    fn text(&self) -> String {
-        let clock = &self.machine.clock;
-        let mut text = format!(
-            "{}: {}, {} MHz clock, {} Hz samples, coefficients with {} fraction bits\n",
-            self.machine.name,
-            counted(self.machine.axes.len() as u64, "axis"),
-            clock.frequency_hz / 1e6,
-            clock.sample_hz,
-            self.design.coefficient_fraction,
-        );
-        for axis in self.axes() {
-            text.push('\n');
-            text += &axis.text(self.design.sample_hz);
-        }
-        text += &delay::text(self.machine, &self.design);
-        text + &TogetherReport::new(&self.design).map_or_else(String::new, |together| together.text())
     }
 }

@@ -1,15 +1,13 @@
 //! The certificate of an axis's table, for `--certify` and for every `optimal` design.
 
-use crate::text::{Table, percent};
 use posicast_machine::machine_file::AxisSection;
 use posicast_machine::plan::AxisTables;
 use posicast_machine::plan::{AxisCertificate, ModeCertificate, certify_axis};
+use posicast_shaper::certify::{CheckedBound, ShorterError};
 use posicast_shaper::design::Findings;
 use posicast_shaper::design::optimal::Optimal;
-use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// The certificate of an axis, with the certified design.
 pub(super) struct CertificateReport<'a> {
@@ -38,81 +36,6 @@ impl<'a> CertificateReport<'a> {
     /// The certified residual of the mode of this index.
     pub(super) fn residual(&self, mode: usize) -> Option<f64> {
         self.certificate.modes.get(mode).map(|mode| mode.residual.bound)
-    }
-
-    pub(super) fn text(&self) -> String {
-        let mut text = String::new();
-        if !self.certificate.modes.is_empty() {
-            let mut table = Table::new(&[
-                "mode from Hz",
-                ">to Hz",
-                ">damping from",
-                ">to",
-                ">tolerance %",
-                ">certified %",
-                ">found %",
-                ">at Hz",
-                "",
-            ]);
-            for mode in &self.certificate.modes {
-                table.row(row(mode));
-            }
-            let _ = write!(
-                text,
-                "\n  certified: nowhere in these bands do the integer taps leave more\n{}",
-                table.text("  ")
-            );
-        }
-        if let Some(optimal) = self.optimal {
-            text += &self.shorter_text(optimal);
-        }
-        text
-    }
-
-    fn shorter_text(&self, optimal: &Optimal) -> String {
-        let mut text = self.least_text(optimal);
-        if optimal.is_together {
-            text += "  this is about the axis alone; its taps are those of the joint design below\n";
-        } else if self.samples > optimal.least_samples {
-            let more = self.samples - optimal.least_samples;
-            let _ = writeln!(
-                text,
-                "  the limit of {2} costs {0} more, {1:.4} ms",
-                counted(u64::from(more), "sample"),
-                f64::from(more) / self.sample_hz * 1e3,
-                counted(optimal.request.most_taps as u64, "tap"),
-            );
-        }
-        text
-    }
-
-    fn least_text(&self, optimal: &Optimal) -> String {
-        let milliseconds = |samples: u32| f64::from(samples) / self.sample_hz * 1e3;
-        let least = optimal.least_samples;
-        match &self.certificate.shorter {
-            Some(Ok(bound)) if bound.points == 0 => format!(
-                "\n  least duration {least} samples, {:.4} ms. Proof, checked: amplitudes within the bounds on at most {} samples do not \
-                 sum to 1\n",
-                milliseconds(least),
-                bound.samples + 1,
-            ),
-            Some(Ok(bound)) => format!(
-                "\n  least duration {least} samples, {:.4} ms. Proof, checked: every shaper of at most {} samples leaves, at one of {} of \
-                 the bands, at least {:.6} of what is tolerated there\n",
-                milliseconds(least),
-                bound.samples,
-                counted(bound.points as u64, "point"),
-                bound.ratio,
-            ),
-            Some(Err(error)) => format!(
-                "\n  shortest found {least} samples, {:.4} ms; not proven to be the least: {error}\n",
-                milliseconds(least)
-            ),
-            None => format!(
-                "\n  shortest found {least} samples, {:.4} ms; not proven to be the least\n",
-                milliseconds(least)
-            ),
-        }
     }
 
     pub(super) fn json(&self) -> Certificate {
@@ -144,48 +67,50 @@ impl<'a> CertificateReport<'a> {
                     weight: point.weight,
                 })
                 .collect(),
+            checked: self.certificate.shorter.clone(),
+            is_together: optimal.is_together,
+            samples: self.samples,
+            most_taps: optimal.request.most_taps,
         }
     }
 }
 
-fn row(mode: &ModeCertificate) -> [String; 9] {
-    let ([low_hz, high_hz], [least, most]) = (mode.band.frequency_hz, mode.band.damping);
-    [
-        format!("{low_hz:.3}"),
-        format!("{high_hz:.3}"),
-        format!("{least:.4}"),
-        format!("{most:.4}"),
-        percent(mode.tolerance),
-        percent(mode.residual.bound),
-        percent(mode.residual.found),
-        format!("{:.3}", mode.residual.at.frequency_hz),
-        if mode.holds() { "" } else { "above the tolerance" }.into(),
-    ]
-}
-
 /// What is certified of an axis.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct Certificate {
-    modes: Vec<CertifiedMode>,
+pub struct Certificate {
+    /// The modes, in the order of the file.
+    pub modes: Vec<CertifiedMode>,
+    /// Of `optimal`: what is known about shorter shapers.
     #[serde(skip_serializing_if = "Option::is_none")]
-    shorter: Option<LeastDuration>,
+    pub shorter: Option<LeastDuration>,
 }
 
+/// What is certified of a mode.
 #[derive(Serialize, JsonSchema)]
-struct CertifiedMode {
-    frequency_hz: [f64; 2],
-    damping: [f64; 2],
-    tolerance: f64,
-    certified_residual: f64,
-    found_residual: f64,
-    found_at: WorstPoint,
-    holds: bool,
+pub struct CertifiedMode {
+    /// Lower and upper end of the band of frequencies.
+    pub frequency_hz: [f64; 2],
+    /// Least and largest damping ratio of the band.
+    pub damping: [f64; 2],
+    /// Largest residual that the machine file allows.
+    pub tolerance: f64,
+    /// Upper bound of the residual in the band.
+    pub certified_residual: f64,
+    /// Largest residual that was found there.
+    pub found_residual: f64,
+    /// Where it was found.
+    pub found_at: WorstPoint,
+    /// Whether the bound is within the tolerance.
+    pub holds: bool,
 }
 
+/// A point of a band.
 #[derive(Serialize, JsonSchema)]
-struct WorstPoint {
-    frequency_hz: f64,
-    damping: f64,
+pub struct WorstPoint {
+    /// Natural frequency.
+    pub frequency_hz: f64,
+    /// Damping ratio.
+    pub damping: f64,
 }
 
 impl CertifiedMode {
@@ -207,17 +132,36 @@ impl CertifiedMode {
 
 /// That no shorter shaper exists, with the points and weights that prove it; modes are counted from 1.
 #[derive(Serialize, JsonSchema)]
-struct LeastDuration {
-    least_samples: u32,
-    least_duration_s: f64,
-    proven: bool,
-    excluded_samples: Option<u32>,
-    excluded_ratio: Option<f64>,
-    points: Vec<ProofPoint>,
+pub struct LeastDuration {
+    /// The shortest duration that was found.
+    pub least_samples: u32,
+    /// The same in seconds.
+    pub least_duration_s: f64,
+    /// Whether no shorter one exists.
+    pub proven: bool,
+    /// Duration up to which there is none.
+    pub excluded_samples: Option<u32>,
+    /// The least part of the tolerance that each of those leaves somewhere.
+    pub excluded_ratio: Option<f64>,
+    /// Points of the bands, with weights, that prove it.
+    pub points: Vec<ProofPoint>,
+    /// The proof, checked, or why it is none; `None` if there is no proof.
+    #[serde(skip)]
+    pub checked: Option<Result<CheckedBound, ShorterError>>,
+    /// Whether the taps are those of a joint design of several axes.
+    #[serde(skip)]
+    pub is_together: bool,
+    /// Duration of the design.
+    #[serde(skip)]
+    pub samples: u32,
+    /// The number of taps that the machine file allows.
+    #[serde(skip)]
+    pub most_taps: usize,
 }
 
+/// A point of the band of a mode, with its weight in a proof.
 #[derive(Serialize, JsonSchema)]
-struct ProofPoint {
+pub struct ProofPoint {
     mode: usize,
     frequency_hz: f64,
     damping: f64,

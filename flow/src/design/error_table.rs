@@ -1,10 +1,9 @@
-//! The error table of an axis, for people and for programs.
+//! The error table of an axis.
 
 use crate::warning::Warning;
 use posicast_blocks::stage::StageErrorTable;
 use posicast_machine::hardware::{self, Hardware};
 use posicast_machine::machine_file::{AxisSection, Machine};
-use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -16,14 +15,25 @@ pub(super) struct ErrorTableReport<'a> {
 
 /// The same in JSON.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ErrorTable {
-    apply: &'static str,
-    points: usize,
-    entries: usize,
-    first_counts: i32,
-    spacing_counts: u32,
-    largest_error_counts: f64,
-    departure_counts: f64,
+#[schemars(rename = "ErrorTable")]
+pub struct DesignErrorTable {
+    /// What the table corrects: `feedback`, the measured position, or `reference`, the command of the loop.
+    pub apply: &'static str,
+    /// Number of points of the machine file.
+    pub points: usize,
+    /// Number of entries of the table.
+    pub entries: usize,
+    /// Position of the first entry.
+    pub first_counts: i32,
+    /// Distance of two entries.
+    pub spacing_counts: u32,
+    /// Largest error of the points.
+    pub largest_error_counts: f64,
+    /// Largest distance between the table and the points.
+    pub departure_counts: f64,
+    /// Counts per m or rad.
+    #[serde(skip)]
+    pub counts_per_si: f64,
 }
 
 impl<'a> ErrorTableReport<'a> {
@@ -35,7 +45,7 @@ impl<'a> ErrorTableReport<'a> {
         Some(Self { axis, built })
     }
 
-    pub(super) fn json(&self) -> ErrorTable {
+    pub(super) fn json(&self) -> DesignErrorTable {
         let (table, counts) = (&self.built.table, self.axis.loop_counts_per_unit());
         let points = self
             .axis
@@ -45,7 +55,7 @@ impl<'a> ErrorTableReport<'a> {
         let largest = points
             .iter()
             .fold(0.0, |largest: f64, (_, error)| largest.max(error.abs()));
-        ErrorTable {
+        DesignErrorTable {
             apply: if self.built.on_measured {
                 "feedback"
             } else {
@@ -57,21 +67,8 @@ impl<'a> ErrorTableReport<'a> {
             spacing_counts: 1 << table.format().spacing_bits,
             largest_error_counts: largest * counts,
             departure_counts: hardware::error_table_departure_counts(self.axis, table),
+            counts_per_si: counts,
         }
-    }
-
-    pub(super) fn text(&self) -> String {
-        let of = self.json();
-        let show = |counts: f64| self.axis.unit.show(counts / self.axis.loop_counts_per_unit(), 3);
-        format!(
-            "\n  error table, at the {}: {} of up to {} in {} entries, {} apart; at most {} off the file\n",
-            of.apply,
-            counted(of.points as u64, "point"),
-            show(of.largest_error_counts),
-            of.entries,
-            show(f64::from(of.spacing_counts)),
-            show(of.departure_counts),
-        )
     }
 }
 

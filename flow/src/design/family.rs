@@ -1,7 +1,6 @@
 //! The table family of an axis whose modes move, in the report of a design.
 
 use crate::plot::{Curve, Panel};
-use crate::text::Table;
 use crate::warning::Warning;
 use posicast_machine::machine_file::{AxisSection, FamilySection};
 use posicast_machine::plan::{FamilyMember, TableFamily};
@@ -11,52 +10,69 @@ use posicast_shaper::unit::trimmed;
 use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 
-use super::document::Tap;
+use super::document::TableTap;
 
 /// Number of values at which the residual is drawn.
 const POINTS: u32 = 601;
-/// Digits of a value in a table of text.
-const DIGITS: usize = 5;
 /// Shown range of the residual, in tolerances.
 const SHOWN: f64 = 3.0;
 
 /// `family` of an axis in `design --json`. Values of a position are in m or rad.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct Family {
-    variable: String,
-    range: [f64; 2],
+#[schemars(rename = "Family")]
+pub struct DesignFamily {
+    /// Name of the variable with which the modes move.
+    pub variable: String,
+    /// Whether the variable is the position of an axis.
+    #[serde(skip)]
+    pub is_position: bool,
+    /// Range of the variable.
+    pub range: [f64; 2],
     /// Index of the table in the ROM, from 0.
-    nominal: usize,
+    pub nominal: usize,
     /// Number of tables that cover the range.
-    needed: usize,
+    pub needed: usize,
     /// Largest rate of change of the variable, per second; absent for a single table.
     #[serde(skip_serializing_if = "Option::is_none")]
-    fastest_per_s: Option<f64>,
-    tables: Vec<Member>,
+    pub fastest_per_s: Option<f64>,
+    /// The tables, by the variable.
+    pub tables: Vec<FamilyTable>,
 }
 
+/// A table of a family.
 #[derive(Serialize, JsonSchema)]
-struct Member {
-    value: f64,
-    modes: Vec<MemberMode>,
+#[schemars(rename = "Member")]
+pub struct FamilyTable {
+    /// The value of the variable for which it is designed.
+    pub value: f64,
+    /// The modes there.
+    pub modes: Vec<FamilyMode>,
     /// Range in which every mode's residual is within its tolerance.
-    covers: [f64; 2],
+    pub covers: [f64; 2],
     /// Threshold below which the table before is chosen; absent for the first.
     #[serde(skip_serializing_if = "Option::is_none")]
-    down: Option<f64>,
+    pub down: Option<f64>,
     /// Threshold above which the table after is chosen; absent for the last.
     #[serde(skip_serializing_if = "Option::is_none")]
-    up: Option<f64>,
-    taps: Vec<Tap>,
+    pub up: Option<f64>,
+    /// The taps.
+    pub taps: Vec<TableTap>,
+    /// Mean delay of a command.
+    #[serde(skip)]
+    pub delay_s: f64,
 }
 
+/// A mode at a value of the variable.
 #[derive(Serialize, JsonSchema)]
-struct MemberMode {
-    frequency_hz: f64,
-    damping: f64,
-    residual: f64,
+#[schemars(rename = "MemberMode")]
+pub struct FamilyMode {
+    /// Natural frequency.
+    pub frequency_hz: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Residual vibration of a step with the integer taps of the table.
+    pub residual: f64,
 }
 
 /// An axis whose modes move, with its tables.
@@ -86,18 +102,20 @@ impl<'a> FamilyReport<'a> {
         })
     }
 
-    pub(super) fn json(&self) -> Family {
+    pub(super) fn json(&self) -> DesignFamily {
         let finite = |value: f64| value.is_finite().then_some(value);
-        let members = self.tables.members.iter().map(|member| Member {
+        let members = self.tables.members.iter().map(|member| FamilyTable {
             value: member.value,
             modes: self.modes(member).collect(),
             covers: member.covers,
             down: finite(member.down),
             up: finite(member.up),
-            taps: Tap::of(&member.tables.table),
+            taps: TableTap::of(&member.tables.table),
+            delay_s: member.tables.table.mean_delay_samples() / self.sample_hz,
         });
-        Family {
+        DesignFamily {
             variable: self.family.variable.clone(),
+            is_position: self.family.is_position(),
             range: self.family.range,
             nominal: self.tables.nominal,
             needed: self.tables.needed,
@@ -106,33 +124,16 @@ impl<'a> FamilyReport<'a> {
         }
     }
 
-    fn modes(&self, member: &FamilyMember) -> impl Iterator<Item = MemberMode> {
+    fn modes(&self, member: &FamilyMember) -> impl Iterator<Item = FamilyMode> {
         let taps = tap_impulses(&member.tables.table, self.sample_hz);
         self.axis.modes.iter().map(move |mode| {
             let Mode { frequency_hz, damping } = mode.at(member.value);
-            MemberMode {
+            FamilyMode {
                 frequency_hz,
                 damping,
                 residual: residual_vibration(&taps, &Mode { frequency_hz, damping }),
             }
         })
-    }
-
-    /// A value of the variable with few digits.
-    fn show(&self, value: f64) -> String {
-        if self.family.is_position() {
-            trimmed(self.axis.unit.from_si(value), DIGITS)
-        } else {
-            trimmed(value, DIGITS)
-        }
-    }
-
-    fn variable(&self) -> String {
-        if self.family.is_position() {
-            format!("{} {}", self.family.variable, self.axis.unit.symbol())
-        } else {
-            self.family.variable.clone()
-        }
     }
 
     /// Label of the variable's axis in a picture.
@@ -142,71 +143,6 @@ impl<'a> FamilyReport<'a> {
         } else {
             self.family.variable.clone()
         }
-    }
-
-    pub(super) fn text(&self) -> String {
-        let [low, high] = self.family.range.map(|value| self.family.show(value, self.axis.unit));
-        let count = self.tables.members.len();
-        let mut text = format!(
-            "\n  the modes move with {}: {} from {low} to {high}",
-            self.family.variable,
-            counted(count as u64, "table"),
-        );
-        if self.tables.needed < count {
-            let _ = write!(text, "; {} would cover that", self.tables.needed);
-        }
-        text.push('\n');
-        let variable = format!(">{}", self.variable());
-        let headings = [
-            "table",
-            &variable,
-            ">mode Hz",
-            "within tolerance",
-            ">down below",
-            ">up above",
-            ">taps",
-            ">delay ms",
-        ];
-        let mut table = Table::new(&headings);
-        for (index, member) in self.tables.members.iter().enumerate() {
-            let threshold = |value: f64| {
-                if value.is_finite() {
-                    self.show(value)
-                } else {
-                    String::new()
-                }
-            };
-            let modes: Vec<String> = self
-                .modes(member)
-                .map(|mode| trimmed(mode.frequency_hz, DIGITS))
-                .collect();
-            let nominal = if index == self.tables.nominal { " ROM" } else { "" };
-            table.row([
-                format!("{index}{nominal}"),
-                self.show(member.value),
-                modes.join(", "),
-                format!("{} … {}", self.show(member.covers[0]), self.show(member.covers[1])),
-                threshold(member.down),
-                threshold(member.up),
-                member.tables.table.taps().len().to_string(),
-                format!("{:.4}", member.tables.table.mean_delay_samples() / self.sample_hz * 1e3),
-            ]);
-        }
-        text += &table.text("  ");
-        let fastest = self.tables.fastest_per_s(self.sample_hz);
-        if fastest.is_finite() {
-            let per_s = if self.family.is_position() {
-                self.axis.unit.show_round(fastest, "/s")
-            } else {
-                format!("{} per s", trimmed(fastest, DIGITS))
-            };
-            let _ = writeln!(
-                text,
-                "  while {} changes by at most {per_s}, the table in use is within tolerance",
-                self.family.variable
-            );
-        }
-        text
     }
 
     /// A warning where the axis may move faster than its tables follow.

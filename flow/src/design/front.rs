@@ -4,7 +4,6 @@ use super::DesignReport;
 use crate::failure::Failure;
 use crate::observer::Observer;
 use crate::plot::{Curve, Panel};
-use crate::text::{Table, percent};
 use posicast_shaper::design::Findings;
 use posicast_shaper::design::front::{FrontFigures, design_front};
 use schemars::JsonSchema;
@@ -47,36 +46,6 @@ pub(super) fn of_axes(report: &DesignReport<'_>, observer: &dyn Observer) -> Res
 }
 
 impl FrontReport {
-    pub(super) fn text(&self) -> String {
-        let mut table = Table::new(&[
-            "",
-            ">duration ms",
-            ">more than the least %",
-            ">taps",
-            ">peak command",
-            ">mean delay ms",
-            ">least residual %",
-        ]);
-        let least_s = self.figures.first().map_or(0.0, |figures| figures.duration_s);
-        for figures in &self.figures {
-            table.row([
-                String::new(),
-                format!("{:.4}", 1e3 * figures.duration_s),
-                format!("{:.1}", 100.0 * (figures.duration_s / least_s - 1.0)),
-                figures.taps.to_string(),
-                format!("{:.4}", figures.peak_command),
-                format!("{:.4}", 1e3 * figures.delay_s),
-                percent(figures.least_ratio * self.tolerance),
-            ]);
-        }
-        format!(
-            "\naxis {}: what the duration buys: the fewest taps found within the tolerance, their peak command and mean delay; and the \
-             least residual of any shaper of that duration\n{}",
-            self.axis,
-            table.text("  ")
-        )
-    }
-
     pub(super) fn panels(&self, machine: &str) -> Vec<Panel> {
         // A shaper is valid for every longer duration too, until a better one is found, so taps are drawn as steps. The residual only has
         // points.
@@ -143,16 +112,24 @@ impl FrontReport {
 
 /// What the durations of an axis's shaper buy.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct Front {
-    axis: String,
-    durations: Vec<FrontDuration>,
+pub struct Front {
+    /// Name of the axis.
+    pub axis: String,
+    /// The durations, the shortest first.
+    pub durations: Vec<FrontDuration>,
 }
 
+/// What a duration buys.
 #[derive(Serialize, JsonSchema)]
-struct FrontDuration {
-    duration_s: f64,
-    taps: usize,
-    peak_command: f64,
-    delay_s: f64,
-    least_residual: f64,
+pub struct FrontDuration {
+    /// The duration.
+    pub duration_s: f64,
+    /// The fewest taps that were found within the tolerance.
+    pub taps: usize,
+    /// Largest magnitude of their shaped unit step.
+    pub peak_command: f64,
+    /// Their mean delay of a command.
+    pub delay_s: f64,
+    /// The least residual of any shaper of that duration.
+    pub least_residual: f64,
 }

@@ -3,13 +3,12 @@
 use super::DesignReport;
 use crate::failure::Failure;
 use crate::moves::PerAxis;
-use crate::text::Table;
 use posicast_machine::machine_file::AxisSection;
 use posicast_machine::motion::{AxisMove, BetterMove, MoveComparison, MoveFigures, compare_move};
+use posicast_machine::unit::AxisUnit;
 use posicast_shaper::analysis::tap_impulses;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// One move of an axis.
 pub(super) struct MoveReport<'a> {
@@ -43,62 +42,24 @@ pub(super) fn of_axes<'a>(report: &DesignReport<'a>, distance: &PerAxis) -> Resu
 }
 
 impl MoveReport<'_> {
-    pub(super) fn text(&self) -> String {
-        let unit = self.axis.unit;
-        let mut table = Table::new(&["", ">command ms", ">shaper ms", ">total ms", ">residual", ""]);
-        let better = self.found.better();
-        let mut row = |name: String, figures: &MoveFigures, way: BetterMove| {
-            let milliseconds = |time_s: f64| format!("{:.3}", 1e3 * time_s);
-            table.row([
-                name,
-                milliseconds(figures.command_s),
-                milliseconds(figures.shaper_s),
-                milliseconds(figures.total_s()),
-                unit.show(figures.residual, 3),
-                if better == Some(way) { "better" } else { "" }.into(),
-            ]);
-        };
-        row("fastest move and shaper".into(), &self.found.shaped, BetterMove::Shaped);
-        for (index, found) in self.found.by_period.iter().enumerate() {
-            let name = format!("jerk time of {:.3} ms, mode {}", 1e3 * found.jerk_s, found.mode + 1);
-            row(name, &found.figures, BetterMove::ByPeriod(index));
-        }
-        let mut text = format!(
-            "\naxis {}: a move of {} within its limits\n{}",
-            self.axis.name,
-            unit.as_in_file(self.distance, ""),
-            table.text("  ")
-        );
-        if self.found.tolerated.is_finite() {
-            let _ = writeln!(
-                text,
-                "  residual: the largest amplitude of a mode at the end of the move, at any frequency examined in its band; the tolerance is {}",
-                unit.show(self.found.tolerated, 3)
-            );
-        }
-        if better.is_none() {
-            text += "  neither keeps the tolerance: choose another kind or a larger tolerance\n";
-        }
-        text
-    }
-
     pub(super) fn json(&self) -> ComparedMove {
         let better = self.found.better();
         ComparedMove {
             axis: self.axis.name.clone(),
+            unit: self.axis.unit,
             distance: self.distance,
-            shaped: Way::new(&self.found.shaped),
+            shaped: MoveTimes::new(&self.found.shaped),
             by_period: self
                 .found
                 .by_period
                 .iter()
-                .map(|found| Period {
+                .map(|found| MoveByPeriod {
                     mode: found.mode + 1,
                     jerk_s: found.jerk_s,
                     velocity: found.peaks[0],
                     acceleration: found.peaks[1],
                     jerk: found.peaks[2],
-                    way: Way::new(&found.figures),
+                    times: MoveTimes::new(&found.figures),
                 })
                 .collect(),
             tolerated_residual: Some(self.found.tolerated).filter(|tolerated| tolerated.is_finite()),
@@ -106,42 +67,71 @@ impl MoveReport<'_> {
                 BetterMove::Shaped => "shaper",
                 BetterMove::ByPeriod(_) => "period",
             }),
+            better_period: match better {
+                Some(BetterMove::ByPeriod(index)) => Some(index),
+                _ => None,
+            },
         }
     }
 }
 
 /// A move in `design --json`, in m or rad; modes are counted from 1.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct ComparedMove {
-    axis: String,
-    distance: f64,
-    shaped: Way,
-    by_period: Vec<Period>,
-    tolerated_residual: Option<f64>,
+pub struct ComparedMove {
+    /// Name of the axis.
+    pub axis: String,
+    /// Unit of the axis.
+    #[serde(skip)]
+    pub unit: AxisUnit,
+    /// Distance of the move.
+    pub distance: f64,
+    /// The fastest move and the shaper.
+    pub shaped: MoveTimes,
+    /// Moves whose jerk time is a period of a mode.
+    pub by_period: Vec<MoveByPeriod>,
+    /// Largest residual that is tolerated; null without a mode.
+    pub tolerated_residual: Option<f64>,
     /// `shaper`, `period`, or null where both leave more than is tolerated.
-    better: Option<&'static str>,
+    pub better: Option<&'static str>,
+    /// Index of the better move in `by_period`, from 0.
+    #[serde(skip)]
+    pub better_period: Option<usize>,
 }
 
+/// A move whose jerk time is a period of a mode.
 #[derive(Serialize, JsonSchema)]
-struct Period {
-    mode: usize,
-    jerk_s: f64,
-    velocity: f64,
-    acceleration: f64,
-    jerk: f64,
+#[schemars(rename = "Period")]
+pub struct MoveByPeriod {
+    /// The mode.
+    pub mode: usize,
+    /// Its period.
+    pub jerk_s: f64,
+    /// Largest velocity.
+    pub velocity: f64,
+    /// Largest acceleration.
+    pub acceleration: f64,
+    /// Largest jerk.
+    pub jerk: f64,
+    /// Its duration, and what it leaves.
     #[serde(flatten)]
-    way: Way,
+    pub times: MoveTimes,
 }
 
+/// The duration of a move, and what it leaves.
 #[derive(Serialize, JsonSchema)]
-struct Way {
-    command_s: f64,
-    shaper_s: f64,
-    total_s: f64,
-    residual: f64,
+#[schemars(rename = "Way")]
+pub struct MoveTimes {
+    /// Duration of the command.
+    pub command_s: f64,
+    /// Duration of the shaper.
+    pub shaper_s: f64,
+    /// Their sum.
+    pub total_s: f64,
+    /// Largest amplitude of a mode at the end of the move.
+    pub residual: f64,
 }
 
-impl Way {
+impl MoveTimes {
     fn new(figures: &MoveFigures) -> Self {
         Self {
             command_s: figures.command_s,
