@@ -1,7 +1,7 @@
 //! `posicast bitstream`: builds a bitstream of a machine's shapers for a board, and checks its bits.
 
-use crate::output;
 use crate::terminal::Terminal;
+use crate::{output, render};
 use posicast_flow::bitstream::{Options, bitstream};
 use posicast_flow::verify::DEFAULT_SEED;
 use posicast_flow::{Failure, clocks};
@@ -44,5 +44,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         clocks: args.clocks,
         seed: args.seed,
     };
-    output::show(bitstream(&options, &Terminal)?, args.json)
+    output::show(bitstream(&options, &Terminal)?, args.json, render::bitstream)
 }

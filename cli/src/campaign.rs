@@ -211,7 +211,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let started = Instant::now();
     let (kind, part) = match &args.kind {
         Kind::Merge(args) => {
-            return output::show_rendered(campaign::merge(&args.folder)?, args.json, render::campaign::merged);
+            return output::show(campaign::merge(&args.folder)?, args.json, render::campaign::merged);
         }
         Kind::LockStep(args) => {
             let options = LockStepOptions {
@@ -222,7 +222,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
                 edited: args.edited,
             };
             if args.prepare {
-                return output::show_rendered(
+                return output::show(
                     campaign::prepare(&options, &Terminal)?,
                     false,
                     render::campaign::prepared,
@@ -278,7 +278,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     let done = campaign::run(&kind, &part.part(), started, &Terminal)?;
-    output::show_rendered(done, false, render::campaign::part)
+    output::show(done, false, render::campaign::part)
 }
 
 /// This command without the options that choose a part of the campaign.

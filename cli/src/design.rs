@@ -51,7 +51,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.compare {
-        return output::show_rendered(compare(&args.machine, args.band)?, args.json, render::compare);
+        return output::show(compare(&args.machine, args.band)?, args.json, render::compare);
     }
     let options = Options {
         machine: args.machine.clone(),
@@ -62,5 +62,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         distance: args.distance.clone(),
         form: output::form(args.json),
     };
-    output::show_rendered(design(&options, &Terminal)?, args.json, render::design)
+    output::show(design(&options, &Terminal)?, args.json, render::design)
 }

@@ -3,9 +3,9 @@
 mod tools;
 
 use crate::output;
+use crate::style;
+use crate::table::Table;
 use posicast_flow::Failure;
-use posicast_flow::style;
-use posicast_flow::text::Table;
 use posicast_system::tool::{self, Ended};
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -1,8 +1,9 @@
 //! Reports on standard error why a command stopped, and determines its exit status.
 
+use crate::style;
 use anstream::stderr;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
-use posicast_flow::{Failure, Reason, style};
+use posicast_flow::{Failure, Reason};
 use std::error::Error;
 use std::fmt;
 use std::io::{IsTerminal, Write};

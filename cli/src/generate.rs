@@ -42,5 +42,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let generated = generate(&options, &Terminal)?;
     let text = if args.verbose { render::list } else { render::generate };
-    output::show_rendered(generated, args.json, text)
+    output::show(generated, args.json, text)
 }

@@ -107,5 +107,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         form: output::form(args.json),
     };
-    output::show_rendered(identify(&options)?, args.json, render::identify)
+    output::show(identify(&options)?, args.json, render::identify)
 }

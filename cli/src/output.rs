@@ -1,9 +1,10 @@
 //! Standard output, and messages on standard error.
 
+use crate::style;
 use anstream::adapter::strip_str;
 use anstream::{AutoStream, ColorChoice};
 use posicast_flow::text::json_text;
-use posicast_flow::{Failure, Outcome, ResultForm, style};
+use posicast_flow::{Failure, Outcome, ResultForm};
 use posicast_system::output::OutputFiles;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
@@ -39,28 +40,21 @@ pub(crate) fn print_beside(outputs: &OutputFiles, text: &str) -> Result<(), Fail
     print(text)
 }
 
-/// Prints the result of a step, as text or as its document; a failed check is the command's failure.
-pub(crate) fn show<D: Serialize>(outcome: Outcome<D>, json: bool) -> Result<(), Failure> {
+/// Prints the result of a step, as its document or as the text that `render` makes of it; a failed check is the command's failure.
+pub(crate) fn show<D: Serialize>(
+    outcome: Outcome<D>,
+    json: bool,
+    render: impl FnOnce(&D) -> String,
+) -> Result<(), Failure> {
     match (json, outcome.is_beside_a_file) {
         (true, _) => print_json(&outcome.document)?,
-        (false, true) => say(outcome.text.trim_end()),
-        (false, false) => print_styled(&outcome.text)?,
+        (false, true) => say(render(&outcome.document).trim_end()),
+        (false, false) => print_styled(&render(&outcome.document))?,
     }
     match outcome.failed {
         None => Ok(()),
         Some(reason) => Err(Failure::Check(reason)),
     }
-}
-
-/// Prints the result of a step, as its document or as the text that `render` makes of it; a failed check is the command's
-/// failure.
-pub(crate) fn show_rendered<D: Serialize>(
-    outcome: Outcome<D>,
-    json: bool,
-    render: impl FnOnce(&D) -> String,
-) -> Result<(), Failure> {
-    let text = if json { String::new() } else { render(&outcome.document) };
-    show(Outcome { text, ..outcome }, json)
 }
 
 /// How the document of a step is shown.

@@ -3,16 +3,19 @@
 //! There is one file per step, with a function from its document to lines; colours are escape sequences, which
 //! [`output`](crate::output) removes if nobody would see them.
 
+mod bitstream;
 pub(crate) mod campaign;
 mod compare;
 mod design;
 mod files;
 mod generate;
 mod identify;
+pub(crate) mod run;
 mod simulate;
 mod synth;
 mod verify;
 
+pub(crate) use bitstream::bitstream;
 pub(crate) use compare::compare;
 pub(crate) use design::design;
 pub(crate) use generate::{generate, list};

@@ -3,13 +3,13 @@
 mod beyond;
 
 use crate::output;
+use crate::style;
+use crate::table::Table;
 use crate::terminal::Terminal;
 use clap::builder::PossibleValuesParser;
 use posicast_flow::Failure;
 use posicast_flow::Observer;
 use posicast_flow::plot::{self, Curve, Panel};
-use posicast_flow::style;
-use posicast_flow::text::Table;
 use posicast_papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;

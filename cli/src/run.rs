@@ -3,8 +3,8 @@
 use crate::contour::CornerArgs;
 use crate::moves::MotionArgs;
 use crate::terminal::Terminal;
-use crate::{choice, output};
-use posicast_flow::run::{Detail, Options, run as run_all};
+use crate::{choice, output, render};
+use posicast_flow::run::{Options, run as run_all};
 use posicast_flow::verify::DEFAULT_SEED;
 use posicast_flow::{Failure, Simulator, clocks};
 use std::path::PathBuf;
@@ -66,11 +66,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         simulator: args.simulator,
         cycles: args.cycles,
         seed: args.seed,
-        detail: match (args.verbose, args.quiet) {
-            (true, _) => Detail::Everything,
-            (false, true) => Detail::Verdict,
-            (false, false) => Detail::Summary,
-        },
     };
-    output::show(run_all(&options, &Terminal)?, args.json)
+    let text = match (args.verbose, args.quiet) {
+        (true, _) => render::run::everything,
+        (false, true) => render::run::verdict,
+        (false, false) => render::run::summary,
+    };
+    output::show(run_all(&options, &Terminal)?, args.json, text)
 }

@@ -47,5 +47,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         form: output::form(args.json),
     };
-    output::show_rendered(simulate(&options, &Terminal)?, args.json, render::simulate)
+    output::show(simulate(&options, &Terminal)?, args.json, render::simulate)
 }

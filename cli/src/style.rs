@@ -1,9 +1,10 @@
-//! When colours are used: on a terminal, or as `--color` requests.
+//! Colours of verdicts and of the first word of a message, and when they are used: on a terminal, or as `--color` requests.
 //!
 //! Text carries its colours as escape sequences; [`print_styled`](crate::output::print_styled) and [`say`](crate::output::say) remove them
 //! if nobody would see them: in a pipe or a file, with `NO_COLOR`, on a terminal without colours, or by `--color`.
 
 use anstream::ColorChoice;
+use anstyle::{AnsiColor, Style};
 use clap::ValueEnum;
 use std::ffi::OsString;
 
@@ -46,4 +47,53 @@ pub(crate) fn of_arguments(arguments: impl Iterator<Item = OsString>) -> clap::C
         .or(joined)
         .and_then(|value| clap::ColorChoice::from_str(value, false).ok());
     value.unwrap_or_default()
+}
+
+const GREEN: Style = AnsiColor::Green.on_default();
+const BOLD_GREEN: Style = GREEN.bold();
+const RED: Style = AnsiColor::Red.on_default().bold();
+const YELLOW: Style = AnsiColor::Yellow.on_default();
+
+/// Style for a condition that holds.
+pub(crate) fn good(text: &str) -> String {
+    styled(GREEN, text)
+}
+
+/// Style for a passed verdict.
+pub(crate) fn passed(text: &str) -> String {
+    styled(BOLD_GREEN, text)
+}
+
+/// Style for a condition that does not hold.
+pub(crate) fn bad(text: &str) -> String {
+    styled(RED, text)
+}
+
+/// Style for a doubtful result.
+pub(crate) fn doubtful(text: &str) -> String {
+    styled(YELLOW, text)
+}
+
+/// First words of a line of a message or verdict, with their colours.
+const BEGINNINGS: [(&str, Style); 7] = [
+    ("warning:", YELLOW),
+    ("error:", RED),
+    ("match:", BOLD_GREEN),
+    ("MISMATCH", RED),
+    ("PASS:", BOLD_GREEN),
+    ("FAIL:", RED),
+    ("NO VERDICT", YELLOW),
+];
+
+/// Returns a line with its first word coloured, if that is one of [`BEGINNINGS`].
+pub(crate) fn message(line: &str) -> String {
+    let known = BEGINNINGS.iter().find(|(beginning, _)| line.starts_with(beginning));
+    known.map_or_else(
+        || line.to_owned(),
+        |(beginning, style)| styled(*style, beginning) + &line[beginning.len()..],
+    )
+}
+
+fn styled(style: Style, text: &str) -> String {
+    format!("{style}{text}{style:#}")
 }

@@ -31,5 +31,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         family: args.family,
         clock: args.clock.clone(),
     };
-    output::show_rendered(synth(&options, &Terminal)?, args.json, render::synth)
+    output::show(synth(&options, &Terminal)?, args.json, render::synth)
 }

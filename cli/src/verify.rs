@@ -89,5 +89,5 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         render::verify
     };
-    output::show_rendered(verify(&options, &Terminal)?, args.json, text)
+    output::show(verify(&options, &Terminal)?, args.json, text)
 }

@@ -4,7 +4,7 @@
 mod document;
 mod machine;
 
-pub use self::document::Document;
+pub use self::document::{CheckDocument, Document};
 use self::document::Evidence;
 use crate::Outcome;
 use crate::design::DesignReport;
@@ -91,10 +91,9 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         tell(&committed, observer);
         document.written(&root, FOLDER, &committed.files);
     }
-    let text = document.text();
     Ok(Outcome {
         failed,
-        ..Outcome::passed(document, text)
+        ..Outcome::passed(document)
     })
 }
 

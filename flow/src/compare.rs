@@ -28,7 +28,7 @@ pub fn compare(path: &Path, band_percent: f64) -> Result<Outcome<Document>, Fail
     let machine = machine::read(path)?.machine;
     let comparisons = compare_kinds(&machine, band_percent / 100.0);
     let document = Document::new(&machine, band_percent, &comparisons);
-    Ok(Outcome::passed(document, String::new()))
+    Ok(Outcome::passed(document))
 }
 
 /// `design --compare --json`, and `kinds` in `report.json`.

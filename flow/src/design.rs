@@ -108,7 +108,7 @@ pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
     let mut document = report.json();
     document.fronts = fronts.iter().map(FrontReport::json).collect();
     document.moves = moves.iter().map(MoveReport::json).collect();
-    Ok(Outcome::passed(document, String::new()).beside(&outputs))
+    Ok(Outcome::passed(document).beside(&outputs))
 }
 
 /// The design of a machine with its figures at every mode.

@@ -56,7 +56,7 @@ pub fn generate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Do
     tell(&committed, observer);
     let of_stage = (has_stage, built.link.as_ref());
     let document = Document::new(&file.machine, of_stage, &folder, &committed.files);
-    Ok(Outcome::passed(document, String::new()))
+    Ok(Outcome::passed(document))
 }
 
 /// Adds the machine's Verilog, and its descriptions for tools, systems and drivers. Returns the paths of the Verilog.
@@ -113,25 +113,6 @@ impl Document {
             line: link.map(|link| link.config().line()),
         }
     }
-}
-
-/// Contents of the folder with these files: subfolders with a `/` and their number of files, then the names of the
-/// files.
-pub(crate) fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
-    let (mut folders, mut alone): (Vec<(String, usize)>, Vec<String>) = (Vec::new(), Vec::new());
-    for file in files {
-        let mut parts = file.strip_prefix(root).unwrap_or(file).iter();
-        let first = parts.next().unwrap_or_default().to_string_lossy().into_owned();
-        if parts.next().is_none() {
-            alone.push(first);
-        } else if let Some((_, count)) = folders.iter_mut().find(|(name, _)| *name == first) {
-            *count += 1;
-        } else {
-            folders.push((first, 1));
-        }
-    }
-    let folders = folders.into_iter().map(|(name, count)| format!("{name}/ ({count})"));
-    folders.chain(alone).collect()
 }
 
 /// Reports which files of an earlier run were removed, and which of its evidence was kept.

@@ -101,7 +101,7 @@ pub fn identify(options: &Options) -> Result<Outcome<Document>, Failure> {
         .then(|| none_found(&options.log, options.output.is_some()));
     Ok(Outcome {
         failed,
-        ..Outcome::passed(Document::new(&options.log, &findings, written), String::new()).beside(&outputs)
+        ..Outcome::passed(Document::new(&options.log, &findings, written)).beside(&outputs)
     })
 }
 

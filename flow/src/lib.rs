@@ -1,7 +1,7 @@
-//! The steps of posicast as functions: each takes typed options and returns one document, and the same content as text.
+//! The steps of posicast as functions: each takes typed options and returns one document.
 //!
-//! A front, such as the command line, calls them. Nothing here reads arguments, prints, or draws a progress bar: messages of a step go to
-//! the front's [`Observer`].
+//! A front, such as the command line, calls them, and shows the document as JSON or as text. Fields of a document that JSON leaves out are
+//! for texts alone. Nothing here reads arguments, prints, or draws a progress bar: messages of a step go to the front's [`Observer`].
 
 mod allowance;
 mod bench;
@@ -33,7 +33,6 @@ pub mod replay;
 pub mod run;
 pub mod simulate;
 mod sopc;
-pub mod style;
 pub mod synth;
 pub mod template;
 pub mod text;
@@ -54,11 +53,9 @@ pub const VERSION: &str = env!("POSICAST_VERSION");
 
 /// The result of a step.
 pub struct Outcome<D> {
-    /// The result for programs.
+    /// The result.
     pub document: D,
-    /// The result for people: lines, with colours as escape sequences.
-    pub text: String,
-    /// Whether an output file of the step is the standard output, so that the text belongs elsewhere.
+    /// Whether an output file of the step is the standard output, so that a text belongs elsewhere.
     pub is_beside_a_file: bool,
     /// Why a check of the step failed; `None` if all hold.
     pub failed: Option<String>,
@@ -66,10 +63,9 @@ pub struct Outcome<D> {
 
 impl<D> Outcome<D> {
     /// The result of a step in which nothing failed.
-    pub(crate) fn passed(document: D, text: String) -> Self {
+    pub(crate) fn passed(document: D) -> Self {
         Self {
             document,
-            text,
             is_beside_a_file: false,
             failed: None,
         }

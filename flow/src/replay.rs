@@ -75,7 +75,7 @@ pub struct Replayed {
     pub unknown_output_clocks: u64,
     /// Number of signals of the file that are not ports.
     pub other_signals: usize,
-    /// Where the comparison begins, and by which clock.
+    /// How clock and reset were found.
     pub notes: Vec<String>,
 }
 

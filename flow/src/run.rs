@@ -13,7 +13,7 @@ mod options;
 mod page;
 mod pictures;
 mod report;
-mod summary;
+mod sentence;
 mod waves;
 
 use crate::Outcome;
@@ -47,8 +47,15 @@ use report::RunReport;
 use std::path::PathBuf;
 use waves::Waves;
 
-pub use options::{Detail, Options};
-pub use report::Document;
+pub use advice::Advice;
+pub use checks::Check;
+pub use closed_loop::{
+    Compensation, DrivenCircle, FollowedPath, FollowedRow, MovedAxis, PathDistance, PathError, StageFigures,
+    TickSchedule,
+};
+pub use options::Options;
+pub use report::{Document, PlantStep, RunAxis, RunVerdict, StepOnPlant};
+pub use sentence::RunSentence;
 
 /// Runs all steps: design, Verilog, simulation, comparison, estimate, verdict.
 ///
@@ -105,21 +112,21 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
         kinds: &kinds,
         command: options.command_line(),
     };
-    let document = report.json();
+    let mut document = report.json();
     add_report(&mut package, &report, &document)?;
 
     let root = package.root().to_owned();
     let committed = package.commit().map_err(Failure::because)?;
     generate::tell(&committed, observer);
-    let text = match options.detail {
-        Detail::Verdict => report.quiet(),
-        Detail::Summary => report.summary(&root, &committed.files),
-        Detail::Everything => report.text(&root, &committed.files),
-    };
+    let files = committed.files.iter();
+    document.files = files
+        .map(|file| file.strip_prefix(&root).unwrap_or(file).to_owned())
+        .collect();
+    document.folder = root;
     let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
     Ok(Outcome {
         failed: (!failed.is_empty()).then(|| format!("failed: {}", failed.join(", "))),
-        ..Outcome::passed(document, text)
+        ..Outcome::passed(document)
     })
 }
 

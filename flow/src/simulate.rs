@@ -83,7 +83,7 @@ pub fn simulate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Si
     let failed = beyond.map(|axis| format!("axis {}: the model leaves the float design's bound", axis.name));
     Ok(Outcome {
         failed,
-        ..Outcome::passed(Simulated::Command(document), String::new()).beside(&outputs)
+        ..Outcome::passed(Simulated::Command(document)).beside(&outputs)
     })
 }
 
@@ -101,7 +101,7 @@ fn along_contour(options: &Options, machine: &Machine, observer: &dyn Observer) 
     one_document(&outputs, options.form)?;
     let speed = options.motion.along_contour()?;
     let document = contour::simulate(&options.path, machine, speed, observer)?;
-    Ok(Outcome::passed(Simulated::Contour(document), String::new()).beside(&outputs))
+    Ok(Outcome::passed(Simulated::Contour(document)).beside(&outputs))
 }
 
 /// Simulates all axes of a machine with their command words.

@@ -10,16 +10,14 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware::{Built, COMPONENT_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::observer::Observer;
-use crate::text::Table;
 use crate::{machine, verilog};
 use posicast_machine::machine_file::Machine;
 use posicast_synth::clock::{ClockError, PlaceAndRoute};
 use posicast_synth::package;
-use posicast_synth::yosys::{BlockEstimate, Estimate, Excess, Family, Resources, Yosys, YosysError};
+use posicast_synth::yosys::{BlockEstimate, Estimate, Excess, Family, Yosys, YosysError};
 use posicast_system::scratch::Folder;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Options of an estimate.
@@ -72,7 +70,7 @@ pub fn synth(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docum
     let failed = (!lacks.is_empty()).then(|| format!("does not fit the device: {}", lacks.join("; ")));
     Ok(Outcome {
         failed,
-        ..Outcome::passed(document, String::new())
+        ..Outcome::passed(document)
     })
 }
 
@@ -129,11 +127,6 @@ fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
     names
 }
 
-fn cells(name: &str, r: &Resources) -> impl Iterator<Item = String> {
-    let numbers = [r.cells, r.registers, r.memory_bits, r.multipliers].map(|n| n.to_string());
-    std::iter::once(name.to_owned()).chain(numbers)
-}
-
 /// The machine, its Verilog files, and the guard of their folder if that is temporary.
 fn sources(source: &Path, observer: &dyn Observer) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Failure> {
     if source.is_dir() {
@@ -146,28 +139,6 @@ fn sources(source: &Path, observer: &dyn Observer) -> Result<(Machine, Vec<PathB
     let modules = Built::new(&report, source, observer)?.modules(source)?;
     let (files, scratch) = verilog::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
-}
-
-/// A table of blocks with the device's capacity, and the method of the estimate.
-pub(crate) fn text(estimate: &Estimate) -> String {
-    let mut table = Table::new(&["block", ">cells", ">registers", ">memory bits", ">multipliers"]);
-    let mut row = |name: &str, r: &Resources| table.row(cells(name, r));
-    for block in &estimate.blocks {
-        row(&block.name, &block.resources);
-    }
-    row("total", &estimate.total);
-    let device = &estimate.device;
-    let capacity = Resources {
-        cells: device.cells,
-        registers: device.registers,
-        memory_bits: device.memory_bits,
-        multipliers: device.multipliers,
-        ..Resources::default()
-    };
-    row(device.name, &capacity);
-    let mut text = table.text("");
-    let _ = writeln!(text, "Estimate by {}: {}", estimate.method.tool, estimate.method.note);
-    text
 }
 
 /// Returns Yosys, and the tools for place and route if a clock is requested; the error names all missing tools.
@@ -197,7 +168,7 @@ pub(crate) fn failure(error: YosysError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_synth::yosys::EstimateMethod;
+    use posicast_synth::yosys::{EstimateMethod, Resources};
 
     #[test]
     fn lacking_resources_are_named_with_their_amounts() {

@@ -121,7 +121,7 @@ pub fn verify(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
     document.reason = document.failed();
     Ok(Outcome {
         failed: document.reason.clone(),
-        ..Outcome::passed(document, String::new())
+        ..Outcome::passed(document)
     })
 }
 

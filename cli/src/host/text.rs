@@ -2,9 +2,10 @@
 
 use super::{Port, failure};
 use crate::output;
+use crate::table::Table;
 use posicast_blocks::axis::SupervisorState;
 use posicast_flow::Failure;
-use posicast_flow::text::{Table, UnitDocument};
+use posicast_flow::text::UnitDocument;
 use posicast_host::{AxisStatus, causes};
 use posicast_machine::machine_file::{AxisSection, Machine};
 use schemars::JsonSchema;

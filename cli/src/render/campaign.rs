@@ -1,8 +1,9 @@
 //! The results of a campaign: a table with a row for each name, the first failures, and the numbers of units.
 
+use crate::style;
+use crate::table::Table;
 use posicast_flow::campaign::{Document, MergedShards, PartFile, PreparedSimulations, REFUSED, ShardCosts, UnitCounts};
-use posicast_flow::style;
-use posicast_flow::text::{Table, shell_word};
+use posicast_flow::text::shell_word;
 use posicast_testbench::shard::{MergedRow, UnitResult};
 use posicast_testbench::wording::counted;
 use serde_json::Value;

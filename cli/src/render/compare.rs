@@ -1,7 +1,8 @@
 //! The kinds of shaper on the axes of one machine.
 
+use crate::table::Table;
 use posicast_flow::compare::{ComparedKind, Document, KindsOfAxis};
-use posicast_flow::text::{Table, percent};
+use posicast_flow::text::percent;
 use std::fmt::Write;
 
 /// A table of kinds for each axis, and what its marks mean.

@@ -5,8 +5,9 @@ mod certificate;
 mod family;
 mod moves;
 
+use crate::table::Table;
 use posicast_flow::design::{Document, EqualDelays, Front, Together};
-use posicast_flow::text::{Table, percent};
+use posicast_flow::text::percent;
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::certify::CheckedShorter;
 use posicast_shaper::unit::show_seconds;

@@ -1,8 +1,9 @@
 //! The modes of a log, shapers for them, and the next step.
 
+use crate::table::Table;
 use posicast_flow::identify::{Document, RecommendedShaper, WrittenMachine};
 use posicast_flow::template::to_measure;
-use posicast_flow::text::{Table, percent, shell_word};
+use posicast_flow::text::{percent, shell_word};
 use posicast_shaper::unit::{show_seconds, trimmed};
 use posicast_testbench::wording::counted;
 use std::fmt::Write;

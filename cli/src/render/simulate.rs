@@ -1,8 +1,8 @@
 //! A command, or a path of two axes, on the simulated machine.
 
+use crate::table::Table;
 use posicast_flow::contour;
 use posicast_flow::simulate::{Document, Simulated};
-use posicast_flow::text::Table;
 use posicast_shaper::unit::show_seconds;
 use posicast_testbench::wording::counted;
 use std::fmt::Write;

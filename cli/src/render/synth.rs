@@ -1,7 +1,7 @@
 //! The area of a machine's Verilog on a device.
 
+use crate::table::Table;
 use posicast_flow::synth::{ClockEstimates, Document};
-use posicast_flow::text::Table;
 use posicast_synth::yosys::{BlockEstimate, Estimate, Resources};
 
 /// The blocks of the top, the components, and the clocks that were asked for.

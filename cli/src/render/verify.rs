@@ -1,8 +1,9 @@
 //! The rows of `verify`, the findings, and a last line about what was compared and how much.
 
+use crate::style;
+use crate::table::Table;
 use posicast_flow::replay::Replayed;
-use posicast_flow::style;
-use posicast_flow::text::{Table, few};
+use posicast_flow::text::few;
 use posicast_flow::verify::{ComparedFolder, Document, FilesVerdict};
 use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::wording::counted;

@@ -2,10 +2,10 @@
 //! by side.
 
 use crate::output;
+use crate::table::Table;
 use crate::terminal::Terminal;
 use posicast_flow::Failure;
 use posicast_flow::Observer;
-use posicast_flow::text::Table;
 use posicast_papers::{BeyondRow, beyond};
 use posicast_testbench::wording::counted;
 use schemars::JsonSchema;

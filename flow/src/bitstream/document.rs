@@ -1,8 +1,5 @@
 //! The result of a bitstream: the checks, each with what it covers, and what none of them covers.
 
-use crate::generate::entries;
-use crate::style;
-use crate::text::Table;
 use posicast_bitstream::asc::{FlipKind, TilesReport};
 use posicast_bitstream::behaviour::BehaviourReport;
 use posicast_bitstream::flips::FlipReport;
@@ -32,40 +29,53 @@ pub(super) struct Evidence {
 /// A bitstream, and the checks of its bits.
 #[derive(Serialize, JsonSchema)]
 pub struct Document {
-    name: String,
-    board: &'static str,
-    device: &'static str,
-    package: &'static str,
-    oscillator_hz: u32,
-    sample_hz: f64,
+    /// Name of the machine.
+    pub name: String,
+    /// Name of the board.
+    pub board: &'static str,
+    /// The device.
+    pub device: &'static str,
+    /// Its package.
+    pub package: &'static str,
+    /// Frequency of the board's oscillator.
+    pub oscillator_hz: u32,
+    /// Sample rate.
+    pub sample_hz: f64,
     /// Versions of the programs.
-    tools: [String; 2],
-    seed: u64,
-    checks: Vec<CheckDocument>,
+    pub tools: [String; 2],
+    /// Seed of the random commands.
+    pub seed: u64,
+    /// The checks; the bitstream is written only if all hold.
+    pub checks: Vec<CheckDocument>,
     /// Highest frequency of the clock, by nextpnr's timing model.
-    highest_mhz: f64,
-    tiles: TilesReport,
-    cells: CellsReport,
-    lock_step: BehaviourReport,
-    flips: Vec<FlipReport>,
+    pub highest_mhz: f64,
+    pub tiles: TilesReport,
+    pub cells: CellsReport,
+    pub lock_step: BehaviourReport,
+    pub flips: Vec<FlipReport>,
     /// What none of the checks covers.
-    not_covered: Vec<String>,
+    pub not_covered: Vec<String>,
     /// Output folder; `None` if a check failed.
-    folder: Option<String>,
-    files: Vec<String>,
+    pub folder: Option<String>,
+    /// Files in the folder.
+    pub files: Vec<String>,
+    /// The board's name in prose.
     #[serde(skip)]
-    title: String,
+    pub title: String,
+    /// Path of the bitstream; its name alone if it was not written.
     #[serde(skip)]
-    bitstream: String,
+    pub bitstream: String,
 }
 
 /// A check.
 #[derive(Serialize, JsonSchema)]
-struct CheckDocument {
-    name: &'static str,
-    ok: bool,
+pub struct CheckDocument {
+    /// Its name.
+    pub name: &'static str,
+    /// Whether it holds.
+    pub ok: bool,
     /// What was compared, and how much of it; or what is wrong.
-    what: String,
+    pub what: String,
 }
 
 impl Document {
@@ -121,43 +131,6 @@ impl Document {
             .iter()
             .map(|file| file.strip_prefix(root).unwrap_or(file).display().to_string())
             .collect();
-    }
-
-    pub(super) fn text(&self) -> String {
-        let mhz = f64::from(self.oscillator_hz) / 1e6;
-        let mut text = format!(
-            "{} on {} ({}, {}): {mhz} MHz oscillator, {} Hz samples\n{}, {}\n",
-            self.name, self.title, self.device, self.package, self.sample_hz, self.tools[0], self.tools[1]
-        );
-        let mut table = Table::new(&["check", "", "what it covers"]);
-        for check in &self.checks {
-            let verdict = if check.ok {
-                style::good("ok")
-            } else {
-                style::bad("FAILED")
-            };
-            table.row([check.name.to_owned(), verdict, check.what.clone()]);
-        }
-        text += &table.text("  ");
-        text += "not covered by these checks:\n";
-        for what in &self.not_covered {
-            text += &format!("  {what}\n");
-        }
-        let Some(folder) = &self.folder else {
-            return text + &style::message("FAIL: no bitstream was written") + "\n";
-        };
-        let root = Path::new(folder);
-        let files: Vec<PathBuf> = self.files.iter().map(|file| root.join(file)).collect();
-        text += &format!(
-            "{} in {folder}: {}\n",
-            counted(files.len() as u64, "file"),
-            entries(root, &files).join(", ")
-        );
-        let verdict = format!(
-            "PASS: the bits of {} compute the model. Nobody has run it on hardware yet.",
-            self.bitstream
-        );
-        text + &style::message(&verdict) + "\n"
     }
 }
 

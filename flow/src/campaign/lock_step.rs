@@ -94,7 +94,7 @@ impl LockStep {
             simulations: self.rows.len(),
             units: self.count(),
         };
-        Ok(Outcome::passed(prepared, String::new()))
+        Ok(Outcome::passed(prepared))
     }
 }
 

@@ -27,7 +27,7 @@ pub fn merge(folder: &Path) -> Result<Outcome<MergedShards>, Failure> {
     };
     Ok(Outcome {
         failed,
-        ..Outcome::passed(document, String::new())
+        ..Outcome::passed(document)
     })
 }
 

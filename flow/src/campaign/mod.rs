@@ -276,7 +276,7 @@ fn done(
 fn finish(results: &[UnitResult], part: &CampaignPart, file: PartFile) -> Outcome<Document> {
     Outcome {
         failed: problem(results, part.unit.is_none() && part.shard == Shard::WHOLE),
-        ..Outcome::passed(Document::new(results, file), String::new())
+        ..Outcome::passed(Document::new(results, file))
     }
 }
 

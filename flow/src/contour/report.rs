@@ -37,7 +37,7 @@ pub struct Document {
     pub rapid_length: f64,
     /// Time of the path.
     pub duration_s: f64,
-    /// Number of bends at which the path stops.
+    /// Number of stops on the way.
     pub stops: usize,
     /// Junction deviation at bends.
     pub corner_tolerance: f64,

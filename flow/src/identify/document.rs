@@ -71,7 +71,7 @@ pub struct IdentifiedMode {
     pub frequency_hz: f64,
     /// The damping ratio.
     pub damping: f64,
-    /// Its share in the displacement under a slow acceleration.
+    /// Its share in the static displacement of the response; the shares of all modes sum to one.
     pub participation: f64,
     /// Amplitude after the jump of the acceleration, in the SI unit.
     pub ringing_m: f64,
@@ -101,7 +101,7 @@ pub struct RecommendedShaper {
     pub unshaped_displacement_m: f64,
     /// Mean delay of a command.
     pub delay_s: f64,
-    /// Largest distance by which the shaped command cuts a corner, in the SI unit.
+    /// Rounding of a path under the acceleration that the shapers were judged by, in the SI unit.
     pub smoothing_m: f64,
     /// Whether it leaves at most 5 % of the unshaped displacement.
     pub is_enough: bool,

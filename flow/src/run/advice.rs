@@ -3,9 +3,12 @@
 use crate::run::checks::{Check, Coverage};
 
 /// A likely cause, and two things to try.
-pub(crate) struct Advice {
-    pub(crate) cause: &'static str,
-    pub(crate) remedies: [&'static str; 2],
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Advice {
+    /// The cause.
+    pub cause: &'static str,
+    /// What to try, the first first.
+    pub remedies: [&'static str; 2],
 }
 
 /// Advice by the beginning of a check's name.
@@ -182,7 +185,7 @@ const GIVEN_UP: Advice = Advice {
 };
 
 /// Returns the advice for a failed check: by its name, or for a run that ended too early.
-pub(crate) fn for_failed(check: &Check) -> Option<&'static Advice> {
+pub(super) fn for_failed(check: &Check) -> Option<&'static Advice> {
     match check.coverage {
         Coverage::TooFewClocks => Some(&TOO_SHORT),
         Coverage::GivenUp => Some(&GIVEN_UP),
@@ -195,17 +198,6 @@ fn for_check(name: &str) -> Option<&'static Advice> {
         .iter()
         .find(|(start, _)| name.starts_with(start))
         .map(|(_, advice)| advice)
-}
-
-/// The advice for a failed check as lines of text.
-pub(crate) fn text(check: &Check) -> String {
-    for_failed(check).map_or_else(String::new, |advice| {
-        let [first, second] = advice.remedies;
-        format!(
-            "        likely cause: {}\n        try: {first}\n        or:  {second}\n",
-            advice.cause
-        )
-    })
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The checks of a run, which must all hold for exit status 0.
 
+use super::advice::{self, Advice};
 use super::waves::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
@@ -26,13 +27,13 @@ const MEASURED_ROUNDING: f64 = 1e-9;
 /// One check and how it went.
 #[derive(Debug, Clone, JsonSchema)]
 #[schemars(with = "NamedCheck<'static>")]
-pub(crate) struct Check {
+pub struct Check {
     /// Description of the check in a few words.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Whether the check held.
-    pub(crate) passed: bool,
+    pub passed: bool,
     /// The figures of the check; for a failed one the place where it failed first.
-    pub(crate) detail: String,
+    pub detail: String,
     /// How much of what the check is about was compared.
     pub(crate) coverage: Coverage,
 }
@@ -97,8 +98,9 @@ impl Check {
         }
     }
 
-    /// The result in a word.
-    pub(crate) fn verdict(&self) -> &'static str {
+    /// The result in a word, with spaces up to the width of the longest.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
         match (self.passed, self.coverage) {
             (false, _) => "FAILED",
             (true, Coverage::Enough) => "ok    ",
@@ -107,13 +109,21 @@ impl Check {
     }
 
     /// Whether the check failed only because too few clocks were compared.
-    pub(crate) fn is_too_short(&self) -> bool {
+    #[must_use]
+    pub fn is_too_short(&self) -> bool {
         !self.passed && self.coverage == Coverage::TooFewClocks
     }
 
     /// Whether the check held but compared nothing, or too little.
-    pub(crate) fn is_open(&self) -> bool {
+    #[must_use]
+    pub fn is_open(&self) -> bool {
         self.passed && self.coverage != Coverage::Enough
+    }
+
+    /// The likely cause if it failed, and remedies.
+    #[must_use]
+    pub fn advice(&self) -> Option<&'static Advice> {
+        if self.passed { None } else { advice::for_failed(self) }
     }
 }
 

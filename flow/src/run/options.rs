@@ -29,20 +29,6 @@ pub struct Options {
     pub cycles: Option<u64>,
     /// Seed of the random stimuli.
     pub seed: u64,
-    /// Level of detail of the text.
-    pub detail: Detail,
-}
-
-/// Level of detail of the text of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Detail {
-    /// The verdict, and what failed.
-    Verdict,
-    /// A line per axis, the area, the number of checks, and the verdict.
-    #[default]
-    Summary,
-    /// All tables and every check.
-    Everything,
 }
 
 impl Options {

@@ -1,17 +1,16 @@
-//! The report of `run`: tables for people, a document for programs, plots for both.
+//! The results of `run`, and their document.
 
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageFigures};
 use super::gain::Gain;
-use super::summary;
+use super::sentence::RunSentence;
 use super::waves::Waves;
 use crate::bench::Simulator;
 use crate::compare;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::simulate::si_per_lsb;
-use crate::synth;
-use crate::text::{Table, UnitDocument, percent};
+use crate::text::UnitDocument;
 use posicast_machine::compare::{DEFAULT_BAND, KindComparison};
 use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_machine::plan::{AxisTables, MachineDesign};
@@ -25,7 +24,7 @@ use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use wavecmp::diff::Comparison;
 
 /// All results of a run.
@@ -77,15 +76,6 @@ pub(crate) fn on_plants(machine: &Machine, design: &MachineDesign) -> Result<Vec
         .collect()
 }
 
-/// The largest residual of all modes; `None` without a mode.
-fn worst(figures: &StepFigures) -> Option<f64> {
-    figures.residual.iter().copied().reduce(f64::max)
-}
-
-fn percent_or_dash(fraction: Option<f64>) -> String {
-    fraction.map_or_else(|| "-".to_owned(), percent)
-}
-
 impl RunReport<'_> {
     pub(super) fn rows(&self) -> impl Iterator<Item = (usize, &AxisSection, &AxisTables)> {
         let axes = self.machine.axes.iter().zip(&self.design.design.axes).enumerate();
@@ -94,28 +84,6 @@ impl RunReport<'_> {
 
     pub(super) fn sample_hz(&self) -> f64 {
         self.design.design.sample_hz
-    }
-
-    /// All tables and checks, with the verdict last.
-    pub(crate) fn text(&self, root: &Path, files: &[PathBuf]) -> String {
-        let mut text = self.heading();
-        text.push('\n');
-        text += &self.shapers_text();
-        text.push('\n');
-        text += &self.comparison_text();
-        if let Some(closed_loop) = self.closed_loop {
-            text.push('\n');
-            text += &closed_loop.text();
-        }
-        if let Some(estimate) = self.estimate {
-            text.push('\n');
-            text += &synth::text(estimate);
-        }
-        text.push('\n');
-        text += &self.checks_text(|_| true);
-        text.push('\n');
-        text += &summary::folder(root, files);
-        text + &self.verdict()
     }
 
     /// Name of the simulator.
@@ -127,91 +95,6 @@ impl RunReport<'_> {
                 "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned()
             }
         }
-    }
-
-    fn shapers_text(&self) -> String {
-        let mut residuals = Table::new(&[
-            "axis",
-            "shaper",
-            ">impulses",
-            ">taps",
-            ">float",
-            ">quantised",
-            ">on plant",
-            ">plant -10 %",
-            ">plant +10 %",
-        ]);
-        let mut overshoots = Table::new(&[
-            "axis",
-            ">unshaped",
-            ">on plant",
-            ">plant -10 %",
-            ">plant +10 %",
-            ">ringing unshaped",
-            ">ringing shaped",
-        ]);
-        for (index, axis, tables) in self.rows() {
-            let plant = &self.plants[index];
-            let figures = tables.mode_figures(axis, self.sample_hz());
-            let largest =
-                |pick: fn(&posicast_machine::plan::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
-            residuals.row([
-                axis.name.clone(),
-                tables.design.kind.clone(),
-                tables.design.impulses.impulses().len().to_string(),
-                tables.table.taps().len().to_string(),
-                percent_or_dash(largest(|m| m.residual)),
-                percent_or_dash(largest(|m| m.residual_quantised)),
-                percent_or_dash(worst(&plant.shaped.nominal)),
-                percent_or_dash(worst(&plant.shaped.minus_10_percent)),
-                percent_or_dash(worst(&plant.shaped.plus_10_percent)),
-            ]);
-            let per_lsb = si_per_lsb(self.machine, axis);
-            let ringing = [self.axes[index].vibration_unshaped, self.axes[index].vibration];
-            let [ringing_unshaped, ringing_shaped] = axis.unit.show_all(ringing.map(|lsb| lsb * per_lsb));
-            overshoots.row([
-                axis.name.clone(),
-                percent(plant.unshaped.nominal.overshoot),
-                percent(plant.shaped.nominal.overshoot),
-                percent(plant.shaped.minus_10_percent.overshoot),
-                percent(plant.shaped.plus_10_percent.overshoot),
-                ringing_unshaped,
-                ringing_shaped,
-            ]);
-        }
-        format!(
-            "Residual vibration of a step, worst mode, % of unshaped\n{}\n\
-             Overshoot of a step, %; ringing after the move\n{}",
-            residuals.text("  "),
-            overshoots.text("  ")
-        )
-    }
-
-    fn comparison_text(&self) -> String {
-        let mut table = Table::new(&[
-            "axis",
-            ">clocks",
-            ">mismatches",
-            ">samples of the move",
-            ">largest difference from float, LSB",
-            ">bound, LSB",
-        ]);
-        for (index, axis, _) in self.rows() {
-            let block = self
-                .lockstep
-                .blocks
-                .iter()
-                .find(|b| b.name == "shaper" && b.instance == axis.name);
-            table.row([
-                axis.name.clone(),
-                block.map_or_else(String::new, |b| b.cycles.to_string()),
-                block.map_or_else(String::new, |b| b.mismatches.to_string()),
-                self.waves.samples[index].to_string(),
-                format!("{:.3}", self.waves.largest_difference_lsb[index]),
-                format!("{:.3}", self.axes[index].bound_lsb),
-            ]);
-        }
-        format!("RTL against model and float design\n{}", table.text("  "))
     }
 
     /// The document for programs, which is also `report.json`.
@@ -242,6 +125,7 @@ impl RunReport<'_> {
                 RunVerdict::Fail
             },
             simulator: self.simulator,
+            tool: self.tool(),
             seed: self.seed,
             design: self.design.json(),
             axes: axes.collect(),
@@ -252,6 +136,8 @@ impl RunReport<'_> {
             stage: self.closed_loop.map(ClosedLoop::json),
             kinds: compare::Document::new(self.machine, 100.0 * DEFAULT_BAND, self.kinds),
             checks: self.checks.to_vec(),
+            folder: PathBuf::new(),
+            files: Vec::new(),
         }
     }
 }
@@ -259,7 +145,7 @@ impl RunReport<'_> {
 /// The result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-enum RunVerdict {
+pub enum RunVerdict {
     /// Every check held.
     Pass,
     /// At least one check did not hold.
@@ -271,77 +157,106 @@ enum RunVerdict {
 pub struct Document {
     /// Raised when a key is removed or gets another meaning; new keys do not raise it.
     #[schemars(extend("const" = REPORT_VERSION))]
-    report_version: u32,
+    pub report_version: u32,
     /// Version of posicast.
-    posicast: &'static str,
+    pub posicast: &'static str,
     /// The command line of the run, to be called in the output folder.
-    command: String,
+    pub command: String,
     /// Name of the machine.
-    name: String,
-    result: RunVerdict,
-    simulator: Simulator,
+    pub name: String,
+    /// Whether every check held.
+    pub result: RunVerdict,
+    /// Simulator of the hardware.
+    pub simulator: Simulator,
+    /// Its name and version for people.
+    #[serde(skip)]
+    pub tool: String,
     /// Seed of the random stimuli.
-    seed: u64,
+    pub seed: u64,
     /// As `design --json`.
-    design: design::Document,
-    axes: Vec<RunAxis>,
+    pub design: design::Document,
+    /// The moves of the axes, in the order of the file.
+    pub axes: Vec<RunAxis>,
     /// As `verify --json`: the shapers, with random stimuli.
-    verify: LockstepReport,
+    pub verify: LockstepReport,
     /// As `diff --json`.
-    model_against_rtl: Comparison,
+    pub model_against_rtl: Comparison,
     /// As `diff --json`.
-    rtl_against_float: Comparison,
+    pub rtl_against_float: Comparison,
     /// As `synth --json`; null without Yosys.
-    synth: Option<Estimate>,
+    pub synth: Option<Estimate>,
     /// The closed loop; absent where the machine file describes no stage.
     #[serde(skip_serializing_if = "Option::is_none")]
-    stage: Option<StageFigures>,
+    pub stage: Option<StageFigures>,
     /// As `design --compare --json`.
-    kinds: compare::Document,
-    checks: Vec<Check>,
+    pub kinds: compare::Document,
+    /// All checks.
+    pub checks: Vec<Check>,
+    /// The output folder; not in JSON, because `report.json` is one of its files.
+    #[serde(skip)]
+    pub folder: PathBuf,
+    /// Paths of its files in it.
+    #[serde(skip)]
+    pub files: Vec<PathBuf>,
+}
+
+impl Document {
+    /// The verdict that follows from the checks, as a sentence.
+    #[must_use]
+    pub fn sentence(&self) -> RunSentence {
+        RunSentence::of(&self.checks, self.simulator)
+    }
 }
 
 /// The move of an axis.
 #[derive(Serialize, JsonSchema)]
-struct RunAxis {
-    name: String,
+pub struct RunAxis {
+    /// Name of the axis.
+    pub name: String,
+    /// Its unit.
     #[serde(flatten)]
-    unit: UnitDocument,
-    plant: StepOnPlant,
+    pub unit: UnitDocument,
+    /// A step on the simulated machine.
+    pub plant: StepOnPlant,
     /// Ringing after the move without the shaper, in `si_unit`.
-    residual_displacement_unshaped: f64,
+    pub residual_displacement_unshaped: f64,
     /// Ringing after the move with it, in `si_unit`.
-    residual_displacement: f64,
+    pub residual_displacement: f64,
     /// Output samples of the move.
-    samples: usize,
+    pub samples: usize,
     /// Largest difference of hardware and float design.
-    largest_difference_lsb: f64,
+    pub largest_difference_lsb: f64,
     /// The largest that rounding explains.
-    bound_lsb: f64,
+    pub bound_lsb: f64,
     gain: Gain,
 }
 
 /// A step on the simulated machine, and on machines whose frequencies are 10 % off.
 #[derive(Serialize, JsonSchema)]
-struct StepOnPlant {
-    unshaped: Step,
-    nominal: Step,
-    minus_10_percent: Step,
-    plus_10_percent: Step,
+pub struct StepOnPlant {
+    /// Without the shaper.
+    pub unshaped: PlantStep,
+    /// With it.
+    pub nominal: PlantStep,
+    /// With it, and frequencies 10 % lower.
+    pub minus_10_percent: PlantStep,
+    /// With it, and frequencies 10 % higher.
+    pub plus_10_percent: PlantStep,
 }
 
 /// A step.
 #[derive(Serialize, JsonSchema)]
-struct Step {
+#[schemars(rename = "Step")]
+pub struct PlantStep {
     /// Residual vibration of each mode, as a fraction of that of an unshaped step.
-    residual: Vec<f64>,
+    pub residual: Vec<f64>,
     /// As a fraction of the step.
-    overshoot: f64,
+    pub overshoot: f64,
 }
 
 impl StepOnPlant {
     fn new(plant: &OnPlant) -> Self {
-        let step = |figures: &StepFigures| Step {
+        let step = |figures: &StepFigures| PlantStep {
             residual: figures.residual.clone(),
             overshoot: figures.overshoot,
         };

@@ -1,8 +1,9 @@
 //! The shaper of one axis: impulses, modes, taps, and what else belongs to the axis.
 
 use super::{certificate, family};
+use crate::table::Table;
 use posicast_flow::design::{Control, DesignAxis, DesignErrorTable, Mechanics, StabilityMargins};
-use posicast_flow::text::{Table, percent};
+use posicast_flow::text::percent;
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::analysis::INSENSITIVITY_LIMIT;
 use posicast_shaper::unit::{show_seconds, trimmed};

@@ -1,7 +1,8 @@
 //! The certificate of an axis's table.
 
+use crate::table::Table;
 use posicast_flow::design::{Certificate, CertifiedMode, LeastDuration};
-use posicast_flow::text::{Table, percent};
+use posicast_flow::text::percent;
 use posicast_testbench::wording::counted;
 use std::fmt::Write;
 

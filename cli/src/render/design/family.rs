@@ -1,7 +1,7 @@
 //! The table family of an axis whose modes move.
 
+use crate::table::Table;
 use posicast_flow::design::DesignFamily;
-use posicast_flow::text::Table;
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::unit::{short, trimmed};
 use posicast_testbench::wording::counted;

@@ -1,7 +1,7 @@
 //! One known move of an axis, with its shaper and with a jerk time that is a period of a mode.
 
+use crate::table::Table;
 use posicast_flow::design::{ComparedMove, MoveTimes};
-use posicast_flow::text::Table;
 use std::fmt::Write;
 
 /// The ways to make the move, and the better one.

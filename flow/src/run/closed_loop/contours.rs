@@ -1,22 +1,18 @@
 //! The path of `--contour` in the closed loop.
 
+use super::report::PathError;
 use super::verdicts::equals_model;
 use crate::contour::PathOptions;
 use crate::failure::Failure;
-use crate::machine::plane_name;
 use crate::moves::Motion;
 use crate::observer::Observer;
 use crate::plot::{Curve, Panel, label, time_axis};
 use crate::run::checks::Check;
-use crate::text::Table;
 use posicast_closed_loop::stage_run::{Compared, Contoured, Trouble};
 use posicast_machine::contour::{Contour, FollowedContour};
 use posicast_machine::machine_file::Machine;
-use posicast_shaper::unit::show_seconds;
-use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// A path, and its name on the command line.
 pub(crate) struct NamedContour {
@@ -61,25 +57,51 @@ pub(crate) fn contour(
 
 /// `contour` of `stage` in `report.json`. Lengths are in m.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct FollowedPath {
-    path: String,
-    length: f64,
+pub struct FollowedPath {
+    /// The path: `circle`, `square`, or a file.
+    pub path: String,
+    /// Length of the path.
+    pub length: f64,
     /// Part of it that is rapids: at least the way to its beginning.
-    rapid_length: f64,
-    duration_s: f64,
-    stops: usize,
-    compared_clocks: Option<u64>,
-    own_delays: Option<PathDistance>,
-    equal_delays: Option<PathDistance>,
+    pub rapid_length: f64,
+    /// Time of the path.
+    pub duration_s: f64,
+    /// Number of stops on the way.
+    pub stops: usize,
+    /// Clocks in which Verilog and model were compared; null without Verilator.
+    pub compared_clocks: Option<u64>,
+    /// Distance from the path with each shaper's own delay.
+    pub own_delays: Option<PathDistance>,
+    /// Distance from the path with equal delays of all shapers.
+    pub equal_delays: Option<PathDistance>,
+    /// The same two for each that was driven, although it may have no feed.
+    #[serde(skip)]
+    pub rows: Vec<FollowedRow>,
+    /// Why delays cannot be made equal.
+    #[serde(skip)]
+    pub unequal: Option<String>,
 }
 
+/// The distances of the load with a set of tap tables.
+pub struct FollowedRow {
+    /// Description of the tables.
+    pub tables: &'static str,
+    /// Distance on the feeds; `None` without a feed.
+    pub error: Option<PathError>,
+    /// Largest distance on the rapids.
+    pub rapid_peak: Option<f64>,
+}
+
+/// Distance of the load from a path.
 #[derive(Serialize, JsonSchema)]
-struct PathDistance {
-    peak: f64,
-    rms: f64,
+pub struct PathDistance {
+    /// The largest.
+    pub peak: f64,
+    /// Its root mean square.
+    pub rms: f64,
     /// Largest distance on the rapids, which the other figures do not count.
     #[serde(skip_serializing_if = "Option::is_none")]
-    rapid_peak: Option<f64>,
+    pub rapid_peak: Option<f64>,
 }
 
 impl PathDistance {
@@ -125,37 +147,6 @@ impl Contours<'_> {
             .chain(matched.map(|followed| ("delays made equal", followed)))
     }
 
-    pub(super) fn text(&self, machine: &Machine) -> String {
-        let unit = machine.axes[0].unit;
-        let survey = self.path.contour.survey();
-        let has_rapids = survey.rapid_length > 0.0;
-        let mut headings = vec!["tap tables", ">distance from the path, peak", ">rms"];
-        if has_rapids {
-            headings.push(">in rapids, peak");
-        }
-        let mut table = Table::new(&headings);
-        for (name, followed) in self.rows() {
-            let shown = |figure: Option<f64>| figure.map_or_else(|| "–".to_owned(), |figure| unit.show(figure, 3));
-            let error = followed.error.map(|error| unit.show_all([error.peak, error.rms]));
-            let [peak, rms] = error.unwrap_or_else(|| [shown(None), shown(None)]);
-            let rapid = has_rapids.then(|| shown(followed.rapid.map(|rapid| rapid.peak)));
-            table.row([name.to_owned(), peak, rms].into_iter().chain(rapid));
-        }
-        let mut text = format!(
-            "\nContour {} of axes {}: {} in {}, {}\n{}",
-            self.path.name,
-            plane_name(machine),
-            unit.show_round(survey.length, ""),
-            show_seconds(survey.duration_s, 3),
-            counted(survey.stops as u64, "stop"),
-            table.text("  ")
-        );
-        if let Err(reason) = &self.matched {
-            let _ = writeln!(text, "  delays cannot be made equal: {reason}");
-        }
-        text
-    }
-
     pub(super) fn json(&self) -> FollowedPath {
         let of = |contoured: &Contoured| PathDistance::new(contoured.followed.as_ref()?);
         let survey = self.path.contour.survey();
@@ -168,6 +159,15 @@ impl Contours<'_> {
             compared_clocks: self.compared.as_ref().map(|compared| compared.clocks),
             own_delays: of(&self.apart),
             equal_delays: self.matched.as_ref().ok().and_then(of),
+            rows: self
+                .rows()
+                .map(|(tables, followed)| FollowedRow {
+                    tables,
+                    error: followed.error.map(PathError::from),
+                    rapid_peak: followed.rapid.map(|rapid| rapid.peak),
+                })
+                .collect(),
+            unequal: self.matched.as_ref().err().cloned(),
         }
     }
 

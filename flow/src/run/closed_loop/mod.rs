@@ -21,8 +21,9 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::thread;
 
+pub use contours::{FollowedPath, FollowedRow, PathDistance};
 pub(crate) use contours::{NamedContour, contour};
-pub(crate) use report::StageFigures;
+pub use report::{Compensation, DrivenCircle, MovedAxis, PathError, StageFigures, TickSchedule};
 
 use contours::Contours;
 

@@ -1,79 +1,19 @@
-//! The report of the closed loop, for people and for programs.
+//! The figures of the closed loop.
 
+use super::ClosedLoop;
 use super::contours::{Contours, FollowedPath};
-use super::{Circles, ClosedLoop};
 use crate::machine::plane_name;
 use crate::run::gain::{Gain, GainSource, Track};
 use crate::run::pictures::slowest_period_s;
-use crate::text::{Table, UnitDocument};
-use posicast_closed_loop::stage_run::{Circled, Compared, Moved};
+use crate::text::UnitDocument;
+use posicast_blocks::stage::StageSchedule;
+use posicast_closed_loop::stage_run::{Compared, Moved};
 use posicast_machine::plant::axis::ErrorFigures;
 use posicast_machine::unit::AxisUnit;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt::Write;
 
 impl ClosedLoop<'_> {
-    /// The section for people.
-    pub(crate) fn text(&self) -> String {
-        let mut table = Table::new(&[
-            "axis",
-            ">tracking, peak",
-            ">rms",
-            ">rest error",
-            ">ringing unshaped",
-            ">shaped",
-            ">machine -10 %",
-            ">machine +10 %",
-        ]);
-        for (index, axis) in self.machine.axes.iter().enumerate() {
-            let Some(figures) = self.shaped.axes.get(index) else {
-                continue;
-            };
-            let ringing = |moved: &Moved| moved.axes.get(index).map_or(f64::NAN, |axis| axis.residual.peak);
-            let numbers = [
-                figures.tracking.peak,
-                figures.tracking.rms,
-                figures.offset,
-                ringing(&self.unshaped),
-                ringing(&self.shaped),
-                ringing(&self.slower),
-                ringing(&self.faster),
-            ];
-            table.row(std::iter::once(axis.name.clone()).chain(axis.unit.show_all(numbers)));
-        }
-        let mut text = format!(
-            "Closed loop: all axes move at once on the simulated machine, {}\n{}",
-            self.moves_text(),
-            table.text("  ")
-        );
-        text += &self.error_tables_text();
-        match (&self.contours, &self.circles) {
-            (Some(contours), _) => text += &contours.text(self.machine),
-            (None, Ok(circles)) => text += &self.circles_text(circles),
-            (None, Err(reason)) => {
-                let _ = writeln!(text, "\nNo circle is driven: {reason}");
-            }
-        }
-        let schedule = self.stage.of_machine.config.timing();
-        let tick = self.stage.of_machine.config.tick.tick_clocks();
-        let _ = writeln!(text, "\nSchedule of a tick of {tick} clocks\n  {schedule}");
-        text
-    }
-
-    /// A line for each axis that has an error table.
-    pub(crate) fn error_tables_text(&self) -> String {
-        let lines = self.compensated().map(|(index, of)| {
-            let axis = &self.machine.axes[index];
-            let [with, without] = axis.unit.show_all([of.with.abs(), of.without.abs()]);
-            format!(
-                "  axis {}, homed: the load rests {with} from its target with its error table, {without} without\n",
-                axis.name
-            )
-        });
-        lines.collect()
-    }
-
     /// Clocks of the Verilog beside its model in the move, and values that differed; `None` without Verilator.
     pub(crate) fn side_by_side(&self) -> Option<[u64; 2]> {
         let compared = self.compared.as_ref()?;
@@ -117,48 +57,6 @@ impl ClosedLoop<'_> {
         ))
     }
 
-    /// Largest error of an axis during its move, in m or rad.
-    pub(crate) fn tracking_peak(&self, axis: usize) -> Option<f64> {
-        Some(self.shaped.axes.get(axis)?.tracking.peak)
-    }
-
-    /// Distance and speed of each axis's move.
-    fn moves_text(&self) -> String {
-        let axes = self.machine.axes.iter().zip(self.moves);
-        let texts = axes.map(|(axis, of)| {
-            let (distance, speed) = (
-                axis.unit.show_round(of.distance, ""),
-                axis.unit.show_round(of.velocity, "/s"),
-            );
-            format!("{} by {distance} at up to {speed}", axis.name)
-        });
-        texts.collect::<Vec<_>>().join(", ")
-    }
-
-    fn circles_text(&self, circles: &Circles) -> String {
-        let unit = self.circle_unit();
-        let mut table = Table::new(&["tap tables", ">distance from the circle, peak", ">rms"]);
-        let mut row = |name: &str, circled: &Circled| {
-            let [peak, rms] = unit.show_all([circled.error.peak, circled.error.rms]);
-            table.row([name.to_owned(), peak, rms]);
-        };
-        row("each with its own delay", &circles.apart);
-        if let Ok(matched) = &circles.matched {
-            row("delays made equal", matched);
-        }
-        let mut text = format!(
-            "\nCircle of axes {}, radius {} at {}\n{}",
-            plane_name(self.machine),
-            unit.show_round(circles.circle.radius, ""),
-            unit.show_round(circles.circle.speed, "/s"),
-            table.text("  ")
-        );
-        if let Err(reason) = &circles.matched {
-            let _ = writeln!(text, "  delays cannot be made equal: {reason}");
-        }
-        text
-    }
-
     /// The unit of the circle: that of its first axis.
     pub(super) fn circle_unit(&self) -> AxisUnit {
         self.machine.axes.first().map_or(AxisUnit::default(), |axis| axis.unit)
@@ -174,15 +72,17 @@ impl ClosedLoop<'_> {
             axes: axes
                 .map(|(index, axis)| {
                     let figures = self.shaped.axes.get(index);
-                    StageAxis {
+                    MovedAxis {
                         name: axis.name.clone(),
                         unit: UnitDocument::new(axis.unit),
+                        distance_and_speed: self.moves.get(index).map(|of| [of.distance, of.velocity]),
                         tracking: figures.map(|figures| figures.tracking.into()),
                         offset: figures.map(|figures| figures.offset),
                         residual_unshaped: residual(&self.unshaped, index),
                         residual: residual(&self.shaped, index),
                         residual_minus_10_percent: residual(&self.slower, index),
                         residual_plus_10_percent: residual(&self.faster, index),
+                        ringing: self.ringing(index),
                         error_table: self.compensated().find(|(place, _)| *place == index).map(|(_, of)| {
                             Compensation {
                                 offset_without: of.without,
@@ -193,18 +93,22 @@ impl ClosedLoop<'_> {
                     }
                 })
                 .collect(),
-            circle: self.circles.as_ref().ok().map(|circles| Circle {
+            plane: plane_name(self.machine),
+            circle: self.circles.as_ref().ok().map(|circles| DrivenCircle {
                 axes: self.machine.axes.iter().take(2).map(|axis| axis.name.clone()).collect(),
                 radius: circles.circle.radius,
                 speed: circles.circle.speed,
                 own_delays: circles.apart.error.into(),
                 equal_delays: circles.matched.as_ref().ok().map(|circled| circled.error.into()),
+                unequal: circles.matched.as_ref().err().cloned(),
             }),
+            no_circle: self.circles.as_ref().err().cloned(),
             contour: self.contours.as_ref().map(Contours::json),
-            schedule: Schedule {
+            schedule: TickSchedule {
                 tick_clocks: config.tick.tick_clocks(),
                 control_clocks: config.timing().control_clocks(),
                 duty_clocks: config.timing().duty_clocks(),
+                steps: config.timing(),
             },
         }
     }
@@ -213,53 +117,95 @@ impl ClosedLoop<'_> {
 /// The closed loop: the stage on its simulated machine. Lengths are in m or rad.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "ClosedLoop")]
-pub(crate) struct StageFigures {
+pub struct StageFigures {
     /// The Verilog beside its model; null without Verilator.
-    side_by_side: Option<Compared>,
-    axes: Vec<StageAxis>,
-    circle: Option<Circle>,
+    pub side_by_side: Option<Compared>,
+    /// The moves of the axes, in the order of the file.
+    pub axes: Vec<MovedAxis>,
+    /// Names of the axes of circle and path, such as `x and y`.
+    #[serde(skip)]
+    pub plane: String,
+    /// The circle, if one was driven.
+    pub circle: Option<DrivenCircle>,
+    /// Why none was.
+    #[serde(skip)]
+    pub no_circle: Option<String>,
+    /// The path of `--contour`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    contour: Option<FollowedPath>,
-    schedule: Schedule,
+    pub contour: Option<FollowedPath>,
+    /// When in a tick the stage does what.
+    pub schedule: TickSchedule,
 }
 
 /// The move of an axis of the stage.
 #[derive(Serialize, JsonSchema)]
-struct StageAxis {
-    name: String,
+#[schemars(rename = "StageAxis")]
+pub struct MovedAxis {
+    /// Name of the axis.
+    pub name: String,
+    /// Its unit.
     #[serde(flatten)]
-    unit: UnitDocument,
-    tracking: Option<PathError>,
-    offset: Option<f64>,
-    residual_unshaped: Option<f64>,
-    residual: Option<f64>,
-    residual_minus_10_percent: Option<f64>,
-    residual_plus_10_percent: Option<f64>,
+    pub unit: UnitDocument,
+    /// Distance and largest speed of the move.
+    #[serde(skip)]
+    pub distance_and_speed: Option<[f64; 2]>,
+    /// Distance from the command during the move.
+    pub tracking: Option<PathError>,
+    /// Distance of the rest position from the target.
+    pub offset: Option<f64>,
+    /// Ringing after the move without the shaper.
+    pub residual_unshaped: Option<f64>,
+    /// Ringing after the move with it.
+    pub residual: Option<f64>,
+    /// With the shaper, and the modes' frequencies 10 % lower.
+    pub residual_minus_10_percent: Option<f64>,
+    /// With the shaper, and the modes' frequencies 10 % higher.
+    pub residual_plus_10_percent: Option<f64>,
+    /// Ringing without the shaper and with it; `None` if one of the moves was not made to its end.
+    #[serde(skip)]
+    pub ringing: Option<[f64; 2]>,
+    /// The effect of the axis's error table.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_table: Option<Compensation>,
+    pub error_table: Option<Compensation>,
 }
 
 /// Distance of the load's rest position from its target, with the axis's error table and without it.
 #[derive(Serialize, JsonSchema)]
-struct Compensation {
-    offset_without: f64,
-    offset_with: f64,
-    offset_allowed: f64,
+pub struct Compensation {
+    /// Without the table.
+    pub offset_without: f64,
+    /// With it.
+    pub offset_with: f64,
+    /// The largest that is allowed with it.
+    pub offset_allowed: f64,
 }
 
+/// The circle of the first two axes.
 #[derive(Serialize, JsonSchema)]
-struct Circle {
-    axes: Vec<String>,
-    radius: f64,
-    speed: f64,
-    own_delays: PathError,
-    equal_delays: Option<PathError>,
+#[schemars(rename = "Circle")]
+pub struct DrivenCircle {
+    /// Names of the axes.
+    pub axes: Vec<String>,
+    /// Radius of the circle.
+    pub radius: f64,
+    /// Speed along it.
+    pub speed: f64,
+    /// Distance from the circle with each shaper's own delay.
+    pub own_delays: PathError,
+    /// Distance from the circle with equal delays of all shapers.
+    pub equal_delays: Option<PathError>,
+    /// Why delays cannot be made equal.
+    #[serde(skip)]
+    pub unequal: Option<String>,
 }
 
+/// Distance of the load from where it should be.
 #[derive(Serialize, JsonSchema)]
-struct PathError {
-    peak: f64,
-    rms: f64,
+pub struct PathError {
+    /// The largest.
+    pub peak: f64,
+    /// Its root mean square.
+    pub rms: f64,
 }
 
 impl From<ErrorFigures> for PathError {
@@ -273,8 +219,15 @@ impl From<ErrorFigures> for PathError {
 
 /// When in a tick the stage does what.
 #[derive(Serialize, JsonSchema)]
-struct Schedule {
-    tick_clocks: u32,
-    control_clocks: u32,
-    duty_clocks: u32,
+#[schemars(rename = "Schedule")]
+pub struct TickSchedule {
+    /// Length of a tick.
+    pub tick_clocks: u32,
+    /// When the controllers start.
+    pub control_clocks: u32,
+    /// When the duties change.
+    pub duty_clocks: u32,
+    /// All steps of the tick.
+    #[serde(skip)]
+    pub steps: StageSchedule,
 }

@@ -8,13 +8,12 @@ mod pictures;
 mod sentences;
 mod tables;
 
-use super::advice;
 use super::checks::Check;
 use super::report::RunReport;
+use super::sentence::RunSentence;
 use crate::bench::Simulator;
 use crate::failure::Failure;
 use crate::plot::{Inline, Panel, inline, style_rules};
-use anstream::adapter::strip_str;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
@@ -54,9 +53,8 @@ impl RunReport<'_> {
     /// The page.
     pub(crate) fn page(&self, extra: &Extra) -> Result<String, Failure> {
         let is_failed = self.checks.iter().any(|check| !check.passed);
-        let verdict = strip_str(&self.verdict()).to_string();
-        let (verdict, remark) = verdict.split_once('\n').unwrap_or((&verdict, ""));
-        let (word, rest) = verdict.split_once([':', ',']).unwrap_or((verdict, ""));
+        let RunSentence { word, rest, remark } = RunSentence::of(self.checks, self.simulator);
+        let rest = rest.trim_start_matches([':', ',', ' ']);
         let class = match (is_failed, word) {
             (true, "FAIL") => "bad",
             (true, _) => "open",
@@ -74,8 +72,8 @@ impl RunReport<'_> {
                 body {
                     header class=(class) {
                         p.name { (self.machine.name) }
-                        h1 { strong { (word) } ": " (rest.trim_start()) }
-                        @if !remark.trim().is_empty() { p { (remark.trim()) } }
+                        h1 { strong { (word) } ": " (rest) }
+                        @if let Some(remark) = remark { p { (remark) } }
                         p { "Made by " code { (self.command) } " with posicast " (env!("CARGO_PKG_VERSION")) "; simulator: " (self.tool()) "." }
                     }
                     main {
@@ -111,7 +109,7 @@ impl RunReport<'_> {
                     article {
                         h3 { (check.name) }
                         (detail(check))
-                        @if let Some(advice) = advice::for_failed(check) {
+                        @if let Some(advice) = check.advice() {
                             p { strong { "Likely cause: " } (with_code(advice.cause)) "." }
                             p { strong { "Try this: " } (with_code(advice.remedies[0])) "; or " (with_code(advice.remedies[1])) "." }
                         }
