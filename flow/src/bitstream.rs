@@ -4,8 +4,8 @@
 mod document;
 mod machine;
 
-pub use self::document::{CheckDocument, Document};
 use self::document::Evidence;
+pub use self::document::{CheckDocument, Document};
 use crate::Outcome;
 use crate::design::DesignReport;
 use crate::failure::Failure;

@@ -49,9 +49,13 @@ pub struct Document {
     pub checks: Vec<CheckDocument>,
     /// Highest frequency of the clock, by nextpnr's timing model.
     pub highest_mhz: f64,
+    /// The bits, tile by tile, with those that the router wrote.
     pub tiles: TilesReport,
+    /// The netlist of the bits with the router's.
     pub cells: CellsReport,
+    /// The netlist of the bits with the model.
     pub lock_step: BehaviourReport,
+    /// Single faults, and what found them.
     pub flips: Vec<FlipReport>,
     /// What none of the checks covers.
     pub not_covered: Vec<String>,
