@@ -3,7 +3,7 @@
 
 use crate::BitstreamError;
 use crate::model::BoardModel;
-use crate::netlist::{BitsNetlist, NetlistSimulation};
+use crate::network::{NetlistSimulation, Network};
 use crate::random::Random;
 use crate::top::crc::checksum;
 use crate::top::{BoardTop, COMMAND_MARK, PAUSE_BITS};
@@ -73,13 +73,13 @@ pub fn least_clocks(top: &BoardTop) -> u64 {
 /// # Errors
 /// [`BitstreamError::UnknownCell`] if the netlist cannot be simulated.
 pub fn compare(
-    netlist: &BitsNetlist,
+    network: &Network,
     top: &BoardTop,
     (clocks, seed): (u64, u64),
     progress: &mut dyn FnMut(u64),
 ) -> Result<BehaviourReport, BitstreamError> {
     let [(_, clock), (_, rx), (line, tx), (led, led_pin)] = top.board().pins();
-    let mut simulation = NetlistSimulation::new(netlist, clock.pin)?;
+    let mut simulation = NetlistSimulation::new(network, clock.pin)?;
     let serial_rx = simulation.input(rx.pin)?;
     let outputs = [simulation.output(tx.pin)?, simulation.output(led_pin.pin)?];
     let mut model = BoardModel::new(top);

@@ -5,13 +5,13 @@
 //! select, can be found in the tiles alone.
 
 use crate::BitstreamError;
-use crate::asc::{AscBit, FlipKind, candidates, compare_tiles, flipped};
 use crate::behaviour;
 use crate::error::at;
-use crate::netlist::BitsNetlist;
+use crate::ice40::BitsNetlist;
+use crate::ice40::asc::{AscBit, FlipKind, candidates, compare_tiles, flipped};
+use crate::ice40::structure::compare_cells;
+use crate::ice40::tools::{Ice40Tools, Routed};
 use crate::random::Random;
-use crate::structure::compare_cells;
-use crate::tools::{Ice40Tools, Routed};
 use crate::top::BoardTop;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -145,7 +145,7 @@ fn flip(
     match BitsNetlist::read(&verilog) {
         Ok(netlist) => {
             report.cells = compare_cells(&netlist, &fault_free.routed.netlist, top.board())?.differences;
-            report.lock_step_clock = match behaviour::compare(&netlist, top, (clocks, SEED), &mut |_| {}) {
+            report.lock_step_clock = match behaviour::compare(&netlist.network(), top, (clocks, SEED), &mut |_| {}) {
                 Ok(compared) => compared.first.map(|first| first.clock),
                 // A netlist that cannot be simulated, such as one with a loop, is a difference from its first clock on.
                 Err(BitstreamError::UnknownCell(_)) => Some(0),

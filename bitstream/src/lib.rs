@@ -12,25 +12,21 @@
 //! | [`boards`] | the boards, with two sources for each pin |
 //! | [`top`] | the board's top module: the machine's shapers behind a serial line |
 //! | [`model`] | the bit-exact model of that top |
-//! | [`tools`] | the programs that build a bitstream and read it back, with limits of time and memory |
-//! | [`asc`] | a bitstream as text: its tiles, and single flips |
-//! | [`netlist`] | the netlist of the bits, and its simulation |
-//! | [`structure`] | compares the bits with the router's result |
+//! | [`network`] | the netlist of the bits in the form that is simulated, whatever the family |
+//! | [`ice40`] | iCE40: the programs, a bitstream as text, its netlist, and the comparison with the router's result |
 //! | [`behaviour`] | runs the netlist of the bits beside the model |
 //! | [`flips`] | makes single faults in the bits, which the comparisons must find |
 //!
 //! Only iCE40 is built in. What a netlist has and this crate does not know is an error that names it, never a guess.
 
-pub mod asc;
 pub mod behaviour;
 pub mod boards;
 mod error;
 pub mod flips;
+pub mod ice40;
 pub mod model;
-pub mod netlist;
+pub mod network;
 mod random;
-pub mod structure;
-pub mod tools;
 pub mod top;
 
 pub use error::BitstreamError;

@@ -17,13 +17,13 @@ use crate::sopc;
 use crate::text::json_text;
 use crate::verilog;
 use posicast_bitstream::BitstreamError;
-use posicast_bitstream::asc::compare_tiles;
 use posicast_bitstream::behaviour::{self, BehaviourReport};
 use posicast_bitstream::boards::{self, FpgaBoard};
 use posicast_bitstream::flips::{self, FaultFree, FlipReport};
-use posicast_bitstream::netlist::{BitsNetlist, MEMORY_MODEL, legal_verilog};
-use posicast_bitstream::structure::compare_cells;
-use posicast_bitstream::tools::Ice40Tools;
+use posicast_bitstream::ice40::asc::compare_tiles;
+use posicast_bitstream::ice40::structure::compare_cells;
+use posicast_bitstream::ice40::tools::Ice40Tools;
+use posicast_bitstream::ice40::{BitsNetlist, MEMORY_MODEL, legal_verilog};
 use posicast_bitstream::top::{BoardTop, TopAxis};
 use posicast_synth::package::Package;
 use std::path::{Path, PathBuf};
@@ -176,7 +176,7 @@ fn lock_step(
     observer: &dyn Observer,
 ) -> Result<BehaviourReport, BitstreamError> {
     let bar = observer.begin("lock step of the bits with the model", Some(clocks));
-    behaviour::compare(netlist, top, (clocks, seed), &mut |done| bar.reach(done))
+    behaviour::compare(&netlist.network(), top, (clocks, seed), &mut |done| bar.reach(done))
 }
 
 fn flips(

@@ -1,9 +1,9 @@
 //! The result of a bitstream: the checks, each with what it covers, and what none of them covers.
 
-use posicast_bitstream::asc::{FlipKind, TilesReport};
 use posicast_bitstream::behaviour::BehaviourReport;
 use posicast_bitstream::flips::FlipReport;
-use posicast_bitstream::structure::CellsReport;
+use posicast_bitstream::ice40::asc::{FlipKind, TilesReport};
+use posicast_bitstream::ice40::structure::CellsReport;
 use posicast_bitstream::top::BoardTop;
 use posicast_machine::machine_file::Machine;
 use posicast_testbench::wording::counted;

@@ -1,9 +1,8 @@
 //! Reads the Verilog of icebox_vlog.
 
-use super::{
-    BitsNetlist, CarryCell, CellOutput, CellPlace, Flop, HIGH, LOW, LutCell, MEMORY_WORDS, MemoryCell, NetIndex,
-};
+use super::netlist::{BitsNetlist, CarryCell, CellOutput, CellPlace, Flop, LutCell, MEMORY_WORDS, MemoryCell};
 use crate::BitstreamError;
+use crate::network::{HIGH, LOW, NetIndex};
 use std::collections::HashMap;
 
 impl BitsNetlist {

@@ -3,7 +3,8 @@
 use super::CellsReport;
 use crate::BitstreamError;
 use crate::boards::FpgaBoard;
-use crate::netlist::{BitsNetlist, CarryCell, CellOutput, CellPlace, HIGH, LOW, LutCell, MemoryCell, NetIndex};
+use crate::ice40::{BitsNetlist, CarryCell, CellOutput, CellPlace, LutCell, MemoryCell};
+use crate::network::{HIGH, LOW, NetIndex};
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 use std::fmt;

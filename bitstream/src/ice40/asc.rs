@@ -1,6 +1,6 @@
 //! A bitstream as text (`.asc`): its tiles, their comparison, and single flips.
 
-use crate::netlist::MemoryCell;
+use super::netlist::MemoryCell;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;

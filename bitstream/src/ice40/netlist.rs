@@ -1,24 +1,12 @@
-//! The netlist of the bits, as icebox_vlog decodes it, and its simulation.
+//! The netlist of the bits, as icebox_vlog decodes it.
 //!
 //! icebox_vlog knows what each bit of the device's tiles connects and sets. Its Verilog is regular, with the place of each cell in a
 //! comment; [`BitsNetlist::read`] takes exactly that form, and refuses anything else by its line.
 
-mod legal;
-mod read;
-mod simulate;
-
-pub use legal::{MEMORY_MODEL, legal_verilog};
-pub use simulate::NetlistSimulation;
-
+use crate::network::{Gate, NetIndex, Network, State};
 use std::collections::HashMap;
 use std::fmt;
 
-/// A net. The first two are the constants.
-pub type NetIndex = u32;
-/// The net that is always 0.
-pub const LOW: NetIndex = 0;
-/// The net that is always 1.
-pub const HIGH: NetIndex = 1;
 /// Words of a block RAM.
 pub const MEMORY_WORDS: usize = 256;
 
@@ -131,4 +119,48 @@ pub struct BitsNetlist {
     pub memories: Vec<MemoryCell>,
     /// Nets that are another net.
     pub joins: Vec<(NetIndex, NetIndex)>,
+}
+
+/// The values of a majority of three inputs.
+const MAJORITY: u16 = 0b1110_1000;
+
+impl BitsNetlist {
+    /// The same netlist in the form that is simulated.
+    #[must_use]
+    pub fn network(&self) -> Network {
+        let luts = self
+            .luts
+            .iter()
+            .map(|lut| Gate::new(lut.output, &lut.inputs, lut.table));
+        let carries = self
+            .carries
+            .iter()
+            .map(|carry| Gate::new(carry.output, &carry.inputs, MAJORITY));
+        let joins = self.joins.iter().map(|(output, input)| Gate::wire(*output, *input));
+        let mut gates: Vec<Gate> = luts.chain(carries).chain(joins).collect();
+        let mut states = Vec::new();
+        for cell in &self.cells {
+            match cell.flop {
+                None => gates.push(Gate::wire(cell.output, cell.data)),
+                Some(flop) => states.push(State {
+                    output: cell.output,
+                    clock: flop.clock,
+                    data: cell.data,
+                    enable: flop.enable,
+                    reset: flop.reset,
+                    reset_to: flop.reset_to,
+                    reset_needs_enable: true,
+                    initial: false,
+                }),
+            }
+        }
+        Network {
+            names: self.names.clone(),
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            gates,
+            states,
+            memories: self.memories.clone(),
+        }
+    }
 }

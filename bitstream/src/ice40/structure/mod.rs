@@ -8,7 +8,7 @@ mod netlists;
 
 use crate::BitstreamError;
 use crate::boards::FpgaBoard;
-use crate::netlist::{BitsNetlist, CellPlace, LutCell, MEMORY_WORDS};
+use crate::ice40::{BitsNetlist, CellPlace, LutCell, MEMORY_WORDS};
 use netlists::{Driver, ReadBack, RoutedNetlist, is_set, parameter};
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -1,0 +1,79 @@
+//! The netlist of the bits in the form that is simulated: gates of at most four inputs, registers, and memories.
+
+mod simulate;
+
+pub use simulate::NetlistSimulation;
+
+use crate::ice40::MemoryCell;
+
+/// A net. The first two are the constants.
+pub type NetIndex = u32;
+/// The net that is always 0.
+pub const LOW: NetIndex = 0;
+/// The net that is always 1.
+pub const HIGH: NetIndex = 1;
+
+/// A netlist.
+#[derive(Debug, Clone, Default)]
+pub struct Network {
+    /// Names of the nets.
+    pub names: Vec<String>,
+    /// Pins that are inputs, with their nets.
+    pub inputs: Vec<(String, NetIndex)>,
+    /// Pins that are outputs, with their nets.
+    pub outputs: Vec<(String, NetIndex)>,
+    /// Cells without state.
+    pub gates: Vec<Gate>,
+    /// Registers.
+    pub states: Vec<State>,
+    /// Memories.
+    pub memories: Vec<MemoryCell>,
+}
+
+/// A cell without state: a table over at most four nets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Gate {
+    /// Its output.
+    pub output: NetIndex,
+    /// Its inputs; those that it does not have are [`LOW`].
+    pub inputs: [NetIndex; 4],
+    /// Its values: bit `i` for inputs whose levels are the bits of `i`.
+    pub table: u16,
+}
+
+/// A register at the rising edge of its clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct State {
+    /// Its output.
+    pub output: NetIndex,
+    /// Its clock.
+    pub clock: NetIndex,
+    /// Its next value.
+    pub data: NetIndex,
+    /// Nothing is taken while this is low.
+    pub enable: NetIndex,
+    /// Sets or resets it while high.
+    pub reset: NetIndex,
+    /// The value after that.
+    pub reset_to: bool,
+    /// Whether `enable` must be high for a reset, too.
+    pub reset_needs_enable: bool,
+    /// The value after configuration.
+    pub initial: bool,
+}
+
+impl Gate {
+    /// A gate of at most four inputs.
+    #[must_use]
+    pub fn new(output: NetIndex, nets: &[NetIndex], table: u16) -> Self {
+        let mut inputs = [LOW; 4];
+        inputs[..nets.len()].copy_from_slice(nets);
+        Self { output, inputs, table }
+    }
+
+    /// A gate whose output is its input.
+    #[must_use]
+    pub fn wire(output: NetIndex, input: NetIndex) -> Self {
+        Self::new(output, &[input], 0b10)
+    }
+}

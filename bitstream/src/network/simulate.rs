@@ -1,0 +1,239 @@
+//! Simulates a network clock by clock.
+//!
+//! The gates are in the order of their dependence, and only those are evaluated whose inputs have changed.
+
+use super::{Gate, HIGH, NetIndex, Network, State};
+use crate::BitstreamError;
+use crate::ice40::{MemoryCell, MemoryState};
+use std::collections::{HashMap, HashSet};
+
+/// A running simulation. All registers have the values that configuration gives them.
+#[derive(Debug, Clone)]
+pub struct NetlistSimulation {
+    levels: Vec<bool>,
+    gates: Vec<Gate>,
+    /// The gates that read each net.
+    readers: Vec<Vec<u32>>,
+    /// Gates whose inputs have changed, a bit each.
+    pending: Vec<u64>,
+    states: Vec<State>,
+    next: Vec<bool>,
+    memories: Vec<MemoryState>,
+    inputs: HashMap<String, NetIndex>,
+    outputs: HashMap<String, NetIndex>,
+}
+
+impl NetlistSimulation {
+    /// A simulation with one clock, at this pin.
+    ///
+    /// # Errors
+    /// [`BitstreamError::UnknownCell`] if a cell has another clock, a net has two drivers, or gates depend on themselves.
+    pub fn new(network: &Network, clock_pin: &str) -> Result<Self, BitstreamError> {
+        let inputs: HashMap<String, NetIndex> = network.inputs.iter().cloned().collect();
+        let clock = inputs.get(clock_pin).copied();
+        let clock =
+            clock.ok_or_else(|| BitstreamError::UnknownCell(format!("no input at the clock's pin {clock_pin}")))?;
+        let name = |net: NetIndex| network.names.get(net as usize).map_or("", String::as_str);
+        if let Some(other) = network.states.iter().find(|state| state.clock != clock) {
+            return Err(BitstreamError::UnknownCell(format!(
+                "another clock of {}",
+                name(other.output)
+            )));
+        }
+        let has_clock = |memory: &MemoryCell| ["WCLK", "RCLK"].iter().all(|port| memory.port(port) == [clock]);
+        if let Some(other) = network.memories.iter().find(|memory| !has_clock(memory)) {
+            return Err(BitstreamError::UnknownCell(format!(
+                "another clock at the memory {}",
+                other.place
+            )));
+        }
+        let mut driven: HashSet<NetIndex> = inputs.values().copied().collect();
+        let gates = network.gates.iter().map(|gate| gate.output);
+        let states = network.states.iter().map(|state| state.output);
+        let memories = network
+            .memories
+            .iter()
+            .flat_map(|memory| memory.port("RDATA").iter().copied());
+        if let Some(twice) = gates.chain(states).chain(memories).find(|net| !driven.insert(*net)) {
+            return Err(BitstreamError::UnknownCell(format!("{} has two drivers", name(twice))));
+        }
+        let mut levels = vec![false; network.names.len()];
+        levels[HIGH as usize] = true;
+        for state in &network.states {
+            levels[state.output as usize] = state.initial;
+        }
+        let gates = in_order(&network.gates)?;
+        let mut readers = vec![Vec::new(); network.names.len()];
+        for (index, gate) in gates.iter().enumerate() {
+            for net in gate.inputs {
+                readers[net as usize].push(index as u32);
+            }
+        }
+        // At first, every gate has to be evaluated.
+        let pending = (0..gates.len().div_ceil(64)).map(|word| match gates.len() - 64 * word {
+            64.. => u64::MAX,
+            rest => (1 << rest) - 1,
+        });
+        Ok(Self {
+            pending: pending.collect(),
+            next: vec![false; network.states.len()],
+            levels,
+            gates,
+            readers,
+            states: network.states.clone(),
+            memories: network.memories.iter().map(MemoryState::new).collect(),
+            inputs,
+            outputs: network.outputs.iter().cloned().collect(),
+        })
+    }
+
+    /// The net of an output pin.
+    ///
+    /// # Errors
+    /// [`BitstreamError::UnknownCell`] if the bits drive no such pin.
+    pub fn output(&self, pin: &str) -> Result<NetIndex, BitstreamError> {
+        let missing = || BitstreamError::UnknownCell(format!("the bits drive no pin {pin}"));
+        self.outputs.get(pin).copied().ok_or_else(missing)
+    }
+
+    /// The net of an input pin.
+    ///
+    /// # Errors
+    /// [`BitstreamError::UnknownCell`] if the bits read no such pin.
+    pub fn input(&self, pin: &str) -> Result<NetIndex, BitstreamError> {
+        let missing = || BitstreamError::UnknownCell(format!("the bits read no pin {pin}"));
+        self.inputs.get(pin).copied().ok_or_else(missing)
+    }
+
+    /// Sets the level of an input.
+    pub fn set(&mut self, net: NetIndex, level: bool) {
+        if self.levels[net as usize] != level {
+            self.levels[net as usize] = level;
+            for reader in &self.readers[net as usize] {
+                self.pending[*reader as usize / 64] |= 1 << (reader % 64);
+            }
+        }
+    }
+
+    /// The level of a net after [`settle`](Self::settle).
+    #[must_use]
+    pub fn level(&self, net: NetIndex) -> bool {
+        self.levels[net as usize]
+    }
+
+    /// Lets all levels follow the inputs and registers.
+    pub fn settle(&mut self) {
+        for word in 0..self.pending.len() {
+            // A gate is read only by those that come after it, perhaps in the same word.
+            while self.pending[word] != 0 {
+                let bit = self.pending[word].trailing_zeros();
+                self.pending[word] &= self.pending[word] - 1;
+                let gate = self.gates[64 * word + bit as usize];
+                let [a, b, c, d] = gate.inputs.map(|net| u16::from(self.levels[net as usize]));
+                self.set(gate.output, gate.table >> (a | b << 1 | c << 2 | d << 3) & 1 == 1);
+            }
+        }
+    }
+
+    /// A rising edge of the clock, after [`settle`](Self::settle).
+    pub fn clock(&mut self) {
+        let level = |net: NetIndex| self.levels[net as usize];
+        for (next, state) in self.next.iter_mut().zip(&self.states) {
+            let is_enabled = level(state.enable);
+            *next = if level(state.reset) && (is_enabled || !state.reset_needs_enable) {
+                state.reset_to
+            } else if is_enabled {
+                level(state.data)
+            } else {
+                level(state.output)
+            };
+        }
+        let mut changes: Vec<(NetIndex, bool)> = Vec::new();
+        for memory in &mut self.memories {
+            memory.clock(&level);
+            changes.extend(memory.outputs());
+        }
+        changes.extend(
+            self.states
+                .iter()
+                .map(|state| state.output)
+                .zip(self.next.iter().copied()),
+        );
+        for (net, level) in changes {
+            self.set(net, level);
+        }
+    }
+}
+
+/// The gates, each after those on which it depends.
+fn in_order(gates: &[Gate]) -> Result<Vec<Gate>, BitstreamError> {
+    let drivers: HashMap<NetIndex, usize> = gates
+        .iter()
+        .enumerate()
+        .map(|(index, gate)| (gate.output, index))
+        .collect();
+    let mut waits = vec![0u32; gates.len()];
+    let mut readers: Vec<Vec<usize>> = vec![Vec::new(); gates.len()];
+    for (index, gate) in gates.iter().enumerate() {
+        for driver in gate.inputs.iter().filter_map(|net| drivers.get(net)) {
+            waits[index] += 1;
+            readers[*driver].push(index);
+        }
+    }
+    let mut ready: Vec<usize> = (0..gates.len()).filter(|index| waits[*index] == 0).collect();
+    let mut next = 0;
+    while let Some(index) = ready.get(next).copied() {
+        next += 1;
+        for reader in &readers[index] {
+            waits[*reader] -= 1;
+            if waits[*reader] == 0 {
+                ready.push(*reader);
+            }
+        }
+    }
+    if ready.len() < gates.len() {
+        return Err(BitstreamError::UnknownCell(
+            "cells without state that depend on themselves".to_owned(),
+        ));
+    }
+    Ok(ready.into_iter().map(|index| gates[index]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ice40::BitsNetlist;
+
+    #[test]
+    fn a_counter_of_one_bit_divides_the_clock() {
+        let text = "module chip (input pin_1, output pin_2);\nreg n1 = 0;\n\
+                    assign n2 = /* LUT 1 1 0 */ !n1;\n/* FF 1 1 0 */ always @(posedge pin_1) if (1'b1) n1 <= 1'b0 ? 1'b0 : n2;\n\
+                    assign pin_2 = n1;\nendmodule\n";
+        let netlist = BitsNetlist::read(text).unwrap();
+        let mut simulation = NetlistSimulation::new(&netlist.network(), "1").unwrap();
+        let output = simulation.output("2").unwrap();
+        let seen = [false, true, false, true].map(|_| {
+            simulation.settle();
+            let level = simulation.level(output);
+            simulation.clock();
+            level
+        });
+        assert_eq!(seen, [false, true, false, true]);
+        assert!(NetlistSimulation::new(&netlist.network(), "2").is_err());
+    }
+
+    #[test]
+    fn a_net_with_two_drivers_is_refused() {
+        let text = "module chip (input pin_1, output pin_2);\nassign pin_2 = /* LUT 1 1 0 */ !pin_1;\nassign pin_2 = pin_1;\nendmodule\n";
+        let netlist = BitsNetlist::read(text).unwrap();
+        let error = NetlistSimulation::new(&netlist.network(), "1").unwrap_err().to_string();
+        assert!(error.ends_with("pin_2 has two drivers"), "{error}");
+    }
+
+    #[test]
+    fn cells_that_depend_on_themselves_are_refused() {
+        let text = "module chip (input pin_1, output pin_2);\nassign pin_2 = /* LUT 1 1 0 */ !pin_2;\nendmodule\n";
+        let netlist = BitsNetlist::read(text).unwrap();
+        assert!(NetlistSimulation::new(&netlist.network(), "1").is_err());
+    }
+}
