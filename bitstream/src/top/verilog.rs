@@ -27,8 +27,9 @@ impl BoardTop {
 //   host -> board   {mark:02X}, the command words of all axes ({axes}), checksum
 //   board -> host   {result:02X}, the shaped words of the same axes, checksum, at every sample
 //
-// The checksum of all bytes before it is a CRC-8 (polynomial 07, start value 0, highest bit first). A word has {word_bytes} bytes, the lowest first, with {word_bits} bits, two's complement. The line has {baud} baud, 8 data bits, no parity,
-// one stop bit. A pause of {PAUSE_BITS} bits begins a new frame. {led} is lit while a shaper has clamped an output or lost a sample.
+// The checksum of all bytes before it is a CRC-8 (polynomial 07, start value 0, highest bit first). A word has {word_bytes} bytes, the lowest
+// first, with {word_bits} bits, two's complement. The line has {baud} baud, 8 data bits, no parity, one stop bit. A pause of {PAUSE_BITS} bits
+// begins a new frame. {led} is lit while a shaper has clamped an output or lost a sample.
 //
 // Written by posicast {version} for the machine {machine}, for an oscillator of {mhz} MHz. Nobody has run it on hardware yet.
 
