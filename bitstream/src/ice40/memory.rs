@@ -66,27 +66,25 @@ fn other_bits(mode: u8, part: u16) -> u16 {
     }
 }
 
-/// The wires of a narrow port, each at all the bits among which the address selects: of 8, 4 and 2 bits, the wires are
-/// 0, 2, 4, …; 1, 5, 9, 13; and 3, 11.
-fn spread(mode: u8, data: u16) -> u16 {
-    let from = |bit: u32| match mode {
+/// The wire of a port of this mode that belongs to a bit of the word: of 8, 4 and 2 bits, the wires are 0, 2, 4, …; 1, 5, 9, 13; and
+/// 3, 11.
+fn wire_of(mode: u8, bit: u32) -> u32 {
+    match mode {
         1 => bit / 2 * 2,
         2 => bit / 4 * 4 + 1,
         3 => bit / 8 * 8 + 3,
         _ => bit,
-    };
-    (0..16).fold(0, |word, bit| word | (data >> from(bit) & 1) << bit)
+    }
 }
 
-/// The selected bits at the wires of a narrow port.
+/// The wires of a port, each at all the bits among which the address selects.
+fn spread(mode: u8, data: u16) -> u16 {
+    (0..16).fold(0, |word, bit| word | (data >> wire_of(mode, bit) & 1) << bit)
+}
+
+/// The selected bits at the wires of a port.
 fn gathered(mode: u8, word: u16) -> u16 {
-    let to = |bit: u32| match mode {
-        1 => bit / 2 * 2,
-        2 => bit / 4 * 4 + 1,
-        3 => bit / 8 * 8 + 3,
-        _ => bit,
-    };
-    (0..16).fold(0, |wires, bit| wires | (word >> bit & 1) << to(bit))
+    (0..16).fold(0, |wires, bit| wires | (word >> bit & 1) << wire_of(mode, bit))
 }
 
 #[cfg(test)]

@@ -17,7 +17,8 @@ pub struct NetlistSimulation {
     /// Gates whose inputs have changed, a bit each.
     pending: Vec<u64>,
     states: Vec<State>,
-    next: Vec<bool>,
+    /// Nets that change with the clock, and their levels after it; kept between clocks to save an allocation.
+    next: Vec<(NetIndex, bool)>,
     memories: Vec<MemoryState>,
     inputs: HashMap<String, NetIndex>,
     outputs: HashMap<String, NetIndex>,
@@ -76,7 +77,7 @@ impl NetlistSimulation {
         });
         Ok(Self {
             pending: pending.collect(),
-            next: vec![false; network.states.len()],
+            next: Vec::new(),
             levels,
             gates,
             readers,
@@ -138,30 +139,26 @@ impl NetlistSimulation {
     /// A rising edge of the clock, after [`settle`](Self::settle).
     pub fn clock(&mut self) {
         let level = |net: NetIndex| self.levels[net as usize];
-        for (next, state) in self.next.iter_mut().zip(&self.states) {
+        let mut next = std::mem::take(&mut self.next);
+        next.extend(self.states.iter().map(|state| {
             let is_enabled = level(state.enable);
-            *next = if level(state.reset) && (is_enabled || !state.reset_needs_enable) {
+            let value = if level(state.reset) && (is_enabled || !state.reset_needs_enable) {
                 state.reset_to
             } else if is_enabled {
                 level(state.data)
             } else {
                 level(state.output)
             };
-        }
-        let mut changes: Vec<(NetIndex, bool)> = Vec::new();
+            (state.output, value)
+        }));
         for memory in &mut self.memories {
             memory.clock(&level);
-            changes.extend(memory.outputs());
+            next.extend(memory.outputs());
         }
-        changes.extend(
-            self.states
-                .iter()
-                .map(|state| state.output)
-                .zip(self.next.iter().copied()),
-        );
-        for (net, level) in changes {
+        for (net, level) in next.drain(..) {
             self.set(net, level);
         }
+        self.next = next;
     }
 }
 
