@@ -13,7 +13,7 @@ pub struct FpgaBoard {
     /// Its name in prose.
     pub title: &'static str,
     /// The device.
-    pub device: Ice40Device,
+    pub device: BoardDevice,
     /// The device's package, as nextpnr names it.
     pub package: &'static str,
     /// Frequency of the oscillator at [`clock`](Self::clock).
@@ -41,40 +41,100 @@ pub struct BoardPin {
     pub sources: [&'static str; 2],
 }
 
-/// A device of the iCE40 family.
+/// How the top uses a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ice40Device {
+pub enum PinUse {
+    /// As an input.
+    Input,
+    /// As an output.
+    Output,
+}
+
+/// A family of devices whose bitstreams are read back alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FpgaFamily {
+    /// Lattice iCE40.
+    Ice40,
+    /// Lattice ECP5.
+    Ecp5,
+}
+
+impl FpgaFamily {
+    /// Ending of a file of constraints.
+    #[must_use]
+    pub fn constraints_ending(self) -> &'static str {
+        match self {
+            Self::Ice40 => "pcf",
+            Self::Ecp5 => "lpf",
+        }
+    }
+
+    /// Ending of a packed bitstream.
+    #[must_use]
+    pub fn bitstream_ending(self) -> &'static str {
+        match self {
+            Self::Ice40 => "bin",
+            Self::Ecp5 => "bit",
+        }
+    }
+}
+
+/// A device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoardDevice {
     /// iCE40 UltraPlus 5K.
     Up5k,
     /// iCE40 HX8K.
     Hx8k,
+    /// ECP5 with 12,000 look-up tables by its data sheet: the same as [`Lfe5u25f`](Self::Lfe5u25f) but for its identity.
+    Lfe5u12f,
+    /// ECP5 with 24,000 look-up tables.
+    Lfe5u25f,
+    /// ECP5 with 84,000 look-up tables.
+    Lfe5u85f,
 }
 
-impl Ice40Device {
+impl BoardDevice {
+    /// Its family.
+    #[must_use]
+    pub fn family(self) -> FpgaFamily {
+        match self {
+            Self::Up5k | Self::Hx8k => FpgaFamily::Ice40,
+            Self::Lfe5u12f | Self::Lfe5u25f | Self::Lfe5u85f => FpgaFamily::Ecp5,
+        }
+    }
+
     /// Name of the device.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Up5k => "iCE40UP5K",
             Self::Hx8k => "iCE40HX8K",
+            Self::Lfe5u12f => "LFE5U-12F",
+            Self::Lfe5u25f => "LFE5U-25F",
+            Self::Lfe5u85f => "LFE5U-85F",
         }
     }
 
     /// The option of nextpnr that selects it.
     #[must_use]
-    pub fn option(self) -> &'static str {
+    pub fn nextpnr_option(self) -> &'static str {
         match self {
             Self::Up5k => "--up5k",
             Self::Hx8k => "--hx8k",
+            Self::Lfe5u12f => "--12k",
+            Self::Lfe5u25f => "--25k",
+            Self::Lfe5u85f => "--85k",
         }
     }
 
-    /// The name by which Yosys's timing model knows it.
+    /// The name by which the timing model of Yosys for iCE40 knows it; empty for others.
     #[must_use]
-    pub fn timing(self) -> &'static str {
+    pub fn yosys_timing(self) -> &'static str {
         match self {
             Self::Up5k => "u",
             Self::Hx8k => "hx",
+            _ => "",
         }
     }
 
@@ -84,15 +144,20 @@ impl Ice40Device {
         match self {
             Self::Up5k => 5280,
             Self::Hx8k => 7680,
+            // nextpnr uses the whole of a 12F.
+            Self::Lfe5u12f | Self::Lfe5u25f => 24_288,
+            Self::Lfe5u85f => 83_640,
         }
     }
 
-    /// Number of block RAMs of 4096 bits.
+    /// Number of block RAMs: of 4,096 bits in iCE40, of 18,432 bits in ECP5.
     #[must_use]
     pub fn memories(self) -> u64 {
         match self {
             Self::Up5k => 30,
             Self::Hx8k => 32,
+            Self::Lfe5u12f | Self::Lfe5u25f => 56,
+            Self::Lfe5u85f => 208,
         }
     }
 }
@@ -111,12 +176,35 @@ const HX8K_SERIAL: [&str; 2] = [
     "amaranth-lang/amaranth-boards amaranth_boards/ice40_hx8k_b_evn.py",
 ];
 
+const COLORLIGHT_I5: [&str; 2] = [
+    "FPiorski/colorlight-i5-vhdl-examples common/ext_board.lpf",
+    "LukeMoll/amaranth-boards amaranth_boards/muselab_ext.py",
+];
+const ULX3S: [&str; 2] = [
+    "emard/ulx3s doc/constraints/ulx3s_v20.lpf",
+    "amaranth-lang/amaranth-boards amaranth_boards/ulx3s.py",
+];
+/// The ULX3S without its device.
+const ULX3S_BOARD: FpgaBoard = FpgaBoard {
+    name: "ulx3s-25f",
+    title: "ULX3S",
+    device: BoardDevice::Lfe5u25f,
+    package: "CABGA381",
+    oscillator_hz: 25_000_000,
+    volts: 3.3,
+    clock: pin("G2", ULX3S),
+    serial_rx: pin("M1", ULX3S),
+    serial_tx: pin("L4", ULX3S),
+    led: pin("B2", ULX3S),
+    led_is_active_low: false,
+};
+
 /// All boards.
-pub const BOARDS: [FpgaBoard; 2] = [
+pub const BOARDS: [FpgaBoard; 6] = [
     FpgaBoard {
         name: "icebreaker",
         title: "iCEBreaker",
-        device: Ice40Device::Up5k,
+        device: BoardDevice::Up5k,
         package: "sg48",
         oscillator_hz: 12_000_000,
         volts: 3.3,
@@ -129,7 +217,7 @@ pub const BOARDS: [FpgaBoard; 2] = [
     FpgaBoard {
         name: "ice40-hx8k",
         title: "iCE40-HX8K Breakout Board",
-        device: Ice40Device::Hx8k,
+        device: BoardDevice::Hx8k,
         package: "ct256",
         oscillator_hz: 12_000_000,
         volts: 3.3,
@@ -138,6 +226,30 @@ pub const BOARDS: [FpgaBoard; 2] = [
         serial_tx: pin("B12", HX8K_SERIAL),
         led: pin("B5", HX8K),
         led_is_active_low: false,
+    },
+    FpgaBoard {
+        name: "colorlight-i5",
+        title: "Colorlight i5 v7.0 on its extension board",
+        device: BoardDevice::Lfe5u25f,
+        package: "CABGA381",
+        oscillator_hz: 25_000_000,
+        volts: 3.3,
+        clock: pin("P3", COLORLIGHT_I5),
+        serial_rx: pin("H18", COLORLIGHT_I5),
+        serial_tx: pin("J17", COLORLIGHT_I5),
+        led: pin("U16", COLORLIGHT_I5),
+        led_is_active_low: true,
+    },
+    FpgaBoard {
+        name: "ulx3s-12f",
+        device: BoardDevice::Lfe5u12f,
+        ..ULX3S_BOARD
+    },
+    ULX3S_BOARD,
+    FpgaBoard {
+        name: "ulx3s-85f",
+        device: BoardDevice::Lfe5u85f,
+        ..ULX3S_BOARD
     },
 ];
 
@@ -150,12 +262,17 @@ const fn pin(pin: &'static str, sources: [&'static str; 2]) -> BoardPin {
 /// # Errors
 /// [`BitstreamError::UnknownBoard`], which lists all boards.
 pub fn board(name: &str) -> Result<FpgaBoard, BitstreamError> {
-    let known = || BOARDS.map(|board| board.name).join(", ");
     let found = BOARDS.into_iter().find(|board| board.name == name);
     found.ok_or_else(|| BitstreamError::UnknownBoard {
         found: name.to_owned(),
-        known: known(),
+        known: names(),
     })
+}
+
+/// The names of all boards, with commas between them.
+#[must_use]
+pub fn names() -> String {
+    BOARDS.map(|board| board.name).join(", ")
 }
 
 impl FpgaBoard {
@@ -169,6 +286,19 @@ impl FpgaBoard {
             ("serial_tx", self.serial_tx),
             (led, self.led),
         ]
+    }
+
+    /// The same pins, with what the top uses them for.
+    #[must_use]
+    pub fn used_pins(&self) -> [(&'static str, BoardPin, PinUse); 4] {
+        let [clock, rx, tx, led] = self.pins();
+        [
+            (clock, PinUse::Input),
+            (rx, PinUse::Input),
+            (tx, PinUse::Output),
+            (led, PinUse::Output),
+        ]
+        .map(|((port, pin), direction)| (port, pin, direction))
     }
 }
 
@@ -191,6 +321,9 @@ mod tests {
     #[test]
     fn an_unknown_board_lists_those_that_are_known() {
         let message = board("ulx3s").unwrap_err().to_string();
-        assert!(message.ends_with("allowed: icebreaker, ice40-hx8k"), "{message}");
+        assert!(
+            message.ends_with("allowed: icebreaker, ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f"),
+            "{message}"
+        );
     }
 }

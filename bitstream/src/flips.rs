@@ -7,11 +7,10 @@
 use crate::BitstreamError;
 use crate::behaviour;
 use crate::error::at;
-use crate::ice40::BitsNetlist;
-use crate::ice40::asc::{AscBit, FlipKind, candidates, compare_tiles, flipped};
-use crate::ice40::structure::compare_cells;
-use crate::ice40::tools::{Ice40Tools, Routed};
+use crate::network::Network;
 use crate::random::Random;
+use crate::report::FlipKind;
+use crate::toolchain::{BitsNetlist, Routed, TextBit, Toolchain};
 use crate::top::BoardTop;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -27,18 +26,18 @@ const AT_ONCE: usize = 2;
 const SEED: u64 = 1;
 
 /// What a bitstream is that faults are made in.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct FaultFree<'a> {
     /// The router's result.
     pub routed: &'a Routed,
     /// The packed file.
     pub packed: &'a [u8],
     /// Its text, read back from the packed file.
-    pub asc: &'a str,
-    /// The Verilog of its netlist.
-    pub verilog: &'a str,
+    pub text: &'a str,
     /// Its netlist.
-    pub netlist: &'a BitsNetlist,
+    pub netlist: &'a dyn BitsNetlist,
+    /// The same in the form that is simulated.
+    pub network: &'a Network,
     /// The top.
     pub top: &'a BoardTop,
 }
@@ -78,30 +77,30 @@ impl FlipReport {
 /// The errors of the programs.
 pub fn flips(
     fault_free: &FaultFree<'_>,
-    (tools, folder): (&Ice40Tools, &Path),
+    (tools, folder): (&dyn Toolchain, &Path),
     clocks: u64,
     begin: &(dyn Fn(FlipKind) + Sync),
 ) -> Result<Vec<FlipReport>, BitstreamError> {
     let mut random = Random::new(SEED);
     let mut chosen = Vec::new();
     for kind in FlipKind::ALL {
-        let bits = candidates(fault_free.asc, kind, &fault_free.netlist.memories);
+        let bits = fault_free.netlist.flips(fault_free.text, kind);
         if !bits.is_empty() {
             chosen.extend((0..PER_KIND).map(|_| (kind, bits[random.below(bits.len() as u64) as usize])));
         }
     }
-    let worker = |chosen: &[(FlipKind, AscBit)], folder: &Path| {
+    let worker = |chosen: &[(FlipKind, TextBit)], folder: &Path| {
         fs::create_dir(folder).map_err(at(folder))?;
-        let flip = |(kind, bit): &(FlipKind, AscBit)| {
+        let flip = |(kind, bit): &(FlipKind, TextBit)| {
             begin(*kind);
-            let (asc, place) = flipped(fault_free.asc, *bit);
-            flip(fault_free, (tools, folder), clocks, (*kind, place, &asc))
+            let (text, place) = tools.flipped(fault_free.text, *bit);
+            flip(fault_free, (tools, folder), clocks, (*kind, place, &text))
         };
         chosen.iter().map(flip).collect::<Result<Vec<_>, BitstreamError>>()
     };
     let share = chosen.len().div_ceil(AT_ONCE).max(1);
     thread::scope(|scope| {
-        let start = |(index, chosen): (usize, &'_ [(FlipKind, AscBit)])| {
+        let start = |(index, chosen): (usize, &'_ [(FlipKind, TextBit)])| {
             let (folder, chosen) = (folder.join(format!("flips_{index}")), chosen.to_vec());
             let worker = &worker;
             scope.spawn(move || worker(&chosen, &folder))
@@ -117,14 +116,13 @@ pub fn flips(
 
 fn flip(
     fault_free: &FaultFree<'_>,
-    (tools, folder): (&Ice40Tools, &Path),
+    (tools, folder): (&dyn Toolchain, &Path),
     clocks: u64,
-    (kind, place, asc): (FlipKind, String, &str),
+    (kind, place, text): (FlipKind, String, &str),
 ) -> Result<FlipReport, BitstreamError> {
     let top = fault_free.top;
-    let packed = tools.pack(asc, folder)?;
-    let asc = tools.unpack(&packed, folder)?;
-    let verilog = tools.netlist(top.board(), &asc, folder)?;
+    let packed = tools.pack(text, folder)?;
+    let text = tools.unpack(&packed, folder)?;
     let bytes = packed
         .iter()
         .zip(fault_free.packed)
@@ -134,18 +132,20 @@ fn flip(
         kind,
         place,
         bytes: (bytes + packed.len().abs_diff(fault_free.packed.len())) as u64,
-        tiles: compare_tiles(&fault_free.routed.asc, &asc).differences.len() as u64,
-        changes_netlist: verilog != fault_free.verilog,
+        tiles: tools.different_tiles(fault_free.text, &text).len() as u64,
+        changes_netlist: true,
         cells: 0,
         lock_step_clock: None,
     };
-    if !report.changes_netlist {
-        return Ok(report);
-    }
-    match BitsNetlist::read(&verilog) {
+    match tools.decode(&text, folder) {
         Ok(netlist) => {
-            report.cells = compare_cells(&netlist, &fault_free.routed.netlist, top.board())?.differences;
-            report.lock_step_clock = match behaviour::compare(&netlist.network(), top, (clocks, SEED), &mut |_| {}) {
+            let network = netlist.network();
+            report.changes_netlist = network != *fault_free.network;
+            if !report.changes_netlist {
+                return Ok(report);
+            }
+            report.cells = netlist.compare_cells(&fault_free.routed.netlist)?.differences;
+            report.lock_step_clock = match behaviour::compare(&network, top, (clocks, SEED), &mut |_| {}) {
                 Ok(compared) => compared.first.map(|first| first.clock),
                 // A netlist that cannot be simulated, such as one with a loop, is a difference from its first clock on.
                 Err(BitstreamError::UnknownCell(_)) => Some(0),

@@ -2,7 +2,7 @@
 
 use crate::terminal::Terminal;
 use crate::{output, render};
-use posicast_flow::bitstream::{Options, bitstream};
+use posicast_flow::bitstream::{Options, bitstream, board_names};
 use posicast_flow::verify::DEFAULT_SEED;
 use posicast_flow::{Failure, clocks};
 use std::path::PathBuf;
@@ -13,14 +13,13 @@ use std::path::PathBuf;
 Example:
   posicast bitstream examples/robot-joint.toml --board icebreaker -o robot_joint
 
-Boards: icebreaker, ice40-hx8k. The machine's clock becomes the board's oscillator. Nobody has run such a bitstream on hardware yet.
+The machine's clock becomes the board's oscillator. Nobody has run such a bitstream on hardware yet.
 
 Exit status: 0 every check holds and the files are written, 1 a check failed, 2 bad input, 3 a tool is missing.")]
 pub(crate) struct Args {
     /// Machine file with shapers alone
     machine: PathBuf,
-    /// Board: icebreaker, ice40-hx8k
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = format!("Board: {}", board_names()))]
     board: String,
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]

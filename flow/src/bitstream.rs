@@ -18,12 +18,11 @@ use crate::text::json_text;
 use crate::verilog;
 use posicast_bitstream::BitstreamError;
 use posicast_bitstream::behaviour::{self, BehaviourReport};
+pub use posicast_bitstream::boards::names as board_names;
 use posicast_bitstream::boards::{self, FpgaBoard};
 use posicast_bitstream::flips::{self, FaultFree, FlipReport};
-use posicast_bitstream::ice40::asc::compare_tiles;
-use posicast_bitstream::ice40::structure::compare_cells;
-use posicast_bitstream::ice40::tools::Ice40Tools;
-use posicast_bitstream::ice40::{BitsNetlist, MEMORY_MODEL, legal_verilog};
+use posicast_bitstream::network::Network;
+use posicast_bitstream::toolchain::{self, Toolchain};
 use posicast_bitstream::top::{BoardTop, TopAxis};
 use posicast_synth::package::Package;
 use std::path::{Path, PathBuf};
@@ -60,7 +59,7 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
     let path = options.machine.as_path();
     let board = boards::board(&options.board).map_err(failure)?;
     let file = self::machine::on_board(path, &board)?;
-    let tools = Ice40Tools::installed().map_err(failure)?;
+    let tools = toolchain::installed(&board).map_err(failure)?;
     let report = DesignReport::new(&file.machine, path)?;
     report.warn(observer);
     let built = Built::new(&report, path, observer)?;
@@ -80,7 +79,7 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         std::fs::write(&path, text).map_err(Failure::of_file(&path, "write it"))?;
         files.push(path);
     }
-    let evidence = evidence(&top, &files, (&tools, scratch.path()), options, observer).map_err(failure)?;
+    let evidence = evidence(&top, &files, (tools.as_ref(), scratch.path()), options, observer).map_err(failure)?;
     let mut document = Document::new(&top, &file.machine, &evidence);
     let failed = document.failed();
     if failed.is_none() {
@@ -114,7 +113,7 @@ fn top(
 fn evidence(
     top: &BoardTop,
     files: &[PathBuf],
-    (tools, scratch): (&Ice40Tools, &Path),
+    (tools, scratch): (&dyn Toolchain, &Path),
     options: &Options,
     observer: &dyn Observer,
 ) -> Result<Evidence, BitstreamError> {
@@ -123,29 +122,29 @@ fn evidence(
     let versions = tools.versions(scratch)?;
     let synthesised = {
         let _shown = during("Yosys synthesises");
-        tools.synthesise(files, (&top.module(), board), scratch)?
+        tools.synthesise(files, &top.module(), scratch)?
     };
     synthesised.check_fit(board)?;
     let routed = {
         let _shown = during("nextpnr places and routes");
-        tools.place_and_route(board, &top.constraints(), scratch)?
+        tools.place_and_route(&top.constraints(), scratch)?
     };
-    let packed = tools.pack(&routed.asc, scratch)?;
-    let (asc, verilog) = {
+    let (packed, text, netlist, tiles) = {
         let _shown = during("reading the bits back");
-        let asc = tools.unpack(&packed, scratch)?;
-        let verilog = tools.netlist(board, &asc, scratch)?;
-        (asc, verilog)
+        let packed = tools.pack(&routed.text, scratch)?;
+        let text = tools.unpack(&packed, scratch)?;
+        let netlist = tools.decode(&text, scratch)?;
+        let tiles = tools.compare_tiles(&routed, &packed, &text, scratch)?;
+        (packed, text, netlist, tiles)
     };
-    let netlist = BitsNetlist::read(&verilog)?;
-    let tiles = compare_tiles(&routed.asc, &asc);
-    let cells = compare_cells(&netlist, &routed.netlist, board)?;
+    let cells = netlist.compare_cells(&routed.netlist)?;
+    let network = netlist.network();
     let fault_free = FaultFree {
         routed: &routed,
         packed: &packed,
-        asc: &asc,
-        verilog: &verilog,
-        netlist: &netlist,
+        text: &text,
+        netlist: netlist.as_ref(),
+        network: &network,
         top,
     };
     let least = behaviour::least_clocks(top);
@@ -153,7 +152,7 @@ fn evidence(
     let (lock_step, flips) = thread::scope(|scope| {
         let flips = scope.spawn(|| flips(&fault_free, (tools, scratch), FLIP_CLOCKS.max(least), observer));
         let clocks = options.clocks.unwrap_or(CLOCKS.max(least));
-        let lock_step = lock_step(&netlist, top, (clocks, options.seed), observer);
+        let lock_step = lock_step(&network, top, (clocks, options.seed), observer);
         (lock_step, flips.join())
     });
     Ok(Evidence {
@@ -164,24 +163,24 @@ fn evidence(
         lock_step: lock_step?,
         flips: flips.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?,
         packed,
-        verilog: legal_verilog(&verilog),
+        verilog: netlist.verilog(&format!("{}_netlist", top.module())),
         seed: options.seed,
     })
 }
 
 fn lock_step(
-    netlist: &BitsNetlist,
+    network: &Network,
     top: &BoardTop,
     (clocks, seed): (u64, u64),
     observer: &dyn Observer,
 ) -> Result<BehaviourReport, BitstreamError> {
     let bar = observer.begin("lock step of the bits with the model", Some(clocks));
-    behaviour::compare(&netlist.network(), top, (clocks, seed), &mut |done| bar.reach(done))
+    behaviour::compare(network, top, (clocks, seed), &mut |done| bar.reach(done))
 }
 
 fn flips(
     fault_free: &FaultFree<'_>,
-    tools: (&Ice40Tools, &Path),
+    tools: (&dyn Toolchain, &Path),
     clocks: u64,
     observer: &dyn Observer,
 ) -> Result<Vec<FlipReport>, BitstreamError> {
@@ -194,20 +193,23 @@ fn flips(
 /// Adds the board's files to the folder.
 fn add(package: &mut Package, top: &BoardTop, evidence: &Evidence, document: &Document) -> Result<(), Failure> {
     let module = top.module();
-    let texts = [
+    let family = top.board().device.family();
+    let mut texts = vec![
         (format!("{module}.v"), top.verilog()),
-        (format!("{module}.pcf"), top.constraints()),
-        (format!("{module}_netlist.v"), evidence.verilog.clone()),
-        ("SB_RAM40_4K.v".to_owned(), MEMORY_MODEL.to_owned()),
+        (format!("{module}.{}", family.constraints_ending()), top.constraints()),
         (format!("{module}.json"), json_text(document)?),
     ];
+    texts.extend(evidence.verilog.iter().cloned());
     for (name, text) in texts {
         package
             .add(&format!("{FOLDER}/{name}"), text.as_bytes())
             .map_err(Failure::because)?;
     }
     package
-        .add(&format!("{FOLDER}/{module}.bin"), &evidence.packed)
+        .add(
+            &format!("{FOLDER}/{module}.{}", family.bitstream_ending()),
+            &evidence.packed,
+        )
         .map_err(Failure::because)
 }
 

@@ -1,8 +1,8 @@
 //! A bitstream as text (`.asc`): its tiles, their comparison, and single flips.
 
 use super::netlist::MemoryCell;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::report::{FlipKind, TilesReport};
+use crate::toolchain::TextBit;
 use std::collections::BTreeMap;
 
 /// The bit of a logic cell's two rows of ten that is entry `k` of its look-up table; of the IceStorm documentation.
@@ -15,53 +15,6 @@ const CELL_COLUMNS: usize = 10;
 const CELLS: usize = 8;
 /// Bits of a hexadecimal digit of a memory.
 const DIGIT_BITS: usize = 4;
-
-/// Comparison of two bitstreams, tile by tile.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct TilesReport {
-    /// Tiles compared, contents of memories and single bits outside tiles included.
-    pub tiles: u64,
-    /// Bits that are set in the first bitstream.
-    pub bits_set: u64,
-    /// Tiles that differ.
-    pub differences: Vec<String>,
-}
-
-/// Kind of a bit that is flipped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum FlipKind {
-    /// An entry of the table of a logic cell that is in use.
-    Table,
-    /// A set bit of a logic tile outside its tables and flip-flops: it connects or configures.
-    Routing,
-    /// A bit of the contents of a memory that is in use.
-    Memory,
-}
-
-impl FlipKind {
-    /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Table, Self::Routing, Self::Memory];
-
-    /// The kind as a word.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Table => "table",
-            Self::Routing => "routing",
-            Self::Memory => "memory",
-        }
-    }
-}
-
-/// A bit of a bitstream's text.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct AscBit {
-    line: usize,
-    column: usize,
-    /// Bit of the digit: only memories have digits of more than one.
-    bit: usize,
-}
 
 /// The tiles of a bitstream's text: rows by the heading of their tile. A tile without a set bit is left out, since a program may leave it
 /// out, too.
@@ -98,7 +51,8 @@ pub fn compare_tiles(routed: &str, read_back: &str) -> TilesReport {
     };
     TilesReport {
         tiles: all.len() as u64,
-        bits_set: ours.values().flatten().map(|row| u64::from(set(row))).sum(),
+        set: ours.values().flatten().map(|row| u64::from(set(row))).sum(),
+        unnamed: 0,
         differences: differs
             .map(|heading| heading.trim_start_matches('.').to_owned())
             .collect(),
@@ -107,7 +61,7 @@ pub fn compare_tiles(routed: &str, read_back: &str) -> TilesReport {
 
 /// The bits of this kind that a flip may change.
 #[must_use]
-pub fn candidates(text: &str, kind: FlipKind, memories: &[MemoryCell]) -> Vec<AscBit> {
+pub fn candidates(text: &str, kind: FlipKind, memories: &[MemoryCell]) -> Vec<TextBit> {
     let lines: Vec<&str> = text.lines().collect();
     let mut bits = Vec::new();
     for (heading, line) in lines.iter().enumerate() {
@@ -123,7 +77,7 @@ pub fn candidates(text: &str, kind: FlipKind, memories: &[MemoryCell]) -> Vec<As
                     let places = TABLE_BITS.map(at);
                     let is_set = |(row, column): &(usize, usize)| is_one(rows(16).get(*row), *column);
                     if places.iter().any(is_set) {
-                        bits.extend(places.map(|(row, column)| AscBit {
+                        bits.extend(places.map(|(row, column)| TextBit {
                             line: heading + 1 + row,
                             column,
                             bit: 0,
@@ -137,7 +91,7 @@ pub fn candidates(text: &str, kind: FlipKind, memories: &[MemoryCell]) -> Vec<As
                     let columns = (0..text.len())
                         .filter(outside)
                         .filter(|column| is_one(Some(text), *column));
-                    bits.extend(columns.map(|column| AscBit {
+                    bits.extend(columns.map(|column| TextBit {
                         line: heading + 1 + row,
                         column,
                         bit: 0,
@@ -149,7 +103,7 @@ pub fn candidates(text: &str, kind: FlipKind, memories: &[MemoryCell]) -> Vec<As
                 if memories.iter().any(is_used) {
                     for (row, text) in rows(16).iter().enumerate() {
                         let digits = (0..text.len()).flat_map(|column| (0..DIGIT_BITS).map(move |bit| (column, bit)));
-                        bits.extend(digits.map(|(column, bit)| AscBit {
+                        bits.extend(digits.map(|(column, bit)| TextBit {
                             line: heading + 1 + row,
                             column,
                             bit,
@@ -169,7 +123,7 @@ fn is_one(row: Option<&&str>, column: usize) -> bool {
 
 /// The text with one bit flipped, and the place of the bit in words.
 #[must_use]
-pub fn flipped(text: &str, bit: AscBit) -> (String, String) {
+pub fn flipped(text: &str, bit: TextBit) -> (String, String) {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let heading = lines[..bit.line]
         .iter()
@@ -200,7 +154,7 @@ mod tests {
     fn tiles_are_equal_whatever_their_order_and_without_empty_ones() {
         let other = ".comment\na line\n.device 5k\n.extra_bit 0 1 2\n.io_tile 1 0\n00\n01\n";
         let report = compare_tiles(ROUTED, other);
-        assert_eq!((report.tiles, report.bits_set, report.differences.len()), (3, 3, 0));
+        assert_eq!((report.tiles, report.set, report.differences.len()), (3, 3, 0));
         let report = compare_tiles(ROUTED, &other.replace("01", "11"));
         assert_eq!(report.differences, ["io_tile 1 0"]);
         assert_eq!(
@@ -213,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_flip_changes_one_bit_and_names_its_place() {
-        let bit = AscBit {
+        let bit = TextBit {
             line: 4,
             column: 1,
             bit: 0,
@@ -236,7 +190,7 @@ mod tests {
         assert!(of_table.iter().all(|bit| bit.line == 3 || bit.line == 4));
         assert_eq!(
             candidates(&one, FlipKind::Routing, &[]),
-            [AscBit {
+            [TextBit {
                 line: 4,
                 column: 3,
                 bit: 0

@@ -10,4 +10,4 @@ pub mod tools;
 
 pub use legal::{MEMORY_MODEL, legal_verilog};
 pub(crate) use memory::MemoryState;
-pub use netlist::{BitsNetlist, CarryCell, CellOutput, CellPlace, Flop, LutCell, MEMORY_WORDS, MemoryCell};
+pub use netlist::{CarryCell, CellOutput, CellPlace, Flop, IceboxNetlist, LutCell, MEMORY_WORDS, MemoryCell};

@@ -1,9 +1,9 @@
 //! The netlist of the bits, as icebox_vlog decodes it.
 //!
 //! icebox_vlog knows what each bit of the device's tiles connects and sets. Its Verilog is regular, with the place of each cell in a
-//! comment; [`BitsNetlist::read`] takes exactly that form, and refuses anything else by its line.
+//! comment; [`IceboxNetlist::read`] takes exactly that form, and refuses anything else by its line.
 
-use crate::network::{Gate, NetIndex, Network, State};
+use crate::network::{Gate, NetIndex, Network, NetworkMemory, State};
 use std::collections::HashMap;
 use std::fmt;
 
@@ -102,7 +102,7 @@ impl MemoryCell {
 
 /// The netlist of the bits.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct BitsNetlist {
+pub struct IceboxNetlist {
     /// Names of the nets.
     pub names: Vec<String>,
     /// Pins that are inputs, with their nets.
@@ -124,7 +124,7 @@ pub struct BitsNetlist {
 /// The values of a majority of three inputs.
 const MAJORITY: u16 = 0b1110_1000;
 
-impl BitsNetlist {
+impl IceboxNetlist {
     /// The same netlist in the form that is simulated.
     #[must_use]
     pub fn network(&self) -> Network {
@@ -160,7 +160,7 @@ impl BitsNetlist {
             outputs: self.outputs.clone(),
             gates,
             states,
-            memories: self.memories.clone(),
+            memories: self.memories.iter().cloned().map(NetworkMemory::Ice40).collect(),
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Reads the Verilog of icebox_vlog.
 
-use super::netlist::{BitsNetlist, CarryCell, CellOutput, CellPlace, Flop, LutCell, MEMORY_WORDS, MemoryCell};
+use super::netlist::{CarryCell, CellOutput, CellPlace, Flop, IceboxNetlist, LutCell, MEMORY_WORDS, MemoryCell};
 use crate::BitstreamError;
 use crate::network::{HIGH, LOW, NetIndex};
 use std::collections::HashMap;
 
-impl BitsNetlist {
+impl IceboxNetlist {
     /// Reads the output of `icebox_vlog -s -S -l`.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl BitsNetlist {
 
 #[derive(Default)]
 struct Reader {
-    netlist: BitsNetlist,
+    netlist: IceboxNetlist,
     nets: HashMap<String, NetIndex>,
 }
 
@@ -314,7 +314,7 @@ endmodule
 
     #[test]
     fn cells_are_read_with_their_places() {
-        let netlist = BitsNetlist::read(SMALL).unwrap();
+        let netlist = IceboxNetlist::read(SMALL).unwrap();
         let lut = &netlist.luts[0];
         assert_eq!(lut.place, CellPlace { x: 1, y: 2, cell: 3 });
         let names: Vec<&str> = lut
@@ -341,7 +341,7 @@ endmodule
         ] {
             let text = SMALL.replace(from, to);
             assert_ne!(text, SMALL);
-            let error = BitsNetlist::read(&text).unwrap_err();
+            let error = IceboxNetlist::read(&text).unwrap_err();
             assert!(matches!(error, BitstreamError::UnknownCell(_)), "{to}: {error}");
         }
     }

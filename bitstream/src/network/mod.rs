@@ -1,7 +1,10 @@
 //! The netlist of the bits in the form that is simulated: gates of at most four inputs, registers, and memories.
 
+mod block_ram;
 mod simulate;
+mod verilog;
 
+pub use block_ram::{BlockRam, RamPort, RamWrite};
 pub use simulate::NetlistSimulation;
 
 use crate::ice40::MemoryCell;
@@ -14,7 +17,7 @@ pub const LOW: NetIndex = 0;
 pub const HIGH: NetIndex = 1;
 
 /// A netlist.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Network {
     /// Names of the nets.
     pub names: Vec<String>,
@@ -27,7 +30,45 @@ pub struct Network {
     /// Registers.
     pub states: Vec<State>,
     /// Memories.
-    pub memories: Vec<MemoryCell>,
+    pub memories: Vec<NetworkMemory>,
+}
+
+/// A memory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NetworkMemory {
+    /// A block RAM of iCE40.
+    Ice40(MemoryCell),
+    /// Any other.
+    Plain(BlockRam),
+}
+
+impl NetworkMemory {
+    /// Its clocks.
+    pub fn clocks(&self) -> Vec<NetIndex> {
+        match self {
+            Self::Ice40(cell) => ["WCLK", "RCLK"]
+                .iter()
+                .flat_map(|port| cell.port(port).to_vec())
+                .collect(),
+            Self::Plain(ram) => ram.ports.iter().map(|port| port.clock).collect(),
+        }
+    }
+
+    /// The nets that it drives.
+    pub fn outputs(&self) -> Vec<NetIndex> {
+        match self {
+            Self::Ice40(cell) => cell.port("RDATA").to_vec(),
+            Self::Plain(ram) => ram.ports.iter().flat_map(|port| port.outputs.clone()).collect(),
+        }
+    }
+
+    /// Its name for errors.
+    pub fn place(&self) -> String {
+        match self {
+            Self::Ice40(cell) => cell.place.to_string(),
+            Self::Plain(ram) => ram.name.clone(),
+        }
+    }
 }
 
 /// A cell without state: a table over at most four nets.

@@ -2,9 +2,10 @@
 //!
 //! The gates are in the order of their dependence, and only those are evaluated whose inputs have changed.
 
-use super::{Gate, HIGH, NetIndex, Network, State};
+use super::block_ram::BlockRamState;
+use super::{Gate, HIGH, NetIndex, Network, NetworkMemory, State};
 use crate::BitstreamError;
-use crate::ice40::{MemoryCell, MemoryState};
+use crate::ice40::MemoryState;
 use std::collections::{HashMap, HashSet};
 
 /// A running simulation. All registers have the values that configuration gives them.
@@ -19,9 +20,39 @@ pub struct NetlistSimulation {
     states: Vec<State>,
     /// Nets that change with the clock, and their levels after it; kept between clocks to save an allocation.
     next: Vec<(NetIndex, bool)>,
-    memories: Vec<MemoryState>,
+    memories: Vec<Memory>,
     inputs: HashMap<String, NetIndex>,
     outputs: HashMap<String, NetIndex>,
+}
+
+/// A memory's state.
+#[derive(Debug, Clone)]
+enum Memory {
+    Ice40(Box<MemoryState>),
+    Plain(BlockRamState),
+}
+
+impl Memory {
+    fn new(memory: &NetworkMemory) -> Self {
+        match memory {
+            NetworkMemory::Ice40(cell) => Self::Ice40(Box::new(MemoryState::new(cell))),
+            NetworkMemory::Plain(ram) => Self::Plain(BlockRamState::new(ram)),
+        }
+    }
+
+    /// A rising edge of the clock; adds the nets of its outputs with their levels to `next`.
+    fn clock(&mut self, level: &dyn Fn(NetIndex) -> bool, next: &mut Vec<(NetIndex, bool)>) {
+        match self {
+            Self::Ice40(state) => {
+                state.clock(level);
+                next.extend(state.outputs());
+            }
+            Self::Plain(state) => {
+                state.clock(level);
+                next.extend(state.outputs());
+            }
+        }
+    }
 }
 
 impl NetlistSimulation {
@@ -41,20 +72,17 @@ impl NetlistSimulation {
                 name(other.output)
             )));
         }
-        let has_clock = |memory: &MemoryCell| ["WCLK", "RCLK"].iter().all(|port| memory.port(port) == [clock]);
+        let has_clock = |memory: &NetworkMemory| memory.clocks().iter().all(|net| *net == clock);
         if let Some(other) = network.memories.iter().find(|memory| !has_clock(memory)) {
             return Err(BitstreamError::UnknownCell(format!(
                 "another clock at the memory {}",
-                other.place
+                other.place()
             )));
         }
         let mut driven: HashSet<NetIndex> = inputs.values().copied().collect();
         let gates = network.gates.iter().map(|gate| gate.output);
         let states = network.states.iter().map(|state| state.output);
-        let memories = network
-            .memories
-            .iter()
-            .flat_map(|memory| memory.port("RDATA").iter().copied());
+        let memories = network.memories.iter().flat_map(NetworkMemory::outputs);
         if let Some(twice) = gates.chain(states).chain(memories).find(|net| !driven.insert(*net)) {
             return Err(BitstreamError::UnknownCell(format!("{} has two drivers", name(twice))));
         }
@@ -82,7 +110,7 @@ impl NetlistSimulation {
             gates,
             readers,
             states: network.states.clone(),
-            memories: network.memories.iter().map(MemoryState::new).collect(),
+            memories: network.memories.iter().map(Memory::new).collect(),
             inputs,
             outputs: network.outputs.iter().cloned().collect(),
         })
@@ -152,8 +180,7 @@ impl NetlistSimulation {
             (state.output, value)
         }));
         for memory in &mut self.memories {
-            memory.clock(&level);
-            next.extend(memory.outputs());
+            memory.clock(&level, &mut next);
         }
         for (net, level) in next.drain(..) {
             self.set(net, level);
@@ -199,14 +226,14 @@ fn in_order(gates: &[Gate]) -> Result<Vec<Gate>, BitstreamError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ice40::BitsNetlist;
+    use crate::ice40::IceboxNetlist;
 
     #[test]
     fn a_counter_of_one_bit_divides_the_clock() {
         let text = "module chip (input pin_1, output pin_2);\nreg n1 = 0;\n\
                     assign n2 = /* LUT 1 1 0 */ !n1;\n/* FF 1 1 0 */ always @(posedge pin_1) if (1'b1) n1 <= 1'b0 ? 1'b0 : n2;\n\
                     assign pin_2 = n1;\nendmodule\n";
-        let netlist = BitsNetlist::read(text).unwrap();
+        let netlist = IceboxNetlist::read(text).unwrap();
         let mut simulation = NetlistSimulation::new(&netlist.network(), "1").unwrap();
         let output = simulation.output("2").unwrap();
         let seen = [false, true, false, true].map(|_| {
@@ -222,7 +249,7 @@ mod tests {
     #[test]
     fn a_net_with_two_drivers_is_refused() {
         let text = "module chip (input pin_1, output pin_2);\nassign pin_2 = /* LUT 1 1 0 */ !pin_1;\nassign pin_2 = pin_1;\nendmodule\n";
-        let netlist = BitsNetlist::read(text).unwrap();
+        let netlist = IceboxNetlist::read(text).unwrap();
         let error = NetlistSimulation::new(&netlist.network(), "1").unwrap_err().to_string();
         assert!(error.ends_with("pin_2 has two drivers"), "{error}");
     }
@@ -230,7 +257,7 @@ mod tests {
     #[test]
     fn cells_that_depend_on_themselves_are_refused() {
         let text = "module chip (input pin_1, output pin_2);\nassign pin_2 = /* LUT 1 1 0 */ !pin_2;\nendmodule\n";
-        let netlist = BitsNetlist::read(text).unwrap();
+        let netlist = IceboxNetlist::read(text).unwrap();
         assert!(NetlistSimulation::new(&netlist.network(), "1").is_err());
     }
 }

@@ -16,7 +16,7 @@ pub mod crc;
 mod verilog;
 
 use crate::BitstreamError;
-use crate::boards::FpgaBoard;
+use crate::boards::{FpgaBoard, FpgaFamily};
 use posicast_blocks::shaper::ShaperConfig;
 use std::fmt::Write;
 
@@ -157,11 +157,15 @@ impl BoardTop {
             self.module()
         );
         for (port, pin) in pins {
-            let _ = writeln!(
-                text,
-                "set_io {port} {:<4} # {}; {}",
-                pin.pin, pin.sources[0], pin.sources[1]
-            );
+            let sources = pin.sources.join("; ");
+            let _ = match self.board.device.family() {
+                FpgaFamily::Ice40 => writeln!(text, "set_io {port} {:<4} # {sources}", pin.pin),
+                FpgaFamily::Ecp5 => writeln!(
+                    text,
+                    "LOCATE COMP \"{port}\" SITE \"{}\"; # {sources}\nIOBUF PORT \"{port}\" IO_TYPE=LVCMOS33;",
+                    pin.pin
+                ),
+            };
         }
         text
     }
@@ -217,7 +221,11 @@ mod tests {
             let ports: Vec<&str> = ports.map(|line| line.rsplit(' ').next().unwrap()).collect();
             assert_eq!(ports.len(), 4);
             for port in ports {
-                assert_eq!(constraints.matches(&format!("set_io {port} ")).count(), 1, "{port}");
+                let line = match board.device.family() {
+                    FpgaFamily::Ice40 => format!("set_io {port} "),
+                    FpgaFamily::Ecp5 => format!("LOCATE COMP \"{port}\" SITE "),
+                };
+                assert_eq!(constraints.matches(&line).count(), 1, "{port}");
             }
         }
     }

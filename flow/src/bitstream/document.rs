@@ -1,9 +1,9 @@
 //! The result of a bitstream: the checks, each with what it covers, and what none of them covers.
 
 use posicast_bitstream::behaviour::BehaviourReport;
+use posicast_bitstream::boards::FpgaFamily;
 use posicast_bitstream::flips::FlipReport;
-use posicast_bitstream::ice40::asc::{FlipKind, TilesReport};
-use posicast_bitstream::ice40::structure::CellsReport;
+use posicast_bitstream::report::{CellsReport, FlipKind, TilesReport};
 use posicast_bitstream::top::BoardTop;
 use posicast_machine::machine_file::Machine;
 use posicast_testbench::wording::counted;
@@ -21,8 +21,8 @@ pub(super) struct Evidence {
     pub(super) flips: Vec<FlipReport>,
     /// The bitstream itself.
     pub(super) packed: Vec<u8>,
-    /// Verilog of the netlist of its bits.
-    pub(super) verilog: String,
+    /// Files with the Verilog of the netlist of its bits.
+    pub(super) verilog: Vec<(String, String)>,
     pub(super) seed: u64,
 }
 
@@ -98,7 +98,7 @@ impl Document {
             seed: evidence.seed,
             checks: vec![
                 clock_check(evidence.highest_mhz, needed_mhz),
-                tiles_check(&evidence.tiles),
+                tiles_check(&evidence.tiles, board.device.family()),
                 cells_check(&evidence.cells),
                 lock_step_check(&evidence.lock_step),
                 flips_check(flips),
@@ -108,11 +108,11 @@ impl Document {
             cells: evidence.cells.clone(),
             lock_step: evidence.lock_step.clone(),
             flips: flips.clone(),
-            not_covered: not_covered(&evidence.lock_step, flips),
+            not_covered: not_covered(&evidence.lock_step, flips, board.device.family()),
             folder: None,
             files: Vec::new(),
             title: board.title.to_owned(),
-            bitstream: format!("{}.bin", top.module()),
+            bitstream: format!("{}.{}", top.module(), board.device.family().bitstream_ending()),
         }
     }
 
@@ -146,31 +146,49 @@ fn clock_check(highest_mhz: f64, needed_mhz: f64) -> CheckDocument {
     }
 }
 
-fn tiles_check(tiles: &TilesReport) -> CheckDocument {
-    let differences = tiles.differences.len() as u64;
-    let what = match differences {
-        0 => format!(
+fn tiles_check(tiles: &TilesReport, family: FpgaFamily) -> CheckDocument {
+    let compared = match family {
+        FpgaFamily::Ice40 => format!(
             "{} with {} set bits, read back from the packed file, equal to what nextpnr wrote",
             counted(tiles.tiles, "tile"),
-            tiles.bits_set
+            tiles.set
         ),
+        FpgaFamily::Ecp5 => format!(
+            "{} with {} switches and settings, read back from the packed file and packed again: the same file; {} without a name, in pads \
+             and the clock's spines",
+            counted(tiles.tiles, "tile"),
+            tiles.set,
+            counted(tiles.unnamed, "bit")
+        ),
+    };
+    let differences = tiles.differences.len() as u64;
+    let what = match differences {
+        0 => compared,
         _ => format!(
             "{} from what nextpnr wrote, first {}",
-            counted(differences, "tile differs"),
+            counted(differences, "difference"),
             tiles.differences[0]
         ),
     };
     CheckDocument {
         name: "structure, tiles",
-        ok: differences == 0 && tiles.bits_set > 0,
+        ok: differences == 0 && tiles.set > 0,
         what,
     }
 }
 
 fn cells_check(cells: &CellsReport) -> CheckDocument {
     let compared = format!(
-        "{} look-up tables, {} flip-flops, {} carries, {} memories with contents, {} connections",
-        cells.tables, cells.flip_flops, cells.carries, cells.memories, cells.connections
+        "{} look-up tables, {} flip-flops, {} carries, {}{} memories with contents, {} connections",
+        cells.tables,
+        cells.flip_flops,
+        cells.carries,
+        match cells.multiplexers {
+            0 => String::new(),
+            some => format!("{some} multiplexers, "),
+        },
+        cells.memories,
+        cells.connections
     );
     let what = match cells.first.first() {
         None => format!("{compared}: the netlist of the bits is nextpnr's"),
@@ -240,12 +258,18 @@ fn flips_check(flips: &[FlipReport]) -> CheckDocument {
     }
 }
 
-fn not_covered(lock_step: &BehaviourReport, flips: &[FlipReport]) -> Vec<String> {
+fn not_covered(lock_step: &BehaviourReport, flips: &[FlipReport], family: FpgaFamily) -> Vec<String> {
+    let shared = match family {
+        FpgaFamily::Ice40 => {
+            "an error that the databases of nextpnr and IceStorm share: nextpnr's was made from IceStorm's"
+        }
+        FpgaFamily::Ecp5 => "an error in Project Trellis' database: nextpnr, ecppack and the reading back use the same",
+    };
     let mut list = vec![
         "hardware: nobody has run it yet; voltages, the oscillator and the wiring of the board are not simulated"
             .to_owned(),
         "the tap tables that a design of your own can load: the top does not connect their ports".to_owned(),
-        "an error that the databases of nextpnr and IceStorm share: nextpnr's was made from IceStorm's".to_owned(),
+        shared.to_owned(),
     ];
     if lock_step.led_changes == 0 {
         list.push(

@@ -8,14 +8,12 @@ mod netlists;
 
 use crate::BitstreamError;
 use crate::boards::FpgaBoard;
-use crate::ice40::{BitsNetlist, CellPlace, LutCell, MEMORY_WORDS};
+use crate::function;
+use crate::ice40::{CellPlace, IceboxNetlist, LutCell, MEMORY_WORDS};
+use crate::report::CellsReport;
 use netlists::{Driver, ReadBack, RoutedNetlist, is_set, parameter};
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
 
-/// Differences that a report lists; it counts all.
-const LISTED: usize = 8;
 /// Ports of a memory: name, width, and level where nothing is connected.
 const MEMORY_INPUTS: [(&str, usize, bool); 10] = [
     ("WADDR", 11, false),
@@ -30,35 +28,7 @@ const MEMORY_INPUTS: [(&str, usize, bool); 10] = [
     ("RCLK", 1, false),
 ];
 
-/// Result of the comparison.
-#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
-pub struct CellsReport {
-    /// Look-up tables compared.
-    pub tables: u64,
-    /// Flip-flops compared.
-    pub flip_flops: u64,
-    /// Carries compared.
-    pub carries: u64,
-    /// Memories compared, with their contents.
-    pub memories: u64,
-    /// Connections compared: inputs of cells, and output pins.
-    pub connections: u64,
-    /// Logic cells through which the router only passes a net.
-    pub passed_through: u64,
-    /// Number of differences.
-    pub differences: u64,
-    /// The first of them.
-    pub first: Vec<String>,
-}
-
 impl CellsReport {
-    fn differs(&mut self, what: String) {
-        self.differences += 1;
-        if self.first.len() < LISTED {
-            self.first.push(what);
-        }
-    }
-
     /// Counts a connection, and a difference if the drivers differ.
     fn connection(&mut self, what: impl Fn() -> String, routed: Option<Driver>, bits: Option<Driver>) {
         self.connections += 1;
@@ -82,7 +52,7 @@ fn named(driver: Option<Driver>) -> String {
 /// # Errors
 /// [`BitstreamError::Unreadable`] for a router's netlist of another form, [`BitstreamError::UnknownCell`] for a kind of cell that is not
 /// compared here.
-pub fn compare_cells(bits: &BitsNetlist, routed: &Value, board: &FpgaBoard) -> Result<CellsReport, BitstreamError> {
+pub fn compare_cells(bits: &IceboxNetlist, routed: &Value, board: &FpgaBoard) -> Result<CellsReport, BitstreamError> {
     let routed = RoutedNetlist::read(routed, board)?;
     let mut report = CellsReport::default();
     let read_back = ReadBack::new(bits, &routed, board, &mut report);
@@ -186,30 +156,15 @@ fn is_same_function(inputs: [Option<Driver>; 4], table: Vec<bool>, lut: &LutCell
     let (Some(of_bits), [Some(a), Some(b), Some(c), Some(d)]) = (of_bits, inputs) else {
         return false;
     };
-    let inputs = [a, b, c, d];
-    let mut drivers: Vec<Driver> = Vec::new();
-    for driver in inputs.iter().chain(&of_bits) {
-        if !matches!(driver, Driver::Constant(_)) && !drivers.contains(driver) {
-            drivers.push(*driver);
-        }
-    }
-    (0..1usize << drivers.len()).all(|levels| {
-        let level = |driver: &Driver| match driver {
-            Driver::Constant(level) => *level,
-            driver => drivers
-                .iter()
-                .position(|other| other == driver)
-                .is_some_and(|index| levels >> index & 1 == 1),
-        };
-        let index = |inputs: &[Driver]| {
-            inputs
-                .iter()
-                .rev()
-                .fold(0usize, |index, input| index << 1 | usize::from(level(input)))
-        };
-        let expected = table.get(index(&inputs)).copied().unwrap_or(false);
-        expected == (lut.table >> index(&of_bits) & 1 == 1)
-    })
+    let table = table
+        .iter()
+        .rev()
+        .fold(0u16, |table, value| table << 1 | u16::from(*value));
+    let constant = |driver: Driver| match driver {
+        Driver::Constant(level) => Some(level),
+        _ => None,
+    };
+    function::is_same(constant, (&[a, b, c, d], table), (&of_bits, lut.table))
 }
 
 /// Compares a memory: its modes, contents and connections.
@@ -298,7 +253,7 @@ endmodule
     }
 
     fn compared(bits: &str, routed: &Value) -> CellsReport {
-        let netlist = BitsNetlist::read(bits).unwrap();
+        let netlist = IceboxNetlist::read(bits).unwrap();
         compare_cells(&netlist, routed, &board("icebreaker").unwrap()).unwrap()
     }
 

@@ -1,10 +1,10 @@
 //! The two netlists: cells by place, and what drives their nets.
 
-use super::CellsReport;
 use crate::BitstreamError;
 use crate::boards::FpgaBoard;
-use crate::ice40::{BitsNetlist, CarryCell, CellOutput, CellPlace, LutCell, MemoryCell};
+use crate::ice40::{CarryCell, CellOutput, CellPlace, IceboxNetlist, LutCell, MemoryCell};
 use crate::network::{HIGH, LOW, NetIndex};
+use crate::report::CellsReport;
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -140,7 +140,7 @@ pub(super) struct ReadBack<'a> {
 
 impl<'a> ReadBack<'a> {
     pub(super) fn new(
-        bits: &'a BitsNetlist,
+        bits: &'a IceboxNetlist,
         routed: &RoutedNetlist<'_>,
         board: &FpgaBoard,
         report: &mut CellsReport,
