@@ -30,6 +30,12 @@ pub struct FpgaBoard {
     pub led: BoardPin,
     /// Whether the LED is lit by a low level.
     pub led_is_active_low: bool,
+    /// Its name in openFPGALoader.
+    pub loader: &'static str,
+    /// Free pins on headers, by their names on the board.
+    pub header: &'static [(&'static str, &'static str)],
+    /// Two files of public projects that agree about the free pins.
+    pub header_sources: [&'static str; 2],
 }
 
 /// A pin of a board.
@@ -48,6 +54,23 @@ pub enum PinUse {
     Input,
     /// As an output.
     Output,
+}
+
+/// A pin of the device as a top uses it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TopPin {
+    /// Port of the top.
+    pub port: String,
+    /// Name of the pin in the package.
+    pub pin: &'static str,
+    /// Its name on the board; empty for a pin that has its own use there.
+    pub header: &'static str,
+    /// Two files of public projects that agree about it.
+    pub sources: [&'static str; 2],
+    /// What the top uses it for.
+    pub direction: PinUse,
+    /// The level of an open input, which a resistor in the device makes; `None` without one.
+    pub open_level: Option<bool>,
 }
 
 /// A family of devices whose bitstreams are read back alike.
@@ -184,6 +207,103 @@ const ULX3S: [&str; 2] = [
     "emard/ulx3s doc/constraints/ulx3s_v20.lpf",
     "amaranth-lang/amaranth-boards amaranth_boards/ulx3s.py",
 ];
+/// Pins of the headers P2, P3 and P6 that have no other use, by header and pin.
+const COLORLIGHT_I5_HEADER: [(&str, &str); 49] = [
+    ("P2 pin 4", "T18"),
+    ("P2 pin 5", "R17"),
+    ("P2 pin 6", "M17"),
+    ("P2 pin 12", "N18"),
+    ("P2 pin 13", "L20"),
+    ("P2 pin 14", "K20"),
+    ("P2 pin 15", "G20"),
+    ("P2 pin 16", "J20"),
+    ("P2 pin 17", "L18"),
+    ("P2 pin 18", "M18"),
+    ("P2 pin 19", "N17"),
+    ("P2 pin 25", "P17"),
+    ("P2 pin 26", "R18"),
+    ("P2 pin 27", "C18"),
+    ("P3 pin 3", "D20"),
+    ("P3 pin 4", "B19"),
+    ("P3 pin 5", "A19"),
+    ("P3 pin 6", "A18"),
+    ("P3 pin 13", "B1"),
+    ("P3 pin 14", "D2"),
+    ("P3 pin 15", "E2"),
+    ("P3 pin 16", "D1"),
+    ("P3 pin 17", "C1"),
+    ("P3 pin 18", "C2"),
+    ("P3 pin 19", "E3"),
+    ("P3 pin 25", "C17"),
+    ("P3 pin 26", "B18"),
+    ("P3 pin 27", "B20"),
+    ("P3 pin 28", "F20"),
+    ("P6 pin 3", "J18"),
+    ("P6 pin 4", "P16"),
+    ("P6 pin 5", "L4"),
+    ("P6 pin 6", "N4"),
+    ("P6 pin 7", "T3"),
+    ("P6 pin 9", "T2"),
+    ("P6 pin 12", "N2"),
+    ("P6 pin 13", "V1"),
+    ("P6 pin 14", "Y2"),
+    ("P6 pin 15", "T1"),
+    ("P6 pin 16", "R1"),
+    ("P6 pin 17", "U1"),
+    ("P6 pin 18", "W1"),
+    ("P6 pin 19", "M1"),
+    ("P6 pin 22", "N3"),
+    ("P6 pin 24", "M3"),
+    ("P6 pin 25", "R3"),
+    ("P6 pin 26", "M4"),
+    ("P6 pin 27", "L5"),
+    ("P6 pin 28", "J16"),
+];
+/// Pins of the headers J1 and J2 that neither the radio nor the converter uses.
+const ULX3S_HEADER: [(&str, &str); 42] = [
+    ("gp0", "B11"),
+    ("gn0", "C11"),
+    ("gp1", "A10"),
+    ("gn1", "A11"),
+    ("gp2", "A9"),
+    ("gn2", "B10"),
+    ("gp3", "B9"),
+    ("gn3", "C10"),
+    ("gp4", "A7"),
+    ("gn4", "A8"),
+    ("gp5", "C8"),
+    ("gn5", "B8"),
+    ("gp6", "C6"),
+    ("gn6", "C7"),
+    ("gp7", "A6"),
+    ("gn7", "B6"),
+    ("gp8", "A4"),
+    ("gn8", "A5"),
+    ("gp9", "A2"),
+    ("gn9", "B1"),
+    ("gp10", "C4"),
+    ("gn10", "B4"),
+    ("gp18", "H18"),
+    ("gn18", "H17"),
+    ("gp19", "F17"),
+    ("gn19", "G18"),
+    ("gp20", "D18"),
+    ("gn20", "E17"),
+    ("gp21", "C18"),
+    ("gn21", "D17"),
+    ("gp22", "B15"),
+    ("gn22", "C15"),
+    ("gp23", "B17"),
+    ("gn23", "C17"),
+    ("gp24", "C16"),
+    ("gn24", "D16"),
+    ("gp25", "D14"),
+    ("gn25", "E14"),
+    ("gp26", "B13"),
+    ("gn26", "C13"),
+    ("gp27", "D13"),
+    ("gn27", "E13"),
+];
 /// The ULX3S without its device.
 const ULX3S_BOARD: FpgaBoard = FpgaBoard {
     name: "ulx3s-25f",
@@ -197,6 +317,9 @@ const ULX3S_BOARD: FpgaBoard = FpgaBoard {
     serial_tx: pin("L4", ULX3S),
     led: pin("B2", ULX3S),
     led_is_active_low: false,
+    loader: "ulx3s",
+    header: &ULX3S_HEADER,
+    header_sources: ULX3S,
 };
 
 /// All boards.
@@ -213,6 +336,9 @@ pub const BOARDS: [FpgaBoard; 6] = [
         serial_tx: pin("9", ICEBREAKER),
         led: pin("11", ICEBREAKER),
         led_is_active_low: true,
+        loader: "ice40_generic",
+        header: &[],
+        header_sources: ["", ""],
     },
     FpgaBoard {
         name: "ice40-hx8k",
@@ -226,6 +352,9 @@ pub const BOARDS: [FpgaBoard; 6] = [
         serial_tx: pin("B12", HX8K_SERIAL),
         led: pin("B5", HX8K),
         led_is_active_low: false,
+        loader: "ice40_generic",
+        header: &[],
+        header_sources: ["", ""],
     },
     FpgaBoard {
         name: "colorlight-i5",
@@ -239,6 +368,12 @@ pub const BOARDS: [FpgaBoard; 6] = [
         serial_tx: pin("J17", COLORLIGHT_I5),
         led: pin("U16", COLORLIGHT_I5),
         led_is_active_low: true,
+        loader: "colorlight-i5",
+        header: &COLORLIGHT_I5_HEADER,
+        header_sources: [
+            "wuxx/Colorlight-FPGA-Projects src/i5/common/io.lpf",
+            "LukeMoll/amaranth-boards amaranth_boards/muselab_ext.py",
+        ],
     },
     FpgaBoard {
         name: "ulx3s-12f",
@@ -288,17 +423,19 @@ impl FpgaBoard {
         ]
     }
 
-    /// The same pins, with what the top uses them for.
+    /// The same pins as a top uses them.
     #[must_use]
-    pub fn used_pins(&self) -> [(&'static str, BoardPin, PinUse); 4] {
-        let [clock, rx, tx, led] = self.pins();
-        [
-            (clock, PinUse::Input),
-            (rx, PinUse::Input),
-            (tx, PinUse::Output),
-            (led, PinUse::Output),
-        ]
-        .map(|((port, pin), direction)| (port, pin, direction))
+    pub fn own_pins(&self) -> [TopPin; 4] {
+        let directions = [PinUse::Input, PinUse::Input, PinUse::Output, PinUse::Output];
+        let mut directions = directions.into_iter();
+        self.pins().map(|(port, pin)| TopPin {
+            port: port.to_owned(),
+            pin: pin.pin,
+            header: "",
+            sources: pin.sources,
+            direction: directions.next().unwrap_or(PinUse::Output),
+            open_level: None,
+        })
     }
 }
 
@@ -314,6 +451,12 @@ mod tests {
                 let projects = pin.sources.map(|source| source.split_once(' ').unwrap().0);
                 assert_ne!(projects[0], projects[1], "{} {name}", board.name);
                 assert!(pins[..index].iter().all(|(_, other)| other.pin != pin.pin));
+                assert!(board.header.iter().all(|(_, free)| *free != pin.pin));
+            }
+            let [first, second] = board.header_sources.map(|source| source.split(' ').next().unwrap());
+            assert!(board.header.is_empty() || first != second, "{}", board.name);
+            for (index, (_, pin)) in board.header.iter().enumerate() {
+                assert!(board.header[..index].iter().all(|(_, other)| other != pin), "{pin}");
             }
         }
     }

@@ -45,6 +45,16 @@ pub enum BitstreamError {
         /// Amount that the device has.
         available: u64,
     },
+    /// The board's headers have too few pins for the top's ports.
+    #[error("does not fit {board}: {needed} pins needed, {available} available on its headers")]
+    TooManyPins {
+        /// Name of the board.
+        board: &'static str,
+        /// Pins that the top needs.
+        needed: usize,
+        /// Pins that the headers have.
+        available: usize,
+    },
     /// Programs are not installed.
     #[error("{}", .0.iter().map(|name| format!("{name}: not found; a bitstream needs it: scripts/install-tools bitstream")).collect::<Vec<_>>().join("\n"))]
     Missing(Vec<&'static str>),

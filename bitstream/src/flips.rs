@@ -5,13 +5,11 @@
 //! select, can be found in the tiles alone.
 
 use crate::BitstreamError;
-use crate::behaviour;
 use crate::error::at;
 use crate::network::Network;
 use crate::random::Random;
 use crate::report::FlipKind;
 use crate::toolchain::{BitsNetlist, Routed, TextBit, Toolchain};
-use crate::top::BoardTop;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fs;
@@ -24,6 +22,9 @@ pub const PER_KIND: usize = 2;
 const AT_ONCE: usize = 2;
 /// Seed of the choice of the bits.
 const SEED: u64 = 1;
+
+/// Runs a netlist of the bits beside the model: the clock of the first difference.
+pub type LockStep<'a> = dyn Fn(&dyn BitsNetlist) -> Result<Option<u64>, BitstreamError> + Sync + 'a;
 
 /// What a bitstream is that faults are made in.
 #[derive(Clone, Copy)]
@@ -38,8 +39,8 @@ pub struct FaultFree<'a> {
     pub netlist: &'a dyn BitsNetlist,
     /// The same in the form that is simulated.
     pub network: &'a Network,
-    /// The top.
-    pub top: &'a BoardTop,
+    /// Its lock step.
+    pub lock_step: &'a LockStep<'a>,
 }
 
 /// A flip, and what found it.
@@ -70,15 +71,13 @@ impl FlipReport {
     }
 }
 
-/// Makes [`PER_KIND`] flips of each kind that the bitstream has, some at a time, and compares each; the lock step takes at most `clocks`.
-/// `begin` is called before each.
+/// Makes [`PER_KIND`] flips of each kind that the bitstream has, some at a time, and compares each. `begin` is called before each.
 ///
 /// # Errors
 /// The errors of the programs.
 pub fn flips(
     fault_free: &FaultFree<'_>,
     (tools, folder): (&dyn Toolchain, &Path),
-    clocks: u64,
     begin: &(dyn Fn(FlipKind) + Sync),
 ) -> Result<Vec<FlipReport>, BitstreamError> {
     let mut random = Random::new(SEED);
@@ -94,7 +93,7 @@ pub fn flips(
         let flip = |(kind, bit): &(FlipKind, TextBit)| {
             begin(*kind);
             let (text, place) = tools.flipped(fault_free.text, *bit);
-            flip(fault_free, (tools, folder), clocks, (*kind, place, &text))
+            flip(fault_free, (tools, folder), (*kind, place, &text))
         };
         chosen.iter().map(flip).collect::<Result<Vec<_>, BitstreamError>>()
     };
@@ -117,10 +116,8 @@ pub fn flips(
 fn flip(
     fault_free: &FaultFree<'_>,
     (tools, folder): (&dyn Toolchain, &Path),
-    clocks: u64,
     (kind, place, text): (FlipKind, String, &str),
 ) -> Result<FlipReport, BitstreamError> {
-    let top = fault_free.top;
     let packed = tools.pack(text, folder)?;
     let text = tools.unpack(&packed, folder)?;
     let bytes = packed
@@ -139,14 +136,13 @@ fn flip(
     };
     match tools.decode(&text, folder) {
         Ok(netlist) => {
-            let network = netlist.network();
-            report.changes_netlist = network != *fault_free.network;
+            report.changes_netlist = netlist.network() != *fault_free.network;
             if !report.changes_netlist {
                 return Ok(report);
             }
             report.cells = netlist.compare_cells(&fault_free.routed.netlist)?.differences;
-            report.lock_step_clock = match behaviour::compare(&network, top, (clocks, SEED), &mut |_| {}) {
-                Ok(compared) => compared.first.map(|first| first.clock),
+            report.lock_step_clock = match (fault_free.lock_step)(netlist.as_ref()) {
+                Ok(clock) => clock,
                 // A netlist that cannot be simulated, such as one with a loop, is a difference from its first clock on.
                 Err(BitstreamError::UnknownCell(_)) => Some(0),
                 Err(other) => return Err(other),

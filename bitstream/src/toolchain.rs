@@ -1,10 +1,10 @@
 //! The programs of a family, and the netlist of its bits, in the form in which a bitstream of any family is built and compared.
 
 use crate::BitstreamError;
-use crate::boards::{FpgaBoard, FpgaFamily};
+use crate::boards::{FpgaBoard, FpgaFamily, TopPin};
 use crate::ecp5::tools::Ecp5Tools;
 use crate::ice40::tools::Ice40Tools;
-use crate::network::Network;
+use crate::network::{NetIndex, Network};
 use crate::report::{CellsReport, FlipKind, TilesReport};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -110,6 +110,12 @@ pub trait BitsNetlist: Send + Sync {
     /// not compared here.
     fn compare_cells(&self, routed: &Value) -> Result<CellsReport, BitstreamError>;
 
+    /// The net of the bits that has this name in the router's netlist.
+    ///
+    /// # Errors
+    /// [`BitstreamError::UnknownCell`] if there is none.
+    fn net(&self, routed: &Value, name: &str) -> Result<NetIndex, BitstreamError>;
+
     /// The bits of this kind that a flip may change, in the text that the netlist was decoded from.
     fn flips(&self, text: &str, kind: FlipKind) -> Vec<TextBit>;
 
@@ -117,14 +123,14 @@ pub trait BitsNetlist: Send + Sync {
     fn verilog(&self, module: &str) -> Vec<(String, String)>;
 }
 
-/// Finds the programs for a board.
+/// Finds the programs for a board, of which a top uses these pins.
 ///
 /// # Errors
 /// [`BitstreamError::Missing`] with the names of all that are missing.
-pub fn installed(board: &FpgaBoard) -> Result<Box<dyn Toolchain>, BitstreamError> {
+pub fn installed(board: &FpgaBoard, pins: &[TopPin]) -> Result<Box<dyn Toolchain>, BitstreamError> {
     Ok(match board.device.family() {
         FpgaFamily::Ice40 => Box::new(Ice40Tools::installed(*board)?),
-        FpgaFamily::Ecp5 => Box::new(Ecp5Tools::installed(*board)?),
+        FpgaFamily::Ecp5 => Box::new(Ecp5Tools::installed(*board, pins)?),
     })
 }
 

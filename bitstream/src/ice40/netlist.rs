@@ -148,6 +148,7 @@ impl IceboxNetlist {
                     data: cell.data,
                     enable: flop.enable,
                     reset: flop.reset,
+                    is_asynchronous: false,
                     reset_to: flop.reset_to,
                     reset_needs_enable: true,
                     initial: false,

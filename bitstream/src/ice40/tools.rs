@@ -6,7 +6,7 @@ use super::{IceboxNetlist, MEMORY_MODEL, legal_verilog};
 use crate::BitstreamError;
 use crate::boards::FpgaBoard;
 use crate::error::at;
-use crate::network::Network;
+use crate::network::{NetIndex, Network};
 use crate::program::{self, BUILD_LIMIT, CONVERT_LIMIT, Program, SEED, Search, cell_types};
 use crate::report::{CellsReport, FlipKind, TilesReport};
 use crate::toolchain::{self, Routed, Synthesised, TextBit, Toolchain};
@@ -162,6 +162,12 @@ impl toolchain::BitsNetlist for Ice40Bits {
 
     fn compare_cells(&self, routed: &Value) -> Result<CellsReport, BitstreamError> {
         compare_cells(&self.netlist, routed, &self.board)
+    }
+
+    fn net(&self, _: &Value, name: &str) -> Result<NetIndex, BitstreamError> {
+        Err(BitstreamError::UnknownCell(format!(
+            "the net {name}: nets of iCE40 are not found by name"
+        )))
     }
 
     fn flips(&self, text: &str, kind: FlipKind) -> Vec<TextBit> {

@@ -95,6 +95,8 @@ pub struct State {
     pub enable: NetIndex,
     /// Sets or resets it while high.
     pub reset: NetIndex,
+    /// Whether it does so at once, without waiting for the clock.
+    pub is_asynchronous: bool,
     /// The value after that.
     pub reset_to: bool,
     /// Whether `enable` must be high for a reset, too.
@@ -104,11 +106,24 @@ pub struct State {
 }
 
 impl Gate {
-    /// A gate of at most four inputs.
+    /// A gate of at most four inputs. Entries of the table that constant or equal inputs cannot select get the value of one that they can,
+    /// so that equal functions of the same inputs are equal gates.
     #[must_use]
     pub fn new(output: NetIndex, nets: &[NetIndex], table: u16) -> Self {
         let mut inputs = [LOW; 4];
         inputs[..nets.len()].copy_from_slice(nets);
+        let selected = |entry: usize| {
+            (0..inputs.len()).fold(0, |selected, input| {
+                let first = inputs.iter().position(|net| *net == inputs[input]).unwrap_or(input);
+                let level = match inputs[input] {
+                    LOW => 0,
+                    HIGH => 1,
+                    _ => entry >> first & 1,
+                };
+                selected | level << input
+            })
+        };
+        let table = (0..16).fold(0, |values, entry| values | (table >> selected(entry) & 1) << entry);
         Self { output, inputs, table }
     }
 
@@ -116,5 +131,24 @@ impl Gate {
     #[must_use]
     pub fn wire(output: NetIndex, input: NetIndex) -> Self {
         Self::new(output, &[input], 0b10)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_that_cannot_be_selected_do_not_distinguish_gates() {
+        let [out, a, b] = [2, 3, 4];
+        let and = Gate::new(out, &[a, HIGH, b], 0b1100_1000);
+        assert_eq!(
+            and,
+            Gate::new(out, &[a, HIGH, b], 0b1000_1000 | 0b0100_0000 | 0b0001_0000)
+        );
+        assert_ne!(and, Gate::new(out, &[a, HIGH, b], 0b1000_0000));
+        // The same net twice: both bits are equal.
+        assert_eq!(Gate::new(out, &[a, a], 0b1000), Gate::new(out, &[a, a], 0b1110));
+        assert_eq!(Gate::wire(out, a).table, 0xAAAA);
     }
 }

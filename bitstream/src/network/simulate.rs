@@ -18,6 +18,8 @@ pub struct NetlistSimulation {
     /// Gates whose inputs have changed, a bit each.
     pending: Vec<u64>,
     states: Vec<State>,
+    /// Those of them with an asynchronous reset.
+    asynchronous: Vec<State>,
     /// Nets that change with the clock, and their levels after it; kept between clocks to save an allocation.
     next: Vec<(NetIndex, bool)>,
     memories: Vec<Memory>,
@@ -110,6 +112,12 @@ impl NetlistSimulation {
             gates,
             readers,
             states: network.states.clone(),
+            asynchronous: network
+                .states
+                .iter()
+                .filter(|state| state.is_asynchronous)
+                .copied()
+                .collect(),
             memories: network.memories.iter().map(Memory::new).collect(),
             inputs,
             outputs: network.outputs.iter().cloned().collect(),
@@ -152,6 +160,20 @@ impl NetlistSimulation {
 
     /// Lets all levels follow the inputs and registers.
     pub fn settle(&mut self) {
+        self.settle_gates();
+        // Each register changes at most once: it has then the value of its reset.
+        while let Some(state) = self
+            .asynchronous
+            .iter()
+            .copied()
+            .find(|state| self.levels[state.reset as usize] && self.levels[state.output as usize] != state.reset_to)
+        {
+            self.set(state.output, state.reset_to);
+            self.settle_gates();
+        }
+    }
+
+    fn settle_gates(&mut self) {
         for word in 0..self.pending.len() {
             // A gate is read only by those that come after it, perhaps in the same word.
             while self.pending[word] != 0 {
@@ -244,6 +266,44 @@ mod tests {
         });
         assert_eq!(seen, [false, true, false, true]);
         assert!(NetlistSimulation::new(&netlist.network(), "2").is_err());
+    }
+
+    #[test]
+    fn an_asynchronous_reset_acts_before_the_clock() {
+        let [clock, reset, output, shown] = [2, 3, 4, 5];
+        let state = State {
+            output,
+            clock,
+            data: HIGH,
+            enable: HIGH,
+            reset,
+            is_asynchronous: true,
+            reset_to: false,
+            reset_needs_enable: false,
+            initial: false,
+        };
+        let network = Network {
+            names: ["low", "high", "clock", "reset", "output", "shown"]
+                .map(str::to_owned)
+                .to_vec(),
+            inputs: vec![("1".to_owned(), clock), ("2".to_owned(), reset)],
+            outputs: vec![("3".to_owned(), shown)],
+            gates: vec![Gate::wire(shown, output)],
+            states: vec![state],
+            memories: vec![],
+        };
+        let mut simulation = NetlistSimulation::new(&network, "1").unwrap();
+        let mut clock = |level| {
+            simulation.set(reset, level);
+            simulation.settle();
+            let seen = simulation.level(shown);
+            simulation.clock();
+            seen
+        };
+        assert_eq!(
+            [false, false, true, false, false].map(&mut clock),
+            [false, true, false, false, true]
+        );
     }
 
     #[test]

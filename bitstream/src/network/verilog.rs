@@ -110,12 +110,16 @@ impl Network {
                 u8::from(state.reset_to)
             ),
         };
+        let also = match state.is_asynchronous {
+            true => format!(", posedge {}", self.name(state.reset)),
+            false => String::new(),
+        };
         let enable = match state.enable {
             HIGH => String::new(),
             enable => format!("if ({}) ", self.name(enable)),
         };
         format!(
-            "    always @(posedge {clock}) {reset}{enable}{output} <= {};\n",
+            "    always @(posedge {clock}{also}) {reset}{enable}{output} <= {};\n",
             self.name(state.data)
         )
     }

@@ -13,10 +13,11 @@
 //! microseconds after configuration.
 
 pub mod crc;
+pub mod stage;
 mod verilog;
 
 use crate::BitstreamError;
-use crate::boards::{FpgaBoard, FpgaFamily};
+use crate::boards::{FpgaBoard, FpgaFamily, TopPin};
 use posicast_blocks::shaper::ShaperConfig;
 use std::fmt::Write;
 
@@ -147,27 +148,97 @@ impl BoardTop {
             .map_or(0, |(index, _)| index)
     }
 
-    /// The constraints: a line for every pin, none of which is left to the tool.
+    /// The top as files are made of it.
+    #[must_use]
+    pub fn files(&self) -> TopFiles {
+        TopFiles {
+            module: self.module(),
+            board: self.board,
+            pins: self.board.own_pins().to_vec(),
+            verilog: self.verilog(),
+        }
+    }
+}
+
+/// A top, as the steps of a bitstream see it.
+#[derive(Debug, Clone)]
+pub struct TopFiles {
+    /// Name of the module.
+    pub module: String,
+    /// The board.
+    pub board: FpgaBoard,
+    /// The pins of all its ports.
+    pub pins: Vec<TopPin>,
+    /// The module.
+    pub verilog: String,
+}
+
+impl TopFiles {
+    /// The constraints: lines for every pin, none of which is left to the tool.
     #[must_use]
     pub fn constraints(&self) -> String {
-        let pins = self.board.pins();
         let mut text = format!(
-            "# Pins of {} for {}.v; each line names two sources of its pin.\n",
-            self.board.title,
-            self.module()
+            "# Pins of {} for {}.v; each names two sources of its pin.\n",
+            self.board.title, self.module
         );
-        for (port, pin) in pins {
-            let sources = pin.sources.join("; ");
+        for pin in &self.pins {
+            let TopPin {
+                port,
+                pin,
+                header,
+                sources,
+                ..
+            } = pin;
+            let header = match *header {
+                "" => String::new(),
+                header => format!("{header}; "),
+            };
+            let comment = format!("{header}{}", sources.join("; "));
             let _ = match self.board.device.family() {
-                FpgaFamily::Ice40 => writeln!(text, "set_io {port} {:<4} # {sources}", pin.pin),
+                FpgaFamily::Ice40 => writeln!(text, "set_io {port} {pin:<4} # {comment}"),
                 FpgaFamily::Ecp5 => writeln!(
                     text,
-                    "LOCATE COMP \"{port}\" SITE \"{}\"; # {sources}\nIOBUF PORT \"{port}\" IO_TYPE=LVCMOS33;",
-                    pin.pin
+                    "LOCATE COMP \"{port}\" SITE \"{pin}\"; # {comment}\nIOBUF PORT \"{port}\" IO_TYPE=LVCMOS33{};",
+                    self.pull(port)
                 ),
             };
         }
         text
+    }
+
+    /// Name of the packed bitstream.
+    #[must_use]
+    pub fn bitstream(&self) -> String {
+        format!("{}.{}", self.module, self.board.device.family().bitstream_ending())
+    }
+
+    /// A Makefile that writes the bitstream into the board.
+    #[must_use]
+    pub fn makefile(&self) -> String {
+        let (loader, bits) = (self.board.loader, self.bitstream());
+        let mut text = format!(
+            "# Writes the bitstream into {} by openFPGALoader. Nobody has tried it yet.\n\n.PHONY: flash load\n\n\
+             # For good: the board starts with it.\nflash:\n\topenFPGALoader -b {loader} -f {bits}\n",
+            self.board.title
+        );
+        // The memory of an iCE40 board's device is not reached past its flash.
+        if self.board.device.family() == FpgaFamily::Ecp5 {
+            let _ = write!(
+                text,
+                "\n# Until power is switched off.\nload:\n\topenFPGALoader -b {loader} {bits}\n"
+            );
+        }
+        text
+    }
+
+    /// The setting of ECP5 for the level of an open input.
+    fn pull(&self, port: &str) -> &'static str {
+        let pin = self.pins.iter().find(|pin| pin.port == port);
+        match pin.and_then(|pin| pin.open_level) {
+            Some(true) => " PULLMODE=UP",
+            Some(false) => " PULLMODE=DOWN",
+            None => "",
+        }
     }
 }
 
@@ -205,7 +276,7 @@ mod tests {
     fn every_port_has_a_pin() {
         for board in crate::boards::BOARDS {
             let top = BoardTop::new("m", board, 12_000, vec![axis("x", 32)]).unwrap();
-            let (verilog, constraints) = (top.verilog(), top.constraints());
+            let (verilog, constraints) = (top.verilog(), top.files().constraints());
             let header = verilog
                 .split_once("module ")
                 .unwrap()

@@ -152,6 +152,54 @@ fn long_cli_the_bits_of_shapers_on_ecp5_compute_the_model() {
 }
 
 #[test]
+fn long_cli_the_bits_of_a_stage_compute_the_model() {
+    let text = std::fs::read_to_string(example("vertical-slide.toml")).unwrap();
+    let [before, errors] = text.split("[axis.error_table]").collect::<Vec<_>>()[..] else {
+        panic!("no error table");
+    };
+    let rest = errors.split_once("[axis.pwm]").unwrap().1;
+    let (scratch, machine) = scratch(&format!("{before}[axis.pwm]{rest}\n[link]\nbaud = 1_000_000\n"));
+    let folder = scratch.path().join("out");
+    let mut command = posicast();
+    command
+        .arg("bitstream")
+        .arg(&machine)
+        .args(["--board", "colorlight-i5", "-o"])
+        .arg(&folder);
+    let output = command
+        .env("POSICAST_NEXTPNR", nextpnr_ecp5())
+        .arg("--json")
+        .output()
+        .unwrap();
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let document = json(&output.stdout);
+    assert_fits_schema("bitstream", &document);
+    let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
+    assert_eq!(
+        (number("/cells/differences"), number("/lock_step/power_on_clocks")),
+        (0, 256)
+    );
+    assert!(number("/cells/tables") > 8_000 && number("/cells/memories") > 5);
+    assert_eq!(document["lock_step"]["rows"]["result"], "match");
+    assert!(number("/lock_step/rows/cycles") >= 1_000_000);
+    let flips = document["flips"].as_array().unwrap();
+    assert!(flips.iter().all(|flip| flip["cells"].as_u64() > Some(0)), "{flips:#?}");
+    // Every input that stops the axis has a pin of its own, which an open wire leaves low.
+    let constraints = std::fs::read_to_string(folder.join("bitstream/vertical_slide_colorlight_i5.lpf")).unwrap();
+    for port in ["emergency_stop_n", "z_limit_plus_n", "z_fault_n", "z_drive_ready"] {
+        assert!(
+            constraints.contains(&format!("\"{port}\" IO_TYPE=LVCMOS33 PULLMODE=DOWN;")),
+            "{port}"
+        );
+    }
+}
+
+#[test]
 fn cli_a_bitstream_refuses_what_it_cannot_build() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("out");
@@ -170,7 +218,18 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
         &[
             "xy-stage.toml:",
             "axis.encoder",
-            "only machines with shapers alone so far",
+            "a stage does not fit icebreaker",
+            "colorlight-i5, ulx3s-12f",
+        ],
+    );
+    refused(
+        &bitstream(&example("xy-stage.toml"), "colorlight-i5", &output, &[]),
+        &output,
+        &[
+            "xy-stage.toml:",
+            "axis.encoder",
+            "there is no [link]",
+            "baud = 1_000_000",
         ],
     );
     let (_scratch, machine) = scratch(

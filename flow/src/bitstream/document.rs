@@ -4,8 +4,10 @@ use posicast_bitstream::behaviour::BehaviourReport;
 use posicast_bitstream::boards::FpgaFamily;
 use posicast_bitstream::flips::FlipReport;
 use posicast_bitstream::report::{CellsReport, FlipKind, TilesReport};
-use posicast_bitstream::top::BoardTop;
+use posicast_bitstream::top::TopFiles;
+use posicast_bitstream::top::stage::POWER_ON_CLOCKS;
 use posicast_machine::machine_file::Machine;
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -17,7 +19,7 @@ pub(super) struct Evidence {
     pub(super) highest_mhz: f64,
     pub(super) tiles: TilesReport,
     pub(super) cells: CellsReport,
-    pub(super) lock_step: BehaviourReport,
+    pub(super) lock_step: LockStepDocument,
     pub(super) flips: Vec<FlipReport>,
     /// The bitstream itself.
     pub(super) packed: Vec<u8>,
@@ -41,6 +43,8 @@ pub struct Document {
     pub oscillator_hz: u32,
     /// Sample rate.
     pub sample_hz: f64,
+    /// The pins.
+    pub pins: Vec<PinDocument>,
     /// Versions of the programs.
     pub tools: [String; 2],
     /// Seed of the random commands.
@@ -54,7 +58,7 @@ pub struct Document {
     /// The netlist of the bits with the router's.
     pub cells: CellsReport,
     /// The netlist of the bits with the model.
-    pub lock_step: BehaviourReport,
+    pub lock_step: LockStepDocument,
     /// Single faults, and what found them.
     pub flips: Vec<FlipReport>,
     /// What none of the checks covers.
@@ -71,6 +75,32 @@ pub struct Document {
     pub bitstream: String,
 }
 
+/// The netlist of the bits in lock step with the model.
+#[derive(Clone, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum LockStepDocument {
+    /// Of shapers behind the board's serial line.
+    Shapers(BehaviourReport),
+    /// Of a stage with its line.
+    Stage {
+        /// Clocks after configuration in which the stage is in reset; 0 if it is in reset again later.
+        power_on_clocks: u64,
+        /// The comparison with the model under the stimuli of the stage's own row.
+        rows: LockstepReport,
+    },
+}
+
+/// A pin of the device.
+#[derive(Serialize, JsonSchema)]
+pub struct PinDocument {
+    /// Port of the top.
+    pub port: String,
+    /// Pin of the package.
+    pub pin: &'static str,
+    /// Its name on a header of the board; empty for a pin that has its own use there.
+    pub header: &'static str,
+}
+
 /// A check.
 #[derive(Serialize, JsonSchema)]
 pub struct CheckDocument {
@@ -83,8 +113,8 @@ pub struct CheckDocument {
 }
 
 impl Document {
-    pub(super) fn new(top: &BoardTop, machine: &Machine, evidence: &Evidence) -> Self {
-        let board = top.board();
+    pub(super) fn new(top: &TopFiles, machine: &Machine, evidence: &Evidence) -> Self {
+        let board = &top.board;
         let needed_mhz = f64::from(board.oscillator_hz) / 1e6;
         let flips = &evidence.flips;
         Self {
@@ -94,6 +124,7 @@ impl Document {
             package: board.package,
             oscillator_hz: board.oscillator_hz,
             sample_hz: machine.clock.sample_hz,
+            pins: pins(top),
             tools: evidence.versions.clone(),
             seed: evidence.seed,
             checks: vec![
@@ -112,7 +143,7 @@ impl Document {
             folder: None,
             files: Vec::new(),
             title: board.title.to_owned(),
-            bitstream: format!("{}.{}", top.module(), board.device.family().bitstream_ending()),
+            bitstream: top.bitstream(),
         }
     }
 
@@ -136,6 +167,15 @@ impl Document {
             .map(|file| file.strip_prefix(root).unwrap_or(file).display().to_string())
             .collect();
     }
+}
+
+fn pins(top: &TopFiles) -> Vec<PinDocument> {
+    let pins = top.pins.iter().map(|pin| PinDocument {
+        port: pin.port.clone(),
+        pin: pin.pin,
+        header: pin.header,
+    });
+    pins.collect()
 }
 
 fn clock_check(highest_mhz: f64, needed_mhz: f64) -> CheckDocument {
@@ -204,7 +244,49 @@ fn cells_check(cells: &CellsReport) -> CheckDocument {
     }
 }
 
-fn lock_step_check(lock_step: &BehaviourReport) -> CheckDocument {
+fn lock_step_check(lock_step: &LockStepDocument) -> CheckDocument {
+    match lock_step {
+        LockStepDocument::Shapers(report) => shapers_check(report),
+        LockStepDocument::Stage { power_on_clocks, rows } => stage_check(*power_on_clocks, rows),
+    }
+}
+
+fn stage_check(power_on_clocks: u64, rows: &LockstepReport) -> CheckDocument {
+    let reached = rows.blocks.iter().flat_map(|row| &row.reached);
+    let reached: String = reached.map(|one| format!(", {} {}", one.count, one.what)).collect();
+    let covered = format!("{} clocks{reached}", rows.cycles);
+    let missing = rows.not_exercised_names();
+    let first = rows.blocks.iter().filter_map(|row| row.first.as_ref()).next();
+    let holds = power_on_clocks == POWER_ON_CLOCKS && rows.result == LockstepVerdict::Match;
+    let what = match (first, holds) {
+        (_, true) => {
+            format!(
+                "{covered}: every pin in every clock equal to the model's; a reset of {power_on_clocks} clocks at power-up"
+            )
+        }
+        (Some(first), _) => {
+            let [expected, actual] = first.shown();
+            format!(
+                "clock {}, {}: {actual} in the bits, {expected} in the model",
+                first.time, first.signal
+            )
+        }
+        (None, _) if power_on_clocks != POWER_ON_CLOCKS => {
+            format!("a reset of {power_on_clocks} clocks at power-up, {POWER_ON_CLOCKS} expected")
+        }
+        (None, _) => format!(
+            "{covered}: equal, but too little was exercised; compare more with --clocks{}",
+            missing.iter().map(|what| format!("; {what}")).collect::<String>()
+        ),
+    };
+    CheckDocument {
+        name: "behaviour",
+        ok: holds,
+        what,
+    }
+}
+
+fn shapers_check(lock_step: &BehaviourReport) -> CheckDocument {
     let BehaviourReport {
         clocks,
         samples,
@@ -258,7 +340,7 @@ fn flips_check(flips: &[FlipReport]) -> CheckDocument {
     }
 }
 
-fn not_covered(lock_step: &BehaviourReport, flips: &[FlipReport], family: FpgaFamily) -> Vec<String> {
+fn not_covered(lock_step: &LockStepDocument, flips: &[FlipReport], family: FpgaFamily) -> Vec<String> {
     let shared = match family {
         FpgaFamily::Ice40 => {
             "an error that the databases of nextpnr and IceStorm share: nextpnr's was made from IceStorm's"
@@ -268,13 +350,21 @@ fn not_covered(lock_step: &BehaviourReport, flips: &[FlipReport], family: FpgaFa
     let mut list = vec![
         "hardware: nobody has run it yet; voltages, the oscillator and the wiring of the board are not simulated"
             .to_owned(),
-        "the tap tables that a design of your own can load: the top does not connect their ports".to_owned(),
         shared.to_owned(),
     ];
-    if lock_step.led_changes == 0 {
-        list.push(
-            "the LED's flags: no shaper clamped an output or lost a sample, so lock step never lit it".to_owned(),
-        );
+    match lock_step {
+        LockStepDocument::Shapers(report) => {
+            list.push("the tap tables that a design of your own can load: the top does not connect their ports".to_owned());
+            if report.led_changes == 0 {
+                list.push(
+                    "the LED's flags: no shaper clamped an output or lost a sample, so lock step never lit it".to_owned(),
+                );
+            }
+        }
+        LockStepDocument::Stage { .. } => list.push(
+            "in lock step, what the line is too slow to reach: the cells were compared, but most of the arithmetic works on small numbers"
+                .to_owned(),
+        ),
     }
     if flips.iter().all(|flip| flip.kind != FlipKind::Memory) {
         list.push("flips in a memory: the bitstream has none".to_owned());

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::machine::{self, MachineFile, at_key};
-use posicast_bitstream::boards::FpgaBoard;
+use posicast_bitstream::boards::{BOARDS, FpgaBoard};
 use posicast_machine::machine_file::{AxisSection, Machine};
 use std::path::Path;
 use toml_edit::{DocumentMut, Value};
@@ -15,7 +15,7 @@ const OSCILLATORS_MHZ: [u32; 9] = [12, 16, 24, 25, 26, 27, 48, 50, 100];
 /// Reads the machine file at `path` with the board's oscillator as its clock.
 pub(super) fn on_board(path: &Path, board: &FpgaBoard) -> Result<MachineFile, Failure> {
     let file = machine::read(path)?;
-    only_shapers(&file.machine, path)?;
+    whole_or_only_shapers(&file.machine, path, board)?;
     sample_rate(&file.machine, path, board)?;
     let text = with_clock(&file.text, board.oscillator_hz).map_err(Failure::because)?;
     // Files that it names are read beside it.
@@ -27,25 +27,41 @@ pub(super) fn on_board(path: &Path, board: &FpgaBoard) -> Result<MachineFile, Fa
     })
 }
 
-fn only_shapers(machine: &Machine, path: &Path) -> Result<(), Failure> {
+/// A machine with loops becomes a stage with its line, on a board that is large enough.
+fn whole_or_only_shapers(machine: &Machine, path: &Path, board: &FpgaBoard) -> Result<(), Failure> {
     let loops = |axis: &AxisSection| match (&axis.encoder, &axis.pwm) {
         (Some(_), _) => Some("axis.encoder"),
         (None, Some(_)) => Some("axis.pwm"),
         (None, None) => axis.has_loop().then_some("axis.controller"),
     };
     let mut axes = machine.axes.iter().enumerate();
-    let found = axes.find_map(|(index, axis)| loops(axis).map(|key| (index, key)));
-    match found {
-        Some((index, key)) => {
-            let name = &machine.axes[index].name;
-            let reason = format!(
-                "axis {name} has more than a shaper; a bitstream takes only machines with shapers alone so far"
-            );
-            let help = "take the stage to your own project: docs/sopc.md; or leave out the other blocks of the axis";
-            Err(at_key(path, index, key, reason).or_help(help))
-        }
-        None => Ok(()),
+    let Some((index, key)) = axes.find_map(|(index, axis)| loops(axis).map(|key| (index, key))) else {
+        return Ok(());
+    };
+    let name = &machine.axes[index].name;
+    if board.header.is_empty() {
+        let reason = format!(
+            "axis {name} has more than a shaper, and a stage does not fit {}",
+            board.name
+        );
+        let help = format!(
+            "choose a board for a stage: {}; or leave out the other blocks",
+            boards_with_headers()
+        );
+        return Err(at_key(path, index, key, reason).or_help(&help));
     }
+    if machine.link.is_none() {
+        let reason = format!(
+            "axis {name} has more than a shaper, and a stage alone on a board needs a line to its host; there is no [link]"
+        );
+        return Err(at_key(path, index, key, reason).or_help("add `[link]` with `baud = 1_000_000`"));
+    }
+    Ok(())
+}
+
+fn boards_with_headers() -> String {
+    let boards = BOARDS.iter().filter(|board| !board.header.is_empty());
+    boards.map(|board| board.name).collect::<Vec<_>>().join(", ")
 }
 
 /// The sample rate divides the oscillator, or the error names what would.
@@ -82,13 +98,16 @@ fn nearest_rates(oscillator_hz: u32, sample_hz: f64) -> [u32; 2] {
     [below, above]
 }
 
-/// The text of the machine file with this clock.
+/// The text of the machine file with this clock, and without the board of its `[target]`.
 fn with_clock(text: &str, frequency_hz: u32) -> Result<String, toml_edit::TomlError> {
     let mut document: DocumentMut = text.parse()?;
     if let Some(value) = document["clock"]["frequency_hz"].as_value_mut() {
         let decor = value.decor().clone();
         *value = Value::from(i64::from(frequency_hz));
         *value.decor_mut() = decor;
+    }
+    if let Some(target) = document.get_mut("target").and_then(toml_edit::Item::as_table_like_mut) {
+        target.remove("board");
     }
     Ok(document.to_string())
 }

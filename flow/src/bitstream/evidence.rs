@@ -1,0 +1,97 @@
+//! The steps of a bitstream, from its Verilog to the comparisons.
+
+use super::document::Evidence;
+use super::subject::Subject;
+use crate::observer::Observer;
+use posicast_bitstream::BitstreamError;
+use posicast_bitstream::flips::{self, FaultFree, FlipReport};
+use posicast_bitstream::toolchain::{BitsNetlist, Routed, Toolchain};
+use posicast_bitstream::top::TopFiles;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+/// What the steps work with.
+pub(super) struct Run<'a> {
+    pub(super) subject: &'a Subject<'a>,
+    pub(super) files: &'a TopFiles,
+    pub(super) tools: &'a dyn Toolchain,
+    pub(super) folder: &'a Path,
+    pub(super) clocks: Option<u64>,
+    pub(super) seed: u64,
+    pub(super) observer: &'a dyn Observer,
+}
+
+impl Run<'_> {
+    /// Builds the bitstream of these Verilog files, reads it back, and compares it.
+    pub(super) fn evidence(&self, sources: &[PathBuf]) -> Result<Evidence, BitstreamError> {
+        let (tools, folder) = (self.tools, self.folder);
+        let during = |what: &str| self.observer.begin(what, None);
+        let versions = tools.versions(folder)?;
+        let synthesised = {
+            let _shown = during("Yosys synthesises");
+            tools.synthesise(sources, &self.files.module, folder)?
+        };
+        synthesised.check_fit(&self.files.board)?;
+        let routed = {
+            let _shown = during("nextpnr places and routes");
+            tools.place_and_route(&self.files.constraints(), folder)?
+        };
+        let (packed, text, netlist, tiles) = {
+            let _shown = during("reading the bits back");
+            let packed = tools.pack(&routed.text, folder)?;
+            let text = tools.unpack(&packed, folder)?;
+            let netlist = tools.decode(&text, folder)?;
+            let tiles = tools.compare_tiles(&routed, &packed, &text, folder)?;
+            (packed, text, netlist, tiles)
+        };
+        let cells = netlist.compare_cells(&routed.netlist)?;
+        let network = netlist.network();
+        let first_difference =
+            |netlist: &dyn BitsNetlist| self.subject.first_difference(netlist, &routed.netlist, self.seed);
+        let fault_free = FaultFree {
+            routed: &routed,
+            packed: &packed,
+            text: &text,
+            netlist: netlist.as_ref(),
+            network: &network,
+            lock_step: &first_difference,
+        };
+        // Reading the flips back takes as long as the lock step, and neither needs the other.
+        let (lock_step, flips) = thread::scope(|scope| {
+            let flips = scope.spawn(|| self.flips(&fault_free));
+            (self.lock_step(netlist.as_ref(), &routed), flips.join())
+        });
+        Ok(Evidence {
+            versions,
+            highest_mhz: routed.highest_mhz,
+            tiles,
+            cells,
+            lock_step: lock_step?,
+            flips: flips.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?,
+            packed,
+            verilog: netlist.verilog(&format!("{}_netlist", self.files.module)),
+            seed: self.seed,
+        })
+    }
+
+    fn lock_step(
+        &self,
+        netlist: &dyn BitsNetlist,
+        routed: &Routed,
+    ) -> Result<super::document::LockStepDocument, BitstreamError> {
+        let clocks = self.subject.clocks(self.clocks);
+        let bar = self
+            .observer
+            .begin("lock step of the bits with the model", Some(*clocks.start()));
+        let mut progress = |done| bar.reach(done);
+        self.subject
+            .lock_step(netlist, &routed.netlist, (clocks, self.seed), &mut progress)
+    }
+
+    fn flips(&self, fault_free: &FaultFree<'_>) -> Result<Vec<FlipReport>, BitstreamError> {
+        let bar = self.observer.begin("single faults in the bits", None);
+        flips::flips(fault_free, (self.tools, self.folder), &|kind| {
+            bar.rename(&format!("a fault in the bits: {}", kind.word()));
+        })
+    }
+}
