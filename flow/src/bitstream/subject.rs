@@ -236,3 +236,33 @@ impl Device for StageBits {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::DesignReport;
+    use crate::observer::Silent;
+    use posicast_bitstream::boards::board;
+    use std::path::Path;
+
+    /// A reader of the page connects wires as it says.
+    #[test]
+    fn the_page_of_the_first_light_names_the_pins_of_its_example() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let path = root.join("examples/colorlight-i5.toml");
+        let file = super::super::machine::on_board(&path, &board("colorlight-i5").unwrap()).unwrap();
+        let report = DesignReport::new(&file.machine, &path).unwrap();
+        let built = Built::new(&report, &path, &Silent).unwrap();
+        let subject = Subject::new(&file.machine, &board("colorlight-i5").unwrap(), &built).unwrap();
+        let page = std::fs::read_to_string(root.join("docs/first-light.md")).unwrap();
+        let pins = subject.files().unwrap().pins;
+        let wired: Vec<_> = pins.iter().filter(|pin| !pin.header.is_empty()).collect();
+        assert!(wired.len() > 15);
+        for pin in &wired {
+            let row = format!("| `{}` | {} |", pin.port, pin.header);
+            assert!(page.contains(&row), "{row}");
+        }
+        let rows = page.lines().filter(|line| line.starts_with("| `"));
+        assert_eq!(rows.count(), wired.len());
+    }
+}
