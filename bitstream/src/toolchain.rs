@@ -6,11 +6,12 @@ use crate::ecp5::tools::Ecp5Tools;
 use crate::ice40::tools::Ice40Tools;
 use crate::network::{NetIndex, Network};
 use crate::report::{CellsReport, FlipKind, TilesReport};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Result of synthesis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Synthesised {
     /// Look-up tables, or flip-flops if there are more of them: the fewest logic cells that hold both.
     pub logic_cells: u64,
@@ -19,7 +20,7 @@ pub struct Synthesised {
 }
 
 /// Result of place and route.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Routed {
     /// The bitstream as text.
     pub text: String,
@@ -36,6 +37,9 @@ pub trait Toolchain: Send + Sync {
     /// # Errors
     /// The error of a program that does not start.
     fn versions(&self, folder: &Path) -> Result<[String; 2], BitstreamError>;
+
+    /// What Yosys and nextpnr are told, but for the files: equal for equal results of equal programs.
+    fn recipe(&self, top: &str) -> String;
 
     /// Synthesises the module `top` of these files into `folder`. Multipliers are made of logic: the netlist of the bits cannot show the
     /// device's own.

@@ -14,8 +14,10 @@
 //! - [`interrupt`]: the list of temporary resources and programs, and the handling of signals.
 //! - [`output`]: a file with a name that a user gave. It is written completely or not at all, never replaces an
 //!   input, and replaces another file only if posicast wrote that one.
+//! - [`kept`]: files that later runs use again, each with its checksum.
 
 pub mod interrupt;
+pub mod kept;
 pub mod output;
 pub mod process;
 pub mod scratch;

@@ -82,6 +82,30 @@ impl Ecp5Tools {
             database: Arc::new(database),
         })
     }
+
+    fn nextpnr_arguments(&self) -> Vec<OsString> {
+        let mhz = (f64::from(self.board.oscillator_hz) / 1e6).to_string();
+        let option = self.board.device.nextpnr_option();
+        let package = ["--package", self.board.package, "--speed", SPEED, "--lpf", "top.lpf"];
+        let files = [
+            "--json",
+            "top.json",
+            "--textcfg",
+            "top.config",
+            "--write",
+            "routed.json",
+            "--report",
+            "report.json",
+        ];
+        let more = ["--freq", &mhz, "--seed", SEED, "-q", "--timing-allow-fail"];
+        let words = [option].into_iter().chain(package).chain(files).chain(more);
+        words.map(Into::into).collect()
+    }
+}
+
+/// What Yosys is told. Small RAMs and multipliers are made of logic: their bits are not read back.
+fn script(top: &str) -> String {
+    format!("synth_ecp5 -abc9 -nodsp -nolutram -top {top} -json top.json")
 }
 
 /// The folder of the family's database: beside a nextpnr of the system, or in the Python package.
@@ -112,9 +136,12 @@ impl Toolchain for Ecp5Tools {
         ])
     }
 
+    fn recipe(&self, top: &str) -> String {
+        format!("{} {:?}", script(top), self.nextpnr_arguments())
+    }
+
     fn synthesise(&self, files: &[PathBuf], top: &str, folder: &Path) -> Result<Synthesised, BitstreamError> {
-        // Small RAMs and multipliers are made of logic: their bits are not read back.
-        let script = format!("synth_ecp5 -abc9 -nodsp -nolutram -top {top} -json top.json");
+        let script = script(top);
         let mut arguments: Vec<OsString> = vec!["-q".into(), "-p".into(), script.into()];
         arguments.extend(files.iter().map(Into::into));
         self.yosys
@@ -132,22 +159,7 @@ impl Toolchain for Ecp5Tools {
     fn place_and_route(&self, constraints: &str, folder: &Path) -> Result<Routed, BitstreamError> {
         let lpf = folder.join("top.lpf");
         fs::write(&lpf, constraints).map_err(at(&lpf))?;
-        let mhz = (f64::from(self.board.oscillator_hz) / 1e6).to_string();
-        let option = self.board.device.nextpnr_option();
-        let package = ["--package", self.board.package, "--speed", SPEED, "--lpf", "top.lpf"];
-        let files = [
-            "--json",
-            "top.json",
-            "--textcfg",
-            "top.config",
-            "--write",
-            "routed.json",
-            "--report",
-            "report.json",
-        ];
-        let more = ["--freq", &mhz, "--seed", SEED, "-q", "--timing-allow-fail"];
-        let words = [option].into_iter().chain(package).chain(files).chain(more);
-        let arguments: Vec<OsString> = words.map(Into::into).collect();
+        let arguments = self.nextpnr_arguments();
         self.nextpnr
             .run("placing and routing the top", &arguments, folder, BUILD_LIMIT)?;
         let (netlist, highest_mhz) = program::routed(&self.nextpnr, folder)?;

@@ -46,34 +46,14 @@ impl Ice40Tools {
         };
         search.end().map(|()| tools)
     }
-}
 
-impl Toolchain for Ice40Tools {
-    fn versions(&self, folder: &Path) -> Result<[String; 2], BitstreamError> {
-        Ok([
-            self.yosys.version("-V", folder)?,
-            self.nextpnr.version("--version", folder)?,
-        ])
-    }
-
-    fn synthesise(&self, files: &[PathBuf], top: &str, folder: &Path) -> Result<Synthesised, BitstreamError> {
+    /// What Yosys is told.
+    fn script(&self, top: &str) -> String {
         let timing = self.board.device.yosys_timing();
-        let script = format!("synth_ice40 -device {timing} -top {top} -json top.json");
-        let mut arguments: Vec<OsString> = vec!["-q".into(), "-p".into(), script.into()];
-        arguments.extend(files.iter().map(Into::into));
-        self.yosys
-            .run("synthesising the top", &arguments, folder, BUILD_LIMIT)?;
-        let types = cell_types(&self.yosys, top, folder)?;
-        let count = |begins: &str| types.iter().filter(|of| of.starts_with(begins)).count() as u64;
-        Ok(Synthesised {
-            logic_cells: count("SB_LUT4").max(count("SB_DFF")),
-            memories: count("SB_RAM40_4K"),
-        })
+        format!("synth_ice40 -device {timing} -top {top} -json top.json")
     }
 
-    fn place_and_route(&self, constraints: &str, folder: &Path) -> Result<Routed, BitstreamError> {
-        let pcf = folder.join("top.pcf");
-        fs::write(&pcf, constraints).map_err(at(&pcf))?;
+    fn nextpnr_arguments(&self) -> Vec<OsString> {
         let mhz = (f64::from(self.board.oscillator_hz) / 1e6).to_string();
         let option = self.board.device.nextpnr_option();
         let package = ["--package", self.board.package, "--pcf", "top.pcf"];
@@ -89,7 +69,40 @@ impl Toolchain for Ice40Tools {
         ];
         let more = ["--freq", &mhz, "--seed", SEED, "-q", "--timing-allow-fail"];
         let words = [option].into_iter().chain(package).chain(files).chain(more);
-        let arguments: Vec<OsString> = words.map(Into::into).collect();
+        words.map(Into::into).collect()
+    }
+}
+
+impl Toolchain for Ice40Tools {
+    fn versions(&self, folder: &Path) -> Result<[String; 2], BitstreamError> {
+        Ok([
+            self.yosys.version("-V", folder)?,
+            self.nextpnr.version("--version", folder)?,
+        ])
+    }
+
+    fn recipe(&self, top: &str) -> String {
+        format!("{} {:?}", self.script(top), self.nextpnr_arguments())
+    }
+
+    fn synthesise(&self, files: &[PathBuf], top: &str, folder: &Path) -> Result<Synthesised, BitstreamError> {
+        let script = self.script(top);
+        let mut arguments: Vec<OsString> = vec!["-q".into(), "-p".into(), script.into()];
+        arguments.extend(files.iter().map(Into::into));
+        self.yosys
+            .run("synthesising the top", &arguments, folder, BUILD_LIMIT)?;
+        let types = cell_types(&self.yosys, top, folder)?;
+        let count = |begins: &str| types.iter().filter(|of| of.starts_with(begins)).count() as u64;
+        Ok(Synthesised {
+            logic_cells: count("SB_LUT4").max(count("SB_DFF")),
+            memories: count("SB_RAM40_4K"),
+        })
+    }
+
+    fn place_and_route(&self, constraints: &str, folder: &Path) -> Result<Routed, BitstreamError> {
+        let pcf = folder.join("top.pcf");
+        fs::write(&pcf, constraints).map_err(at(&pcf))?;
+        let arguments = self.nextpnr_arguments();
         self.nextpnr
             .run("placing and routing the top", &arguments, folder, BUILD_LIMIT)?;
         let (netlist, highest_mhz) = program::routed(&self.nextpnr, folder)?;

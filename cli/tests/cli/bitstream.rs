@@ -7,9 +7,18 @@ use posicast_testbench::verilator;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
+/// Runs `posicast bitstream` with nothing kept from earlier runs.
 fn bitstream(machine: &Path, board: &str, output: &Path, more: &[&str]) -> Output {
+    let cache = tempfile::tempdir().unwrap();
+    bitstream_with(cache.path(), machine, board, output, more)
+}
+
+/// The same with this folder of kept files.
+fn bitstream_with(cache: &Path, machine: &Path, board: &str, output: &Path, more: &[&str]) -> Output {
     let mut command = posicast();
     command
+        .env("POSICAST_CACHE", cache)
+        .env("POSICAST_NEXTPNR", nextpnr_ecp5())
         .arg("bitstream")
         .arg(machine)
         .args(["--board", board, "-o"])
@@ -122,17 +131,7 @@ fn long_cli_the_bits_of_shapers_on_ecp5_compute_the_model() {
     let (scratch, machine) = scratch(&TWO_AXES.replace("5_000", "3_125"));
     for board in ["colorlight-i5", "ulx3s-12f", "ulx3s-85f"] {
         let folder = scratch.path().join(board);
-        let mut command = posicast();
-        command
-            .arg("bitstream")
-            .arg(&machine)
-            .args(["--board", board, "-o"])
-            .arg(&folder);
-        let output = command
-            .env("POSICAST_NEXTPNR", nextpnr_ecp5())
-            .arg("--json")
-            .output()
-            .unwrap();
+        let output = bitstream(&machine, board, &folder, &["--json"]);
         assert_eq!(
             output.status.code(),
             Some(0),
@@ -160,17 +159,7 @@ fn long_cli_the_bits_of_a_stage_compute_the_model() {
     let rest = errors.split_once("[axis.pwm]").unwrap().1;
     let (scratch, machine) = scratch(&format!("{before}[axis.pwm]{rest}\n[link]\nbaud = 1_000_000\n"));
     let folder = scratch.path().join("out");
-    let mut command = posicast();
-    command
-        .arg("bitstream")
-        .arg(&machine)
-        .args(["--board", "colorlight-i5", "-o"])
-        .arg(&folder);
-    let output = command
-        .env("POSICAST_NEXTPNR", nextpnr_ecp5())
-        .arg("--json")
-        .output()
-        .unwrap();
+    let output = bitstream(&machine, "colorlight-i5", &folder, &["--json"]);
     assert_eq!(
         output.status.code(),
         Some(0),
@@ -253,6 +242,38 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
         &output,
         &["a frame takes 720 clocks", "480 clocks apart", "at most 16666 Hz"],
     );
+}
+
+#[test]
+fn long_cli_a_routed_design_is_used_again_until_its_verilog_changes() {
+    let (folder, machine) = scratch(&short_machine(10_000));
+    let path = |name: &str| folder.path().join(name);
+    let run = |output: &str| {
+        let output = bitstream_with(
+            &path("cache"),
+            &machine,
+            "icebreaker",
+            &path(output),
+            &["--clocks", "100000"],
+        );
+        (
+            output.status.code(),
+            String::from_utf8_lossy(&output.stderr).contains("is used again"),
+        )
+    };
+    let bits = |output: &str| {
+        let files = std::fs::read_dir(path(output).join("bitstream")).unwrap();
+        let mut files = files.map(|file| file.unwrap().path());
+        let bits = files.find(|file| file.extension().is_some_and(|ending| ending == "bin"));
+        std::fs::read(bits.unwrap()).unwrap()
+    };
+    assert_eq!(run("first"), (Some(0), false));
+    assert_eq!(run("second"), (Some(0), true));
+    assert_eq!(bits("first"), bits("second"));
+    let text = std::fs::read_to_string(&machine).unwrap();
+    std::fs::write(&machine, text.replace("frequency_hz = 500.0", "frequency_hz = 400.0")).unwrap();
+    assert_eq!(run("third"), (Some(0), false));
+    assert_ne!(bits("second"), bits("third"));
 }
 
 #[test]

@@ -7,8 +7,13 @@ use posicast_bitstream::BitstreamError;
 use posicast_bitstream::flips::{self, FaultFree, FlipReport};
 use posicast_bitstream::toolchain::{BitsNetlist, Routed, Toolchain};
 use posicast_bitstream::top::TopFiles;
+use posicast_system::{kept, scratch};
+use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
-use std::thread;
+use std::{fs, io, thread};
+
+/// Prefix of the kept files.
+const KEPT_PREFIX: &str = "bitstream-";
 
 /// What the steps work with.
 pub(super) struct Run<'a> {
@@ -27,15 +32,7 @@ impl Run<'_> {
         let (tools, folder) = (self.tools, self.folder);
         let during = |what: &str| self.observer.begin(what, None);
         let versions = tools.versions(folder)?;
-        let synthesised = {
-            let _shown = during("Yosys synthesises");
-            tools.synthesise(sources, &self.files.module, folder)?
-        };
-        synthesised.check_fit(&self.files.board)?;
-        let routed = {
-            let _shown = during("nextpnr places and routes");
-            tools.place_and_route(&self.files.constraints(), folder)?
-        };
+        let routed = self.routed(sources, &versions)?;
         let (packed, text, netlist, tiles) = {
             let _shown = during("reading the bits back");
             let packed = tools.pack(&routed.text, folder)?;
@@ -74,6 +71,50 @@ impl Run<'_> {
         })
     }
 
+    /// The routed design of these Verilog files: that of an earlier run, if nothing has changed.
+    fn routed(&self, sources: &[PathBuf], versions: &[String; 2]) -> Result<Routed, BitstreamError> {
+        let file = kept::folder().join(format!("{KEPT_PREFIX}{}.json", self.key(sources, versions)?));
+        let earlier = kept::holds(&file).then(|| fs::read(&file).ok()).flatten();
+        if let Some(routed) = earlier.and_then(|text| serde_json::from_slice(&text).ok()) {
+            self.observer
+                .say("note: neither the Verilog nor the tools have changed since an earlier run, whose routed design is used again");
+            return Ok(routed);
+        }
+        let during = |what: &str| self.observer.begin(what, None);
+        let synthesised = {
+            let _shown = during("Yosys synthesises");
+            self.tools.synthesise(sources, &self.files.module, self.folder)?
+        };
+        synthesised.check_fit(&self.files.board)?;
+        let routed = {
+            let _shown = during("nextpnr places and routes");
+            self.tools.place_and_route(&self.files.constraints(), self.folder)?
+        };
+        // Where nothing can be kept, the next run takes as long as this one.
+        let _ = keep(&routed, &file);
+        Ok(routed)
+    }
+
+    /// A checksum of everything on which the routed design depends.
+    fn key(&self, sources: &[PathBuf], versions: &[String; 2]) -> Result<String, BitstreamError> {
+        let mut hash = Sha256::new();
+        let mut add = |text: &[u8]| {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        };
+        versions.iter().for_each(|version| add(version.as_bytes()));
+        add(self.tools.recipe(&self.files.module).as_bytes());
+        add(self.files.constraints().as_bytes());
+        for source in sources {
+            let text = fs::read(source).map_err(|error| BitstreamError::Io {
+                path: source.clone(),
+                source: error,
+            })?;
+            add(&text);
+        }
+        Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    }
+
     fn lock_step(
         &self,
         netlist: &dyn BitsNetlist,
@@ -94,4 +135,15 @@ impl Run<'_> {
             bar.rename(&format!("a fault in the bits: {}", kind.word()));
         })
     }
+}
+
+/// Keeps a routed design for later runs.
+fn keep(routed: &Routed, file: &Path) -> io::Result<()> {
+    let folder = kept::folder();
+    fs::create_dir_all(&folder)?;
+    kept::remove_old(&folder, KEPT_PREFIX);
+    let work = scratch::Folder::new_in("build-", &folder)?;
+    let made = work.path().join("routed.json");
+    fs::write(&made, serde_json::to_vec(routed)?)?;
+    kept::keep(&made, file)
 }

@@ -5,26 +5,16 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use posicast_system::interrupt::{self, Leftover, Listed};
-
-use super::kept::SUM_ENDING;
+use posicast_system::kept;
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
-/// A simulation that was not used for this long is removed, and built again when it is needed.
-const KEPT: Duration = DAY.saturating_mul(30);
 /// A build folder that was not changed for this long was left by a process that was killed.
 const ABANDONED: Duration = DAY;
 
+/// Prefix of the files that are kept.
+const OBJECT_PREFIX: &str = "verilator-";
 /// Prefix of the folders in which simulations are built.
 pub(super) const BUILD_PREFIX: &str = "build-";
-
-/// Path of the cache: `$POSICAST_CACHE`, else the user's cache folder, else the temporary one.
-pub(super) fn folder() -> PathBuf {
-    let variable = |name| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    variable("POSICAST_CACHE")
-        .or_else(|| variable("XDG_CACHE_HOME").map(|folder| folder.join("posicast")))
-        .or_else(|| variable("HOME").map(|folder| folder.join(".cache").join("posicast")))
-        .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
-}
 
 /// A file that keeps other processes from building the same object. It is removed when this value is dropped, and when a signal ends the
 /// process. A process that comes just then may make it anew: both then build, which only takes longer.
@@ -63,18 +53,11 @@ impl Drop for Lock {
 
 /// Removes old entries. Failures do not matter: another process may be doing the same.
 pub(super) fn tidy(folder: &Path) {
+    kept::remove_old(folder, OBJECT_PREFIX);
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
         let modified = entry.metadata().and_then(|data| data.modified());
         let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
-        let is_ours = name.starts_with("verilator-")
-            && [".so", ".o", ".gch", ".lock", SUM_ENDING]
-                .iter()
-                .any(|end| name.ends_with(end));
-        if is_ours && age > KEPT {
-            let _ = fs::remove_file(entry.path());
-        } else if name.starts_with(BUILD_PREFIX) && age > ABANDONED {
+        if entry.file_name().to_string_lossy().starts_with(BUILD_PREFIX) && age > ABANDONED {
             let _ = fs::remove_dir_all(entry.path());
         }
     }
@@ -82,7 +65,6 @@ pub(super) fn tidy(folder: &Path) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kept;
     use super::*;
     use std::time::SystemTime;
 

@@ -21,7 +21,6 @@ mod cache;
 mod compiler;
 mod dynamic;
 mod harness;
-mod kept;
 mod runtime;
 mod unity;
 
@@ -29,7 +28,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use posicast_blocks::{ClockedBlock, Direction, Port, StepError};
-use posicast_system::{interrupt, scratch};
+use posicast_system::{interrupt, kept, scratch};
 use sha2::{Digest, Sha256};
 
 use crate::Error;
@@ -106,7 +105,7 @@ impl Verilated {
     /// [`Error::ToolMissing`] without Verilator, make or a compiler; [`Error::ToolFailed`] where one of them refuses the
     /// Verilog; [`Error::Ports`] where the ports are not the expected ones; [`Error::File`] for files and cache.
     pub fn build(source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
-        Self::build_in(&cache::folder(), source, seed)
+        Self::build_in(&kept::folder(), source, seed)
     }
 
     /// Builds the module as [`Verilated::build`] does, with counters for its lines and nets; it is several times
@@ -115,7 +114,7 @@ impl Verilated {
     /// # Errors
     /// Those of [`Verilated::build`].
     pub fn counting(source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
-        Self::build_with(&cache::folder(), source, seed, true)
+        Self::build_with(&kept::folder(), source, seed, true)
     }
 
     /// Builds the module with another cache folder.
@@ -217,7 +216,7 @@ pub fn version() -> Result<&'static str, Error> {
 /// # Errors
 /// [`Error::ToolMissing`] without Verilator, the error of one that does not start, or that of a file that cannot be read.
 pub fn is_built(source: &VerilogSource<'_>) -> Result<bool, Error> {
-    Ok(Build::new(&cache::folder(), source, false)?.is_held())
+    Ok(Build::new(&kept::folder(), source, false)?.is_held())
 }
 
 /// Returns the tools that building a simulation needs and that are not installed.

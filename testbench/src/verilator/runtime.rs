@@ -7,8 +7,9 @@ use std::io;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
+use posicast_system::kept::{self, SUM_ENDING};
+
 use super::harness::COMPILED_HEADERS;
-use super::kept::{self, SUM_ENDING};
 
 /// The objects and compiled headers of one version of Verilator, compiled with one set of flags.
 pub(super) struct Runtime {

@@ -1,4 +1,4 @@
-//! Files that are kept for later runs, each with its checksum beside it.
+//! Files that are kept for later runs in the [`folder`] for them, each with its checksum beside it.
 //!
 //! ```text
 //!  verilator-5f70….so           the file
@@ -12,15 +12,41 @@
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use sha2::{Digest, Sha256};
 
+/// A file that was not used for this long is removed, and made again when it is needed.
+const KEPT: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 /// Ending of the name of a checksum.
-pub(super) const SUM_ENDING: &str = ".sha256";
+pub const SUM_ENDING: &str = ".sha256";
+
+/// The folder of kept files: `$POSICAST_CACHE`, else that of the user's cache, else the temporary one.
+#[must_use]
+pub fn folder() -> PathBuf {
+    let variable = |name| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    variable("POSICAST_CACHE")
+        .or_else(|| variable("XDG_CACHE_HOME").map(|folder| folder.join("posicast")))
+        .or_else(|| variable("HOME").map(|folder| folder.join(".cache").join("posicast")))
+        .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
+}
+
+/// Removes files in `folder` whose names begin with `prefix`, and which were not used for a month. Failures do not matter: another process
+/// may be doing the same.
+pub fn remove_old(folder: &Path, prefix: &str) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_ours = entry.file_name().to_string_lossy().starts_with(prefix);
+        let modified = entry.metadata().and_then(|data| data.modified());
+        let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
+        if is_ours && age > KEPT {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
 
 /// Whether the file is there and fits its checksum; if so, it counts as used now.
-pub(super) fn holds(path: &Path) -> bool {
+#[must_use]
+pub fn holds(path: &Path) -> bool {
     let fits = || Some(fs::read_to_string(sum_of(path)).ok()?.trim() == checksum(path).ok()?);
     if fits() != Some(true) {
         return false;
@@ -39,7 +65,7 @@ pub(super) fn holds(path: &Path) -> bool {
 ///
 /// # Errors
 /// [`io::Error`] where it cannot be read, or the folder cannot be written.
-pub(super) fn keep(made: &Path, kept: &Path) -> io::Result<()> {
+pub fn keep(made: &Path, kept: &Path) -> io::Result<()> {
     let sum = made.with_extension("sum");
     fs::write(&sum, checksum(made)? + "\n")?;
     // A system that fails just after a rename must not leave a name without contents.
