@@ -207,8 +207,9 @@ const ULX3S: [&str; 2] = [
     "emard/ulx3s doc/constraints/ulx3s_v20.lpf",
     "amaranth-lang/amaranth-boards amaranth_boards/ulx3s.py",
 ];
-/// Pins of the headers P2, P3 and P6 that have no other use, by header and pin.
-const COLORLIGHT_I5_HEADER: [(&str, &str); 49] = [
+/// Pins of the headers P2, P3 and P6 that have no other use, by header and pin. Those of bank 8 are left out: the configuration drives
+/// some of them.
+const COLORLIGHT_I5_HEADER: [(&str, &str); 40] = [
     ("P2 pin 4", "T18"),
     ("P2 pin 5", "R17"),
     ("P2 pin 6", "M17"),
@@ -242,19 +243,10 @@ const COLORLIGHT_I5_HEADER: [(&str, &str); 49] = [
     ("P6 pin 4", "P16"),
     ("P6 pin 5", "L4"),
     ("P6 pin 6", "N4"),
-    ("P6 pin 7", "T3"),
-    ("P6 pin 9", "T2"),
     ("P6 pin 12", "N2"),
-    ("P6 pin 13", "V1"),
-    ("P6 pin 14", "Y2"),
-    ("P6 pin 15", "T1"),
-    ("P6 pin 16", "R1"),
-    ("P6 pin 17", "U1"),
-    ("P6 pin 18", "W1"),
     ("P6 pin 19", "M1"),
     ("P6 pin 22", "N3"),
     ("P6 pin 24", "M3"),
-    ("P6 pin 25", "R3"),
     ("P6 pin 26", "M4"),
     ("P6 pin 27", "L5"),
     ("P6 pin 28", "J16"),
