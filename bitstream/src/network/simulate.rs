@@ -1,6 +1,7 @@
 //! Simulates a network clock by clock.
 //!
-//! The gates are in the order of their dependence, and only those are evaluated whose inputs have changed.
+//! The gates are in the order of their dependence, and only those gates and registers are evaluated whose inputs have changed. A register
+//! whose inputs stay as they were in the clock before keeps its value: it holds it, takes the same data again, or is reset again.
 
 use super::block_ram::BlockRamState;
 use super::{Gate, HIGH, NetIndex, Network, NetworkMemory, State};
@@ -13,10 +14,11 @@ use std::collections::{HashMap, HashSet};
 pub struct NetlistSimulation {
     levels: Vec<bool>,
     gates: Vec<Gate>,
-    /// The gates that read each net.
+    /// The gates and registers that read each net, by their bits in `pending`.
     readers: Vec<Vec<u32>>,
-    /// Gates whose inputs have changed, a bit each.
+    /// Gates whose inputs have changed, a bit each, and then, from the word `state_words` on, registers.
     pending: Vec<u64>,
+    state_words: usize,
     states: Vec<State>,
     /// Those of them with an asynchronous reset.
     asynchronous: Vec<State>,
@@ -100,13 +102,17 @@ impl NetlistSimulation {
                 readers[net as usize].push(index as u32);
             }
         }
-        // At first, every gate has to be evaluated.
-        let pending = (0..gates.len().div_ceil(64)).map(|word| match gates.len() - 64 * word {
-            64.. => u64::MAX,
-            rest => (1 << rest) - 1,
-        });
+        let state_words = gates.len().div_ceil(64);
+        for (index, state) in network.states.iter().enumerate() {
+            for net in [state.data, state.enable, state.reset] {
+                readers[net as usize].push((64 * state_words + index) as u32);
+            }
+        }
+        // At first, everything has to be evaluated.
+        let pending = [gates.len(), network.states.len()].into_iter().flat_map(all_bits);
         Ok(Self {
             pending: pending.collect(),
+            state_words,
             next: Vec::new(),
             levels,
             gates,
@@ -174,7 +180,7 @@ impl NetlistSimulation {
     }
 
     fn settle_gates(&mut self) {
-        for word in 0..self.pending.len() {
+        for word in 0..self.state_words {
             // A gate is read only by those that come after it, perhaps in the same word.
             while self.pending[word] != 0 {
                 let bit = self.pending[word].trailing_zeros();
@@ -190,17 +196,18 @@ impl NetlistSimulation {
     pub fn clock(&mut self) {
         let level = |net: NetIndex| self.levels[net as usize];
         let mut next = std::mem::take(&mut self.next);
-        next.extend(self.states.iter().map(|state| {
-            let is_enabled = level(state.enable);
-            let value = if level(state.reset) && (is_enabled || !state.reset_needs_enable) {
-                state.reset_to
-            } else if is_enabled {
-                level(state.data)
-            } else {
-                level(state.output)
-            };
-            (state.output, value)
-        }));
+        for (word, pending) in self.pending[self.state_words..].iter_mut().enumerate() {
+            while *pending != 0 {
+                let state = &self.states[64 * word + pending.trailing_zeros() as usize];
+                *pending &= *pending - 1;
+                let is_enabled = level(state.enable);
+                if level(state.reset) && (is_enabled || !state.reset_needs_enable) {
+                    next.push((state.output, state.reset_to));
+                } else if is_enabled {
+                    next.push((state.output, level(state.data)));
+                }
+            }
+        }
         for memory in &mut self.memories {
             memory.clock(&level, &mut next);
         }
@@ -209,6 +216,14 @@ impl NetlistSimulation {
         }
         self.next = next;
     }
+}
+
+/// Words in which this many bits are set, the lowest first.
+fn all_bits(count: usize) -> impl Iterator<Item = u64> {
+    (0..count.div_ceil(64)).map(move |word| match count - 64 * word {
+        64.. => u64::MAX,
+        rest => (1 << rest) - 1,
+    })
 }
 
 /// The gates, each after those on which it depends.
