@@ -258,11 +258,18 @@ impl<'a> Routing<'a> {
     /// What drives the wire `name` of a tile in the end.
     ///
     /// # Errors
-    /// [`BitstreamError::UnknownCell`] for wires that drive each other in a loop.
+    /// [`BitstreamError::UnknownCell`] for a wire that the database does not know, for one that an unknown block drives, and for wires that
+    /// drive each other in a loop.
     pub fn source(&self, row: u8, column: u8, name: &str) -> Result<Source, BitstreamError> {
-        let Some(mut wire) = self.database.own_wire(row, column, name) else {
-            return Ok(Source::Constant(true));
+        let unknown = |what: &str| {
+            Err(BitstreamError::UnknownCell(format!(
+                "{name} at R{row}C{column}: {what}"
+            )))
         };
+        let Some(first) = self.database.own_wire(row, column, name) else {
+            return unknown("the database has no such wire");
+        };
+        let mut wire = first;
         for _ in 0..LONGEST_WAY {
             if let Some(level) = self.tied.get(&wire) {
                 return Ok(Source::Constant(*level));
@@ -282,12 +289,15 @@ impl<'a> Routing<'a> {
             };
             match next {
                 Some(driver) => wire = driver,
+                None if wire != first && is_of_block(name) => {
+                    return unknown(&format!(
+                        "{name} drives it, an output of a block that is not known here"
+                    ));
+                }
                 None => return Ok(Source::Constant(true)),
             }
         }
-        Err(BitstreamError::UnknownCell(format!(
-            "the wires before {name} at R{row}C{column} are a loop"
-        )))
+        unknown("the wires before it are a loop")
     }
 
     /// In a slice of a carry chain, the bits that choose a multiplexer at an output of a slice say something else: the output is that of
@@ -312,6 +322,11 @@ impl<'a> Routing<'a> {
     }
 }
 
+/// Whether a wire belongs to a block, such as `JP5_MULT18`, not to the routing or to the clock network.
+fn is_of_block(name: &str) -> bool {
+    name.contains('_') && !["G_", "L_", "R_"].iter().any(|begins| name.starts_with(begins))
+}
+
 /// Whether a tile has cells or wires of the netlist: the database names all bits that make them. It does not name all bits of pads, of the
 /// clock's spines and of the configuration interface, of which the router sets some in every bitstream.
 fn is_of_netlist(name: &str) -> bool {
@@ -325,6 +340,16 @@ fn is_of_netlist(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn wires_of_blocks_are_told_from_those_of_the_routing() {
+        for name in ["JP5_MULT18", "JCLKOP_PLL", "JQ_IOLOGIC"] {
+            assert!(is_of_block(name), "{name}");
+        }
+        for name in ["V02N0301", "JF3", "G_VPTX0000", "L_HPBX0100"] {
+            assert!(!is_of_block(name), "{name}");
+        }
+    }
 
     #[test]
     fn outputs_are_known_by_their_names() {

@@ -14,8 +14,8 @@ pub const RUNNING: &str = "running";
 pub const POWER_ON_CLOCKS: u64 = 256;
 /// The stage's ports that have no pin of their own.
 const INSIDE: [&str; 2] = ["clk", "rst"];
-/// Inputs that are high while they are open: an idle serial line, and the lock of a clock that this top does not have.
-const OPEN_IS_HIGH: [&str; 2] = ["uart_rx", "pll_locked"];
+/// Inputs that are high while they are open: an idle line to the host, and the lock of a clock that this top does not have.
+const OPEN_IS_HIGH: [&str; 3] = ["uart_rx", "spi_cs_n", "pll_locked"];
 
 /// The top of a stage: the module `stage`, which has these ports, each of one bit, on a board.
 ///

@@ -219,7 +219,7 @@ fn tiles_check(tiles: &TilesReport, family: FpgaFamily) -> CheckDocument {
 
 fn cells_check(cells: &CellsReport) -> CheckDocument {
     let compared = format!(
-        "{} look-up tables, {} flip-flops, {} carries, {}{} memories with contents, {} connections",
+        "{} look-up tables, {} flip-flops, {} carries, {}{} with contents, {} connections",
         cells.tables,
         cells.flip_flops,
         cells.carries,
@@ -227,7 +227,7 @@ fn cells_check(cells: &CellsReport) -> CheckDocument {
             0 => String::new(),
             some => format!("{some} multiplexers, "),
         },
-        cells.memories,
+        counted(cells.memories, "block RAM"),
         cells.connections
     );
     let what = match cells.first.first() {
