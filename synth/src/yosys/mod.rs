@@ -206,7 +206,7 @@ impl Yosys {
         };
         let printed = yosys.run("yosys -V", &[], &["-V".as_ref()])?;
         // It prints "Yosys 0.23 (git sha1 …)".
-        let words: Vec<&str> = printed.split_whitespace().take(2).collect();
+        let words: Vec<&str> = tool::version_line(&printed).split_whitespace().take(2).collect();
         yosys.version = words.join(" ");
         Ok(yosys)
     }
