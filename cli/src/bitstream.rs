@@ -21,10 +21,13 @@ pub(crate) struct Args {
     machine: PathBuf,
     #[arg(long, value_name = "NAME", help = format!("Board: {}", board_names()))]
     board: String,
+    /// For a board without wires: stand-ins take the place of the machine, and no pin but the line's is used
+    #[arg(long)]
+    bare_board: bool,
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Clocks of the lock step [default: 2000000 for shapers, 1000000 for a stage, and more if exercising what is checked takes more]
+    /// Clocks of the lock step [default: 2000000 for shapers, 1000000 for a stage, and more if exercising what is checked takes more; with --bare-board as many as the moves take, at most 20000000]
     #[arg(long, value_parser = clocks)]
     clocks: Option<u64>,
     /// Seed of the random commands
@@ -39,6 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = Options {
         machine: args.machine.clone(),
         board: args.board.clone(),
+        bare: args.bare_board,
         output: args.output.clone(),
         clocks: args.clocks,
         seed: args.seed,

@@ -1,11 +1,14 @@
 //! `posicast bitstream`: builds a bitstream of a machine for a board by open tools, reads it back from its bits, and compares what they are
 //! with the router's result and with the bit-exact model.
 
+mod bare;
 mod document;
 mod evidence;
 mod machine;
 mod subject;
 
+use self::bare::Bare;
+pub use self::bare::{BareMove, BareReport};
 use self::document::Evidence;
 pub use self::document::{CheckDocument, Document, LockStepDocument};
 use self::subject::Subject;
@@ -37,6 +40,8 @@ pub struct Options {
     pub machine: PathBuf,
     /// Name of the board.
     pub board: String,
+    /// Whether the board has no wires: stand-ins take the place of the machine, and no pin but the line's is used.
+    pub bare: bool,
     /// Output folder: new, empty, or written by posicast before; `None`: the machine's name.
     pub output: Option<PathBuf>,
     /// Clocks of the lock step; `None`: as many as exercise what the verdict covers, at least two million for shapers and one million for
@@ -58,7 +63,18 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
     let report = DesignReport::new(&file.machine, path)?;
     report.warn(observer);
     let built = Built::new(&report, path, observer)?;
-    let subject = Subject::new(&file.machine, &board, &built).map_err(|error| failure(error).in_file(path))?;
+    let bare = if options.bare {
+        let stand_ins = self::bare::stand_ins(&file.machine, path, &board)?;
+        let stage = report.hardware.stage().ok().flatten();
+        stage.map(|stage| Bare {
+            machine: &file.machine,
+            stage,
+            stand_ins,
+        })
+    } else {
+        None
+    };
+    let subject = Subject::new(&file.machine, &board, &built, bare).map_err(|error| failure(error).in_file(path))?;
     let files = subject.files().map_err(|error| failure(error).in_file(path))?;
     let tools = toolchain::installed(&board, &files.pins).map_err(failure)?;
     let quartus = sopc::board(&file.machine, path)?;

@@ -14,6 +14,7 @@
 
 pub mod crc;
 pub mod stage;
+pub mod stand_in;
 mod verilog;
 
 use crate::BitstreamError;

@@ -1,9 +1,11 @@
-//! The board's top for a whole stage with its line to the host: power-on reset, and every port of the stage at a pin.
+//! The board's tops for a whole stage with its line to the host: power-on reset, and every port of the stage at a pin; or, for a board without
+//! wires, [stand-ins](super::stand_in) in place of all pins but the line's.
 //!
 //! An open input is in the state that stops the axes: limits, faults and the emergency stop are low when they are asserted, and drives are
 //! not ready. So all inputs have resistors to ground in the device, but for those of [`OPEN_IS_HIGH`].
 
 use super::TopFiles;
+use super::stand_in::StandIn;
 use crate::BitstreamError;
 use crate::boards::{FpgaBoard, PinUse, TopPin};
 use std::fmt::Write;
@@ -17,6 +19,17 @@ const INSIDE: [&str; 2] = ["clk", "rst"];
 /// Inputs that are high while they are open: an idle line to the host, and the lock of a clock that this top does not have.
 const OPEN_IS_HIGH: [&str; 3] = ["uart_rx", "spi_cs_n", "pll_locked"];
 
+/// The line to the host, which has the board's own pins.
+const LINE: [&str; 2] = ["uart_rx", "uart_tx"];
+/// Inputs that are high in normal operation although their names do not end in `_n`.
+const HEALTHY_IS_HIGH: [&str; 2] = ["drive_ready", "pll_locked"];
+
+/// Whether an input of the stage is high while nothing is wrong.
+#[must_use]
+pub fn is_high_when_healthy(port: &str) -> bool {
+    port.ends_with("_n") || HEALTHY_IS_HIGH.iter().any(|name| port.ends_with(name))
+}
+
 /// The top of a stage: the module `stage`, which has these ports, each of one bit, on a board.
 ///
 /// # Errors
@@ -28,8 +41,13 @@ pub fn top(
     ports: &[(String, PinUse)],
 ) -> Result<TopFiles, BitstreamError> {
     let module = format!("{machine}_{}", board.name.replace('-', "_"));
-    let pins = pins(&board, ports)?;
-    let verilog = verilog(&module, &board, stage, ports);
+    let at_pins: Vec<_> = ports
+        .iter()
+        .filter(|(port, _)| !INSIDE.contains(&port.as_str()))
+        .collect();
+    let pins = pins(&board, &at_pins)?;
+    let what = "every port at a pin, and a reset at power-up";
+    let verilog = verilog(&module, &board, (stage, what), ports, &at_pins, "");
     Ok(TopFiles {
         module,
         board,
@@ -38,12 +56,57 @@ pub fn top(
     })
 }
 
-fn pins(board: &FpgaBoard, ports: &[(String, PinUse)]) -> Result<Vec<TopPin>, BitstreamError> {
+/// The top of a stage for a board without wires: only the line to the host and the LED have pins. Each axis has a stand-in, and all other
+/// inputs have the level at which nothing is wrong.
+///
+/// # Errors
+/// As [`top`].
+pub fn bare(
+    machine: &str,
+    board: FpgaBoard,
+    stage: &str,
+    ports: &[(String, PinUse)],
+    stand_ins: &[StandIn],
+) -> Result<TopFiles, BitstreamError> {
+    let module = format!("{machine}_{}_bare", board.name.replace('-', "_"));
+    let at_pins: Vec<_> = ports.iter().filter(|(port, _)| LINE.contains(&port.as_str())).collect();
+    let pins = pins(&board, &at_pins)?;
+    let is_line = |port: &str| {
+        stand_ins
+            .iter()
+            .any(|one| ["a", "b"].iter().any(|line| port == format!("{}_{line}", one.axis())))
+    };
+    let mut inside =
+        String::from("\n    // Nothing is connected: every other input has the level at which nothing is wrong.\n");
+    for (port, direction) in ports {
+        if LINE.contains(&port.as_str()) || INSIDE.contains(&port.as_str()) {
+            continue;
+        }
+        let level = u8::from(is_high_when_healthy(port));
+        let _ = match direction {
+            PinUse::Input if !is_line(port) => writeln!(inside, "    wire {port} = 1'b{level};"),
+            _ => writeln!(inside, "    wire {port};"),
+        };
+    }
+    for stand_in in stand_ins {
+        inside += &stand_in.verilog();
+    }
+    let what = "stand-ins for its machine, no pin but the line's, and a reset at power-up";
+    let verilog = verilog(&module, &board, (stage, what), ports, &at_pins, &inside);
+    Ok(TopFiles {
+        module,
+        board,
+        pins,
+        verilog,
+    })
+}
+
+fn pins(board: &FpgaBoard, ports: &[&(String, PinUse)]) -> Result<Vec<TopPin>, BitstreamError> {
     let [clock, rx, tx, led] = board.own_pins();
     let mut header = board.header.iter();
     let mut pins = vec![clock];
     let mut missing = 0;
-    for (port, direction) in ports.iter().filter(|(port, _)| !INSIDE.contains(&port.as_str())) {
+    for (port, direction) in ports {
         let open_level = (*direction == PinUse::Input).then(|| OPEN_IS_HIGH.contains(&port.as_str()));
         let own = match port.as_str() {
             "uart_rx" => Some(&rx),
@@ -80,29 +143,36 @@ fn pins(board: &FpgaBoard, ports: &[(String, PinUse)]) -> Result<Vec<TopPin>, Bi
     Ok(pins)
 }
 
-fn verilog(module: &str, board: &FpgaBoard, stage: &str, ports: &[(String, PinUse)]) -> String {
+/// The module with an instance of `stage`; `what` describes it, `at_pins` are its own ports, and `inside` declares the nets of all others.
+fn verilog(
+    module: &str,
+    board: &FpgaBoard,
+    (stage, what): (&str, &str),
+    ports: &[(String, PinUse)],
+    at_pins: &[&(String, PinUse)],
+    inside: &str,
+) -> String {
     let (led, lit) = match board.led_is_active_low {
         true => ("led_n", "!"),
         false => ("led", ""),
     };
     let mut header = String::from("    input  wire clk,\n");
     let mut connections = String::new();
-    for (port, direction) in ports {
+    for (port, direction) in at_pins {
         let direction = match direction {
             PinUse::Input => "input ",
             PinUse::Output => "output",
         };
-        let inside = INSIDE.contains(&port.as_str());
-        if !inside {
-            let _ = writeln!(header, "    {direction} wire {port},");
-        }
+        let _ = writeln!(header, "    {direction} wire {port},");
+    }
+    for (port, _) in ports {
         let net = if port == "rst" { "!running" } else { port };
         let _ = writeln!(connections, "        .{port}({net}),");
     }
     let connections = connections.trim_end_matches(",\n");
     format!(
         "\
-// The stage {stage} on {title} ({device}): every port at a pin, and a reset at power-up. {led} is lit after it.
+// The stage {stage} on {title} ({device}): {what}. {led} is lit after it.
 //
 // Written by posicast {version}, for an oscillator of {mhz} MHz. Nobody has run it on hardware yet.
 
@@ -122,7 +192,7 @@ module {module} (
     end
 
     assign {led} = {lit}running;
-
+{inside}
     {stage} u_stage (
 {connections}
     );

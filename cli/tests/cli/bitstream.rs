@@ -188,6 +188,29 @@ fn long_cli_the_bits_of_a_stage_compute_the_model() {
     }
 }
 
+/// Posicast's own host moves the axis by the bits; the example is that of the page of the first light.
+#[test]
+fn long_cli_the_bits_of_a_bare_board_move_an_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().join("out");
+    let output = bitstream(
+        &example("colorlight-i5.toml"),
+        "colorlight-i5",
+        &folder,
+        &["--bare-board", "--json"],
+    );
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let document = json(&output.stdout);
+    assert_fits_schema("bitstream", &document);
+    let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
+    // 8 m/s² for 20 ms; a count is a micrometre.
+    assert_eq!(number("/lock_step/moves/0/command_counts"), 3200.0);
+    assert!((number("/lock_step/moves/0/encoder_counts") - 3200.0).abs() <= 4.0);
+    assert!(number("/lock_step/clocks") > 1e6 && number("/lock_step/requests") > 100.0);
+    assert_eq!(document["pins"].as_array().unwrap().len(), 4);
+}
+
 #[test]
 fn cli_a_bitstream_refuses_what_it_cannot_build() {
     let folder = tempfile::tempdir().unwrap();
@@ -241,6 +264,35 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
         &bitstream(&machine, "icebreaker", &output, &[]),
         &output,
         &["a frame takes 720 clocks", "480 clocks apart", "at most 16666 Hz"],
+    );
+}
+
+#[test]
+fn cli_a_bare_board_refuses_what_a_stand_in_cannot_stand_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out");
+    let bare = |machine: &Path| bitstream(machine, "colorlight-i5", &output, &["--bare-board"]);
+    let joint = bare(&example("robot-joint.toml"));
+    refused(
+        &joint,
+        &output,
+        &["this machine has shapers alone", "leave out --bare-board"],
+    );
+    let text = std::fs::read_to_string(example("colorlight-i5.toml")).unwrap();
+    let (_scratch, spi) = scratch(&text.replace("baud = 1_000_000", "line = \"spi\"\nsck_hz = 1_000_000"));
+    refused(
+        &bare(&spi),
+        &output,
+        &["link.line", "this line is SPI", "baud = 1_000_000"],
+    );
+    let scale = "[axis.scale]\ncounts_per_unit = 1_000_000\nuse = \"monitor\"\n[axis.limits]\ndeviation = 1e-3";
+    let (_scratch, scaled) = scratch(&text.replace("[axis.limits]", scale));
+    refused(&bare(&scaled), &output, &["axis.scale", "axis x has no linear scale"]);
+    let (_scratch, fast) = scratch(&text.replace("full_scale_velocity = 0.5", "full_scale_velocity = 5.0"));
+    refused(
+        &bare(&fast),
+        &output,
+        &["axis.drive", "axis x: full duty is", "at most 1/32"],
     );
 }
 

@@ -1,6 +1,7 @@
 //! The result of a bitstream: the checks, each with what it covers, and what none of them covers.
 
-use posicast_bitstream::behaviour::BehaviourReport;
+use super::bare::BareReport;
+use posicast_bitstream::behaviour::{BehaviourReport, PinDifference};
 use posicast_bitstream::boards::FpgaFamily;
 use posicast_bitstream::flips::FlipReport;
 use posicast_bitstream::report::{CellsReport, FlipKind, TilesReport};
@@ -81,6 +82,8 @@ pub struct Document {
 pub enum LockStepDocument {
     /// Of shapers behind the board's serial line.
     Shapers(BehaviourReport),
+    /// Of a stage on a board without wires.
+    Bare(BareReport),
     /// Of a stage with its line.
     Stage {
         /// Clocks after configuration in which the stage is in reset; 0 if it is in reset again later.
@@ -247,8 +250,44 @@ fn cells_check(cells: &CellsReport) -> CheckDocument {
 fn lock_step_check(lock_step: &LockStepDocument) -> CheckDocument {
     match lock_step {
         LockStepDocument::Shapers(report) => shapers_check(report),
+        LockStepDocument::Bare(report) => bare_check(report),
         LockStepDocument::Stage { power_on_clocks, rows } => stage_check(*power_on_clocks, rows),
     }
+}
+
+fn bare_check(report: &BareReport) -> CheckDocument {
+    let moved = report.moves.iter().map(|one| {
+        format!(
+            "{} moved by {} counts, its encoder by {}",
+            one.axis, one.command_counts, one.encoder_counts
+        )
+    });
+    let moved: Vec<String> = moved.collect();
+    let what = match (&report.first, &report.host_error) {
+        (Some(first), _) => difference(first),
+        (None, Some(error)) => format!("{} clocks equal, then the host stopped: {error}", report.clocks),
+        (None, None) => format!(
+            "{} clocks from power-up, {} requests of the host: both output pins in every clock equal to the model's; {}",
+            report.clocks,
+            report.requests,
+            moved.join("; ")
+        ),
+    };
+    CheckDocument {
+        name: "behaviour",
+        ok: report.holds(),
+        what,
+    }
+}
+
+fn difference(first: &PinDifference) -> String {
+    format!(
+        "clock {}, {}: {} in the bits, {} in the model",
+        first.clock,
+        first.port,
+        u8::from(first.actual),
+        u8::from(first.expected)
+    )
 }
 
 fn stage_check(power_on_clocks: u64, rows: &LockstepReport) -> CheckDocument {
@@ -299,13 +338,7 @@ fn shapers_check(lock_step: &BehaviourReport) -> CheckDocument {
     let what = match &lock_step.first {
         None if lock_step.holds() => format!("{covered}: every pin in every clock equal to the model's"),
         None => format!("{covered}: equal, but too little was exercised; compare more with --clocks"),
-        Some(first) => format!(
-            "clock {}, {}: {} in the bits, {} in the model",
-            first.clock,
-            first.port,
-            u8::from(first.actual),
-            u8::from(first.expected)
-        ),
+        Some(first) => difference(first),
     };
     CheckDocument {
         name: "behaviour",
@@ -361,6 +394,9 @@ fn not_covered(lock_step: &LockStepDocument, flips: &[FlipReport], family: FpgaF
                 );
             }
         }
+        LockStepDocument::Bare(_) => list.push(
+            "your machine: its stand-in has no modes, no friction, no limits and no index, and all other inputs are tied inside".to_owned(),
+        ),
         LockStepDocument::Stage { .. } => list.push(
             "in lock step, what the line is too slow to reach: the cells were compared, but most of the arithmetic works on small numbers"
                 .to_owned(),

@@ -1,6 +1,7 @@
 //! What a bitstream is built of, and how its bits are compared with a model: the shapers of a machine behind the board's serial line, or a
 //! whole stage with its own line.
 
+use super::bare::Bare;
 use super::document::LockStepDocument;
 use crate::hardware::Built;
 use posicast_bitstream::BitstreamError;
@@ -22,6 +23,8 @@ use std::ops::RangeInclusive;
 const SHAPER_CLOCKS: u64 = 2_000_000;
 /// Clocks of the lock step of a stage, unless exercising what its verdict covers takes more.
 const STAGE_CLOCKS: u64 = 1_000_000;
+/// Clocks that the moves on a board without wires take, about.
+const BARE_CLOCKS: u64 = 5_000_000;
 /// Factor by which the lock step of a stage may take longer, until its stimuli have exercised everything that the verdict covers.
 const MOST_TIMES_LONGER: u64 = 4;
 /// Most clocks of the lock step of a fault in shapers, unless exercising every tap takes more.
@@ -40,17 +43,25 @@ pub(super) enum Subject<'a> {
         machine: String,
         board: FpgaBoard,
         block: &'a LinkedStageBlock,
+        /// Stand-ins, for a board without wires.
+        bare: Option<Bare<'a>>,
     },
 }
 
 impl<'a> Subject<'a> {
-    /// The stage of a machine with a line; of others the shapers.
-    pub(super) fn new(machine: &Machine, board: &FpgaBoard, built: &'a Built<'_>) -> Result<Self, BitstreamError> {
+    /// The stage of a machine with a line, with stand-ins if there are any; of others the shapers.
+    pub(super) fn new(
+        machine: &Machine,
+        board: &FpgaBoard,
+        built: &'a Built<'_>,
+        bare: Option<Bare<'a>>,
+    ) -> Result<Self, BitstreamError> {
         if let Some(block) = &built.link {
             return Ok(Self::Stage {
                 machine: machine.name.clone(),
                 board: *board,
                 block,
+                bare,
             });
         }
         let axes = built.shapers.iter().map(|shaper| TopAxis {
@@ -70,7 +81,12 @@ impl<'a> Subject<'a> {
     pub(super) fn files(&self) -> Result<TopFiles, BitstreamError> {
         match self {
             Self::Shapers(top) => Ok(top.files()),
-            Self::Stage { machine, board, block } => {
+            Self::Stage {
+                machine,
+                board,
+                block,
+                bare,
+            } => {
                 let direction = |port: &Port| match port.direction {
                     Direction::Input => PinUse::Input,
                     Direction::Output => PinUse::Output,
@@ -79,7 +95,10 @@ impl<'a> Subject<'a> {
                 let clock = ("clk".to_owned(), PinUse::Input);
                 let named = ports.iter().map(|port| (port.name.clone(), direction(port)));
                 let named: Vec<_> = std::iter::once(clock).chain(named).collect();
-                stage::top(machine, *board, &block.top(), &named)
+                match bare {
+                    None => stage::top(machine, *board, &block.top(), &named),
+                    Some(bare) => stage::bare(machine, *board, &block.top(), &named, &bare.stand_ins),
+                }
             }
         }
     }
@@ -88,6 +107,8 @@ impl<'a> Subject<'a> {
     pub(super) fn clocks(&self, asked: Option<u64>) -> RangeInclusive<u64> {
         let (fewest, most) = match self {
             Self::Shapers(top) => (SHAPER_CLOCKS.max(behaviour::least_clocks(top)), 1),
+            // The moves decide; the bar shows about how long they take.
+            Self::Stage { bare: Some(_), .. } => (BARE_CLOCKS, MOST_TIMES_LONGER),
             Self::Stage { block, .. } => (STAGE_CLOCKS.max(block.least_clocks()), MOST_TIMES_LONGER),
         };
         match asked {
@@ -108,6 +129,17 @@ impl<'a> Subject<'a> {
             Self::Shapers(top) => {
                 let clocks = (*clocks.end(), seed);
                 behaviour::compare(&netlist.network(), top, clocks, progress).map(LockStepDocument::Shapers)
+            }
+            Self::Stage {
+                block,
+                board,
+                bare: Some(bare),
+                ..
+            } => {
+                let seed = blocks::row_seed(*block, seed);
+                let limits = (*clocks.end(), seed);
+                let report = bare.lock_step(&netlist.network(), (block, board), limits, progress)?;
+                Ok(LockStepDocument::Bare(report))
             }
             Self::Stage { block, board, .. } => {
                 let network = netlist.network();
@@ -138,6 +170,7 @@ impl<'a> Subject<'a> {
         let found = self.lock_step(netlist, routed, (clocks..=clocks, seed), &mut |_| {})?;
         Ok(match found {
             LockStepDocument::Shapers(report) => report.first.map(|first| first.clock),
+            LockStepDocument::Bare(report) => report.first.map(|first| first.clock),
             LockStepDocument::Stage { power_on_clocks, rows } => {
                 let first = rows
                     .blocks
@@ -253,7 +286,7 @@ mod tests {
         let file = super::super::machine::on_board(&path, &board("colorlight-i5").unwrap()).unwrap();
         let report = DesignReport::new(&file.machine, &path).unwrap();
         let built = Built::new(&report, &path, &Silent).unwrap();
-        let subject = Subject::new(&file.machine, &board("colorlight-i5").unwrap(), &built).unwrap();
+        let subject = Subject::new(&file.machine, &board("colorlight-i5").unwrap(), &built, None).unwrap();
         let page = std::fs::read_to_string(root.join("docs/first-light.md")).unwrap();
         let pins = subject.files().unwrap().pins;
         let wired: Vec<_> = pins.iter().filter(|pin| !pin.header.is_empty()).collect();
