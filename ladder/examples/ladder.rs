@@ -17,10 +17,11 @@ use std::time::Instant;
 
 use posicast_ladder::table::{Columns, Rung, rows, table};
 
-const RUNGS: [&str; 11] = [
+const RUNGS: [&str; 12] = [
     "lock step",
     "second simulator",
     "netlist",
+    "netlist of Cyclone V",
     "reset",
     "formal",
     "mutation",
@@ -106,6 +107,16 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
                 &arguments,
                 &[("LUT", "LUT"), ("flip-flops", "flip-flops")],
             )
+        }
+        "netlist of Cyclone V" => {
+            let family = ["--family", "cyclone5", "--clocks"].map(str::to_owned);
+            let arguments = [family.as_slice(), &[number(100_000, 2_000)]].concat();
+            let columns = &[
+                ("LUT", "LUT"),
+                ("flip-flops", "flip-flops"),
+                ("multipliers", "multipliers"),
+            ];
+            example(name, "netlist", &arguments, columns)
         }
         "reset" => example(name, "unset", &[], &[("memories and multipliers", "cut out")]),
         "formal" => example(

@@ -43,7 +43,7 @@ pub enum EquivalenceVerdict {
 }
 
 /// A block's Verilog, sorted by what is mapped.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NetlistParts {
     /// Modules that are mapped to logic elements, the top among them.
     pub logic: Vec<Module>,
@@ -52,36 +52,46 @@ pub struct NetlistParts {
 }
 
 impl NetlistParts {
-    /// Sorts a block's modules.
+    /// Sorts a block's modules; keeps memories and multipliers.
     pub fn of(modules: Vec<Module>) -> Self {
-        let is_kept = |module: &Module| module.has_memory() || module.text.contains(" <= a_q * b_q;");
+        Self::keeping(modules, |module| {
+            module.has_memory() || module.text.contains(" <= a_q * b_q;")
+        })
+    }
+
+    /// Sorts a block's modules; keeps memories, and maps multipliers to those of the device.
+    pub fn with_multipliers_mapped(modules: Vec<Module>) -> Self {
+        Self::keeping(modules, Module::has_memory)
+    }
+
+    fn keeping(modules: Vec<Module>, is_kept: impl Fn(&Module) -> bool) -> Self {
         let (kept, logic) = modules.into_iter().partition(is_kept);
         Self { logic, kept }
     }
 }
 
-/// Runs the netlist, with the models of its cells, in lock step with the block's model.
+/// A netlist, with models of its cells, and what it was made of.
+#[derive(Debug, Clone, Copy)]
+pub struct MappedParts<'a> {
+    /// The block's modules.
+    pub parts: &'a NetlistParts,
+    /// The netlist of those that are mapped.
+    pub netlist: &'a str,
+}
+
+/// Runs the netlist in lock step with the block's model.
 ///
 /// # Errors
 /// Those of [`Sources::verilated`] and [`blocks::check`].
-pub fn simulate(
-    block: &dyn Block,
-    parts: &NetlistParts,
-    netlist: &str,
-    cell_models: &str,
-    clocks: u64,
-    seed: u64,
-) -> Result<LockstepReport, Error> {
-    let mut modules = parts.kept.clone();
-    for (name, text) in [("cell_models", cell_models), ("netlist", netlist)] {
-        modules.push(Module {
-            name: name.to_owned(),
-            text: text.to_owned(),
-            ports: Vec::new(),
-            clocked: true,
-            notes: Vec::new(),
-        });
-    }
+pub fn simulate(block: &dyn Block, mapped: MappedParts<'_>, clocks: u64, seed: u64) -> Result<LockstepReport, Error> {
+    let mut modules = mapped.parts.kept.clone();
+    modules.push(Module {
+        name: "netlist".to_owned(),
+        text: mapped.netlist.to_owned(),
+        ports: Vec::new(),
+        clocked: true,
+        notes: Vec::new(),
+    });
     let sources = Sources::of_modules(&modules)?;
     let mut device = sources.verilated(block, seed)?;
     blocks::check(block, &mut device, clocks, seed, &mut |_| {})
@@ -95,15 +105,12 @@ pub fn simulate(
 /// example because only one of them has a port or kept module; [`Error::File`] for the files.
 pub fn equivalent(
     top: &str,
-    parts: &NetlistParts,
-    netlist: &str,
-    cell_models: &str,
+    MappedParts { parts, netlist }: MappedParts<'_>,
     folder: &Path,
     limit: Duration,
 ) -> Result<EquivalenceVerdict, Error> {
     let sides = Sides::new(top, &parts.kept, folder)?;
     sides.write("netlist.v", netlist)?;
-    sides.write("cell_models.v", cell_models)?;
     let rtl = sides.write_modules(&parts.logic)?.join(" ");
     let script = format!(
         "{}{}design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
@@ -111,7 +118,7 @@ pub fn equivalent(
          delete -output\nopt -fast\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
          write_aiger -I -B -zinit -no-startoffset miter.aig\n",
         sides.side(&rtl, "gold"),
-        sides.side("netlist.v cell_models.v", "gate")
+        sides.side("netlist.v", "gate")
     );
     let doing = ["joining RTL and netlist", "comparing RTL and netlist"];
     sides.decide(("miter", &script), SEARCHED_CLOCKS, limit, doing)
@@ -120,9 +127,7 @@ pub fn equivalent(
 /// Result for a block.
 #[derive(Debug, Clone)]
 pub struct EquivalenceOutcome {
-    /// Number of logic elements that compute, and of flip-flops.
-    pub cells: [usize; 2],
-    /// Number of kept modules.
+    /// Number of modules that the proof kept.
     pub kept: usize,
     /// Lock step of the netlist with the model; `None` if it was not simulated.
     pub simulated: Option<LockstepReport>,
@@ -132,29 +137,29 @@ pub struct EquivalenceOutcome {
     pub time: Duration,
 }
 
-/// Simulates a netlist for this many clocks (0: not at all), and proves it.
+/// Simulates the netlist `simulated` for this many clocks (0: not at all), and proves the netlist `proven`. They are one,
+/// or differ in what they keep.
 ///
 /// # Errors
 /// Those of [`simulate`] and [`equivalent`].
 pub fn check(
     block: &dyn Block,
-    parts: &NetlistParts,
-    (netlist, cell_models): (&str, &str),
+    simulated: MappedParts<'_>,
+    proven: MappedParts<'_>,
     (clocks, seed): (u64, u64),
     limit: Duration,
 ) -> Result<EquivalenceOutcome, Error> {
     let start = Instant::now();
     let simulated = match clocks {
         0 => None,
-        _ => Some(simulate(block, parts, netlist, cell_models, clocks, seed)?),
+        _ => Some(simulate(block, simulated, clocks, seed)?),
     };
     let temporary = std::env::temp_dir();
     let folder = scratch::Folder::new(scratch::PREFIX);
     let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
-    let verdict = equivalent(&block.top(), parts, netlist, cell_models, folder.path(), limit)?;
+    let verdict = equivalent(&block.top(), proven, folder.path(), limit)?;
     Ok(EquivalenceOutcome {
-        cells: ["  cycloneive_lcell_comb ", "  dffeas "].map(|cell| netlist.matches(cell).count()),
-        kept: parts.kept.len(),
+        kept: proven.parts.kept.len(),
         simulated,
         verdict,
         time: start.elapsed(),

@@ -5,8 +5,9 @@
 
 use std::time::Duration;
 
-use posicast_ladder::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
-use posicast_synth::yosys::{CELL_MODELS, Yosys};
+use posicast_hdl::emit::Module;
+use posicast_ladder::netlist::{EquivalenceOutcome, EquivalenceVerdict, MappedParts, NetlistParts, check, simulate};
+use posicast_synth::yosys::{CellNetlist, Family, Yosys};
 use posicast_testbench::blocks::{Block, Sources, library};
 use posicast_testbench::lockstep::report;
 
@@ -15,40 +16,45 @@ const CLOCKS: u64 = 20_000;
 struct Mapped {
     block: Box<dyn Block>,
     parts: NetlistParts,
-    netlist: String,
+    netlist: CellNetlist,
 }
 
 impl Mapped {
     fn new(name: &str) -> Self {
+        Self::to(Family::Cyclone4e, name, NetlistParts::of)
+    }
+
+    fn to(family: Family, name: &str, sorted: fn(Vec<Module>) -> NetlistParts) -> Self {
         let blocks = library().unwrap().into_iter();
         let block = blocks.into_iter().find(|block| block.name() == name).unwrap();
-        let parts = NetlistParts::of(block.modules().unwrap());
+        let parts = sorted(block.modules().unwrap());
         let files = |modules| Sources::of_modules(modules).unwrap();
         let (logic, kept) = (files(&parts.logic), files(&parts.kept));
         let yosys = Yosys::installed().unwrap();
-        let netlist = yosys.netlist(logic.files(), kept.files(), &block.top()).unwrap();
+        let netlist = yosys.netlist(logic.files(), kept.files(), &block.top(), family);
+        let netlist = netlist.unwrap();
         Self { block, parts, netlist }
     }
 
+    fn mapped(&self) -> MappedParts<'_> {
+        MappedParts {
+            parts: &self.parts,
+            netlist: &self.netlist.verilog,
+        }
+    }
+
     fn check(&self, clocks: u64) -> EquivalenceOutcome {
-        let netlist = (self.netlist.as_str(), CELL_MODELS);
-        check(
-            self.block.as_ref(),
-            &self.parts,
-            netlist,
-            (clocks, 1),
-            Duration::from_secs(60),
-        )
-        .unwrap()
+        let limit = Duration::from_secs(60);
+        check(self.block.as_ref(), self.mapped(), self.mapped(), (clocks, 1), limit).unwrap()
     }
 
     /// Replaces the first `from` in the netlist by `to`.
     fn broken(mut self, from: &str, to: &str) -> Self {
         assert!(
-            self.netlist.contains(from),
+            self.netlist.verilog.contains(from),
             "the netlist no longer has `{from}`: adapt the test"
         );
-        self.netlist = self.netlist.replacen(from, to, 1);
+        self.netlist.verilog = self.netlist.verilog.replacen(from, to, 1);
         self
     }
 }
@@ -57,10 +63,12 @@ impl Mapped {
 #[test]
 fn long_netlist_is_proven_equal_to_the_rtl() {
     for (name, kept) in [("group", 0), ("divider", 0), ("pwm", 0), ("setting_banks", 2)] {
-        let outcome = Mapped::new(name).check(0);
+        let mapped = Mapped::new(name);
+        let outcome = mapped.check(0);
         assert_eq!(outcome.verdict, EquivalenceVerdict::Equivalent, "{name}: {outcome:?}");
         assert_eq!(outcome.kept, kept, "{name}");
-        assert!(outcome.cells.iter().all(|count| *count > 5), "{name}: {outcome:?}");
+        let CellNetlist { luts, flip_flops, .. } = mapped.netlist;
+        assert!(luts > 5 && flip_flops > 5, "{name}: {luts}, {flip_flops}");
     }
 }
 
@@ -75,7 +83,7 @@ fn netlist_does_what_the_model_does() {
 #[test]
 fn netlist_with_a_wrong_table_is_found_by_simulation_and_proof() {
     let mapped = Mapped::new("group");
-    let mask = mapped.netlist.split(".lut_mask(16'h").nth(1).unwrap();
+    let mask = mapped.netlist.verilog.split(".lut_mask(16'h").nth(1).unwrap();
     let mask: String = mask.chars().take(4).collect();
     let flipped = u16::from_str_radix(&mask, 16).unwrap() ^ 0xffff;
     let outcome = mapped
@@ -103,4 +111,22 @@ fn netlist_with_a_wrong_power_up_is_found_by_the_proof() {
         "{:?}",
         outcome.verdict
     );
+}
+
+/// The multipliers are those of the device; its flip-flops begin at 0, so those that begin at 1 are inverted.
+#[test]
+fn netlist_of_cyclone_v_does_what_the_model_does() {
+    let mapped = Mapped::to(Family::Cyclone5, "sliding_mode", NetlistParts::with_multipliers_mapped);
+    assert_eq!(mapped.netlist.multipliers, 2);
+    let report = simulate(mapped.block.as_ref(), mapped.mapped(), CLOCKS, 1).unwrap();
+    assert_eq!((report.result, report.cycles), (report::LockstepVerdict::Match, CLOCKS));
+}
+
+#[test]
+fn netlist_of_cyclone_v_is_proven_equal_to_the_rtl() {
+    let mapped = Mapped::to(Family::Cyclone5, "group", NetlistParts::of);
+    assert_eq!(mapped.check(0).verdict, EquivalenceVerdict::Equivalent);
+    let inverted = mapped.broken("64'h", "~64'h");
+    let report = simulate(inverted.block.as_ref(), inverted.mapped(), CLOCKS, 1).unwrap();
+    assert_eq!(report.result, report::LockstepVerdict::Mismatch);
 }

@@ -5,8 +5,8 @@ use super::{UnitOutcome, Units, figures, only_blocks, row_name};
 use crate::bench;
 use crate::failure::Failure;
 use crate::synth;
-use posicast_ladder::netlist::{self, EquivalenceVerdict, NetlistParts};
-use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
+use posicast_ladder::netlist::{self, EquivalenceVerdict, MappedParts, NetlistParts};
+use posicast_synth::yosys::{Family, Yosys, YosysError};
 use posicast_testbench::blocks::{self, Block, Sources};
 use posicast_testbench::shard::MachineFileHash;
 use posicast_testbench::wording::counted;
@@ -84,10 +84,15 @@ impl Units for Netlists {
         let parts = NetlistParts::of(block.modules().map_err(Failure::because)?);
         let written = |modules| Sources::of_modules(modules).map_err(bench::failure);
         let (logic, kept) = (written(&parts.logic)?, written(&parts.kept)?);
-        let netlist = self.yosys.netlist(logic.files(), kept.files(), &block.top());
-        let netlist = netlist.map_err(synth::failure)?;
+        let (files, kept) = (logic.files(), kept.files());
+        let made = self.yosys.netlist(files, kept, &block.top(), Family::Cyclone4e);
+        let made = made.map_err(synth::failure)?;
+        let mapped = MappedParts {
+            parts: &parts,
+            netlist: &made.verilog,
+        };
         let run = (self.clocks, blocks::row_seed(block, seed));
-        let outcome = netlist::check(block, &parts, (&netlist, CELL_MODELS), run, LIMIT).map_err(bench::failure)?;
+        let outcome = netlist::check(block, mapped, mapped, run, LIMIT).map_err(bench::failure)?;
         let mismatches = outcome.simulated.as_ref().map_or(0, |report| report.mismatches());
         let failure = match (mismatches, outcome.verdict) {
             (0, EquivalenceVerdict::Equivalent) => None,
@@ -95,7 +100,7 @@ impl Units for Netlists {
             (0, EquivalenceVerdict::Unknown) => Some("no proof that netlist and RTL are equal".to_owned()),
             (count, _) => Some(counted(count, "mismatch")),
         };
-        let [luts, flip_flops] = outcome.cells.map(|count| count as u64);
+        let [luts, flip_flops] = [made.luts, made.flip_flops].map(|count| count as u64);
         let clocks = outcome.simulated.map_or(0, |report| report.cycles);
         Ok(UnitOutcome {
             figures: figures([("LUT", luts), ("flip-flops", flip_flops), ("clocks", clocks)]),

@@ -28,7 +28,7 @@ mod process;
 pub use count::{BlockEstimate, Resources};
 pub use ecp5::TopPort;
 pub use family::{Cell, Family, FpgaDevice, UnknownFamily};
-pub use gates::CELL_MODELS;
+pub use gates::CellNetlist;
 
 use std::fs;
 use std::path::{Path, PathBuf};
