@@ -6,6 +6,7 @@ mod document;
 mod evidence;
 mod machine;
 mod subject;
+mod too_large;
 
 use self::bare::Bare;
 pub use self::bare::{BareMove, BareReport};
@@ -101,7 +102,13 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         seed: options.seed,
         observer,
     };
-    let evidence = run.evidence(&sources).map_err(failure)?;
+    let evidence = run.evidence(&sources).map_err(|error| match &error {
+        BitstreamError::TooLarge { .. } => {
+            let remedy = too_large::remedy(&sources, &subject.logic(), &board, observer);
+            failure(error).in_file(path).or_help(&remedy)
+        }
+        _ => failure(error),
+    })?;
     let mut document = Document::new(&files, &file.machine, &evidence);
     let failed = document.failed();
     if failed.is_none() {

@@ -85,6 +85,12 @@ impl BoardTop {
         Ok(top)
     }
 
+    /// Name of the machine, and of the module with its shapers.
+    #[must_use]
+    pub fn machine(&self) -> &str {
+        &self.machine
+    }
+
     /// Name of the module.
     #[must_use]
     pub fn module(&self) -> String {

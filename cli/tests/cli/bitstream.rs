@@ -297,6 +297,35 @@ fn cli_a_bare_board_refuses_what_a_stand_in_cannot_stand_for() {
 }
 
 #[test]
+fn long_cli_a_machine_that_does_not_fit_names_its_largest_blocks_and_larger_boards() {
+    let axis = TWO_AXES
+        .split_once("[[axis]]")
+        .unwrap()
+        .1
+        .split_once("[[axis]]")
+        .unwrap()
+        .0;
+    let axes: String = ["a", "b", "c", "d"]
+        .map(|name| format!("[[axis]]{}", axis.replace("\"x\"", &format!("\"{name}\""))))
+        .concat();
+    let clock = TWO_AXES.split_once("[[axis]]").unwrap().0.replace("5_000", "2_000");
+    let clock = clock.replace("= 20\n", "= 32\n");
+    let (scratch, machine) = scratch(&(clock + &axes));
+    let folder = scratch.path().join("out");
+    refused(
+        &bitstream(&machine, "icebreaker", &folder, &[]),
+        &folder,
+        &[
+            "does not fit iCE40UP5K",
+            "logic cells needed, 5280 available",
+            "the largest blocks, by an estimate in logic elements of Cyclone IV E, without their multipliers: u_",
+            "u_a 4",
+            "larger boards: ice40-hx8k, colorlight-i5",
+        ],
+    );
+}
+
+#[test]
 fn long_cli_a_routed_design_is_used_again_until_its_verilog_changes() {
     let (folder, machine) = scratch(&short_machine(10_000));
     let path = |name: &str| folder.path().join(name);

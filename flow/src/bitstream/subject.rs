@@ -3,7 +3,7 @@
 
 use super::bare::Bare;
 use super::document::LockStepDocument;
-use crate::hardware::Built;
+use crate::hardware::{Built, STAGE_SUFFIX};
 use posicast_bitstream::BitstreamError;
 use posicast_bitstream::behaviour;
 use posicast_bitstream::boards::{FpgaBoard, PinUse};
@@ -100,6 +100,14 @@ impl<'a> Subject<'a> {
                     Some(bare) => stage::bare(machine, *board, &block.top(), &named, &bare.stand_ins),
                 }
             }
+        }
+    }
+
+    /// The module whose instances are the blocks.
+    pub(super) fn logic(&self) -> String {
+        match self {
+            Self::Shapers(top) => top.machine().to_owned(),
+            Self::Stage { machine, .. } => format!("{machine}{STAGE_SUFFIX}"),
         }
     }
 
