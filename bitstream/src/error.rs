@@ -89,6 +89,14 @@ pub enum BitstreamError {
     /// The netlist of the bits has something that this crate does not know.
     #[error("the netlist of the bits has something that is not known here, so nothing is compared: {0}")]
     UnknownCell(String),
+    /// A packed file that was given is not of this design.
+    #[error("{}: {reason}", .path.display())]
+    NotThisDesign {
+        /// The file.
+        path: PathBuf,
+        /// What it is, and what is expected.
+        reason: String,
+    },
     /// The operating system reported an error.
     #[error("{}: {source}", .path.display())]
     Io {

@@ -18,6 +18,7 @@
 //! | [`network`] | the netlist of the bits in the form that is simulated, whatever the family |
 //! | [`behaviour`] | runs the netlist of the bits beside the model |
 //! | [`flips`] | makes single faults in the bits, which the comparisons must find |
+//! | [`label`] | the comment in a packed file that says of which design it is |
 //! | [`report`] | what the comparisons report |
 //!
 //! What a netlist has and this crate does not know is an error that names it, never a guess.
@@ -29,6 +30,7 @@ mod error;
 pub mod flips;
 mod function;
 pub mod ice40;
+pub mod label;
 pub mod model;
 pub mod network;
 mod program;

@@ -54,6 +54,9 @@ pub trait Toolchain: Send + Sync {
     /// The error of nextpnr; a clock that is too slow is none.
     fn place_and_route(&self, constraints: &str, folder: &Path) -> Result<Routed, BitstreamError>;
 
+    /// The text of a bitstream with this line among its comments, which the packed file keeps.
+    fn labelled(&self, text: &str, label: &str) -> String;
+
     /// Packs a bitstream that is given as text.
     ///
     /// # Errors

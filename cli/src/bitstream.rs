@@ -24,6 +24,9 @@ pub(crate) struct Args {
     /// For a board without wires: stand-ins take the place of the machine, and no pin but the line's is used
     #[arg(long)]
     bare_board: bool,
+    /// Check this packed file, which was built earlier, and write nothing; the exit status is 2 if it is of another machine, board or device
+    #[arg(long, value_name = "FILE", conflicts_with = "output")]
+    packed: Option<PathBuf>,
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -43,6 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         machine: args.machine.clone(),
         board: args.board.clone(),
         bare: args.bare_board,
+        packed: args.packed.clone(),
         output: args.output.clone(),
         clocks: args.clocks,
         seed: args.seed,

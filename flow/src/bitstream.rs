@@ -43,6 +43,8 @@ pub struct Options {
     pub board: String,
     /// Whether the board has no wires: stand-ins take the place of the machine, and no pin but the line's is used.
     pub bare: bool,
+    /// A packed file that `posicast bitstream` wrote earlier: it is checked, and nothing is written.
+    pub packed: Option<PathBuf>,
     /// Output folder: new, empty, or written by posicast before; `None`: the machine's name.
     pub output: Option<PathBuf>,
     /// Clocks of the lock step; `None`: as many as exercise what the verdict covers, at least two million for shapers and one million for
@@ -52,7 +54,8 @@ pub struct Options {
     pub seed: u64,
 }
 
-/// Builds a bitstream, reads it back, and compares it. The files are written only if every check holds.
+/// Builds a bitstream, reads it back, and compares it; or compares one that was built earlier. The files are written only if every check
+/// holds.
 ///
 /// # Errors
 /// [`Failure`] for a machine, a board or a folder that cannot be used, and for a missing tool. A check that fails is not an error but
@@ -79,7 +82,10 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
     let files = subject.files().map_err(|error| failure(error).in_file(path))?;
     let tools = toolchain::installed(&board, &files.pins).map_err(failure)?;
     let quartus = sopc::board(&file.machine, path)?;
-    let mut package = open(options.output.as_deref(), &file)?;
+    let package = match options.packed {
+        Some(_) => None,
+        None => Some(open(options.output.as_deref(), &file)?),
+    };
     let modules = built.modules(path)?;
     let (mut sources, scratch) = verilog::write_scratch(&modules)?;
     let of_kit = kit::files(&file.machine, &modules, &built);
@@ -98,6 +104,8 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         files: &files,
         tools: tools.as_ref(),
         folder: scratch.path(),
+        given: options.packed.as_deref(),
+        machine: &file.machine.name,
         clocks: options.clocks,
         seed: options.seed,
         observer,
@@ -110,8 +118,11 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         _ => failure(error),
     })?;
     let mut document = Document::new(&files, &file.machine, &evidence);
+    if let Some(packed) = &options.packed {
+        document.checked(packed);
+    }
     let failed = document.failed();
-    if failed.is_none() {
+    if let (None, Some(mut package)) = (&failed, package) {
         generate::add(&mut package, (&file, path), &built, quartus, observer)?;
         add(&mut package, &files, &evidence, &document)?;
         let root = package.root().to_owned();

@@ -170,6 +170,12 @@ impl Toolchain for Ecp5Tools {
         })
     }
 
+    fn labelled(&self, text: &str, label: &str) -> String {
+        // The device must come first.
+        let (device, rest) = text.split_once('\n').unwrap_or((text, ""));
+        format!("{device}\n.comment {label}\n{rest}")
+    }
+
     fn pack(&self, text: &str, folder: &Path) -> Result<Vec<u8>, BitstreamError> {
         let from = ("packed.config", text.as_bytes());
         self.ecppack.convert("packing the bits", from, "packed.bit", folder)

@@ -113,6 +113,15 @@ impl Toolchain for Ice40Tools {
         })
     }
 
+    fn labelled(&self, text: &str, label: &str) -> String {
+        // icepack keeps the lines below the last `.comment`, and nextpnr begins with one that has none.
+        let rest = match text.split_once('\n') {
+            Some((first, rest)) if first.starts_with(".comment") => rest,
+            _ => text,
+        };
+        format!(".comment\n{label}\n{rest}")
+    }
+
     fn pack(&self, text: &str, folder: &Path) -> Result<Vec<u8>, BitstreamError> {
         let from = ("packed.asc", text.as_bytes());
         self.icepack.convert("packing the bits", from, "packed.bin", folder)

@@ -163,6 +163,7 @@ impl BoardTop {
             board: self.board,
             pins: self.board.own_pins().to_vec(),
             verilog: self.verilog(),
+            is_bare: false,
         }
     }
 }
@@ -178,6 +179,8 @@ pub struct TopFiles {
     pub pins: Vec<TopPin>,
     /// The module.
     pub verilog: String,
+    /// Whether the board has no wires: only the line and the LED have pins, and [`stand_in`]s take the place of the machine.
+    pub is_bare: bool,
 }
 
 impl TopFiles {

@@ -53,6 +53,7 @@ pub fn top(
         board,
         pins,
         verilog,
+        is_bare: false,
     })
 }
 
@@ -98,6 +99,7 @@ pub fn bare(
         board,
         pins,
         verilog,
+        is_bare: true,
     })
 }
 

@@ -33,17 +33,21 @@ pub(crate) fn bitstream(document: &Document) -> String {
     for what in &document.not_covered {
         text += &format!("  {what}\n");
     }
-    let Some(folder) = &document.folder else {
-        return text + &style::message("FAIL: no bitstream was written") + "\n";
+    let holds = document.checks.iter().all(|check| check.ok);
+    let verdict = match (holds, document.checked_only) {
+        (true, _) => format!(
+            "PASS: the bits of {} compute the model. Nobody has run it on hardware yet.",
+            document.bitstream
+        ),
+        (false, true) => format!("FAIL: the bits of {} are not those of this design", document.bitstream),
+        (false, false) => "FAIL: no bitstream was written".to_owned(),
     };
-    text += &format!(
-        "{} in {folder}: {}\n",
-        counted(document.files.len() as u64, "file"),
-        entries(document.files.iter().map(Path::new)).join(", ")
-    );
-    let verdict = format!(
-        "PASS: the bits of {} compute the model. Nobody has run it on hardware yet.",
-        document.bitstream
-    );
+    if let Some(folder) = &document.folder {
+        text += &format!(
+            "{} in {folder}: {}\n",
+            counted(document.files.len() as u64, "file"),
+            entries(document.files.iter().map(Path::new)).join(", ")
+        );
+    }
     text + &style::message(&verdict) + "\n"
 }

@@ -118,6 +118,123 @@ fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
     assert_eq!(verilator::lint(&files, "two_icebreaker").unwrap(), [""; 0]);
     let text = std::fs::read_to_string(folder.join("machine.toml")).unwrap();
     assert!(text.contains("frequency_hz = 12000000"), "{text}");
+    refuses_the_packed_file_of_something_else(&file("two_icebreaker.bin"), &machine);
+}
+
+/// `packed` is the bitstream of `machine` for iCEBreaker.
+fn refuses_the_packed_file_of_something_else(packed: &Path, machine: &Path) {
+    let folder = tempfile::tempdir().unwrap();
+    let check = |machine: &Path, board: &str, packed: &Path| {
+        let mut command = posicast();
+        command
+            .arg("bitstream")
+            .arg(machine)
+            .args(["--board", board, "--packed"]);
+        command.arg(packed).output().unwrap()
+    };
+    let refuses = |machine: &Path, board, packed: &Path, words: &[&str]| {
+        refused(&check(machine, board, packed), &folder.path().join("none"), words);
+    };
+    let text = std::fs::read_to_string(machine).unwrap();
+    let written = |name: &str, contents: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, contents).unwrap();
+        path
+    };
+    let other = written("other.toml", text.replace("\"two\"", "\"other\"").as_bytes());
+    refuses(
+        &other,
+        "icebreaker",
+        packed,
+        &[
+            "two_icebreaker.bin: it is of the machine two on icebreaker",
+            "of other on icebreaker",
+        ],
+    );
+    refuses(machine, "ice40-hx8k", packed, &["of two on ice40-hx8k"]);
+    let changed = written("changed.toml", text.replace("300.0", "310.0").as_bytes());
+    refuses(
+        &changed,
+        "icebreaker",
+        packed,
+        &["another state of the machine file", "build the bitstream anew"],
+    );
+    let mut bytes = std::fs::read(packed).unwrap();
+    bytes[9000] ^= 4;
+    let damaged = written("damaged.bin", &bytes);
+    refuses(
+        machine,
+        "icebreaker",
+        &damaged,
+        &["damaged.bin: this is no intact bitstream of iCE40UP5K"],
+    );
+    let foreign = written("foreign.bin", b"not a bitstream");
+    refuses(
+        machine,
+        "icebreaker",
+        &foreign,
+        &["foreign.bin: this is no intact bitstream"],
+    );
+    refuses(
+        machine,
+        "icebreaker",
+        &folder.path().join("missing.bin"),
+        &["missing.bin: "],
+    );
+}
+
+/// A bit is flipped in the file that lies in the folder, and its checksum is right.
+#[test]
+fn long_cli_a_flipped_bit_in_a_packed_file_is_found() {
+    let (scratch, machine) = scratch(&short_machine(10_000));
+    let [cache, folder] = ["cache", "out"].map(|name| scratch.path().join(name));
+    let built = bitstream_with(&cache, &machine, "icebreaker", &folder, &["--clocks", "200000"]);
+    assert_eq!(built.status.code(), Some(0));
+    let bits = std::fs::read_dir(folder.join("bitstream"))
+        .unwrap()
+        .map(|file| file.unwrap().path());
+    let bits: Vec<PathBuf> = bits
+        .filter(|file| file.extension().is_some_and(|ending| ending == "bin"))
+        .collect();
+    let check = |packed: &Path| {
+        let mut command = posicast();
+        command.env("POSICAST_CACHE", &cache).arg("bitstream").arg(&machine);
+        command.args(["--board", "icebreaker", "--clocks", "200000", "--json", "--packed"]);
+        let output = command.arg(packed).output().unwrap();
+        (output.status.code(), json(&output.stdout))
+    };
+    let (status, document) = check(&bits[0]);
+    assert_eq!(
+        (status, &document["checked_only"]),
+        (Some(0), &true.into()),
+        "{document:#}"
+    );
+    let run = |program: &str, from: &Path, to: &Path| {
+        let status = std::process::Command::new(program).arg(from).arg(to).status().unwrap();
+        assert!(status.success());
+    };
+    let [text, flipped] = ["bits.asc", "flipped.bin"].map(|name| scratch.path().join(name));
+    run("iceunpack", &bits[0], &text);
+    let asc = std::fs::read_to_string(&text).unwrap();
+    let tiles: Vec<&str> = asc.split("\n.logic_tile ").collect();
+    let used = tiles
+        .iter()
+        .skip(1)
+        .find(|tile| tile.split_once('\n').unwrap().1.contains('1'))
+        .unwrap();
+    let (place, rows) = used.split_once('\n').unwrap();
+    let other = asc.replace(*used, &format!("{place}\n{}", rows.replacen('1', "0", 1)));
+    std::fs::write(&text, other).unwrap();
+    run("icepack", &text, &flipped);
+    let (status, document) = check(&flipped);
+    assert_eq!(status, Some(1));
+    let checks = document["checks"].as_array().unwrap();
+    let failed: Vec<&str> = checks
+        .iter()
+        .filter(|check| check["ok"] == false)
+        .map(|check| check["name"].as_str().unwrap())
+        .collect();
+    assert!(failed.contains(&"structure, tiles"), "{checks:#?}");
 }
 
 /// nextpnr for ECP5 of the Python tools.

@@ -74,6 +74,8 @@ pub struct Document {
     /// Path of the bitstream; its name alone if it was not written.
     #[serde(skip)]
     pub bitstream: String,
+    /// Whether an earlier file was checked, so that nothing is written.
+    pub checked_only: bool,
 }
 
 /// The netlist of the bits in lock step with the model.
@@ -147,7 +149,14 @@ impl Document {
             files: Vec::new(),
             title: board.title.to_owned(),
             bitstream: top.bitstream(),
+            checked_only: false,
         }
+    }
+
+    /// The bits are those of this file.
+    pub(super) fn checked(&mut self, packed: &Path) {
+        self.bitstream = packed.display().to_string();
+        self.checked_only = true;
     }
 
     /// Why the command fails; `None` if every check holds.
@@ -158,7 +167,12 @@ impl Document {
             .filter(|check| !check.ok)
             .map(|check| check.name)
             .collect();
-        (!failed.is_empty()).then(|| format!("failed: {}; no bitstream was written", failed.join(", ")))
+        let written = if self.checked_only {
+            ""
+        } else {
+            "; no bitstream was written"
+        };
+        (!failed.is_empty()).then(|| format!("failed: {}{written}", failed.join(", ")))
     }
 
     /// The files were written.

@@ -5,6 +5,7 @@ use super::subject::Subject;
 use crate::observer::Observer;
 use posicast_bitstream::BitstreamError;
 use posicast_bitstream::flips::{self, FaultFree, FlipReport};
+use posicast_bitstream::label::BitsLabel;
 use posicast_bitstream::toolchain::{BitsNetlist, Routed, Toolchain};
 use posicast_bitstream::top::TopFiles;
 use posicast_system::{kept, scratch};
@@ -21,6 +22,10 @@ pub(super) struct Run<'a> {
     pub(super) files: &'a TopFiles,
     pub(super) tools: &'a dyn Toolchain,
     pub(super) folder: &'a Path,
+    /// A packed file that is checked in place of a new one.
+    pub(super) given: Option<&'a Path>,
+    /// Name of the machine.
+    pub(super) machine: &'a str,
     pub(super) clocks: Option<u64>,
     pub(super) seed: u64,
     pub(super) observer: &'a dyn Observer,
@@ -32,13 +37,28 @@ impl Run<'_> {
         let (tools, folder) = (self.tools, self.folder);
         let during = |what: &str| self.observer.begin(what, None);
         let versions = tools.versions(folder)?;
-        let routed = self.routed(sources, &versions)?;
+        let key = self.key(sources, &versions)?;
+        let label = BitsLabel::new(self.machine, &self.board(), &key);
+        let given = self.given.map(|path| self.read_given(path, &label)).transpose()?;
+        let routed = self.routed(sources, &key)?;
         let (packed, text, netlist, tiles) = {
             let _shown = during("reading the bits back");
-            let packed = tools.pack(&routed.text, folder)?;
-            let text = tools.unpack(&packed, folder)?;
+            let own = tools.pack(&tools.labelled(&routed.text, &label.line()), folder)?;
+            let (packed, text) = match given {
+                Some(given) => given,
+                None => {
+                    let text = tools.unpack(&own, folder)?;
+                    (own.clone(), text)
+                }
+            };
             let netlist = tools.decode(&text, folder)?;
-            let tiles = tools.compare_tiles(&routed, &packed, &text, folder)?;
+            let mut tiles = tools.compare_tiles(&routed, &packed, &text, folder)?;
+            if packed != own && tiles.differences.is_empty() {
+                tiles.differences = tools.different_tiles(&tools.unpack(&own, folder)?, &text);
+                if tiles.differences.is_empty() {
+                    tiles.differences.push("bytes outside the tiles".to_owned());
+                }
+            }
             (packed, text, netlist, tiles)
         };
         let cells = netlist.compare_cells(&routed.netlist)?;
@@ -71,9 +91,51 @@ impl Run<'_> {
         })
     }
 
+    /// Name of the board in a label.
+    fn board(&self) -> String {
+        let bare = if self.files.is_bare { "-bare" } else { "" };
+        format!("{}{bare}", self.files.board.name)
+    }
+
+    /// Reads a packed file, and its text, if its label is that of this design.
+    fn read_given(&self, path: &Path, label: &BitsLabel) -> Result<(Vec<u8>, String), BitstreamError> {
+        let packed = fs::read(path).map_err(|source| BitstreamError::Io {
+            path: path.to_owned(),
+            source,
+        })?;
+        let refused = |reason: String| BitstreamError::NotThisDesign {
+            path: path.to_owned(),
+            reason,
+        };
+        let text = self.tools.unpack(&packed, self.folder).map_err(|error| {
+            let device = self.files.board.device.name();
+            refused(format!("this is no intact bitstream of {device}: {error}"))
+        })?;
+        let found = BitsLabel::read(&text).ok_or_else(|| {
+            refused(
+                "it has no label of posicast among its comments: give a file that `posicast bitstream` has written"
+                    .to_owned(),
+            )
+        })?;
+        if (&found.machine, &found.board) != (&label.machine, &label.board) {
+            return Err(refused(format!(
+                "it is of the machine {} on {}; this machine file and --board are of {} on {}",
+                found.machine, found.board, label.machine, label.board
+            )));
+        }
+        if found.checksum != label.checksum {
+            return Err(refused(format!(
+                "it is of another state of the machine file, or other versions of the tools built it: its checksum is {}, that of this design {}; \
+                 build the bitstream anew",
+                found.checksum, label.checksum
+            )));
+        }
+        Ok((packed, text))
+    }
+
     /// The routed design of these Verilog files: that of an earlier run, if nothing has changed.
-    fn routed(&self, sources: &[PathBuf], versions: &[String; 2]) -> Result<Routed, BitstreamError> {
-        let file = kept::folder().join(format!("{KEPT_PREFIX}{}.json", self.key(sources, versions)?));
+    fn routed(&self, sources: &[PathBuf], key: &str) -> Result<Routed, BitstreamError> {
+        let file = kept::folder().join(format!("{KEPT_PREFIX}{key}.json"));
         let earlier = kept::holds(&file).then(|| fs::read(&file).ok()).flatten();
         if let Some(routed) = earlier.and_then(|text| serde_json::from_slice(&text).ok()) {
             self.observer
