@@ -21,6 +21,7 @@
 //! | [`component`] | components: blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`encoder_generator`] | the internal encoder: quadrature at a set rate, in place of the pins |
+//! | [`step_generator`] | the step generator: the position of every tick to the pulses of a drive with step inputs |
 //! | [`error_table`] | a measured error of screw or scale over position, taken from the position reference |
 //! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
@@ -63,6 +64,7 @@ pub mod shaper;
 mod simulation;
 pub mod sliding_mode;
 pub mod spi_bridge;
+pub mod step_generator;
 pub mod time_base;
 pub mod trace;
 pub mod uart_bridge;

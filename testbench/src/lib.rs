@@ -56,6 +56,7 @@ pub mod shard;
 pub mod sliding_mode;
 pub mod spi_bridge;
 pub mod stage;
+pub mod step_generator;
 pub mod stimuli;
 mod tool;
 pub mod trace;
@@ -87,6 +88,7 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     excitation::ROW,
     uart_bridge::ROW,
     spi_bridge::ROW,
+    step_generator::ROW,
     parts::TIME_BASE,
     parts::SCHEDULE,
     parts::DIVIDER_SHARE,

@@ -32,6 +32,7 @@ pub mod shaper_tables;
 pub mod sliding_mode;
 pub mod spi_bridge;
 pub mod stage;
+pub mod step_generator;
 pub mod time_base;
 pub mod trace;
 pub mod uart_bridge;
@@ -56,6 +57,7 @@ pub const PORT_LISTS: &[(&str, PortList)] = &[
     ("segments", segments::PORTS),
     ("sliding_mode", sliding_mode::PORTS),
     ("spi_bridge", spi_bridge::PORTS),
+    ("step_generator", step_generator::PORTS),
     ("trace", trace::PORTS),
     ("uart_bridge", uart_bridge::PORTS),
 ];

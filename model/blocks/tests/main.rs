@@ -20,6 +20,7 @@ mod shaper_motion;
 mod shaper_prop;
 mod shaper_protocol;
 mod spi_bridge;
+mod step_generator;
 mod support;
 mod trace;
 mod uart_bridge;

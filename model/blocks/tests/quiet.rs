@@ -25,6 +25,7 @@ use posicast_blocks::segments::Segments;
 use posicast_blocks::setting_banks::SettingBanks;
 use posicast_blocks::shaper::Shaper;
 use posicast_blocks::sliding_mode::SlidingMode;
+use posicast_blocks::step_generator::{StepGenerator, StepGeneratorConfig, StepMode, StepTimes};
 use posicast_blocks::time_base::TimeBase;
 use posicast_blocks::trace::{Trace, TraceConfig};
 use posicast_blocks::{Direction, Moore, OutputKind, Port};
@@ -110,6 +111,14 @@ const SEGMENTS: Hints = &[
     ("rst", &[0]),
 ];
 
+const STEPS: Hints = &[
+    ("rst", &[0]),
+    ("enable", &[1, 1, 1, 1, 1, 0]),
+    ("tick", RARE),
+    ("position", &[0, 8, 20, 60]),
+    ("clear_flags", RARE),
+];
+
 const COUNTER: Hints = &[
     ("a", &[0, 1]),
     ("b", &[0, 1]),
@@ -181,6 +190,15 @@ fn blocks() -> Vec<Tried> {
             &[("rate", &[0, 0, 0, 1 << 20])],
             EncoderGenerator::new,
         ),
+        tried("step_generator", STEPS, || {
+            let times = StepTimes {
+                pulse_clocks: 3,
+                space_clocks: 4,
+                direction_setup_clocks: 9,
+                direction_hold_clocks: 6,
+            };
+            StepGenerator::new(&StepGeneratorConfig::new(40, 4, StepMode::StepDirection, times, 3).unwrap())
+        }),
         tried(
             "linear_scale",
             &[("tick", RARE), ("velocity_valid", RARE), ("align", RARE), ("rst", RARE)],
